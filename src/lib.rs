@@ -1,13 +1,13 @@
-//! The systems of a robotics textbook as a library: driving, mapping, navigating, seeing and learning robots, after
+//! The systems of a robotics textbook as a library: robots that drive, map, navigate, see and learn, after
 //! *Robot Adventures in Python and C* (Thomas Bräunl, 2020).
 //!
-//! An algorithm is written once, against small traits for what a robot can do ([`io`]), and does not know whether
-//! the robot is simulated, recorded or real. The same seed, world and program give the same run, to the last bit, on
-//! every platform.
+//! Algorithms are written against small traits for a robot's capabilities ([`io`]); whether the robot is
+//! simulated, recorded or real makes no difference to them. The same seed, world and program give the same
+//! run, to the last bit, on every platform.
 //!
 //! # Example
 //!
-//! A robot with a lidar finds its way past a wall, and nothing is touched:
+//! A robot with a lidar drives around a wall without touching it:
 //!
 //! ```
 //! use roverlab::geometry::{Point, Pose};
@@ -37,49 +37,49 @@
 //!
 //! # Chapters and modules
 //!
-//! What is not listed is not there yet.
+//! Topics that are not listed are not implemented yet.
 //!
-//! | chapter | what | where |
+//! | chapter | topic | module |
 //! |---|---|---|
 //! | 1 Robots and simulation | simulated worlds and robots | [`io::sim`] |
-//! | 1 Robots and simulation | EyeSim's files: `.sim`, `.wld`, `.maz`, `.robi`, `.esObj` | [`world::formats`] |
-//! | 2 Sensors and programs | what a robot can be asked: distance sensors, camera, keys, display, radio | [`io`] |
-//! | 3 Driving | the v-omega drive, encoders; random drive, coverage, from A to B, path followers, PID | [`io`], [`drive`] |
-//! | 4 Lidar | scans, what they show, and taking their noise out; localisation in a known world | [`io`], [`scan`] |
+//! | 1 Robots and simulation | EyeSim files: `.sim`, `.wld`, `.maz`, `.robi`, `.esObj` | [`world::formats`] |
+//! | 2 Sensors and programs | robot capabilities: distance sensors, camera, keys, display, radio | [`io`] |
+//! | 3 Driving | v-omega drive, encoders; random drive, coverage, point to point, path followers, PID | [`io`], [`drive`] |
+//! | 4 Lidar | scans, features, noise filters; localisation in a known world | [`io`], [`scan`] |
 //! | 5 Swarms | any number of robots in one world; followers, chains, formations | [`io::sim`], [`drive`] |
 //! | 6 Wall following | walls of any shape, by distance sensors, PID or lidar | [`drive`] |
-//! | 7 Alternative drives | cars and wheels with rollers: kinematics, control, simulation | [`kinematics`], [`drive`], [`io::sim`] |
+//! | 7 Alternative drives | cars and omnidirectional drives: kinematics, control, simulation | [`kinematics`], [`drive`], [`io::sim`] |
 //! | 9 Mazes | models and files, flood fill, exploration, time-optimal runs | [`maze`] |
-//! | 10 Navigation | DistBug, scan matching, which goals can be reached; ROS maps | [`nav`], [`scan`], [`world::formats`] |
+//! | 10 Navigation | DistBug, scan matching, reachable goals; ROS maps | [`nav`], [`scan`], [`world::formats`] |
 //! | 10 Navigation | planning on grid maps: A\*, Dijkstra, jump point search, any-angle paths, quadtrees | [`nav::grid`], [`world`] |
 //! | 11 Robot vision | edges, colours, motion, blobs, lines | [`vision`] |
-//! | 12 Evolution | genetic algorithms, evolution strategy with covariance adaptation | [`evolve`] |
-//! | 14 Formula SAE | tracks of cones, the way between them, racing lines, referee; racing cars | [`race`], [`io::sim`] |
-//! | 14 Formula SAE | the safety system's state machine, monitors, stopping distance | [`safety`] |
+//! | 12 Evolution | genetic algorithms, CMA evolution strategy | [`evolve`] |
+//! | 14 Formula SAE | cone tracks, centre lines, racing lines, referee; racing cars | [`race`], [`io::sim`] |
+//! | 14 Formula SAE | safety: state machine, monitors, stopping distance | [`safety`] |
 //!
-//! Beside the chapters: [`ParameterError`] is how constructors refuse; [`geometry`] has poses, angles and
-//! units; [`random`] seeded random streams; [`world`] what a world and a robot are, with random courses in
+//! Besides the chapters: [`ParameterError`] is the error of constructors; [`geometry`] has poses, angles and
+//! units; [`random`] has seeded random streams; [`world`] describes worlds and robots, with random courses in
 //! [`world::generate`]; [`picture`] draws worlds and runs.
 //!
 //! # Conventions
 //!
-//! Metres, radians, seconds; x forward, y left, angles counter-clockwise. A sensor that sees nothing reads
-//! `f64::INFINITY`; one that is missing is an error. Nothing panics on what a user, a file or a robot gives it.
+//! Metres, radians, seconds; x forward, y left, angles counter-clockwise. A sensor that detects nothing reads
+//! `f64::INFINITY`; a missing sensor is an error. No input from a user, a file or a robot causes a panic.
 //!
 //! # Features
 //!
-//! Each wing above is a feature of its name, and brings those that it imports; `io` has [`world`] too, and
-//! [`geometry`], [`kinematics`] and [`random`] are always there. All are on by default, as `picture` is. With
-//! `default-features = false, features = ["vision"]` the kernels of [`vision`] are compiled alone; `image` adds views of
-//! that crate's images.
+//! Each wing is a feature of its name and enables those that it depends on. `io` includes [`world`];
+//! [`geometry`], [`kinematics`] and [`random`] are always present. All wings are on by default, and so is
+//! `picture`. With `default-features = false, features = ["vision"]` only the kernels of [`vision`] are
+//! compiled; `image` adds views of that crate's images.
 //!
-//! Off by default: `log` adds recordings, `png` pictures as PNG; `testing` strategies for property tests and
-//! checks for planners of one's own; `petgraph` searches graphs of that crate; `rayon` runs vision kernels
-//! and evaluates populations on several threads; `checkpoint` saves evolutions; `physics` adds a walking
-//! robot; `robios` drives a real EyeBot.
+//! Off by default: `log` (recordings), `png` (pictures as PNG), `testing` (property-test strategies and
+//! checks for your own planners), `petgraph` (search on that crate's graphs), `rayon` (vision kernels and
+//! evolution on several threads), `checkpoint` (saved evolutions), `physics` (a walking robot), `robios` (a
+//! real EyeBot).
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
-// Where some wings are off, what they alone would use is left over, and links to them are plain text.
+// With some wings off, code used only by them is unused, and links to them are plain text.
 #![cfg_attr(
     not(feature = "default"),
     allow(dead_code, unused_imports, unused_macros, rustdoc::broken_intra_doc_links)
@@ -116,12 +116,12 @@ pub mod world;
 
 pub use parameter::ParameterError;
 
-/// The programs in the README run as tests.
+/// Runs the programs in the README as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-/// So do those in the guide.
+/// Runs the programs in the guide as tests.
 #[cfg(doctest)]
 mod guide {
     #[doc = include_str!("../docs/guide/first-robot.md")]

@@ -1,9 +1,9 @@
 use std::borrow::Cow;
 use std::fmt;
 
-/// A parameter that is not what it must be: its name, its value and what is accepted.
+/// An invalid parameter: its name, its value and what is expected.
 ///
-/// All constructors refuse by it, or by an error of theirs that it turns into, as it does into
+/// Constructors return it, or an error that contains it; it also converts to
 #[cfg_attr(feature = "io", doc = "[`io::Error`](crate::io::Error).")]
 #[cfg_attr(not(feature = "io"), doc = "an error of robots.")]
 ///
@@ -22,7 +22,7 @@ pub struct ParameterError {
 }
 
 impl ParameterError {
-    /// From its name, its value and what is accepted instead.
+    /// An error from name, value and expectation.
     pub fn new(
         name: impl Into<Cow<'static, str>>,
         value: f64,
@@ -31,29 +31,29 @@ impl ParameterError {
         Self { name: name.into(), value, expected: expected.into() }
     }
 
-    /// What the parameter is called.
+    /// Name of the parameter.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// What it is; a whole number is converted.
+    /// Its value; integers are converted.
     pub fn value(&self) -> f64 {
         self.value
     }
 
-    /// What is accepted.
+    /// What is expected.
     pub fn expected(&self) -> &str {
         &self.expected
     }
 
-    /// The same of a part of something: `robot S4: track`.
+    /// Prefixes the name with that of a whole: `robot S4: track`.
     #[must_use]
     pub(crate) fn of(self, whole: &str) -> Self {
         Self { name: format!("{whole}: {}", self.name).into(), ..self }
     }
 }
 
-/// Makes the `Debug` of error types their sentence, as that is what a `main` that returns an error prints.
+/// Implements `Debug` of error types as their sentence, because a `main` that returns an error prints that.
 macro_rules! debug_as_sentence {
     ($($error:ty),+ $(,)?) => {$(
         impl std::fmt::Debug for $error {
@@ -67,7 +67,7 @@ pub(crate) use debug_as_sentence;
 
 debug_as_sentence!(ParameterError);
 
-/// Writes an error's sentence, and in a line each what caused it, unless that has been said already.
+/// Writes an error and its causes, one per line, without repeating what has been said.
 pub(crate) fn write_with_causes(error: &dyn std::error::Error, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     let mut said = error.to_string();
     f.write_str(&said)?;
@@ -81,7 +81,7 @@ pub(crate) fn write_with_causes(error: &dyn std::error::Error, f: &mut fmt::Form
     Ok(())
 }
 
-/// Fails unless a parameter is good.
+/// Returns an error unless a parameter is good.
 pub(crate) fn require(
     name: &'static str,
     value: f64,
@@ -91,22 +91,22 @@ pub(crate) fn require(
     if good { Ok(()) } else { Err(ParameterError::new(name, value, expected)) }
 }
 
-/// Fails unless a parameter is a finite number.
+/// Returns an error unless a parameter is finite.
 pub(crate) fn require_finite(name: &'static str, value: f64) -> Result<(), ParameterError> {
     require(name, value, value.is_finite(), "a finite number")
 }
 
-/// Fails unless a parameter is a finite number above zero.
+/// Returns an error unless a parameter is positive and finite.
 pub(crate) fn require_positive(name: &'static str, value: f64) -> Result<(), ParameterError> {
     require(name, value, value.is_finite() && value > 0.0, "a positive, finite number")
 }
 
-/// Fails unless a parameter is above zero, and at most `most`.
+/// Returns an error unless a parameter is positive and at most `most`.
 pub(crate) fn require_up_to(name: &'static str, value: f64, most: f64) -> Result<(), ParameterError> {
     require(name, value, value > 0.0 && value <= most, format!("more than 0 and at most {most}"))
 }
 
-/// Fails unless a parameter is a finite number of at least zero.
+/// Returns an error unless a parameter is finite and at least 0.
 pub(crate) fn require_not_negative(name: &'static str, value: f64) -> Result<(), ParameterError> {
     require(name, value, value.is_finite() && value >= 0.0, "a finite number of at least 0")
 }

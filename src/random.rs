@@ -1,7 +1,7 @@
-//! Seeded random streams whose numbers are the same on every platform and in every release.
+//! Seeded random streams with the same numbers on every platform and in every release.
 //!
-//! The generator is the named, portable xoshiro256++; the distributions on top are written here because those of
-//! the usual crates change between releases and use the platform's logarithm.
+//! The generator is xoshiro256++. The distributions are implemented here, because those of common crates
+//! change between releases and use the platform's logarithm.
 
 use std::convert::Infallible;
 
@@ -13,8 +13,8 @@ use crate::geometry::math;
 
 /// A stream of random numbers.
 ///
-/// Each robot and each sensor has its own, split off a parent by a label, so that using one more number in one place
-/// changes nothing elsewhere:
+/// Each robot and each sensor has its own, derived from a parent by a label, so that one more draw in one
+/// place changes nothing elsewhere:
 ///
 /// ```
 /// use roverlab::random::Stream;
@@ -24,8 +24,8 @@ use crate::geometry::math;
 /// assert_eq!(lidar.normal().to_bits(), again.normal().to_bits());
 /// ```
 ///
-/// It is a generator of the crate `rand` 0.10 too, so the distributions of `rand_distr` draw from it. How many numbers
-/// they draw, and what they make of them, is theirs: it may change with their release.
+/// It implements the generator traits of `rand` 0.10, so the distributions of `rand_distr` can draw from it.
+/// Their results may change with their releases.
 #[derive(Debug, Clone)]
 pub struct Stream {
     seed: u64,
@@ -38,11 +38,11 @@ impl Stream {
         Self { seed, generator: Xoshiro256PlusPlus::seed_from_u64(seed) }
     }
 
-    /// An independent stream for a named purpose; the same for the same seed, label and index, whatever has been
-    /// drawn from `self`.
+    /// An independent stream for a named purpose. It depends only on seed, label and index, not on earlier
+    /// draws from `self`.
     #[must_use]
     pub fn child(&self, label: &str, index: u64) -> Self {
-        // FNV-1a over the label, then the index, then the seed: a fixed, documented mix.
+        // FNV-1a over label, index and seed: a fixed, documented hash.
         let mut hash = 0xcbf2_9ce4_8422_2325_u64;
         let mut mix = |byte: u8| hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
         label.bytes().for_each(&mut mix);
@@ -69,7 +69,7 @@ impl Stream {
         low + (high - low) * self.uniform()
     }
 
-    /// A whole number below `n`; 0 when `n` is 0. The bias for `n` below 2^32 is less than 2^-32.
+    /// Uniform integer below `n`; 0 if `n` is 0. The bias for `n` below 2^32 is less than 2^-32.
     #[inline]
     pub fn below(&mut self, n: usize) -> usize {
         ((u128::from(self.bits()) * n as u128) >> 64) as usize
@@ -81,16 +81,16 @@ impl Stream {
         self.uniform() < probability
     }
 
-    /// A sample of the standard normal distribution, from one uniform number by the inverse of its distribution
-    /// function (M. J. Wichura, Algorithm AS 241, Applied Statistics 37, 1988; relative error about 1e-16).
+    /// A standard normal sample, from one uniform number by the quantile function (M. J. Wichura, Algorithm
+    /// AS 241, Applied Statistics 37, 1988; relative error about 1e-16).
     #[inline]
     pub fn normal(&mut self) -> f64 {
-        // The half step keeps the argument away from 0 and 1, where the inverse is infinite.
+        // The half step keeps the argument off 0 and 1, where the quantile is infinite.
         let p = ((self.bits() >> 12) as f64 + 0.5) * (1.0 / (1u64 << 52) as f64);
         inverse_normal(p)
     }
 
-    /// Puts a slice into random order.
+    /// Shuffles a slice.
     pub fn shuffle<T>(&mut self, items: &mut [T]) {
         for i in (1..items.len()).rev() {
             items.swap(i, self.below(i + 1));
@@ -114,7 +114,7 @@ impl TryRng for Stream {
     }
 }
 
-/// The quantile function of the standard normal distribution for `p` strictly between 0 and 1.
+/// Quantile function of the standard normal distribution, for `p` strictly between 0 and 1.
 #[inline]
 fn inverse_normal(p: f64) -> f64 {
     let q = p - 0.5;
@@ -141,7 +141,7 @@ fn ratio([numerator, denominator]: &Rational, x: f64) -> f64 {
     horner(numerator) / horner(denominator)
 }
 
-/// The normal quantile near the median (M. J. Wichura, algorithm AS 241, 1988).
+/// Normal quantile near the median (M. J. Wichura, algorithm AS 241, 1988).
 const CENTRE: Rational = [
     [
         3.387_132_872_796_366_5,
@@ -164,7 +164,7 @@ const CENTRE: Rational = [
         5.226_495_278_852_545e3,
     ],
 ];
-/// The same farther out.
+/// Normal quantile farther from the median (same source).
 const SHOULDER: Rational = [
     [
         1.423_437_110_749_683_5,
@@ -187,7 +187,7 @@ const SHOULDER: Rational = [
         1.050_750_071_644_416_9e-9,
     ],
 ];
-/// The same in the tails.
+/// Normal quantile in the tails (same source).
 const TAIL: Rational = [
     [
         6.657_904_643_501_103,

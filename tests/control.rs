@@ -9,8 +9,8 @@ use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
 use roverlab::drive::{
     AToB, AToBParameters, AlongWall, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters, Goal,
     LidarWallFollower, LidarWallFollowerParameters, Method, OmniDriver, OmniParameters, OmniTracker,
-    PidWallFollower, PidWallFollowerParameters, RandomDrive, RandomDriveParameters, TwoLevelWallFollower,
-    WallFollower, WallFollowerParameters,
+    PidWallFollower, PidWallFollowerParameters, RandomDrive, RandomDriveParameters, Tour, TourParameters,
+    TwoLevelWallFollower, WallFollower, WallFollowerParameters,
 };
 use roverlab::evolve::Gait;
 use roverlab::geometry::{Point, Pose, Twist};
@@ -51,7 +51,7 @@ where
     Ok(format!("{outcome:?}"))
 }
 
-const CASES: [Case; 24] = [
+const CASES: [Case; 25] = [
     ("turn", RobotSpec::s4, |robot, limit, stop| a_to_b(Method::Turn, robot, limit, stop)),
     ("spline", RobotSpec::s4, |robot, limit, stop| a_to_b(Method::Spline, robot, limit, stop)),
     ("by another estimate", RobotSpec::s4, |robot, limit, stop| {
@@ -73,6 +73,10 @@ const CASES: [Case; 24] = [
         let driver = OmniDriver::new(Omni::mecanum(0.2, 0.2).unwrap(), 0.5).unwrap();
         let tracker = OmniTracker::new(Pose::default(), &[GOAL], OmniParameters::default())?;
         driven(robot, &mut tracker.by(driver), limit, stop)
+    }),
+    ("tour", RobotSpec::s4, |robot, limit, stop| {
+        let corners = [START.position(), Point::new(5.0, 5.0), Point::new(1.0, 5.0)];
+        driven(robot, &mut Tour::new(&corners, TourParameters::default())?, limit, stop)
     }),
     ("wall", RobotSpec::s4, |robot, limit, stop| {
         let follower = WallFollower::new(WallFollowerParameters::default())?;

@@ -5,11 +5,12 @@
 mod cases;
 
 use proptest::prelude::*;
-use roverlab::geometry::{Aabb, Point, Pose, Vector, math, units};
+use roverlab::geometry::{Aabb, Point, Pose, Vector, Vector3, angle_difference, math, units};
 use roverlab::io::sim::{Mishap, SimOptions, Simulation, TICK};
-use roverlab::io::{Clock, DistanceSensors, Lidar, Manoeuvres, Odometry, Psd};
+use roverlab::io::{Clock, DistanceSensors, Drive, ErrorKind, Inertial, Lidar, Manoeuvres, Odometry, Psd};
 use roverlab::world::{
-    Colour, HeightField, Object, ObjectKind, RobotPlacement, RobotSpec, Scene, Shape, Terrain, Wall, World,
+    Colour, HeightField, InertialSpec, LidarSpec, Mount, Object, ObjectKind, PsdSpec, RobotPlacement,
+    RobotSpec, Scene, Shape, Terrain, Wall, World,
 };
 
 /// A world of 4 m by 4 m whose ground is a function.
@@ -84,6 +85,150 @@ fn sensors_tilt_with_their_robot_and_see_the_ground() {
     assert_eq!(robot.distance(Psd::FRONT).unwrap(), f64::INFINITY);
     let back = robot.distance(Psd::BACK).unwrap();
     assert!((0.4..0.9).contains(&back), "{back}");
+}
+
+/// An S4 with sensors that look straight down in front and at its left, and one that looks obliquely down.
+fn looking_down() -> RobotSpec {
+    let mut spec = RobotSpec::s4();
+    let down = |id, x, y, pitch: f64| PsdSpec {
+        id,
+        name: "DOWN".into(),
+        mount: Mount { x, y, z: 0.08, pitch: units::from_deg(pitch), ..Mount::default() },
+        max_range: PsdSpec::DEFAULT_MAX_RANGE,
+    };
+    spec.psds.extend([down(5, 0.12, 0.0, 90.0), down(6, 0.0, 0.05, 90.0), down(7, 0.05, 0.0, 30.0)]);
+    spec
+}
+
+#[test]
+fn a_sensor_that_looks_down_sees_the_floor_and_what_lies_on_it() {
+    for hills in [false, true] {
+        let mut flat = if hills { world(41, |_| 0.0) } else { World::empty(4.0, 4.0) };
+        let plate = ObjectKind::new("plate", Shape::Cylinder { radius: 0.05, height: 0.02 }, Colour::RED);
+        flat.objects.push(Object::new(plate.into(), Pose::new(1.0, 2.05, 0.0)));
+        flat.walls.push(Wall::new(Point::new(1.3, 1.0), Point::new(1.3, 3.0)));
+        let simulation = simulation(flat, looking_down(), Pose::new(1.0, 2.0, 0.0));
+        let mut robot = simulation.robot(0).unwrap();
+        let [front, left, oblique] = [5, 6, 7].map(|id| robot.distance(Psd(id)).unwrap());
+        assert!((front - 0.08).abs() < 2e-4, "{front}");
+        assert!((left - 0.06).abs() < 2e-4, "{left}");
+        assert!((oblique - 0.16).abs() < 1e-3, "{oblique}");
+    }
+}
+
+#[test]
+fn a_sensor_that_looks_down_sees_a_cliff() {
+    let cliff = |at: Point| if at.x < 2.0 { 0.4 } else { 0.0 };
+    let simulation = simulation(world(401, cliff), looking_down(), Pose::new(1.93, 2.0, 0.0));
+    let (front, left) = {
+        let mut robot = simulation.robot(0).unwrap();
+        (robot.distance(Psd(5)).unwrap(), robot.distance(Psd(6)).unwrap())
+    };
+    assert!((left - 0.08).abs() < 1e-3 && (front - 0.48).abs() < 0.01, "{left} {front}");
+}
+
+#[test]
+fn a_lidar_with_its_nose_down_sees_the_floor_ahead_and_nothing_behind() {
+    for hills in [false, true] {
+        let flat = if hills { world(41, |_| 0.0) } else { World::empty(4.0, 4.0) };
+        let mount = Mount { z: 0.1, pitch: 0.2, ..Mount::default() };
+        let spec = RobotSpec { lidar: Some(LidarSpec { mount, ..LidarSpec::default() }), ..RobotSpec::s4() };
+        let simulation = simulation(flat, spec, Pose::new(2.0, 2.0, 0.7));
+        let scan = simulation.robot(0).unwrap().scan().unwrap();
+        for (beam, &range) in scan.ranges.iter().enumerate() {
+            let down = math::sin(0.2) * math::cos(scan.angle(beam));
+            let far = if down > 0.0 { 0.1 / down } else { f64::INFINITY };
+            let near = far < 1.5 && (range - far).abs() < 5e-3;
+            assert!(near || (far >= 1.5 && range > 1.4), "beam {beam}: {range} instead of {far}");
+        }
+    }
+}
+
+/// A plane of 10 degrees that rises along x.
+fn incline(at: Point) -> f64 {
+    math::tan(units::from_deg(10.0)) * at.x
+}
+
+#[test]
+fn an_inertial_unit_tells_how_its_robot_stands() {
+    let rise = units::from_deg(10.0);
+    for (heading, roll, pitch) in [(0.0, 0.0, -rise), (1.570_796, -rise, 0.0), (3.141_593, 0.0, rise)] {
+        let simulation = simulation(world(41, incline), RobotSpec::blizzard(), Pose::new(2.0, 2.0, heading));
+        let mut robot = simulation.robot(0).unwrap();
+        robot.wait(1.0).unwrap();
+        let found = robot.attitude().unwrap();
+        let near = |a: f64, b: f64| angle_difference(a, b).abs() < 3e-3;
+        assert!(near(found.roll, roll) && near(found.pitch, pitch) && near(found.yaw, heading), "{found:?}");
+        assert!(robot.turn_rates().unwrap().norm() < 1e-3);
+        let up = found.frame().rotate(robot.acceleration().unwrap());
+        assert!((up - Vector3::new(0.0, 0.0, 9.81)).norm() < 0.01, "{up:?}");
+    }
+}
+
+#[test]
+fn an_inertial_unit_feels_turns_and_a_fall_and_a_hand() {
+    let with_unit = RobotSpec { inertial: InertialSpec::ALL, ..RobotSpec::s4() };
+    let level = simulation(World::empty(4.0, 4.0), with_unit, Pose::new(2.0, 2.0, 0.0));
+    let mut robot = level.robot(0).unwrap();
+    robot.set_speed(roverlab::geometry::Twist::new(0.2, 0.5)).unwrap();
+    robot.wait(3.0).unwrap();
+    assert!((robot.turn_rates().unwrap() - Vector3::new(0.0, 0.0, 0.5)).norm() < 1e-6);
+    // Towards the middle of its circle, to the left.
+    let pull = robot.acceleration().unwrap();
+    assert!((pull - Vector3::new(0.0, 0.1, 9.81)).norm() < 1e-3, "{pull:?}");
+    level.truth().set_pose(0, Pose::new(1.0, 1.0, 2.0)).unwrap();
+    assert_eq!(robot.acceleration().unwrap(), Vector3::new(0.0, 0.0, 9.81));
+    let hills = simulation(world(41, |_| 0.0), RobotSpec::blizzard(), Pose::new(2.0, 2.0, 0.0));
+    let (mut robot, truth) = (hills.robot(0).unwrap(), hills.truth());
+    truth.drop_robot(0, 0, Pose::new(2.0, 2.0, 0.0), 0.5).unwrap();
+    robot.wait(0.2).unwrap();
+    assert!(robot.acceleration().unwrap().norm() < 1e-6, "weightless: {:?}", robot.acceleration());
+    robot.wait(2.0).unwrap();
+    assert!((robot.acceleration().unwrap().z - 9.81).abs() < 0.01);
+}
+
+#[test]
+fn an_inertial_unit_errs_by_seed_and_wanders() {
+    let readings = |seed, noise| {
+        let scene = Scene::with_robot(world(41, |_| 0.0), RobotSpec::blizzard(), Pose::new(2.0, 2.0, 0.0));
+        let simulation = Simulation::new(&scene, SimOptions::with_noise(noise, seed)).unwrap();
+        let mut robot = simulation.robot(0).unwrap();
+        let mut read = || {
+            robot.wait(1.0).unwrap();
+            (robot.attitude().unwrap(), robot.turn_rates().unwrap(), robot.acceleration().unwrap())
+        };
+        (0..600).map(|_| read()).collect::<Vec<_>>()
+    };
+    assert_eq!(readings(1, 1.0), readings(1, 1.0));
+    assert_ne!(readings(1, 1.0)[0], readings(2, 1.0)[0]);
+    assert!(
+        readings(1, 0.0).iter().all(|(attitude, rates, _)| attitude.yaw.abs() < 1e-9 && rates.norm() < 1e-9)
+    );
+    let runs: Vec<_> = (0..40).map(|seed| readings(seed, 1.0)).collect();
+    let spread = |value: &dyn Fn(&(roverlab::io::Attitude, Vector3, Vector3)) -> f64, second: usize| {
+        (runs.iter().map(|run| value(&run[second]) * value(&run[second])).sum::<f64>() / 40.0).sqrt()
+    };
+    // A bias and a part drawn each time, 0.5 degrees each; the yaw's grows by as much in a minute.
+    let degrees = |radians: f64| units::to_deg(radians);
+    let (roll, yaw) = (
+        |r: &(roverlab::io::Attitude, _, _)| degrees(r.0.roll),
+        |r: &(roverlab::io::Attitude, _, _)| degrees(r.0.yaw),
+    );
+    let (early, late) = (spread(&roll, 0), spread(&roll, 599));
+    assert!((0.45..1.0).contains(&early) && (0.45..1.0).contains(&late), "{early} {late}");
+    let late = spread(&yaw, 599);
+    assert!((1.1..2.5).contains(&late), "{late}");
+}
+
+#[test]
+fn a_robot_without_an_inertial_unit_says_so() {
+    let simulation = simulation(world(41, |_| 0.0), RobotSpec::s4(), Pose::new(2.0, 2.0, 0.0));
+    let mut robot = simulation.robot(0).unwrap();
+    for error in
+        [robot.attitude().unwrap_err(), robot.turn_rates().unwrap_err(), robot.acceleration().unwrap_err()]
+    {
+        assert_eq!(error.kind(), ErrorKind::Unsupported);
+    }
 }
 
 #[test]

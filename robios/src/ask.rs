@@ -1,4 +1,4 @@
-//! What a program's library asks the world for, and who answers.
+//! Requests of a program's library to the world, and the object that answers them.
 
 use std::fmt;
 
@@ -6,74 +6,79 @@ use image::RgbImage;
 use roverlab::geometry::{Pose, Twist};
 use roverlab::io::sim::{SimOptions, Simulation, TICK, Truth};
 use roverlab::io::{
-    Error, ErrorKind, LidarScan, LidarSettings, Psd, RadioMessage, Resolution, Result, RobotIo,
+    Attitude, Error, ErrorKind, LidarScan, LidarSettings, Psd, RadioMessage, Resolution, Result, RobotIo,
 };
-use roverlab::world::{DriveSpec, RobotSpec, Scene};
+use roverlab::world::{DriveSpec, InertialSpec, RobotSpec, Scene};
 
 use crate::walker::Walker;
 
-/// One thing that the world is asked for. Lengths are metres, angles radians.
+/// A request to the world. Lengths in metres, angles in radians.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Request {
-    /// Who the robot is; see [`Identity`].
+    /// The robot's properties; see [`Identity`].
     Identity,
-    /// Lets so many seconds pass.
+    /// Lets a time pass (s).
     Pass(f64),
-    /// Drives at a speed.
+    /// Drives at a velocity.
     SetSpeed(Twist),
-    /// The speed that odometry measures.
+    /// The velocity by odometry.
     Speed,
     /// The pose by odometry.
     Pose,
     /// Sets the pose by odometry.
     SetPose(Pose),
-    /// Drives an arc: its length, its angle and the speed along it.
+    /// Drives an arc: length, angle, and speed along it.
     Curve(f64, f64, f64),
-    /// What is left of the running manoeuvre.
+    /// The remainder of the running manoeuvre.
     Remaining,
     /// Whether no manoeuvre is running.
     IsDone,
-    /// Waits until the running manoeuvre has ended or stalled.
+    /// Waits until the running manoeuvre ends or stalls.
     WaitDone,
-    /// Whether something holds the robot.
+    /// Whether the robot is stalled.
     IsStalled,
     /// The reading of a distance sensor.
     Distance(u8),
     /// A scan of the lidar.
     Scan,
-    /// How the lidar scans from now on.
+    /// Sets the lidar for later scans.
     ConfigureLidar(LidarSettings),
-    /// The size of images from now on, by its place in [`Resolution::ALL`].
+    /// Sets the size of later images, as an index into [`Resolution::ALL`].
     SetResolution(u8),
     /// An image of the camera.
     Image,
     /// Sends a message to a robot.
     Send(u32, Vec<u8>),
-    /// The numbers of all robots.
+    /// Numbers of all robots.
     Numbers,
-    /// The oldest message that has not been received; waits for so many seconds at most.
+    /// The oldest unread message; waits for it at most this long (s).
     Receive(f64),
-    /// Drives a motor with a fraction of its full speed.
+    /// Drives a motor at a fraction of its full speed.
     Motor(u8, f64),
     /// Moves a servo to a position, -1 to 1.
     Servo(u8, f64),
-    /// An encoder's ticks.
+    /// Ticks of an encoder.
     Encoder(u8),
-    /// Sets an encoder's count to zero.
+    /// Resets an encoder to zero.
     ResetEncoder(u8),
-    /// Where a robot truly is, by its number; 0 is the robot that asks.
+    /// The attitude by the inertial unit: roll, pitch and yaw.
+    Attitude,
+    /// Its turn rates about the forward, left and upright axes.
+    TurnRates,
+    /// Its accelerations along these axes.
+    Acceleration,
+    /// True pose of a robot, by its number; 0 is the requesting robot.
     RobotAt(u32),
-    /// Puts a robot somewhere else; on hills it drops from so many metres above the floor.
+    /// Moves a robot; on hills it drops from a height above the floor (m).
     PlaceRobot(u32, Pose, f64),
-    /// Where an object truly is, by its number.
+    /// True pose of an object, by its number.
     ObjectAt(u32),
-    /// Puts an object somewhere else.
+    /// Moves an object.
     PlaceObject(u32, Pose),
 }
 
 impl Request {
-    /// Whether it is a reading of few bytes, which changes nothing and nothing of which is known but by the
-    /// tick.
+    /// Whether it is a short reading without side effects that can only change with a tick.
     pub fn is_brief(&self) -> bool {
         matches!(
             self,
@@ -88,102 +93,106 @@ impl Request {
     }
 }
 
-/// What the world answers.
+/// Reply of the world.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Reply {
-    /// It is done.
+    /// Success without a value.
     Done,
     /// Yes or no.
     Flag(bool),
     /// A number.
     Number(f64),
-    /// A count.
+    /// An integer.
     Count(i64),
-    /// A speed.
+    /// A velocity.
     Twist(Twist),
-    /// A pose, and metres above the floor.
+    /// Three numbers.
+    Three([f64; 3]),
+    /// A pose, and height above the floor (m).
     Pose(Pose, f64),
-    /// Distances counter-clockwise; infinity where there is no return.
+    /// Ranges counter-clockwise; infinite without a return.
     Ranges(Vec<f64>),
     /// An image.
     Image(RgbImage),
-    /// A message, if there is one.
+    /// A message, if any.
     Message(Option<RadioMessage>),
     /// Numbers of robots.
     Numbers(Vec<u32>),
-    /// Who the robot is.
+    /// Properties of the robot.
     Identity(Identity),
 }
 
-/// What a library has to know about its robot.
+/// Properties of a robot, for its library.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Identity {
-    /// Its number, from 1, in the row of all robots and objects.
+    /// Number of the robot, from 1, counted over robots and objects.
     pub id: u32,
-    /// How many robots there are.
+    /// Number of robots.
     pub robots: u32,
-    /// How many objects there are.
+    /// Number of objects.
     pub objects: u32,
-    /// The fastest that its wheels' rims move, in metres per second.
+    /// Maximum rim speed of its wheels (m/s).
     pub top_speed: f64,
-    /// The rims' speed, in metres per second, that a motor's 100 percent stand for.
+    /// Rim speed at 100 percent of a motor (m/s).
     pub full_speed: f64,
-    /// Metres that a wheel rolls in a tick of its encoder.
+    /// Distance rolled per encoder tick (m).
     pub tick_length: f64,
-    /// Beams in a scan.
+    /// Number of beams per scan.
     pub lidar_points: u32,
-    /// Whether scans go all round.
+    /// Whether scans cover a full turn.
     pub full_turn: bool,
-    /// Seconds that a call takes.
+    /// Duration of a call (s).
     pub call_duration: f64,
-    /// Seconds after which every call fails; infinity if there is no such time.
+    /// Time after which every call fails (s); infinite without a limit.
     pub time_limit: f64,
-    /// Whether a reading is the same when it is taken again at the same time, and nobody minds if it is not.
+    /// Whether a repeated reading at the same time may be assumed equal.
     pub exact: bool,
-    /// Whether it has a camera.
+    /// Whether the robot has a camera.
     pub camera: bool,
+    /// What its inertial unit measures, and on which channels.
+    pub inertial: InertialSpec,
 }
 
-/// EyeSim drives motors with percentages of this speed, in metres per second, whatever they could do.
+/// Rim speed at 100 percent of a motor in EyeSim, whatever the motor's limit (m/s).
 const FULL_SPEED: f64 = 0.4;
 /// The same for cars.
 const FULL_SPEED_OF_CARS: f64 = 0.5;
 
-/// Readings that come along with an answer.
+/// Maximum number of additional readings per reply.
 pub const MOST_READINGS: usize = 16;
-/// Seconds after which the body of a walker follows it.
+/// Interval at which a walker's body follows it (s).
 const STRIDE: f64 = 0.05;
 
-/// On what terms a program drives its robot.
+/// Conditions of a program's run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Terms {
-    /// Seconds that a call takes.
+    /// Duration of a call (s).
     pub call_duration: f64,
-    /// Seconds after which every call fails.
+    /// Time after which every call fails (s).
     pub time_limit: Option<f64>,
-    /// Whether readings may be remembered as long as nothing can have changed them.
+    /// Whether readings may be cached until something can change them.
     pub exact: bool,
 }
 
 impl Terms {
-    /// Those of a simulation. Readings with noise are drawn anew each time.
+    /// Terms of a simulation. Noisy readings are drawn anew each time.
     pub fn of(options: &SimOptions) -> Self {
         let exact = options.noise.range == 0.0;
         Self { call_duration: options.call_duration, time_limit: options.time_limit, exact }
     }
 }
 
-/// Someone who drives one robot of a simulation.
+/// Drives one robot of a simulation on behalf of a program.
 pub struct Seat {
     robot: Box<dyn RobotIo + Send>,
     truth: Truth,
     identity: Identity,
     index: usize,
-    /// The numbers of the robots and of the objects.
+    /// Numbers of the robots and of the objects.
     numbers: (Vec<u32>, Vec<u32>),
     scan: LidarScan,
     walker: Option<Walker>,
-    /// Seconds that readings have taken which were not called for.
+    /// Duration of readings made in advance (s).
     ahead: f64,
 }
 
@@ -197,12 +206,12 @@ impl fmt::Debug for Seat {
 }
 
 impl Seat {
-    /// Takes a robot of a simulation of a scene.
+    /// Takes a robot of a simulated scene.
     pub fn take(simulation: &Simulation, scene: &Scene, index: usize, terms: Terms) -> Result<Self> {
         Ok(Self::of(Box::new(simulation.robot(index)?), simulation, scene, index, terms))
     }
 
-    /// Takes a robot that has been taken, and may have been wrapped.
+    /// Takes a robot that was already taken, and may have been wrapped.
     ///
     /// # Panics
     ///
@@ -232,37 +241,39 @@ impl Seat {
             time_limit: terms.time_limit.unwrap_or(f64::INFINITY),
             exact: terms.exact,
             camera: spec.camera.is_some() && on_wheels,
+            inertial: if on_wheels { spec.inertial } else { InertialSpec::default() },
         };
         let (truth, scan) = (simulation.truth(), LidarScan::default());
         Self { robot, truth, identity, index, numbers, scan, walker, ahead: 0.0 }
     }
 
-    /// Who the robot is.
+    /// Properties of the robot.
     pub fn identity(&self) -> &Identity {
         &self.identity
     }
 
-    /// The truth about the world.
+    /// Ground truth of the world.
     pub fn truth(&self) -> &Truth {
         &self.truth
     }
 
-    /// The robot's index in the scene.
+    /// Index of the robot in the scene.
     pub fn index(&self) -> usize {
         self.index
     }
 
-    /// Where a walker believes to be, and how far it has walked; of one on wheels, the world knows.
+    /// A walker's pose by odometry and the distance walked; `None` for robots on wheels, which the world
+    /// knows.
     pub fn walked(&self) -> Option<(Pose, f64)> {
         self.walker.as_ref().map(|walker| (walker.odometry(), walker.walked()))
     }
 
-    /// The robot's own time in seconds.
+    /// Time by the robot's clock (s).
     pub fn now(&mut self) -> f64 {
         self.robot.peek_time().unwrap_or_default()
     }
 
-    /// Lets `debt` seconds pass that calls without the world have taken, and answers.
+    /// Lets `debt` seconds pass, which local calls have taken, and answers the request.
     pub fn ask(&mut self, debt: f64, request: &Request) -> Result<Reply> {
         let debt = debt - std::mem::take(&mut self.ahead);
         if debt > 0.0 {
@@ -304,9 +315,15 @@ impl Seat {
             Request::Servo(servo, position) => done(robot.set_servo(servo, position)?),
             Request::Encoder(motor) => Reply::Count(robot.encoder(motor)?),
             Request::ResetEncoder(motor) => done(robot.reset_encoder(motor)?),
+            Request::Attitude => {
+                let Attitude { roll, pitch, yaw } = robot.attitude()?;
+                Reply::Three([roll, pitch, yaw])
+            }
+            Request::TurnRates => Reply::Three(robot.turn_rates()?.into()),
+            Request::Acceleration => Reply::Three(robot.acceleration()?.into()),
             Request::RobotAt(id) => {
                 let index = self.robot_index(id)?;
-                // Where others are depends on their programs, which may be behind; where it is itself does not.
+                // The poses of others depend on their programs, which may be behind; its own does not.
                 if index != self.index {
                     self.robot.wait(0.0)?;
                 }
@@ -328,7 +345,7 @@ impl Seat {
         })
     }
 
-    /// Readings at the end of the last request, which take no time of the program's; as many as can be taken.
+    /// Readings at the end of the last request, which take no program time; stops at the first failure.
     pub fn readings(&mut self, wanted: &[Request]) -> Vec<Reply> {
         let begin = self.now();
         let brief = wanted.iter().take(MOST_READINGS).take_while(|request| request.is_brief());
@@ -337,7 +354,7 @@ impl Seat {
         readings
     }
 
-    /// Lets seconds pass, and the time of a call.
+    /// Lets a time and the duration of a call pass.
     fn wait(&mut self, seconds: f64) -> Result<()> {
         if self.walker.is_none() {
             return self.robot.wait(seconds);
@@ -352,7 +369,7 @@ impl Seat {
         self.follow()
     }
 
-    /// Lets a walker live until now, and its body in the world follow.
+    /// Advances a walker to the current time, and its body in the world.
     fn follow(&mut self) -> Result<()> {
         let now = self.now();
         let Some(walker) = &mut self.walker else { return Ok(()) };
@@ -364,7 +381,7 @@ impl Seat {
         Ok(())
     }
 
-    /// What a walker does itself; everything else is left to the world.
+    /// Executes a walker's own requests; leaves all others to the world.
     fn walk(&mut self, request: &Request) -> Result<Option<Reply>> {
         let no = |device: &str| Err(Error::unsupported(device));
         match *request {
@@ -412,7 +429,7 @@ impl Seat {
         }))
     }
 
-    /// Has something put somewhere else, at the next tick as all others see it too, and waits for it.
+    /// Moves something at the next tick, when all robots see it, and waits for that.
     fn moves(&mut self, place: impl FnOnce(&Truth, usize) -> Result<()>) -> Result<Reply> {
         self.robot.wait(0.0)?;
         place(&self.truth, self.index)?;
@@ -427,7 +444,7 @@ impl Seat {
         index_of("object", id, &self.numbers.1)
     }
 
-    /// A message with its sender's number.
+    /// A message with the sender's number.
     fn numbered(&self, message: RadioMessage) -> RadioMessage {
         let index = (message.from as usize).wrapping_sub(1);
         RadioMessage { from: self.numbers.0.get(index).copied().unwrap_or(message.from), ..message }
@@ -452,7 +469,7 @@ fn done((): ()) -> Reply {
     Reply::Done
 }
 
-/// The index of the thing that has a number. Numbers that none of its kind has count its kind alone, from 1.
+/// Index of the thing with a number. A number used by no thing of its kind counts within the kind, from 1.
 fn index_of(what: &str, id: u32, numbers: &[u32]) -> Result<usize> {
     let placed = numbers.iter().position(|&number| number == id);
     let counted = || (id as usize).checked_sub(1).filter(|&index| index < numbers.len());
@@ -466,7 +483,7 @@ fn resolution(number: u8) -> Result<Resolution> {
     found.ok_or_else(|| Error::new(ErrorKind::InvalidInput, format!("resolution {number}; expected 0 to 5")))
 }
 
-/// The top speed of the wheels' rims, the speed that 100 percent stand for, and the length of an encoder's tick.
+/// Maximum rim speed of the wheels, rim speed at 100 percent, and distance per encoder tick.
 fn speeds(spec: &RobotSpec) -> (f64, f64, f64) {
     let (diameter, fastest, ticks, full) = match spec.drive {
         DriveSpec::Differential { wheel_diameter, max_wheel_speed, ticks_per_turn, .. }

@@ -1,11 +1,11 @@
-//! What calls take of a program's time.
+//! Duration of calls in program time.
 //!
-//! EyeSim's simulator reads one request of each robot in a rendered frame. A *query* comes back with the
-//! frame that reads it; a *one-way* call returns at once, but uses a frame up and takes effect with it;
-//! *local* calls, those of the display and the keys, never leave the program. So a loop that reads two
-//! sensors and sets two motors takes four frames. The figures of local calls are estimates.
+//! EyeSim's simulator handles one request per robot and rendered frame. A *query* returns with the frame that
+//! handles it. A *one-way* call returns at once, but occupies a frame and takes effect with it. *Local*
+//! calls, to display and keys, never leave the program. So a loop that reads two sensors and sets two motors
+//! takes four frames. The figures of local calls are estimates.
 //!
-//! A file changes them, one call a line:
+//! A file changes them, one call per line:
 //!
 //! ```text
 //! # call    kind      milliseconds, beyond the frame
@@ -18,56 +18,56 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Where a call is answered.
+/// Where a call is handled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// In the program.
     Local,
-    /// By the simulator, for whose answer the program does not wait.
+    /// In the simulator, without waiting.
     OneWay,
-    /// By the simulator.
+    /// In the simulator, with a reply.
     Query,
 }
 
-/// What a call takes.
+/// Cost of a call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Cost {
-    /// Where it is answered.
+    /// Where it is handled.
     pub kind: Kind,
-    /// Nanoseconds of the program's own.
+    /// Duration in the program itself (ns).
     pub nanoseconds: u64,
-    /// Whether these are for each pixel of an image.
+    /// Whether the duration is per pixel of an image.
     pub per_pixel: bool,
 }
 
-/// What calls take.
+/// Cost model of calls.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Costs {
-    /// A tenth of a millisecond each.
+    /// A tenth of a millisecond per call.
     Free,
-    /// What they take on EyeSim.
+    /// As on EyeSim.
     Frames(Frames),
 }
 
-/// What calls take where a frame reads one request.
+/// Cost model with one request per frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frames {
-    /// Frames in a second.
+    /// Frame rate (Hz).
     rate: f64,
     costs: BTreeMap<&'static str, Cost>,
 }
 
 const SECOND: f64 = 1e9;
-/// Nanoseconds of the caller of a one-way call or a simple local one.
+/// Duration of a one-way call or a simple local one for the caller (ns).
 const BRIEF: u64 = 20_000;
-/// Nanoseconds of a text on the display.
+/// Duration of printing a text on the display (ns).
 const TEXT: u64 = 100_000;
-/// Nanoseconds of a pixel of an image on the display.
+/// Duration per pixel of an image on the display (ns).
 const PIXEL: u64 = 10;
 
 const BRIEF_CALL: Cost = Cost { kind: Kind::Local, nanoseconds: BRIEF, per_pixel: false };
 
-/// All calls, by what they take.
+/// All calls by cost.
 const CALLS: [(Kind, u64, &str); 5] = [
     (
         Kind::Query,
@@ -102,7 +102,7 @@ const CALLS: [(Kind, u64, &str); 5] = [
 ];
 
 impl Costs {
-    /// What `--call-costs` says: `eyesim`, `free`, or the name of a file. `rate` is that of the frames.
+    /// Parses `--call-costs`: `eyesim`, `free`, or the name of a file. `rate` is the frame rate (Hz).
     pub fn parse(text: &str, rate: f64) -> Result<Self, String> {
         match text {
             "free" => Ok(Self::Free),
@@ -118,7 +118,7 @@ impl Costs {
 }
 
 impl Frames {
-    /// The costs on EyeSim, with so many frames in a second.
+    /// EyeSim's costs at a frame rate (Hz).
     pub fn new(rate: f64) -> Self {
         let mut costs = BTreeMap::new();
         for (kind, nanoseconds, names) in CALLS {
@@ -129,7 +129,7 @@ impl Frames {
         Self { rate, costs }
     }
 
-    /// With what a file says.
+    /// Applies a file's changes.
     fn changed(mut self, text: &str, file: &str) -> Result<Self, String> {
         for (number, line) in text.lines().enumerate() {
             let content = line.split_once('#').map_or(line, |(content, _)| content);
@@ -161,17 +161,17 @@ impl Frames {
         Ok(self)
     }
 
-    /// What a call takes.
+    /// Cost of a call.
     pub fn of(&self, call: &str) -> Cost {
         self.costs.get(call).copied().unwrap_or(BRIEF_CALL)
     }
 
-    /// When a frame is rendered, in nanoseconds since the start.
+    /// Time at which a frame is rendered, since the start (ns).
     pub fn time(&self, frame: u64) -> u64 {
         (frame as f64 * SECOND / self.rate).round() as u64
     }
 
-    /// The number of the first frame after a time in nanoseconds.
+    /// Number of the first frame after a time (ns).
     pub fn after(&self, time: u64) -> u64 {
         let mut frame = (time as f64 * self.rate / SECOND) as u64;
         while self.time(frame) <= time {
@@ -225,7 +225,7 @@ mod tests {
             (!line.starts_with(['#', ' ', '/', '*']) && name.starts_with(char::is_uppercase)).then_some(name)
         });
         let frames = Frames::new(60.0);
-        // These touch neither robot nor clock, or are others under another name.
+        // These use neither robot nor clock, or are aliases.
         let aside = [
             "MTSpawn",
             "MTGetUID",

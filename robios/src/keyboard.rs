@@ -1,4 +1,4 @@
-//! Soft keys that somebody types: the runner reads its standard input and passes it on through a socket.
+//! Soft keys typed by the user: the runner reads its standard input and forwards it through a socket.
 
 use std::collections::VecDeque;
 use std::io::{self, Read};
@@ -6,7 +6,7 @@ use std::os::unix::net::UnixStream;
 
 use crate::keys::{KEYS, Typed};
 
-/// The end of the socket at which the digits 1 to 4 stand for the soft keys. Everything else is ignored.
+/// Receiving end of the socket: the digits 1 to 4 stand for the soft keys. Everything else is ignored.
 #[derive(Debug)]
 pub struct Keyboard {
     stream: UnixStream,
@@ -14,7 +14,7 @@ pub struct Keyboard {
 }
 
 impl Keyboard {
-    /// What is typed at the other end of a socket.
+    /// Reads the keys typed at the other end of a socket. Fails if the socket does.
     pub fn new(stream: UnixStream) -> io::Result<Self> {
         stream.set_nonblocking(true)?;
         Ok(Self { stream, typed: VecDeque::new() })

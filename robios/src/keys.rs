@@ -1,10 +1,10 @@
-//! Who presses the keys: a script, or nobody in particular.
+//! Key presses: from a script, automatic, or typed.
 
 use std::collections::VecDeque;
 use std::fmt;
 use std::str::FromStr;
 
-/// How the keys of a run are pressed.
+/// Source of a run's key presses.
 ///
 /// ```text
 /// AUTO                          as a patient visitor would; see [`KeyDesk`]
@@ -15,25 +15,25 @@ use std::str::FromStr;
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum KeyPlan {
-    /// The first labelled key that has not been pressed, when a program waits.
+    /// The first labelled key not yet pressed, when a program waits.
     #[default]
     Auto,
     /// At given times.
     Script(Vec<Press>),
-    /// By somebody at a terminal.
+    /// By a user at a terminal.
     Terminal,
 }
 
-/// A press that is due at a time, in seconds since the start.
+/// A timed press.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Press {
-    /// Seconds.
+    /// Time since the start (s).
     pub time: f64,
     /// What is pressed.
     pub what: Button,
 }
 
-/// What can be pressed.
+/// Something to press.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Button {
     /// A soft key, by RoBIOS's number: 1, 2, 4 or 8.
@@ -101,34 +101,33 @@ fn button(name: &str) -> Option<Button> {
     Some(Button::Key(*KEYS.get(number.checked_sub(1)?)?))
 }
 
-/// The keys as a program sees them.
+/// The keys from a program's perspective.
 ///
-/// With [`KeyPlan::Auto`], a program that waits for a key gets, after a second, the first labelled soft key that it
-/// accepts, the next one when it waits again under the same labels, and so on in a circle; without labels, the first
-/// key that it accepts. What was pressed under labels is remembered when they come back, as those of a menu that has
-/// others below it. A program that asks again and again whether a key is pressed gets every labelled key once,
-/// each after the robot has stood still for a second; but a key that ends programs, by its label, is pressed only
-/// when the robot has stood still for ten seconds, and when nine tenths of the time are over. If that does not help,
-/// the keys without a label follow.
+/// With [`KeyPlan::Auto`], a program that waits for a key gets, after a second, the first labelled soft key
+/// that it accepts, the next one when it waits again under the same labels, and so on cyclically; without
+/// labels, the first key that it accepts. Presses are remembered by labels, for menus with submenus. A
+/// program that polls for keys gets every labelled key once, each after the robot has stood still for a
+/// second. A key whose label ends the program is pressed only after the robot has stood still for ten
+/// seconds, and at nine tenths of the time limit. If that does not help, the keys without a label follow.
 #[derive(Debug)]
 pub struct KeyDesk {
     plan: Plan,
     labels: [String; 4],
     pressed: Pressed,
-    /// What was pressed under other labels.
+    /// Presses under other labels.
     others: Vec<([String; 4], Pressed)>,
-    /// When the program began to wait, or to ask.
+    /// Start of the program's waiting or polling (s).
     since: Option<f64>,
 }
 
-/// What has been pressed under labels.
+/// Presses under one set of labels.
 #[derive(Debug, Clone, Copy, Default)]
 struct Pressed {
-    /// How many of the accepted keys, while the program waited.
+    /// Number of accepted keys pressed while the program waited.
     waited: usize,
-    /// How many of those that come last, while it asked.
+    /// Number of last-resort keys pressed while it polled.
     asked: usize,
-    /// The keys.
+    /// The keys pressed.
     keys: u32,
 }
 
@@ -139,13 +138,13 @@ enum Plan {
     Terminal(Box<dyn Typed>),
 }
 
-/// Soft keys that somebody types.
+/// Source of typed soft keys.
 pub trait Typed: fmt::Debug + Send {
-    /// The next key of [`KEYS`], if there is one.
+    /// The next key of [`KEYS`], if any.
     fn next(&mut self) -> Option<u32>;
 }
 
-/// Nobody types.
+/// A source without keys.
 #[derive(Debug)]
 struct Nobody;
 
@@ -155,36 +154,36 @@ impl Typed for Nobody {
     }
 }
 
-/// Seconds after which a program looks again whether somebody has typed.
+/// Interval at which a waiting program checks for typed keys (s).
 const GLANCE: f64 = 0.02;
-/// Sets of labels that are remembered.
+/// Maximum number of sets of labels remembered.
 const MOST_LABELS: usize = 100;
 
-/// What becomes of a program that waits.
+/// Result of waiting for a key.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Waiting<T> {
-    /// It gets this.
+    /// A press.
     Pressed(T),
-    /// It may ask again at this time.
+    /// None yet; check again at this time (s).
     Until(f64),
-    /// Nothing will come.
+    /// None will ever come.
     Forever,
 }
 
-/// Seconds that it takes somebody to press a key.
+/// Reaction time before a key press (s).
 const REACTION: f64 = 1.0;
-/// Seconds of standing after which a program seems to be done.
+/// Time of standing still after which a program seems to be finished (s).
 const PATIENCE: f64 = 10.0;
-/// The part of the time limit after which programs are asked to end.
+/// Fraction of the time limit after which programs are asked to end.
 const LATE: f64 = 0.9;
 
 impl KeyDesk {
-    /// The keys by a plan.
+    /// Creates the keys of a plan.
     pub fn new(plan: KeyPlan) -> Self {
         Self::with_typed(plan, None)
     }
 
-    /// The keys by a plan, and where those of a terminal come from.
+    /// Creates the keys of a plan, with a source for those of a terminal.
     pub fn with_typed(plan: KeyPlan, typed: Option<Box<dyn Typed>>) -> Self {
         let plan = match plan {
             KeyPlan::Auto => Plan::Auto,
@@ -200,17 +199,17 @@ impl KeyDesk {
         }
     }
 
-    /// Whether somebody sits at a terminal, for whom a second should take a second.
+    /// Whether a user at a terminal types, which requires real time.
     pub fn is_live(&self) -> bool {
         matches!(self.plan, Plan::Terminal(_))
     }
 
-    /// Whether it matters how long the robot has stood.
+    /// Whether it matters how long the robot has stood still.
     pub fn watches_robot(&self) -> bool {
         matches!(self.plan, Plan::Auto)
     }
 
-    /// Labels the keys anew.
+    /// Sets new labels.
     pub fn label(&mut self, labels: [String; 4]) {
         if labels == self.labels {
             return;
@@ -225,13 +224,13 @@ impl KeyDesk {
         (self.pressed, self.since) = (pressed, None);
     }
 
-    /// The labels.
+    /// The current labels.
     pub fn labels(&self) -> &[String; 4] {
         &self.labels
     }
 
-    /// The key of [`KEYS`] that a program gets which asks without waiting. `standing` is the time since when the robot
-    /// stands, `limit` the time limit.
+    /// The key of [`KEYS`] for a program that polls. `standing` is the time since which the robot stands,
+    /// `limit` the time limit (s).
     pub fn read(&mut self, now: f64, standing: f64, limit: f64) -> Option<u32> {
         match &mut self.plan {
             Plan::Script(_) => return self.due(now, key),
@@ -248,8 +247,8 @@ impl KeyDesk {
         if idle < PATIENCE && now < LATE * limit {
             return None;
         }
-        // Keys that end by their label, other labelled keys, and those without a label, of which the last one is the
-        // usual one to end programs.
+        // Keys that end the program by their label, other labelled keys, and unlabelled ones, the last of
+        // which is the usual one to end programs.
         let of_kind = |kind| labelled.iter().filter(move |&&(_, ends)| ends == kind).map(|&(key, _)| key);
         let rest = [KEYS[3], KEYS[0], KEYS[1], KEYS[2]];
         let rest = rest.into_iter().filter(|key| labelled.iter().all(|(labelled, _)| labelled != key));
@@ -265,10 +264,10 @@ impl KeyDesk {
         key
     }
 
-    /// What a program gets that waits for one of the keys in `mask`.
+    /// Waits for one of the keys in `mask`.
     pub fn wait(&mut self, now: f64, mask: u32) -> Waiting<u32> {
         match &mut self.plan {
-            // RoBIOS drops presses of other keys than the one that a program waits for.
+            // RoBIOS drops presses of keys other than those waited for.
             Plan::Script(_) => return self.scripted(now, key),
             Plan::Terminal(typed) => {
                 return typed.next().map_or(Waiting::Until(now + GLANCE), Waiting::Pressed);
@@ -294,12 +293,12 @@ impl KeyDesk {
         Waiting::Pressed(key)
     }
 
-    /// The place that a program gets which asks for a touch of the display without waiting.
+    /// The touch for a program that polls.
     pub fn read_touch(&mut self, now: f64) -> Option<(i32, i32)> {
         self.due(now, touch)
     }
 
-    /// The place that a program gets which waits for a touch of the display: its middle, if nobody else says so.
+    /// The touch for a program that waits: the middle of the display, unless scripted.
     pub fn wait_touch(&mut self, now: f64, middle: (i32, i32)) -> Waiting<(i32, i32)> {
         match self.plan {
             Plan::Script(_) => self.scripted(now, touch),
@@ -307,12 +306,12 @@ impl KeyDesk {
         }
     }
 
-    /// The button of the remote control that a program gets which asks without waiting.
+    /// The remote control's button for a program that polls.
     pub fn read_remote(&mut self, now: f64) -> Option<i32> {
         self.due(now, remote)
     }
 
-    /// The button of the remote control that a program gets which waits: `OK`, if nobody else says so.
+    /// The remote control's button for a program that waits: `OK`, unless scripted.
     pub fn wait_remote(&mut self, now: f64) -> Waiting<i32> {
         match self.plan {
             Plan::Script(_) => self.scripted(now, remote),
@@ -329,13 +328,13 @@ impl KeyDesk {
         Waiting::Pressed(value)
     }
 
-    /// The labelled keys from left to right, and whether their labels say that they end the program.
+    /// The labelled keys from left to right, and whether their labels end the program.
     fn labelled(&self) -> Vec<(u32, bool)> {
         let keys = KEYS.iter().zip(&self.labels).filter(|(_, label)| !label.trim().is_empty());
         keys.map(|(&key, label)| (key, ends(label))).collect()
     }
 
-    /// The oldest press of a kind that is due. Presses of other kinds stay.
+    /// The oldest due press of a kind. Presses of other kinds stay.
     fn due<T>(&mut self, now: f64, kind: impl Fn(Button) -> Option<T>) -> Option<T> {
         let Plan::Script(presses) = &mut self.plan else { return None };
         let place = presses.iter().position(|press| press.time <= now && kind(press.what).is_some())?;
@@ -373,11 +372,11 @@ fn remote(button: Button) -> Option<i32> {
     }
 }
 
-/// The labels of keys that end programs.
+/// Labels of keys that end programs.
 const ENDS: [&str; 11] =
     ["END", "EXIT", "QUIT", "STOP", "BYE", "DONE", "FINISH", "FINISHED", "OFF", "CLOSE", "TERMINATE"];
 
-/// Whether a label says that its key ends the program.
+/// Whether a label ends the program.
 fn ends(label: &str) -> bool {
     let label = label.trim().to_ascii_uppercase();
     ENDS.contains(&label.as_str())

@@ -1,4 +1,4 @@
-//! The way from a program's library to its world: within the process, or through memory that both share.
+//! Connection of a program's library to its world: in the same process, or through shared memory.
 
 use std::fmt;
 use std::sync::Arc;
@@ -13,39 +13,39 @@ use crate::plan::Plan;
 use crate::report::Stance;
 use crate::wire::{Answer, Question};
 
-/// Somebody who answers requests.
+/// Answers requests.
 pub trait Link: fmt::Debug + Send {
-    /// Lets `debt` seconds pass that calls without the world have taken, and answers. Some of the readings
-    /// that are wanted at the end may come along, in their order.
+    /// Lets `debt` seconds pass, which local calls have taken, and answers the request. Some of the `wanted`
+    /// readings may come along, in their order.
     fn ask(&mut self, debt: f64, wanted: &[Request], request: &Request) -> Result<(Reply, Vec<Reply>)>;
 
-    /// The robot's own time at the last answer.
+    /// The robot's time at the last reply (s).
     fn now(&mut self) -> f64;
 
-    /// What is true about the robot, where the library itself can know it.
+    /// Ground truth of the robot, if the library has access to it.
     fn truth(&mut self) -> Option<Truth>;
 }
 
-/// What is true about a robot.
+/// Ground truth of a robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Truth {
-    /// Seconds that the world has run.
+    /// Time of the world (s).
     pub time: f64,
-    /// Where it is.
+    /// True pose.
     pub pose: Pose,
-    /// How it stands there.
+    /// Attitude on hills.
     pub stance: Stance,
-    /// Where it believes to be.
+    /// Pose by odometry.
     pub odometry: Pose,
-    /// Metres that it has moved.
+    /// Distance moved (m).
     pub path_length: f64,
-    /// Its contacts.
+    /// Number of contacts.
     pub contacts: u32,
 }
 
 impl Link for Seat {
     fn ask(&mut self, debt: f64, _wanted: &[Request], request: &Request) -> Result<(Reply, Vec<Reply>)> {
-        // Whoever wants to know more asks again, which is cheap here.
+        // Further readings are cheap here and need not come along.
         Seat::ask(self, debt, request).map(|reply| (reply, Vec::new()))
     }
 
@@ -67,7 +67,7 @@ impl Link for Seat {
     }
 }
 
-/// A world of the program's own.
+/// Creates a world of the program's own. Fails if its files cannot be read.
 pub fn own_world(plan: &Plan) -> std::result::Result<Seat, String> {
     let (scene, _) = plan.scene()?;
     let options = plan.options();
@@ -84,7 +84,7 @@ pub struct Remote {
 }
 
 impl Remote {
-    /// The world at the other end of a memory.
+    /// Connects to the world through shared memory.
     pub fn new(memory: Arc<Memory>) -> Self {
         Self { memory, now: 0.0 }
     }

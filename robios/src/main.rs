@@ -1,4 +1,5 @@
-//! Runs programs written for RoBIOS in simulated worlds: C and C++ as executables or as source text, and Python.
+//! Runs programs written for RoBIOS in simulated worlds: C and C++ as executables or as source text, and
+//! Python.
 
 mod runner;
 

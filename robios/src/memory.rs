@@ -1,5 +1,5 @@
-//! Memory that a program and the runner share. No descriptor of it is left open in the program, so whatever a
-//! program closes, its report and its way to the world stay.
+//! Memory shared by a program and the runner. The program keeps no descriptor of it open, so it can neither
+//! close its report nor its connection to the world.
 
 #![allow(unsafe_code)]
 
@@ -10,71 +10,71 @@ use std::time::Duration;
 
 use crate::wire::LONGEST;
 
-/// Bytes of the part that holds the report.
+/// Size of the report (bytes).
 pub const REPORT: usize = 1 << 17;
-/// Where the report begins.
+/// Offset of the report.
 const REPORT_START: usize = 4096;
-/// Where questions and answers begin.
+/// Offset of requests and replies.
 const FRAME_START: usize = REPORT_START + REPORT;
 const SIZE: usize = FRAME_START + LONGEST;
-/// Says that it is what it should be.
+/// Identifies the memory.
 const MAGIC: u32 = 0x0b10_5007;
 
-/// The words at the beginning.
+/// Words at the beginning.
 #[derive(Debug, Clone, Copy)]
 enum Word {
     Magic,
     /// Whose turn it is; see [`Turn`].
     Turn,
-    /// Bytes of the question or the answer.
+    /// Size of the request or the reply (bytes).
     Length,
-    /// Whether a process that the program has forked has called.
+    /// Whether a process forked by the program has made a call.
     Forked,
-    /// 1, and how the program ended above it, as `waitpid` tells.
+    /// 1, with the program's exit status as of `waitpid` in the bits above.
     Status,
 }
 
-/// What has happened last.
+/// What happened last.
 const IDLE: u32 = 0;
 const QUESTION: u32 = 1;
 const ANSWER: u32 = 2;
-/// The program has no more questions.
+/// The program has no more requests.
 const LEFT: u32 = 3;
 
-/// The memory.
+/// The shared memory.
 #[derive(Debug)]
 pub struct Memory {
     start: *mut u32,
 }
 
-// SAFETY: it is memory of its own, which lives as long as this handle; words are atomic, and whose turn it is
-// decides who touches the bytes behind them.
+// SAFETY: the mapping is private to this handle and lives as long; words are atomic, and the turn decides who
+// accesses the bytes behind them.
 unsafe impl Send for Memory {}
 // SAFETY: as above.
 unsafe impl Sync for Memory {}
 
 impl Drop for Memory {
     fn drop(&mut self) {
-        // SAFETY: it was mapped with this size, and nothing points to it any more.
+        // SAFETY: it was mapped with this size, and nothing refers to it any more.
         unsafe { libc::munmap(self.start.cast(), SIZE) };
     }
 }
 
-/// What has come from a program.
+/// Result of waiting for a program's request.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Asked {
-    /// A question.
+    /// A request.
     Question(Vec<u8>),
-    /// One of so many bytes, which is none.
+    /// An oversized request, with its length.
     TooLong(usize),
-    /// Nothing for now.
+    /// Nothing yet.
     Nothing,
-    /// There will be no more.
+    /// No more requests will come.
     Left,
 }
 
 impl Memory {
-    /// New memory, and the descriptor under which a program that is started inherits it.
+    /// Creates memory, and the descriptor by which a started program inherits it. Fails if the system does.
     pub fn create() -> io::Result<(Self, OwnedFd)> {
         let file = anonymous_file()?;
         let memory = Self::map(file.as_raw_fd())?;
@@ -82,12 +82,13 @@ impl Memory {
         Ok((memory, file))
     }
 
-    /// The memory that whoever started this process has left open under a number, which is closed.
+    /// Maps the memory left open by the parent process under a descriptor, and closes that. Fails for any
+    /// other descriptor.
     pub fn inherit(number: RawFd) -> io::Result<Self> {
         let refused = || io::Error::new(io::ErrorKind::InvalidInput, "not the memory of a runner");
         // SAFETY: an all-zero record of this type is valid, and the kernel fills it.
         let mut state: libc::stat = unsafe { std::mem::zeroed() };
-        // SAFETY: the kernel checks the number, and writes to a record that lives until it returns.
+        // SAFETY: the kernel checks the descriptor and writes to a record that outlives the call.
         let known = number > 2 && unsafe { libc::fstat(number, &raw mut state) } == 0;
         if !known || state.st_size != SIZE as i64 {
             return Err(refused());
@@ -96,14 +97,14 @@ impl Memory {
         if memory.word(Word::Magic).load(Ordering::Acquire) != MAGIC {
             return Err(refused());
         }
-        // SAFETY: the descriptor is open and was left to this library, which needs it no more.
+        // SAFETY: the descriptor is open and was left to this library, which no longer needs it.
         drop(unsafe { OwnedFd::from_raw_fd(number) });
         Ok(memory)
     }
 
     fn map(file: RawFd) -> io::Result<Self> {
         let rights = libc::PROT_READ | libc::PROT_WRITE;
-        // SAFETY: asks for a new place in memory; the kernel checks the rest.
+        // SAFETY: requests a new mapping; the kernel checks the arguments.
         let start = unsafe { libc::mmap(std::ptr::null_mut(), SIZE, rights, libc::MAP_SHARED, file, 0) };
         if start == libc::MAP_FAILED {
             return Err(io::Error::last_os_error());
@@ -112,13 +113,13 @@ impl Memory {
     }
 
     fn word(&self, word: Word) -> &AtomicU32 {
-        // SAFETY: a multiple of four below the size, and words are only touched as atomic ones.
+        // SAFETY: the offset is a multiple of four below the size, and words are only accessed atomically.
         unsafe { AtomicU32::from_ptr(self.start.add(16 * word as usize)) }
     }
 
     fn write(&self, at: usize, bytes: &[u8]) {
         let room = SIZE.saturating_sub(at).min(bytes.len());
-        // SAFETY: the place and as many bytes lie within the memory, and what is copied does not.
+        // SAFETY: the target range lies within the memory, and the source does not.
         unsafe { std::ptr::copy_nonoverlapping(bytes.as_ptr(), self.start.cast::<u8>().add(at), room) };
     }
 
@@ -141,27 +142,27 @@ impl Memory {
         self.read(REPORT_START, REPORT)
     }
 
-    /// Notes that a process that the program has forked has called.
+    /// Records that a process forked by the program has made a call.
     pub fn note_fork(&self) {
         self.word(Word::Forked).store(1, Ordering::Relaxed);
     }
 
-    /// Whether one has.
+    /// Whether a forked process has made a call.
     pub fn has_forked(&self) -> bool {
         self.word(Word::Forked).load(Ordering::Relaxed) != 0
     }
 
-    /// Notes how the program ended.
+    /// Records the program's exit status.
     pub fn note_status(&self, status: i32) {
         self.word(Word::Status).store((status as u32) << 8 | 1, Ordering::Release);
     }
 
-    /// Whether it is known how the program ended.
+    /// Whether the program's exit status is known.
     pub fn has_status(&self) -> bool {
         self.word(Word::Status).load(Ordering::Acquire) & 1 != 0
     }
 
-    /// Asks the world.
+    /// Sends a request to the world and returns its reply.
     pub fn ask(&self, question: &[u8]) -> Vec<u8> {
         self.put(question);
         self.say(QUESTION);
@@ -171,12 +172,12 @@ impl Memory {
         self.frame(LONGEST)
     }
 
-    /// Says that there will be no more questions.
+    /// Announces that there will be no more requests.
     pub fn leave(&self) {
         self.say(LEFT);
     }
 
-    /// The next question, for which the world waits so long at most.
+    /// The next request, after waiting for at most `patience`.
     pub fn asked(&self, longest: usize, patience: Duration) -> Asked {
         let turn = self.word(Word::Turn);
         let mut now = turn.load(Ordering::Acquire);
@@ -194,7 +195,7 @@ impl Memory {
         }
     }
 
-    /// Whether there is a question, or the program has left, after so long at most.
+    /// Whether there is a request, or the program has left, after waiting for at most `patience`.
     pub fn is_asked(&self, patience: Duration) -> bool {
         let turn = self.word(Word::Turn);
         let now = turn.load(Ordering::Acquire);
@@ -204,7 +205,7 @@ impl Memory {
         matches!(turn.load(Ordering::Acquire), QUESTION | LEFT)
     }
 
-    /// Answers.
+    /// Sends a reply.
     pub fn answer(&self, answer: &[u8]) {
         self.put(answer);
         self.say(ANSWER);
@@ -226,7 +227,7 @@ impl Memory {
     }
 }
 
-/// A file without a name, of the right size.
+/// An anonymous file of the right size.
 #[cfg(target_os = "linux")]
 fn anonymous_file() -> io::Result<OwnedFd> {
     let flags = libc::MFD_CLOEXEC | libc::MFD_ALLOW_SEALING;
@@ -235,11 +236,11 @@ fn anonymous_file() -> io::Result<OwnedFd> {
     if number < 0 {
         return Err(io::Error::last_os_error());
     }
-    // SAFETY: the descriptor is new, and nobody else has it.
+    // SAFETY: the descriptor is new and has no other owner.
     let file = unsafe { OwnedFd::from_raw_fd(number) };
     let seals = libc::F_SEAL_SHRINK | libc::F_SEAL_GROW | libc::F_SEAL_SEAL;
-    // A program cannot cut off what the runner looks at.
-    // SAFETY: changes the size of a file, and what may become of it.
+    // A program cannot truncate what the runner reads.
+    // SAFETY: changes the size of a file and seals it.
     if unsafe {
         libc::ftruncate(number, SIZE as i64) != 0 || libc::fcntl(number, libc::F_ADD_SEALS, seals) != 0
     } {
@@ -267,8 +268,7 @@ fn wait(word: &AtomicU32, value: u32, patience: Duration) {
         tv_nsec: libc::c_long::from(patience.subsec_nanos() as i32),
     };
     let nothing = std::ptr::null::<u32>();
-    // SAFETY: the kernel compares a word of memory that is mapped, and reads a time that lives until it
-    // returns.
+    // SAFETY: the kernel compares a word of mapped memory, and reads a time that outlives the call.
     unsafe {
         libc::syscall(libc::SYS_futex, word.as_ptr(), libc::FUTEX_WAIT, value, &raw const time, nothing, 0)
     };
@@ -276,11 +276,11 @@ fn wait(word: &AtomicU32, value: u32, patience: Duration) {
 
 #[cfg(target_os = "linux")]
 fn wake(word: &AtomicU32) {
-    // SAFETY: the kernel looks for who waits for a word of memory that is mapped.
+    // SAFETY: the kernel wakes those that wait for a word of mapped memory.
     unsafe { libc::syscall(libc::SYS_futex, word.as_ptr(), libc::FUTEX_WAKE, i32::MAX) };
 }
 
-/// Where the system cannot wait for a word, a short nap does.
+/// Where the system cannot wait for a word, sleeps briefly.
 #[cfg(not(target_os = "linux"))]
 fn wait(_: &AtomicU32, _: u32, patience: Duration) {
     std::thread::sleep(patience.min(Duration::from_micros(50)));

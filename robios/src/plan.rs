@@ -1,4 +1,4 @@
-//! What a program's world is: read from the options of the runner, or from the environment that it sets.
+//! A program's world, read from the runner's options or from the environment set by it.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -12,33 +12,33 @@ use roverlab::world::{RobotPlacement, RobotSpec, Scene, World};
 use crate::costs::{Costs, Frames};
 use crate::walker::is_walker;
 
-/// The world of a run, and which robot of it a program drives.
+/// The world of a run, and the robot driven by the program.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
-    /// A `.sim`, `.wld`, `.maz` or ROS map; without it, what stands in the folder, or a square of 4 m.
+    /// A `.sim`, `.wld`, `.maz` or ROS map; by default the one in the folder, or a square of 4 m.
     pub world: Option<PathBuf>,
-    /// The program's folder.
+    /// Folder of the program.
     pub folder: PathBuf,
-    /// A robot's description, or the name of one that is built in; without it, the one in the world's file, or an S4.
+    /// A robot's description, or the name of a built-in one; by default the world's robot, or an S4.
     pub robot: Option<String>,
-    /// Where the robot starts.
+    /// Start pose of the robot.
     pub start: Option<Pose>,
-    /// Which of the world's robots the program drives.
+    /// Index of the robot driven by the program.
     pub index: usize,
-    /// The seed of every random stream.
+    /// Seed of all random streams.
     pub seed: u64,
-    /// The noise: 0 ideal, 1 as on the real robot.
+    /// Noise level: 0 ideal, 1 as on the real robot.
     pub noise: f64,
-    /// Simulated seconds after which a program is ended.
+    /// Simulated time limit (s).
     pub time_limit: f64,
-    /// What calls take.
+    /// Cost model of calls.
     pub costs: Costs,
-    /// Simulated seconds for a second that a program computes.
+    /// Simulated seconds per second of computing.
     pub cpu_time: f64,
 }
 
 impl Default for Plan {
-    /// An hour in an ideal world, in EyeSim's time.
+    /// An hour in an ideal world, with EyeSim's call costs.
     fn default() -> Self {
         Self {
             world: None,
@@ -55,57 +55,57 @@ impl Default for Plan {
     }
 }
 
-/// What tells this build of library and runner from others: a digest of their source texts.
+/// Identifies this build of library and runner: a digest of their source texts.
 pub const BUILD: &str = env!("EYESIM_BUILD");
 
-/// The names of the environment's variables.
+/// Names of the environment variables.
 pub mod names {
-    /// The file of the world.
+    /// World file.
     pub const WORLD: &str = "ROBIOS_WORLD";
-    /// The robot.
+    /// Robot.
     pub const ROBOT: &str = "ROBIOS_ROBOT";
-    /// The start pose.
+    /// Start pose.
     pub const START: &str = "ROBIOS_START";
-    /// The index of the robot.
+    /// Index of the robot.
     pub const INDEX: &str = "ROBIOS_INDEX";
-    /// The seed.
+    /// Seed.
     pub const SEED: &str = "ROBIOS_SEED";
-    /// The noise.
+    /// Noise level.
     pub const NOISE: &str = "ROBIOS_NOISE";
-    /// The time limit.
+    /// Time limit.
     pub const TIME_LIMIT: &str = "ROBIOS_TIME_LIMIT";
-    /// The keys.
+    /// Key plan.
     pub const KEYS: &str = "ROBIOS_KEYS";
-    /// What calls take: `eyesim`, `free`, or a file.
+    /// Call costs: `eyesim`, `free`, or a file.
     pub const COSTS: &str = "ROBIOS_CALL_COSTS";
-    /// Frames in a second.
+    /// Frame rate.
     pub const FRAME_RATE: &str = "ROBIOS_FRAME_RATE";
-    /// Simulated seconds for a second that a program computes.
+    /// Simulated seconds per second of computing.
     pub const CPU_TIME: &str = "ROBIOS_CPU_TIME";
-    /// The number of the open file of the memory that is shared with the runner.
+    /// File descriptor of the memory shared with the runner.
     pub const MEMORY: &str = "ROBIOS_MEMORY";
-    /// The file for the picture of the display.
+    /// File for the picture of the display.
     pub const LCD: &str = "ROBIOS_LCD";
     /// Set if the world lives in the runner.
     pub const SHARED: &str = "ROBIOS_SHARED";
-    /// The number of the open socket through which somebody types.
+    /// File descriptor of the socket for typed keys.
     pub const KEYBOARD: &str = "ROBIOS_KEYBOARD";
-    /// The library's file, for `eye.py`.
+    /// File of the library, for `eye.py`.
     pub const LIBRARY: &str = "ROBIOS_LIBRARY";
     /// The runner's [`BUILD`](super::BUILD).
     pub const BUILD: &str = "ROBIOS_BUILD";
 }
 
-/// Frames that EyeSim renders in a second, unless somebody says otherwise.
+/// Default frame rate of EyeSim (Hz).
 pub const FRAME_RATE: f64 = 60.0;
-/// Seconds of a call in the simulator, the least that it takes: calls are charged before they come there.
+/// Minimum duration of a call in the simulator (s): calls are charged before.
 const NO_TIME: f64 = 1e-6;
 
-/// Metres from wall to wall of the world that there is when nobody says anything.
+/// Side length of the default world (m).
 const DEFAULT_SIZE: f64 = 4.0;
 
 impl Plan {
-    /// The plan in the environment.
+    /// Reads the plan from the environment. Fails for another build's runner and for invalid variables.
     pub fn from_environment() -> Result<Self, String> {
         check_build(std::env::var(names::BUILD).ok().as_deref())?;
         let mut plan = Self::default();
@@ -136,7 +136,7 @@ impl Plan {
         Ok(plan)
     }
 
-    /// The plan as variables of the environment.
+    /// The plan as environment variables.
     pub fn variables(&self) -> Vec<(&'static str, String)> {
         let mut all = vec![
             (names::INDEX, self.index.to_string()),
@@ -159,7 +159,8 @@ impl Plan {
         all
     }
 
-    /// World and robots, with at least one robot, and what was odd about the files.
+    /// World and robots, with at least one robot, and warnings about the files. Fails if a file cannot be
+    /// read.
     pub fn scene(&self) -> Result<(Scene, Vec<String>), String> {
         let mut warnings = Vec::new();
         let found = self.world.clone().or_else(|| only_world(&self.folder));
@@ -203,14 +204,14 @@ impl Plan {
         Ok((scene, warnings))
     }
 
-    /// How the simulation runs. Robots push what is loose, as EyeSim's do.
+    /// Options of the simulation. Robots push loose objects, as in EyeSim.
     pub fn options(&self) -> SimOptions {
         let options = SimOptions::with_noise(self.noise, self.seed);
         SimOptions { call_duration: NO_TIME, time_limit: Some(self.time_limit), pushing: true, ..options }
     }
 }
 
-/// Refuses a runner of another build, which may say things in another way.
+/// Rejects a runner of another build, whose protocol may differ.
 fn check_build(runner: Option<&str>) -> Result<(), String> {
     match runner {
         Some(build) if build != BUILD => Err(format!(
@@ -225,7 +226,7 @@ fn number<T: std::str::FromStr>(name: &str, value: &str) -> Result<T, String> {
     value.trim().parse().map_err(|_| format!("{name} is {value:?}; expected a number"))
 }
 
-/// `X,Y,DEG` in millimetres and degrees.
+/// Parses `X,Y,DEG` in millimetres and degrees.
 pub fn parse_pose(text: &str) -> Result<Pose, String> {
     let numbers: Option<Vec<f64>> =
         text.split(',').map(|part| part.trim().parse().ok().filter(|n: &f64| n.abs() <= 1e9)).collect();
@@ -235,7 +236,7 @@ pub fn parse_pose(text: &str) -> Result<Pose, String> {
     }
 }
 
-/// A robot by the name of a file or of one that is built in.
+/// A robot from a file or by a built-in name.
 fn robot(name: &str, warnings: &mut Vec<String>) -> Result<RobotSpec, String> {
     if let Some(spec) = RobotSpec::predefined(name) {
         return Ok(spec);
@@ -251,7 +252,7 @@ fn robot(name: &str, warnings: &mut Vec<String>) -> Result<RobotSpec, String> {
     Ok(parsed.value)
 }
 
-/// The world that stands in a folder: the only `.sim`, or else the only `.maz` or `.wld`.
+/// The single world in a folder: the only `.sim`, or else the only `.maz` or `.wld`.
 fn only_world(folder: &Path) -> Option<PathBuf> {
     let files: Vec<PathBuf> =
         std::fs::read_dir(folder).ok()?.filter_map(Result::ok).map(|entry| entry.path()).collect();
@@ -264,7 +265,7 @@ fn only_world(folder: &Path) -> Option<PathBuf> {
     })
 }
 
-/// Where a robot starts that nobody has placed: where the world says, or in its middle.
+/// Default start of a robot: the world's start place, or its middle.
 fn start_in(world: &World) -> Pose {
     let letter = world.places.iter().find(|place| place.heading.is_some());
     let letter =

@@ -1,4 +1,4 @@
-//! What the runner needs of the system beyond the standard library, in safe functions.
+//! System functions for the runner beyond the standard library, in safe form.
 
 #![allow(unsafe_code)]
 
@@ -10,11 +10,11 @@ use std::sync::Arc;
 
 use crate::memory::Memory;
 
-/// Starts a program in a process group of its own, that ends with this process at the latest. The files stay
-/// open in it under their numbers.
+/// Starts a program in its own process group, which ends with this process at the latest. The files stay open
+/// in it under their descriptors.
 ///
-/// Its parent is a small process that ends as it does, after noting in the memory how that was: so a program
-/// that ends its parent ends nobody who is needed.
+/// Its parent is a small process that records the program's exit status in the memory and exits alike; so a
+/// program that kills its parent harms nobody else.
 pub fn start(command: &mut Command, files: &[BorrowedFd<'_>], memory: &Arc<Memory>) -> io::Result<Child> {
     let files: Vec<RawFd> = files.iter().map(AsRawFd::as_raw_fd).collect();
     let memory = Arc::clone(memory);
@@ -22,12 +22,13 @@ pub fn start(command: &mut Command, files: &[BorrowedFd<'_>], memory: &Arc<Memor
     let prepare = move || {
         end_with_parent();
         for &file in &files {
-            // SAFETY: the descriptor is open in the parent, so it is here; without flags it stays open in the program.
+            // SAFETY: the descriptor is open in the parent and therefore here; without flags it stays open in
+            // the program.
             if unsafe { libc::fcntl(file, libc::F_SETFD, 0) } != 0 {
                 return Err(io::Error::last_os_error());
             }
         }
-        // SAFETY: this process has one thread, and what follows may be called after `fork`.
+        // SAFETY: this process has one thread, and the following functions are allowed after `fork`.
         match unsafe { libc::fork() } {
             -1 => Err(io::Error::last_os_error()),
             0 => {
@@ -37,24 +38,24 @@ pub fn start(command: &mut Command, files: &[BorrowedFd<'_>], memory: &Arc<Memor
             program => stand_by(program, &memory),
         }
     };
-    // SAFETY: the closure calls functions alone that may be called after `fork`, and allocates nothing.
+    // SAFETY: the closure only calls functions allowed after `fork`, and allocates nothing.
     unsafe { command.pre_exec(prepare) };
     command.spawn()
 }
 
 fn end_with_parent() {
     #[cfg(target_os = "linux")]
-    // SAFETY: sets a number of this process, which has one thread after `fork`.
+    // SAFETY: sets an attribute of this process, which has one thread after `fork`.
     unsafe {
         libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
     }
 }
 
-/// Waits for the program, notes how it ended, and ends in the same way.
+/// Waits for the program, records its exit status, and exits alike.
 fn stand_by(program: libc::pid_t, memory: &Memory) -> ! {
     let mut status = 0;
-    // SAFETY: closes what this process needs no more, and nobody else uses; waits for its only child, whose
-    // status the kernel writes to a number that lives until it returns; and ends this process.
+    // SAFETY: closes descriptors that are no longer needed and used by nobody else; waits for its only child,
+    // whose status is written to a variable that outlives the call; and exits.
     unsafe {
         let mut most = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
         let limit =
@@ -69,7 +70,7 @@ fn stand_by(program: libc::pid_t, memory: &Memory) -> ! {
         }
         memory.note_status(status);
         if libc::WIFSIGNALED(status) {
-            // The program has left its image already, if it was to.
+            // The program has already dumped its core, if at all.
             let none = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
             libc::setrlimit(libc::RLIMIT_CORE, &raw const none);
             libc::signal(libc::WTERMSIG(status), libc::SIG_DFL);
@@ -79,9 +80,9 @@ fn stand_by(program: libc::pid_t, memory: &Memory) -> ! {
     }
 }
 
-/// Ends a program that [`start`] has started, and what it has started itself.
+/// Kills a program started by [`start`], and all processes in its group.
 pub fn kill_all(child: u32) {
     let Ok(group) = i32::try_from(child) else { return };
-    // SAFETY: sends a signal to the group that the program leads; if it is gone, nothing happens.
+    // SAFETY: signals the program's process group; if it is gone, nothing happens.
     unsafe { libc::kill(-group, libc::SIGKILL) };
 }

@@ -1,6 +1,6 @@
-//! What a program's run looks like from outside, in memory that the library keeps up to date.
+//! Report on a program's run, in memory that the library keeps up to date.
 //!
-//! It is written at every call, so that whoever started the program knows how far it came, however it ended.
+//! It is updated at every call, so that the runner knows the program's progress, however it ended.
 
 use std::sync::Arc;
 
@@ -9,46 +9,46 @@ use roverlab::io::sim::{Mishap, Truth};
 
 use crate::memory::{Memory, REPORT};
 
-/// How far a program is.
+/// Stage of a program's run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Stage {
-    /// It has called no function of RoBIOS.
+    /// It has called no RoBIOS function.
     #[default]
     Silent,
-    /// It runs, or ended without a word.
+    /// It is running, or ended without notice.
     Running,
     /// It has ended by itself.
     Ended,
-    /// The time limit has ended it.
+    /// Ended by the time limit.
     TimedOut,
-    /// The library could not make a world for it.
+    /// The library could not create its world.
     Refused,
-    /// The world that it shared is gone.
+    /// The shared world is gone.
     Disconnected,
 }
 
 const STAGES: [Stage; 6] =
     [Stage::Silent, Stage::Running, Stage::Ended, Stage::TimedOut, Stage::Refused, Stage::Disconnected];
 
-/// How a robot stands on hills, and what has become of it there.
+/// Attitude and state of a robot on hills.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Stance {
-    /// Metres above the floor.
+    /// Height above the floor (m).
     pub elevation: f64,
-    /// Radians by which its left side is lifted.
+    /// Roll (rad), positive with the left side up.
     pub roll: f64,
-    /// Radians by which its nose is lowered.
+    /// Pitch (rad), positive with the nose down.
     pub pitch: f64,
-    /// Why it drives no more, or in vain.
+    /// Reason why it cannot drive, if any.
     pub mishap: Option<Mishap>,
 }
 
-/// Every mishap, by its number between a program and the runner: one that is not listed arrives as none.
+/// All mishaps by their number in the report; an unknown number reads as none.
 const MISHAPS: [Option<Mishap>; 5] =
     [None, Some(Mishap::Tipped), Some(Mishap::Fell), Some(Mishap::Stuck), Some(Mishap::Drowned)];
 
 impl Stance {
-    /// That of a robot in a world.
+    /// Stance of a robot in a world.
     pub fn of(world: &Truth, robot: usize) -> Self {
         let Ok(pose) = world.pose_in_space(robot) else { return Self::default() };
         let [roll, pitch, _] = pose.roll_pitch_yaw();
@@ -57,49 +57,49 @@ impl Stance {
     }
 }
 
-/// What is known about a run.
+/// Report on a run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Report {
-    /// How far the program is.
+    /// Stage of the program.
     pub stage: Stage,
-    /// Whether the numbers that follow are known: not in a world that is shared, where the runner knows them.
+    /// Whether the following numbers are valid: not in a shared world, where the runner knows them.
     pub known: bool,
-    /// Simulated seconds that the program has taken.
+    /// Time taken by the program (s).
     pub time: f64,
-    /// Simulated seconds that the world has run.
+    /// Time of the world (s).
     pub world_time: f64,
-    /// Where the robot is.
+    /// True pose of the robot.
     pub pose: Pose,
-    /// How it stands there.
+    /// Attitude on hills.
     pub stance: Stance,
-    /// Where it believes to be.
+    /// Pose by odometry.
     pub odometry: Pose,
-    /// Metres.
+    /// Distance moved (m).
     pub path_length: f64,
-    /// Contacts until the program ended.
+    /// Number of contacts until the program ended.
     pub contacts: u64,
-    /// Contacts since, of a robot that drives on.
+    /// Number of contacts after that, while the robot drove on.
     pub later_contacts: u64,
-    /// Beeps and sounds.
+    /// Number of beeps and sounds.
     pub sounds: u64,
-    /// Since when it has waited for a radio message, if it has.
+    /// Start of waiting for a radio message, if waiting (s).
     pub listening_since: Option<f64>,
-    /// The text that the display has shown, and shows.
+    /// Text shown on the display, past and present.
     pub text: String,
-    /// What it has asked for and its robot does not have, or does not do.
+    /// Unsupported requests of the program.
     pub notes: Vec<String>,
 }
 
 const NUMBERS: usize = 19;
-/// Numbers, and the lengths of the texts.
+/// Size of the numbers and text lengths (bytes).
 const HEADER: usize = 8 * (NUMBERS + 3);
-/// Bytes of the rows that stand on the display.
+/// Size of the visible rows (bytes).
 const STANDING: usize = 24 * 1024;
-/// Bytes of the notes, a line each.
+/// Size of the notes (bytes), one per line.
 pub const NOTES: usize = 16 * 1024;
 const HISTORY_START: usize = HEADER + STANDING + NOTES;
 
-/// Where a report is written.
+/// Writer of a report.
 #[derive(Debug)]
 pub struct ReportFile {
     memory: Arc<Memory>,
@@ -107,7 +107,7 @@ pub struct ReportFile {
 }
 
 impl ReportFile {
-    /// Writes to a memory.
+    /// Writes to shared memory.
     pub fn new(memory: Arc<Memory>) -> Self {
         Self { memory, history: 0 }
     }
@@ -144,7 +144,7 @@ impl ReportFile {
         self.memory.write_report(0, &bytes);
     }
 
-    /// Writes the text: the rows that stand on the display, and what was added to the history.
+    /// Writes the text: the visible rows, and additions to the history.
     pub fn write_text(&mut self, history: &str, standing: &str) {
         let standing = &standing.as_bytes()[..standing.len().min(STANDING)];
         let fresh = history.as_bytes().get(self.history..).unwrap_or_default();
@@ -155,7 +155,7 @@ impl ReportFile {
         self.write_length(1, standing.len());
     }
 
-    /// Writes the notes, as many as there is room for.
+    /// Writes the notes, as far as there is room.
     pub fn write_notes(&self, notes: &[String]) {
         let text = notes.join("\n");
         let text = &text.as_bytes()[..text.len().min(NOTES)];
@@ -169,7 +169,7 @@ impl ReportFile {
 }
 
 impl Report {
-    /// Reads a report. A program may have written anything there, so nothing is believed.
+    /// Reads a report. A program may have corrupted it, so nothing is trusted.
     pub fn read(memory: &Memory) -> Self {
         Self::parse(&memory.report())
     }

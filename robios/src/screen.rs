@@ -1,30 +1,30 @@
-//! The display of a program: its pixels, and the text that it has shown.
+//! Display of a program: its pixels, and its text history.
 
 use roverlab::io::sim::Lcd;
 use roverlab::io::{Display, DisplayOption, Font, Result};
 use roverlab::world::Colour;
 
-/// A display that remembers what was written on it.
+/// A display that remembers its text.
 ///
-/// Its text is that of a terminal with a history: the rows that scrolled away or were cleared, and the rows that stand
-/// there now. What is overwritten in its place is forgotten, and what is cleared again and again is remembered once.
+/// The text is that of a terminal with history: rows scrolled away or cleared, followed by the visible rows.
+/// Overwritten text is forgotten, and repeatedly cleared text is remembered once.
 #[derive(Debug, Default)]
 pub struct Screen {
     /// The pixels.
     pub lcd: Lcd,
     rows: Vec<Vec<char>>,
     history: String,
-    /// What was cleared last.
+    /// Rows cleared last.
     cleared: Vec<Vec<char>>,
     scrolling: Option<bool>,
     line_feed: Option<bool>,
-    /// The font, whose parts are set one by one.
+    /// Current font, set part by part.
     pub font: Font,
 }
 
-/// Bytes of history that are kept: the first ones.
+/// Maximum length of the history (bytes); its beginning is kept.
 const LONGEST_HISTORY: usize = 60_000;
-/// Columns of a row that are kept, wherever a program prints.
+/// Maximum number of columns kept per row.
 const WIDEST: usize = 200;
 
 impl Screen {
@@ -98,7 +98,7 @@ impl Screen {
     /// Clears the display.
     pub fn clear(&mut self) -> Result<()> {
         let rows = std::mem::take(&mut self.rows);
-        // Programs clear and draw the same again and again.
+        // Programs repeatedly clear and draw the same.
         if rows != self.cleared {
             for line in rows.iter().filter(|line| line.iter().any(|c| !c.is_whitespace())) {
                 self.remember(line);
@@ -108,7 +108,7 @@ impl Screen {
         self.lcd.clear_display()
     }
 
-    /// Switches a habit on or off.
+    /// Switches a display setting on or off.
     pub fn switch(&mut self, option: DisplayOption, on: bool) -> Result<()> {
         match option {
             DisplayOption::Scrolling => self.scrolling = Some(on),
@@ -118,12 +118,12 @@ impl Screen {
         self.lcd.set_display_option(option, on)
     }
 
-    /// The rows that have left the display.
+    /// Rows that have left the display.
     pub fn history(&self) -> &str {
         &self.history
     }
 
-    /// The rows that stand on the display, without blanks at their ends.
+    /// The visible rows, without trailing blanks.
     pub fn standing(&self) -> String {
         let rows: Vec<String> = self.rows.iter().map(|row| row.iter().collect()).collect();
         let text = rows.iter().map(|row| row.trim_end()).collect::<Vec<_>>().join("\n");
@@ -176,7 +176,7 @@ mod tests {
         assert_eq!(text, lines.join("\n"));
     }
 
-    /// Text and pixels agree about where the cursor is, whatever is printed.
+    /// Text and pixels agree on the cursor position, whatever is printed.
     #[test]
     fn the_cursor_is_where_the_text_ends() {
         let mut stream = Stream::new(3);

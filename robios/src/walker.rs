@@ -1,38 +1,37 @@
-//! Starman in the place of a robot on wheels: it walks in an upright plane of its own, which stands in the
-//! world where the robot does, along its heading.
+//! Starman as a replacement for a robot on wheels: it walks in its own vertical plane, which is placed at the
+//! robot's pose along its heading.
 
 use roverlab::geometry::{Pose, math};
 use roverlab::io::sim::starman::{Starman, StarmanSpec};
 use roverlab::io::{Clock, Error, Result, Servos};
 use roverlab::world::RobotSpec;
 
-/// A Starman, where it stands, and what its servos were told.
+/// A Starman, its pose, and its servo commands.
 #[derive(Debug)]
 pub(crate) struct Walker {
     starman: Starman,
-    /// Where it stood when it had not moved.
+    /// Pose before any motion.
     start: Pose,
-    /// Where it believed to be then.
+    /// Odometry before any motion.
     origin: Pose,
-    /// Seconds that it has lived.
+    /// Simulated time (s).
     time: f64,
-    /// Metres that it has moved, forth and back.
+    /// Distance moved, forth and back (m).
     walked: f64,
-    /// The servos' positions, from -1 to 1.
+    /// Servo positions, from -1 to 1.
     positions: [f64; LIMBS],
 }
 
 const LIMBS: usize = roverlab::io::sim::starman::LIMBS;
-/// Seconds that a Starman takes for a call.
+/// Duration of a call (s).
 const CALL: f64 = 1e-4;
-/// Degrees that a limb swings to either side. RoBIOS counts them from 128, the middle: one step is one
-/// degree.
+/// Range of a limb to either side (degrees). RoBIOS counts from 128, the middle: one step is one degree.
 const SWING: f64 = 30.0;
-/// RoBIOS's steps from the middle to the end.
+/// Number of RoBIOS's steps from the middle to the end.
 const STEPS: f64 = 128.0;
 
 impl Walker {
-    /// The walker that stands in for a robot, if that has legs.
+    /// The walker that replaces a robot with legs; `None` for others.
     pub(crate) fn of(spec: &RobotSpec, start: Pose) -> Option<Self> {
         if !is_walker(&spec.name) {
             return None;
@@ -48,7 +47,7 @@ impl Walker {
         })
     }
 
-    /// Lets it live until a time.
+    /// Advances it to a time (s).
     pub(crate) fn live_until(&mut self, time: f64) -> Result<()> {
         if time > self.time {
             let before = self.travelled();
@@ -68,38 +67,38 @@ impl Walker {
         self.starman.set_servo(servo, position)
     }
 
-    /// Metres that it has come along its plane.
+    /// Position along its plane (m).
     fn travelled(&self) -> f64 {
         self.starman.truth().posture.body.0
     }
 
-    /// Metres that it has moved.
+    /// Distance moved (m).
     pub(crate) fn walked(&self) -> f64 {
         self.walked
     }
 
-    /// Where it is.
+    /// True pose.
     pub(crate) fn pose(&self) -> Pose {
         ahead(self.start, self.travelled())
     }
 
-    /// Metres from the floor to the middle of its body.
+    /// Height of its body's centre above the floor (m).
     pub(crate) fn height(&self) -> f64 {
         self.starman.truth().posture.body.1
     }
 
-    /// Where it believes to be.
+    /// Pose by odometry.
     pub(crate) fn odometry(&self) -> Pose {
         ahead(self.origin, self.travelled())
     }
 
-    /// Tells it where it is to believe to be.
+    /// Sets the pose by odometry.
     pub(crate) fn set_odometry(&mut self, pose: Pose) {
         self.origin = ahead(pose, -self.travelled());
     }
 
-    /// Puts it somewhere else, upright, as a hand would: it has not moved, and its limbs return to where they
-    /// were told to be.
+    /// Moves it elsewhere, upright, as by hand: this is not a motion, and its limbs return to their commanded
+    /// positions.
     pub(crate) fn place(&mut self, pose: Pose) -> Result<()> {
         let odometry = self.odometry();
         self.starman = Starman::new(&StarmanSpec::default())?;
@@ -112,7 +111,7 @@ impl Walker {
     }
 }
 
-/// Whether a robot of a name has legs.
+/// Whether a robot with this name has legs.
 pub(crate) fn is_walker(name: &str) -> bool {
     name.eq_ignore_ascii_case("starman")
 }

@@ -1,40 +1,40 @@
-//! Requests and replies as bytes, for programs that share a world with others and live in processes of their own.
+//! Requests and replies as bytes, for programs in their own processes that share a world.
 //!
-//! A question is the seconds that the program has spent, the readings that it will want to know too, and the
-//! request: a number for what is asked, and its arguments. An answer is the robot's time, these readings, and
-//! the reply: a number, and what is answered or the error. Numbers are little-endian. Whatever comes in is
-//! checked: nonsense is an error.
+//! A question contains the time spent by the program, the readings it will want as well, and the request: a
+//! number for its kind, and its arguments. An answer contains the robot's time, these readings, and the
+//! reply: a number for its kind, and a value or an error. Numbers are little-endian. All input is validated.
 
 use image::RgbImage;
 use roverlab::geometry::{Pose, Twist};
 use roverlab::io::{Error, ErrorKind, LidarSettings, RadioMessage, Result};
+use roverlab::world::InertialSpec;
 
 use crate::ask::{Identity, Reply, Request};
 
-/// The longest reply in bytes: an image of five million pixels and its header.
+/// Maximum size of a reply (bytes): an image of five million pixels and its header.
 pub const LONGEST: usize = 16 << 20;
-/// The longest request in bytes: a radio message and its header.
+/// Maximum size of a request (bytes): a radio message and its header.
 pub const LONGEST_REQUEST: usize = 70_000;
 
-/// A request with the seconds that the program has spent without the world.
+/// A request with the time spent by the program in local calls.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Question {
-    /// Seconds.
+    /// Time (s).
     pub debt: f64,
-    /// What the program has read lately, and will want to read again once the request is done.
+    /// Recent readings, likely to be needed again after the request.
     pub wanted: Vec<Request>,
-    /// What is asked.
+    /// The request.
     pub request: Request,
 }
 
-/// A reply with the robot's own time after it.
+/// A reply with the robot's time after it.
 #[derive(Debug)]
 pub struct Answer {
-    /// Seconds.
+    /// Time (s).
     pub now: f64,
-    /// The readings that were wanted.
+    /// The wanted readings.
     pub readings: Vec<Reply>,
-    /// What is answered.
+    /// The reply.
     pub reply: Result<Reply>,
 }
 
@@ -69,6 +69,10 @@ impl Writer {
         self.number(pose.x).number(pose.y).number(pose.heading)
     }
 
+    fn channels(self, channels: Option<[u8; 3]>) -> Self {
+        self.bytes(&channels.unwrap_or_default())
+    }
+
     fn request(self, request: &Request) -> Self {
         let w = self;
         match *request {
@@ -101,6 +105,9 @@ impl Writer {
             Request::ObjectAt(id) => w.byte(24).word(id),
             Request::PlaceObject(id, pose) => w.byte(25).word(id).pose(pose),
             Request::Numbers => w.byte(26),
+            Request::Attitude => w.byte(27),
+            Request::TurnRates => w.byte(28),
+            Request::Acceleration => w.byte(29),
         }
     }
 
@@ -131,7 +138,11 @@ impl Writer {
                 .number(identity.call_duration)
                 .number(identity.time_limit)
                 .byte(u8::from(identity.exact))
-                .byte(u8::from(identity.camera)),
+                .byte(u8::from(identity.camera))
+                .channels(identity.inertial.attitude)
+                .channels(identity.inertial.turn_rates)
+                .channels(identity.inertial.acceleration),
+            Reply::Three([a, b, c]) => w.byte(12).number(*a).number(*b).number(*c),
         }
     }
 }
@@ -159,6 +170,10 @@ impl<'a> Reader<'a> {
 
     fn pose(&mut self) -> Option<Pose> {
         Some(Pose::new(self.number()?, self.number()?, self.number()?))
+    }
+
+    fn channels(&mut self) -> Option<Option<[u8; 3]>> {
+        self.take().map(|channels| (channels != [0; 3]).then_some(channels))
     }
 
     fn request(&mut self) -> Option<Request> {
@@ -194,6 +209,9 @@ impl<'a> Reader<'a> {
             24 => Request::ObjectAt(r.word()?),
             25 => Request::PlaceObject(r.word()?, r.pose()?),
             26 => Request::Numbers,
+            27 => Request::Attitude,
+            28 => Request::TurnRates,
+            29 => Request::Acceleration,
             _ => return None,
         })
     }
@@ -233,8 +251,14 @@ impl<'a> Reader<'a> {
                     time_limit: r.number()?,
                     exact: r.byte()? != 0,
                     camera: r.byte()? != 0,
+                    inertial: InertialSpec {
+                        attitude: r.channels()?,
+                        turn_rates: r.channels()?,
+                        acceleration: r.channels()?,
+                    },
                 })
             }
+            12 => Reply::Three([r.number()?, r.number()?, r.number()?]),
             11 => {
                 let (numbers, odd) = r.rest().as_chunks();
                 odd.is_empty().then_some(())?;
@@ -254,14 +278,14 @@ impl<'a> Reader<'a> {
 }
 
 impl Question {
-    /// The question as a frame.
+    /// Encodes the question.
     pub fn encode(&self) -> Vec<u8> {
         let w = Writer::new().number(self.debt).byte(self.wanted.len() as u8);
         let w = self.wanted.iter().fold(w, Writer::request);
         w.request(&self.request).0
     }
 
-    /// A question from the bytes of a frame; `None` if they are none.
+    /// Decodes a question; `None` for invalid bytes.
     pub fn decode(frame: &[u8]) -> Option<Self> {
         let mut r = Reader(frame);
         let debt = r.number()?;
@@ -284,7 +308,7 @@ const KINDS: [ErrorKind; 7] = [
 ];
 
 impl Answer {
-    /// The answer as a frame.
+    /// Encodes the answer.
     pub fn encode(&self) -> Vec<u8> {
         let w = Writer::new().number(self.now).byte(self.readings.len() as u8);
         let w = self.readings.iter().fold(w, Writer::reply);
@@ -298,7 +322,7 @@ impl Answer {
         .0
     }
 
-    /// An answer from the bytes of a frame; `None` if they are none.
+    /// Decodes an answer; `None` for invalid bytes.
     pub fn decode(frame: &[u8]) -> Option<Self> {
         let mut r = Reader(frame);
         let now = r.number()?;
@@ -336,6 +360,9 @@ mod tests {
             Request::PlaceRobot(8, pose, 0.25),
             Request::PlaceObject(9, pose),
             Request::Servo(2, -0.5),
+            Request::Attitude,
+            Request::TurnRates,
+            Request::Acceleration,
         ] {
             let question =
                 Question { debt: 0.25, wanted: vec![Request::Pose, Request::Distance(3)], request };
@@ -349,6 +376,7 @@ mod tests {
             Reply::Done,
             Reply::Flag(true),
             Reply::Count(-5),
+            Reply::Three([1.0, -2.0, 0.5]),
             Reply::Numbers(vec![1, 3]),
             Reply::Ranges(vec![1.0, f64::INFINITY]),
             Reply::Image(RgbImage::from_pixel(2, 1, image::Rgb([1, 2, 3]))),

@@ -10,26 +10,26 @@ use crate::io::control::Manoeuvre;
 use crate::io::{Error, Result};
 use crate::parameter::{require_positive, require_up_to};
 
-/// A way from A to B (book, sections 3.3 to 3.6).
+/// Method of driving from A to B (book, sections 3.3 to 3.6).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Method {
     /// Turn on the spot towards the goal, then drive straight.
     Turn,
-    /// Drive the one arc to the goal; backwards to a goal behind.
+    /// Drive the single arc to the goal, in reverse if the goal is behind.
     Arc,
     /// Keep turning towards the goal while driving.
     Dog,
-    /// Drive a Hermite spline, which arrives with the goal's heading.
+    /// Drive a Hermite spline that arrives with the goal's heading.
     Spline,
 }
 
-/// Where to go.
+/// Position and optional heading to drive to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Goal {
-    /// The place.
+    /// Position in the frame of the observed poses.
     pub position: Point,
-    /// The heading to arrive with, in radians, if it matters.
+    /// Heading on arrival (rad); `None` accepts any.
     pub heading: Option<f64>,
 }
 
@@ -39,12 +39,12 @@ impl Goal {
         Self { position: pose.position(), heading: Some(pose.heading) }
     }
 
-    /// A goal at which any heading is right.
+    /// A goal that accepts any heading.
     pub fn point(position: Point) -> Self {
         Self { position, heading: None }
     }
 
-    /// The goal's pose; without a heading of its own it is the direction from a place to the goal.
+    /// The goal's pose. A goal without a heading takes the direction from `place` to it.
     pub(super) fn pose_from(&self, place: Point) -> Pose {
         let away = self.position - place;
         let heading = self.heading.unwrap_or_else(|| crate::geometry::math::atan2(away.y, away.x));
@@ -59,24 +59,24 @@ impl Goal {
     }
 }
 
-/// What [`AToB`] goes by.
+/// Parameters of [`AToB`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AToBParameters {
-    /// Speeds and steering along the path.
+    /// Speed limits and steering along the path.
     pub follower: PathFollowerParameters,
-    /// The speed of turns on the spot in rad/s.
+    /// Speed of turns on the spot (rad/s).
     pub turn_speed: f64,
-    /// The speed of the last centimetres in m/s.
+    /// Speed of the final corrections (m/s).
     pub creep_speed: f64,
-    /// The book's k: the length of a spline's tangents in terms of the distance.
+    /// The book's k: tangent length of a spline as a multiple of the distance.
     pub spline_scale: f64,
-    /// How near to the goal, in metres, the robot stops correcting.
+    /// Position error below which the robot stops correcting (m).
     pub tolerance: f64,
-    /// How near to the goal's heading, in radians, it stops correcting.
+    /// Heading error below which it stops correcting (rad).
     pub heading_tolerance: f64,
-    /// How many times it may correct.
+    /// Maximum number of corrections.
     pub corrections: u32,
-    /// Seconds from one control step to the next.
+    /// Control period (s).
     pub period: f64,
 }
 
@@ -107,33 +107,33 @@ impl AToBParameters {
     }
 }
 
-/// What the behaviour sees at a step.
+/// Observation of [`AToB`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AToBObservation {
-    /// Where the robot is, in the frame of the goal.
+    /// Robot's pose in the goal's frame.
     pub pose: Pose,
-    /// Whether its last manoeuvre has ended, or there was none.
+    /// Whether the last manoeuvre has ended; `true` if there was none.
     pub done: bool,
-    /// Whether something holds it.
+    /// Whether the drive has stalled.
     pub stalled: bool,
 }
 
-/// How a drive to a goal ended.
+/// Outcome of a drive to a goal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum AToBOutcome {
-    /// The robot takes itself to be there.
+    /// The estimated pose is at the goal.
     Reached,
-    /// Something holds the robot.
+    /// The drive has stalled.
     Blocked,
-    /// The time was over first.
+    /// The time limit came first.
     TimedOut,
-    /// Who watched had seen enough.
+    /// The observer stopped the run.
     Stopped,
 }
 
-/// Drives to a goal by one of the book's methods, with feedback all the way: a planned path is followed, and what is
-/// missing at its end is corrected by short manoeuvres.
+/// Drives to a goal by one of the book's methods, with feedback throughout: follows a planned path, then
+/// corrects the remaining error by short manoeuvres.
 ///
 /// ```
 /// use roverlab::drive::{AToB, AToBOutcome, AToBParameters, Goal, Method};
@@ -157,12 +157,12 @@ pub enum AToBOutcome {
 pub struct AToB {
     method: Method,
     goal: Goal,
-    /// Places that a spline passes on its way.
+    /// Points that a spline passes on its way.
     via: Vec<Point>,
     pub(super) parameters: AToBParameters,
     phase: Phase,
     corrections: u32,
-    /// How far along its path the robot had come when it last got on, and the steps since then.
+    /// Path length at the last progress (m), and the number of steps since then.
     got_to: f64,
     idle: u32,
 }
@@ -170,11 +170,11 @@ pub struct AToB {
 #[derive(Debug, Clone, PartialEq)]
 enum Phase {
     Begin,
-    /// Turning on the spot, before the line to the goal.
+    /// Turning on the spot before the line to the goal.
     Turning,
     Following(Box<PathFollower>),
     Homing,
-    /// Correcting what is missing at the end.
+    /// Correcting the remaining error.
     Correcting,
     Ended,
 }
@@ -185,7 +185,7 @@ pub(super) const HANDOVER: f64 = 0.02;
 const HOMING_TIME: f64 = 0.5;
 
 impl AToB {
-    /// A drive to a goal in the frame of the poses that will be observed.
+    /// Creates a drive to a goal in the frame of the observed poses.
     pub fn new(method: Method, goal: Goal, parameters: AToBParameters) -> Result<Self> {
         parameters.validate()?;
         goal.check()?;
@@ -201,7 +201,8 @@ impl AToB {
         })
     }
 
-    /// The same by way of some points, in this order: a chain of splines without a kink. Fails for another method.
+    /// Adds waypoints, passed in this order by a chain of splines without a kink. Fails for every other
+    /// method.
     pub fn via(self, points: Vec<Point>) -> Result<Self> {
         if self.method != Method::Spline && !points.is_empty() {
             let found = format!("{:?} by way of {} points", self.method, points.len());
@@ -213,7 +214,7 @@ impl AToB {
         Ok(Self { via: points, ..self })
     }
 
-    /// The next command; `None` at the end.
+    /// The next command; `None` at the end. Fails if the pose is not finite.
     pub fn step(&mut self, observation: &AToBObservation) -> Result<Option<Manoeuvre>> {
         let pose = observation.pose;
         if !pose.is_finite() {
@@ -266,7 +267,7 @@ impl AToB {
         }
     }
 
-    /// Whether nothing is left but to correct the last bit.
+    /// Whether only the final correction remains.
     fn is_at_goal(&self, pose: Pose) -> bool {
         self.via.is_empty() && pose.distance_to(self.goal.position) <= HANDOVER
     }
@@ -275,13 +276,13 @@ impl AToB {
         pose.bearing_to(self.goal.position).abs() > FRAC_PI_2
     }
 
-    /// The arc to the goal, backwards to one behind.
+    /// The arc to the goal, in reverse to a goal behind.
     fn arc(&self, pose: Pose) -> Result<Path> {
         let heading = if self.is_behind(pose) { pose.heading + std::f64::consts::PI } else { pose.heading };
         Path::arc(Pose { heading, ..pose }, self.goal.position)
     }
 
-    /// The spline to the goal, or the chain of them by way of the waypoints.
+    /// The spline to the goal, or the chain of splines through the waypoints.
     fn spline(&self, pose: Pose) -> Result<Path> {
         if self.via.is_empty() {
             let goal = self.goal.pose_from(pose.position());
@@ -304,7 +305,7 @@ impl AToB {
         Ok(Some(Manoeuvre::Speed(twist)))
     }
 
-    /// A step of the dog curve: always turning towards the goal, and never so fast that it would be circled.
+    /// One step of the dog curve: turns towards the goal, slowly enough not to circle it.
     fn home(&mut self, pose: Pose) -> Option<Manoeuvre> {
         let distance = pose.distance_to(self.goal.position);
         if distance <= HANDOVER {
@@ -315,7 +316,7 @@ impl AToB {
         Some(Manoeuvre::Speed(dog_twist(&self.parameters.follower, bearing, distance)))
     }
 
-    /// Short manoeuvres that bring the standing robot to the goal.
+    /// Short manoeuvres that correct the standing robot's pose.
     fn correct(&mut self, pose: Pose) -> Option<Manoeuvre> {
         let goal = pose.to_local(self.goal.position);
         let distance = goal.coords.norm();
@@ -328,7 +329,7 @@ impl AToB {
         if self.corrections < 2 * self.parameters.corrections
             && missing.abs() > self.parameters.heading_tolerance
         {
-            // From here on only the heading is corrected: turning moves the robot by a tick at most.
+            // From here on only the heading is corrected: a turn moves the robot by a tick at most.
             self.corrections = self.corrections.max(self.parameters.corrections) + 1;
             return Some(self.turn(missing));
         }
@@ -337,7 +338,7 @@ impl AToB {
     }
 
     fn approach(&self, pose: Pose, goal: Point) -> Manoeuvre {
-        // The way back is as good as the way ahead.
+        // Driving backwards is as good as driving forwards.
         let behind = goal.x < 0.0;
         let bearing = if behind {
             angle_difference(pose.bearing_to(self.goal.position), std::f64::consts::PI)
@@ -354,12 +355,12 @@ impl AToB {
         Manoeuvre::Turn(angle, self.parameters.turn_speed)
     }
 
-    /// The path that is followed, if one is.
+    /// The path being followed, if any.
     pub fn path(&self) -> Option<&Path> {
         if let Phase::Following(follower) = &self.phase { Some(follower.path()) } else { None }
     }
 
-    /// The path that would be followed from a pose; none for a dog curve, which has no plan.
+    /// The path from a pose; `None` at the goal and for a dog curve, which has no plan.
     pub fn plan(&self, pose: Pose) -> Result<Option<Path>> {
         if self.is_at_goal(pose) {
             return Ok(None);
@@ -373,10 +374,10 @@ impl AToB {
     }
 }
 
-/// The speed of a dog curve for a bearing and a distance of the goal.
+/// Velocity of a dog curve for the goal's bearing (rad) and distance (m).
 pub(super) fn dog_twist(parameters: &PathFollowerParameters, bearing: f64, distance: f64) -> Twist {
     let angular = (bearing / HOMING_TIME).clamp(-parameters.turn_rate, parameters.turn_rate);
-    // The circle of this speed and turn passes no farther out than the one through the goal.
+    // The circle driven stays within the one that passes through the goal.
     let through_goal = 0.5 * distance / crate::geometry::math::sin(bearing.abs().min(FRAC_PI_2)).max(1e-9);
     let linear = parameters
         .speed

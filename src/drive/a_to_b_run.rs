@@ -43,7 +43,7 @@ impl AToBObservation {
 }
 
 impl AToB {
-    /// The behaviour by any other estimate of the pose than odometry, such as one that landmarks correct.
+    /// The behaviour with another pose estimate than odometry, such as one corrected by landmarks.
     pub fn by<R: Odometry + Manoeuvres + StallDetector + ?Sized>(
         &mut self,
         mut estimate: impl FnMut(&mut R) -> Result<Pose>,

@@ -9,36 +9,45 @@ use crate::io::{Error, Motors, Odometry, Result, Servos, StallDetector};
 use crate::kinematics::{Ackermann, CarState};
 use crate::parameter::{require, require_positive, require_up_to};
 
-/// Speed and steering of a car as commands of its motor and its servo (book, program 7.1).
+/// Converts speed and steering angle of a car to motor and servo commands (book, program 7.1).
+///
+/// ```
+/// use roverlab::drive::CarDriver;
+/// use roverlab::kinematics::{Ackermann, CarState};
+/// let driver = CarDriver::new(Ackermann::new(0.3, 0.2, 0.5)?, 2.0)?;
+/// let command = driver.command(CarState { speed: 1.0, steering: 0.5 });
+/// assert_eq!((command.motor, command.servo), (0.5, -1.0), "half of full speed, all the way to the left");
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CarDriver {
     kinematics: Ackermann,
     full_speed: f64,
 }
 
-/// What motor 1 and servo 1 are told.
+/// Commands for motor 1 and servo 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CarCommand {
-    /// A fraction of the motor's full speed, -1 to 1.
+    /// Fraction of the motor's full speed, -1 to 1.
     pub motor: f64,
-    /// The steering servo's position, -1 (full left) to 1 (full right).
+    /// Steering servo position, -1 (full left) to 1 (full right).
     pub servo: f64,
 }
 
 impl CarDriver {
-    /// For a car of a geometry whose wheels have that rim speed, in m/s, at full motor speed. Fails unless it is positive and
-    /// finite.
+    /// Creates a driver; `full_speed` is the rim speed of the wheels at full motor speed (m/s). Fails unless
+    /// it is positive and finite.
     pub fn new(kinematics: Ackermann, full_speed: f64) -> std::result::Result<Self, ParameterError> {
         require_positive("full speed", full_speed)?;
         Ok(Self { kinematics, full_speed })
     }
 
-    /// The car's geometry.
+    /// Geometry of the car.
     pub fn kinematics(&self) -> &Ackermann {
         &self.kinematics
     }
 
-    /// The commands for a speed and a steering angle, as far as both go.
+    /// The commands for a speed and a steering angle, clamped to the actuators' ranges.
     pub fn command(&self, state: CarState) -> CarCommand {
         CarCommand {
             motor: (state.speed / self.full_speed).clamp(-1.0, 1.0),
@@ -47,24 +56,25 @@ impl CarDriver {
     }
 }
 
-/// What [`CarToB`] goes by.
+/// Parameters of [`CarToB`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CarToBParameters {
-    /// Speeds and steering along the path.
+    /// Speed limits and steering along the path.
     pub follower: PathFollowerParameters,
-    /// The least radius of planned paths in terms of the turning radius: more than 1, to leave room for corrections.
+    /// Minimum radius of planned paths as a multiple of the turning radius; above 1 leaves room for
+    /// corrections.
     pub margin: f64,
-    /// The book's k of splines; more is taken where the spline would bend too tightly.
+    /// The book's k of splines; increased where the spline would bend too tightly.
     pub spline_scale: f64,
-    /// How far from the goal, in metres, the car stops correcting.
+    /// Position error below which the car stops correcting (m).
     pub tolerance: f64,
-    /// How far from the goal's heading, in radians, it stops correcting.
+    /// Heading error below which it stops correcting (rad).
     pub heading_tolerance: f64,
-    /// How many times it may drive back and come again.
+    /// Maximum number of times the car reverses and tries again.
     pub corrections: u32,
-    /// Seconds that the servo takes to turn the wheels from the middle to one side.
+    /// Time the servo takes to turn the wheels from the middle to one side (s).
     pub steering_time: f64,
-    /// Seconds from one control step to the next.
+    /// Control period (s).
     pub period: f64,
 }
 
@@ -90,19 +100,19 @@ impl Default for CarToBParameters {
     }
 }
 
-/// How a car's drive to a goal ended.
+/// Outcome of a car's drive to a goal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum CarOutcome {
-    /// The car takes itself to be there.
+    /// The estimated pose is at the goal.
     Reached,
-    /// It stopped four tolerances or more from the goal or its heading, each time that it came.
+    /// Every attempt ended four tolerances or more from the goal or its heading.
     Missed,
-    /// Something holds the car.
+    /// The drive has stalled.
     Blocked,
-    /// The time was over first.
+    /// The time limit came first.
     TimedOut,
-    /// Who watched had seen enough.
+    /// The observer stopped the run.
     Stopped,
 }
 
@@ -112,23 +122,36 @@ halts!(CarOutcome {
     Blocked: "something holds the car",
 });
 
-/// What a car sees at a step.
+/// Observation of a car's drive to a goal.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CarObservation {
-    /// Where odometry takes it to be.
+    /// Pose by odometry.
     pub pose: Pose,
-    /// Whether something holds it.
+    /// Whether the drive has stalled.
     pub stalled: bool,
 }
 
 /// Drives a car to a goal by the methods of chapter 3, within its turning circle (book, section 7.4).
 ///
-/// What a robot that turns on the spot does in a turn, a car does on a circle, and so every plan keeps to the circle:
-/// [`Method::Turn`] is a Dubins path; an arc or a spline that would be too tight becomes one. A dog curve drives straight on
-/// past a goal beside it until it can turn towards it. A goal's heading is met by all; after a dog curve, by a last path.
+/// A car cannot turn on the spot, so every plan respects its turning circle: [`Method::Turn`] is a Dubins
+/// path, and an arc or a spline that is too tight becomes one. A dog curve drives straight past a goal beside
+/// the car until it can turn towards it. All methods meet the goal's heading; a dog curve ends with a planned
+/// path to do so.
 ///
-/// A path that ends in a tight bend is not met well, as the wheels turn too slowly for it: then the car drives straight back
-/// and comes again.
+/// The wheels steer too slowly for a path that ends in a tight bend. If the car misses the goal there, it
+/// reverses straight and tries again.
+///
+/// ```
+/// use roverlab::drive::{CarDriver, CarToB, CarToBParameters, Goal, Method};
+/// use roverlab::geometry::Pose;
+/// use roverlab::kinematics::Ackermann;
+/// let driver = CarDriver::new(Ackermann::new(0.3, 0.2, 0.5)?, 2.0)?;
+/// let beside = Goal::pose(Pose::new(0.0, 0.5, 0.0));
+/// let drive = CarToB::new(Method::Turn, beside, driver, CarToBParameters::default())?;
+/// let path = drive.plan(Pose::default())?.expect("it is not there yet");
+/// assert!(path.length() > 3.0, "half a metre to the left, but a car has to go round");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct CarToB {
     method: Method,
@@ -137,18 +160,18 @@ pub struct CarToB {
     parameters: CarToBParameters,
     phase: Phase,
     corrections: u32,
-    /// The pieces of the path that come next, the last one first.
+    /// The remaining pieces of the path, the next one last.
     next: Vec<Path>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
 enum Phase {
     Begin,
-    /// Turning the wheels, standing, for so many seconds more.
+    /// Standing while the wheels turn, for this many seconds more.
     Aiming(Box<PathFollower>, f64),
     Following(Box<PathFollower>),
     Homing,
-    /// Driving straight back from this place, to come again.
+    /// Reversing straight from this point, to try again.
     Backing(Point),
     Ended,
 }
@@ -167,7 +190,7 @@ const LARGE_JUMP: f64 = 1.2;
 const LARGEST_SCALE: f64 = 4.0;
 
 impl CarToB {
-    /// A drive of a car to a goal in the frame of the poses that will be observed.
+    /// Creates a car's drive to a goal in the frame of the observed poses.
     pub fn new(method: Method, goal: Goal, driver: CarDriver, parameters: CarToBParameters) -> Result<Self> {
         goal.check()?;
         parameters.follower.validate()?;
@@ -185,7 +208,7 @@ impl CarToB {
         self.parameters.margin * self.driver.kinematics.turning_radius()
     }
 
-    /// The path from a pose; none for a dog curve, which has no plan, and for a car that is there.
+    /// The path from a pose; `None` at the goal and for a dog curve, which has no plan.
     pub fn plan(&self, pose: Pose) -> Result<Option<Path>> {
         if pose.distance_to(self.goal.position) <= ARRIVED || self.method == Method::Dog {
             return Ok(None);
@@ -224,7 +247,7 @@ impl CarToB {
         }
     }
 
-    /// Speed and steering for the car at a pose; `None` at the end.
+    /// Speed and steering for the car at a pose; `None` at the end. Fails if the pose is not finite.
     pub fn step(&mut self, pose: Pose) -> Result<Option<CarState>> {
         if !pose.is_finite() {
             return Err(Error::invalid_input("observed pose", format!("{pose:?}"), "finite numbers"));
@@ -241,14 +264,14 @@ impl CarToB {
         Ok(self.back(pose))
     }
 
-    /// Whether a pose is farther from the goal or its heading than so many tolerances.
+    /// Whether a pose misses the goal or its heading by more than this multiple of the tolerances.
     fn is_off(&self, pose: Pose, tolerances: f64) -> bool {
         let heading_tolerance = tolerances * self.parameters.heading_tolerance;
         pose.distance_to(self.goal.position) > tolerances * self.parameters.tolerance
             || self.heading_error(pose).is_some_and(|error| error.abs() > heading_tolerance)
     }
 
-    /// A step straight back; `None` when the car is far enough to come again.
+    /// One step in reverse; `None` once there is room for another attempt.
     fn back(&mut self, pose: Pose) -> Option<CarState> {
         let Phase::Backing(from) = self.phase else { return None };
         if pose.distance_to(from) < ROOM * self.radius() {
@@ -258,7 +281,7 @@ impl CarToB {
         None
     }
 
-    /// Speed and steering on the way to the goal; `None` at its end.
+    /// Speed and steering on the way to the goal; `None` on arrival.
     fn come(&mut self, pose: Pose) -> Result<Option<CarState>> {
         if self.phase == Phase::Begin {
             self.phase = match self.plan(pose)? {
@@ -281,7 +304,7 @@ impl CarToB {
         self.follow(pose)
     }
 
-    /// The wheels are turned before the car drives off.
+    /// Turns the wheels to the path's first curvature before the car drives off.
     fn aim(&mut self, path: &Path) -> Result<Phase> {
         self.next = path.split_at_jumps(LARGE_JUMP * self.driver.kinematics.max_curvature());
         self.next.reverse();
@@ -291,7 +314,7 @@ impl CarToB {
     fn aim_at_next(&mut self) -> Result<Phase> {
         let Some(path) = self.next.pop() else { return Ok(Phase::Ended) };
         let follower = PathFollower::new(path, self.parameters.follower)?;
-        // From one side to the other it takes twice as long as from the middle.
+        // Turning from one side to the other takes twice as long as from the middle.
         let seconds = self.parameters.steering_time * if self.phase == Phase::Begin { 1.0 } else { 2.0 };
         Ok(Phase::Aiming(Box::new(follower), seconds))
     }
@@ -307,7 +330,7 @@ impl CarToB {
         Ok(self.aimed())
     }
 
-    /// Standing, with the wheels where the next piece of the path needs them; `None` without one.
+    /// Stands with the wheels set for the next piece of the path; `None` without one.
     fn aimed(&mut self) -> Option<CarState> {
         match &mut self.phase {
             Phase::Aiming(follower, seconds) => {
@@ -323,7 +346,7 @@ impl CarToB {
         }
     }
 
-    /// A step of the dog curve; `None` when it has done its part.
+    /// One step of the dog curve; `None` when it hands over.
     fn home(&self, pose: Pose) -> Option<CarState> {
         let (goal, radius) = (pose.to_local(self.goal.position), self.radius());
         let distance = goal.coords.norm();
@@ -337,7 +360,7 @@ impl CarToB {
             return drives.then(|| CarState { speed: rate * goal.x, steering: 0.0 });
         }
         let bearing = pose.bearing_to(self.goal.position);
-        // Within a turning circle, the goal could only be circled: first the car drives away from it.
+        // A goal inside a turning circle could only be circled: drive away from it first.
         let beside = Point::new(0.0, radius.copysign(goal.y));
         let within = (goal - beside).norm() < radius - 1e-3;
         if within {
@@ -349,7 +372,7 @@ impl CarToB {
         Some(self.driver.kinematics.inverse_limited(twist, self.driver.full_speed))
     }
 
-    /// Radians by which a pose misses the goal's heading; `None` if any will do.
+    /// Heading error at a pose (rad); `None` if the goal accepts any heading.
     pub fn heading_error(&self, pose: Pose) -> Option<f64> {
         self.goal.heading.map(|heading| angle_difference(pose.heading, heading))
     }
@@ -402,7 +425,7 @@ mod tests {
         CarDriver::new(Ackermann::new(0.26, 0.16, 0.5).unwrap(), 0.5).unwrap()
     }
 
-    /// A car that does exactly as it is told. Returns where it ends.
+    /// A car that executes every command exactly. Returns its final pose.
     fn drive(method: Method, goal: Goal, start: Pose) -> Pose {
         let mut behaviour = CarToB::new(method, goal, driver(), CarToBParameters::default()).unwrap();
         let mut pose = start;
@@ -415,7 +438,7 @@ mod tests {
         panic!("{method:?} to {goal:?} has no end; now at {pose:?}");
     }
 
-    /// Few ways end in a tight curve, in which the wheels are late; there the heading is off by up to 6 degrees.
+    /// The few paths that end in a tight curve miss the heading by up to 6 degrees, as the wheels lag.
     #[test]
     fn every_method_arrives() {
         let mut stream = Stream::new(1);

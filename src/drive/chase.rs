@@ -8,18 +8,18 @@ use crate::io::control::{Behaviour, Decision, SensedBy, Senses, halts};
 use crate::io::{Error, Odometry, Result, StallDetector};
 use crate::parameter::{require_positive, require_up_to};
 
-/// What [`Chase`] goes by.
+/// Parameters of [`Chase`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChaseParameters {
-    /// Speed, turn rate and deceleration.
+    /// Limits of speed, turn rate and deceleration.
     pub follower: PathFollowerParameters,
-    /// The distance to the goal, in metres, at which it is caught.
+    /// Distance at which the goal is caught (m).
     pub distance: f64,
     /// The book's k of splines.
     pub spline_scale: f64,
-    /// The bearing in radians beyond which [`Method::Turn`] stops and turns on the spot.
+    /// Bearing beyond which [`Method::Turn`] stops and turns on the spot (rad).
     pub turn_threshold: f64,
-    /// Seconds from one control step to the next.
+    /// Control period (s).
     pub period: f64,
 }
 
@@ -35,33 +35,33 @@ impl Default for ChaseParameters {
     }
 }
 
-/// What a [`Chase`] sees at a step.
+/// Observation of a [`Chase`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ChaseObservation {
-    /// Where the goal is in the robot's frame.
+    /// Goal's pose in the robot's frame.
     pub goal: Pose,
-    /// Whether something holds the robot.
+    /// Whether the drive has stalled.
     pub stalled: bool,
 }
 
-/// How a chase ended.
+/// Outcome of a chase.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ChaseOutcome {
-    /// The goal is at hand.
+    /// The goal is within the catching distance.
     Caught,
-    /// Something holds the robot.
+    /// The drive has stalled.
     Blocked,
-    /// The time was over first.
+    /// The time limit came first.
     TimedOut,
-    /// Who watched had seen enough.
+    /// The observer stopped the run.
     Stopped,
 }
 
 halts!(ChaseOutcome { Caught: "the goal is caught", Blocked: "something holds the robot" });
 
-/// Drives towards a goal that moves: each method of chapter 3 begins anew from where robot and goal are at each step, and
-/// drives the first bit of it.
+/// Drives towards a moving goal: plans anew by one of chapter 3's methods at each step, and drives the first
+/// piece of the plan.
 ///
 /// ```
 /// use roverlab::drive::{Chase, ChaseParameters, Method};
@@ -90,8 +90,8 @@ impl Chase {
         Ok(Self { method, parameters, turning: true })
     }
 
-    /// The speed for a goal at a pose in the robot's own frame; `None` when it is caught. The goal's heading matters to
-    /// splines alone.
+    /// The velocity towards a goal given in the robot's frame; `None` when it is caught. Only splines use the
+    /// goal's heading. Fails if the goal is not finite.
     pub fn step(&mut self, goal: Pose) -> Result<Option<Twist>> {
         if !goal.is_finite() {
             return Err(Error::invalid_input("goal", format!("{goal:?}"), "finite numbers"));
@@ -105,12 +105,12 @@ impl Chase {
         let follower = &self.parameters.follower;
         Ok(Some(match self.method {
             Method::Turn => self.turn_or_drive(bearing, distance),
-            // A goal that moves is not braked for.
+            // No braking for a goal that moves.
             Method::Dog => {
                 let follower = PathFollowerParameters { deceleration: f64::INFINITY, ..*follower };
                 dog_twist(&follower, bearing, distance)
             }
-            // Forward arcs to goals behind are long; the robot turns towards them first.
+            // Forward arcs to goals behind are long: turn towards them first.
             Method::Arc | Method::Spline if bearing.abs() > FRAC_PI_2 => {
                 Twist::new(0.0, follower.turn_rate.copysign(bearing))
             }
@@ -122,8 +122,8 @@ impl Chase {
         }))
     }
 
-    /// The behaviour after a goal. `goal` says, for a time since the first step, where it is in the frame of
-    /// the robot's odometry, by whatever way the robot learns of it.
+    /// The behaviour that chases `goal`, a function from the time since the first step (s) to the goal's pose
+    /// in the odometry frame.
     pub fn after<R: Odometry + StallDetector + ?Sized>(
         &mut self,
         mut goal: impl FnMut(&mut R, f64) -> Result<Pose>,
@@ -139,12 +139,12 @@ impl Chase {
 
     fn turn_or_drive(&mut self, bearing: f64, distance: f64) -> Twist {
         let follower = &self.parameters.follower;
-        // Once it drives, it does so until the goal is well off its line.
+        // Hysteresis: once driving, the robot stops only when the goal is well off its line.
         let limit =
             if self.turning { 0.5 * self.parameters.turn_threshold } else { self.parameters.turn_threshold };
         self.turning = bearing.abs() > limit;
         if self.turning {
-            // So fast that a goal that crosses ahead does not stay beyond the limit.
+            // Fast enough that a goal crossing ahead does not stay beyond the limit.
             let rate = (5.0 * bearing.abs()).min(follower.turn_rate);
             Twist::new(0.0, rate.copysign(bearing))
         } else {
@@ -152,7 +152,7 @@ impl Chase {
         }
     }
 
-    /// A speed along a curvature, slower in bends.
+    /// Velocity along a curvature, slower in bends.
     fn along(&self, curvature: f64) -> Twist {
         let follower = &self.parameters.follower;
         let speed = follower.speed.min(follower.turn_rate / curvature.abs().max(1e-9));

@@ -3,31 +3,44 @@ use crate::geometry::{Point, Pose, Twist, math};
 use crate::io::{Error, Result};
 use crate::parameter::require_positive;
 
-/// What [`Cruise`] goes by.
+/// Parameters of [`Cruise`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CruiseParameters {
-    /// Metres per second.
+    /// Driving speed (m/s).
     pub speed: f64,
-    /// The fastest turn in rad/s.
+    /// Maximum turn rate (rad/s).
     pub turn_rate: f64,
-    /// The radius of the robot in metres, and what it keeps free beside it.
+    /// Radius of the robot (m).
     pub radius: f64,
-    /// Metres that are kept free beside it.
+    /// Clearance kept beside the robot (m).
     pub margin: f64,
-    /// Metres ahead that have to be free, or else it goes round.
+    /// Free distance required ahead (m); with less the robot goes round the obstacle.
     pub ahead: f64,
-    /// Metres to a waypoint at which the next one is driven to.
+    /// Distance to a waypoint at which the robot turns to the next one (m).
     pub arrival: f64,
 }
 
 impl Default for CruiseParameters {
-    /// A LabBot at leisure.
+    /// A slow LabBot.
     fn default() -> Self {
         Self { speed: 0.15, turn_rate: 0.8, radius: 0.09, margin: 0.08, ahead: 0.6, arrival: 0.3 }
     }
 }
 
-/// Drives past waypoints, round and round, and round what stands in the way: the leader of a swarm (book, chapter 5).
+/// Drives past waypoints in an endless loop, round obstacles on the way: the leader of a swarm (book, chapter
+/// 5).
+///
+/// ```
+/// use roverlab::drive::{Cruise, CruiseParameters};
+/// use roverlab::geometry::{Point, Pose};
+/// let posts = vec![Point::new(2.0, 0.0), Point::new(2.0, 2.0)];
+/// let mut cruise = Cruise::new(posts, CruiseParameters::default())?;
+/// let free = cruise.step(Pose::default(), &[])?;
+/// assert!(free.linear > 0.0 && free.angular.abs() < 1e-6, "straight at the first waypoint");
+/// let blocked = cruise.step(Pose::default(), &[Point::new(0.25, 0.02)])?;
+/// assert!(blocked.angular.abs() > 0.1, "round what stands in the way");
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cruise {
     parameters: CruiseParameters,
@@ -36,7 +49,7 @@ pub struct Cruise {
 }
 
 impl Cruise {
-    /// A cruise past some waypoints, in the frame of the poses that will be observed.
+    /// Creates a cruise past waypoints in the frame of the observed poses. Fails without a waypoint.
     pub fn new(waypoints: Vec<Point>, parameters: CruiseParameters) -> Result<Self> {
         require_positive("speed", parameters.speed)?;
         require_positive("turn rate", parameters.turn_rate)?;
@@ -50,7 +63,8 @@ impl Cruise {
         Ok(Self { parameters, waypoints, next: 0 })
     }
 
-    /// The next speed, for what is seen as points in the robot's frame.
+    /// The next velocity; `points` are the obstacles in the robot's frame (m). Fails if the pose is not
+    /// finite.
     pub fn step(&mut self, pose: Pose, points: &[Point]) -> Result<Twist> {
         if !pose.is_finite() {
             return Err(Error::invalid_input("observed pose", format!("{pose:?}"), "finite numbers"));

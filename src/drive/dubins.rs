@@ -5,7 +5,7 @@ use crate::geometry::{Pose, math};
 use crate::io::Result;
 use crate::parameter::require_positive;
 
-/// A turn to the left, a line, or a turn to the right.
+/// Three parts of a path, each a left turn (1), a line (0) or a right turn (-1).
 type Word = [f64; 3];
 
 /// The six sequences of turns among which the shortest path is (L. E. Dubins, 1957).
@@ -22,8 +22,9 @@ const WORDS: [Word; 6] = [
 const HEADINGS: u32 = 72;
 
 impl Path {
-    /// The shortest path of a car that drives forward and turns no tighter than on a circle of `radius` metres (L. E.
-    /// Dubins, "On curves of minimal length with a constraint on average curvature", 1957). There always is one.
+    /// The shortest path of a car that only drives forward, with a turning circle of `radius` metres (L. E.
+    /// Dubins, "On curves of minimal length with a constraint on average curvature", 1957). One always
+    /// exists.
     pub fn dubins(start: Pose, goal: Pose, radius: f64) -> Result<Self> {
         require_positive("turning radius", radius)?;
         let (word, parts, _) = shortest(start, goal, radius);
@@ -36,7 +37,7 @@ impl Path {
         Self::of_arcs(start, &pieces)
     }
 
-    /// The same to a point, with whatever heading is nearest, to 5 degrees.
+    /// The shortest such path to a point, over goal headings in steps of 5 degrees.
     pub fn dubins_to_point(start: Pose, goal: crate::geometry::Point, radius: f64) -> Result<Self> {
         require_positive("turning radius", radius)?;
         let headings = (0..HEADINGS).map(|i| TAU * f64::from(i) / f64::from(HEADINGS));
@@ -48,7 +49,7 @@ impl Path {
     }
 }
 
-/// The word and the lengths of its parts, in terms of the radius, of the shortest path; and their sum.
+/// The shortest path's word, the lengths of its parts as multiples of the radius, and their sum.
 fn shortest(start: Pose, goal: Pose, radius: f64) -> (Word, [f64; 3], f64) {
     let local = start.to_local(goal.position());
     let (x, y) = (local.x / radius, local.y / radius);
@@ -59,13 +60,13 @@ fn shortest(start: Pose, goal: Pose, radius: f64) -> (Word, [f64; 3], f64) {
     best.unwrap_or(([0.0; 3], [0.0; 3], f64::INFINITY))
 }
 
-/// The lengths of a word's parts from the origin, heading along x, to a pose, on circles of radius 1.
+/// Lengths of a word's parts from the origin, heading along x, to a pose, on circles of radius 1.
 ///
-/// Both turning circles are found by their centres; a line touches both, or a third circle does.
+/// The turning circles at both ends are joined by a common tangent or by a third circle.
 fn parts(word: &Word, x: f64, y: f64, heading: f64) -> Option<[f64; 3]> {
     let [first, middle, last] = *word;
     let (sin, cos) = math::sin_cos(heading);
-    // From the centre of the first circle to that of the last one.
+    // From the centre of the first circle to the centre of the last one.
     let (dx, dy) = (x - last * sin, y + last * cos - first);
     let distance = math::hypot(dx, dy);
     let line = math::atan2(dy, dx);
@@ -85,10 +86,10 @@ fn parts(word: &Word, x: f64, y: f64, heading: f64) -> Option<[f64; 3]> {
         if distance > 4.0 {
             return None;
         }
-        // The middle circle touches both others: its centre stands over the line between theirs.
+        // The middle circle touches both others: its centre lies above the line between theirs.
         let tilt = math::acos(distance / 4.0);
         let departure = line + first * (tilt + std::f64::consts::FRAC_PI_2);
-        // It is left where it touches the last one, as far round as the triangle says.
+        // The arc ends where it touches the last circle; the triangle of centres gives its length.
         let length = wrapped(std::f64::consts::PI + 2.0 * tilt);
         (departure, length)
     };
@@ -101,7 +102,7 @@ fn parts(word: &Word, x: f64, y: f64, heading: f64) -> Option<[f64; 3]> {
     Some([turn, length, rest])
 }
 
-/// The same angle from 0 up to a full turn; a rounding error below it counts as 0.
+/// Normalises an angle to 0 up to a full turn; rounding errors below 0 count as 0.
 fn wrapped(angle: f64) -> f64 {
     let turn = angle - TAU * (angle / TAU).floor();
     if TAU - turn < 1e-9 { 0.0 } else { turn }
@@ -143,7 +144,7 @@ mod tests {
             prop_assert!(path.end().distance_to(goal.position()) < 1e-6);
             prop_assert!(path.length() >= start.distance_to(goal.position()) - 1e-9);
             prop_assert!(path.max_curvature() <= 2.0 + 1e-9);
-            // The way to the point alone is no longer, but for the headings that are not tried.
+            // The path to the point alone is no longer, except for headings between the samples.
             let to_point = Path::dubins_to_point(start, goal.position(), 0.5).unwrap();
             prop_assert!(to_point.length() <= path.length() + 0.1);
         }

@@ -6,24 +6,24 @@ use crate::geometry::{Point, Pose, Twist, Vector, math, normalize_angle};
 use crate::io::{Error, LidarScan, Result};
 use crate::parameter::{require, require_positive, require_up_to};
 
-/// What [`Follower`] goes by.
+/// Parameters of [`Follower`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FollowerParameters {
-    /// Metres between the middles of the follower and of the robot ahead.
+    /// Distance kept between the centres of the follower and the robot ahead (m).
     pub gap: f64,
-    /// The fastest speed in m/s.
+    /// Maximum speed (m/s).
     pub speed: f64,
-    /// The fastest turn in rad/s.
+    /// Maximum turn rate (rad/s).
     pub turn_rate: f64,
-    /// The radius of the robot in metres, and what it keeps free around it.
+    /// Radius of the robot (m).
     pub radius: f64,
-    /// Metres that are kept free beside the robot.
+    /// Clearance kept beside the robot (m).
     pub margin: f64,
-    /// The radius of the robot ahead in metres.
+    /// Radius of the robot ahead (m).
     pub leader_radius: f64,
-    /// Seconds without a sight of the robot ahead after which it is lost.
+    /// Time without a detection after which the robot ahead counts as lost (s).
     pub patience: f64,
-    /// Seconds from one step to the next.
+    /// Control period (s).
     pub period: f64,
 }
 
@@ -59,30 +59,42 @@ impl FollowerParameters {
     }
 }
 
-/// What a follower sees at a step.
+/// Observation of a [`Follower`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FollowerObservation<'a> {
-    /// Seconds.
+    /// Time (s).
     pub time: f64,
-    /// Where odometry takes the robot to be.
+    /// Pose by odometry.
     pub pose: Pose,
-    /// Where the robot ahead may be: the middles of things of its size, in the follower's frame.
+    /// Possible positions of the robot ahead: centres of things of its size, in the follower's frame.
     pub candidates: &'a [Point],
-    /// What must not be touched, in the follower's frame.
+    /// Points not to be touched, in the follower's frame.
     pub obstacles: &'a [Point],
 }
 
 /// Follows a robot that it sees (book, sections 5.2 and 5.3).
 ///
-/// The robot ahead is tracked: of all things of its size it is the one nearest to where it was to be expected, so that the
-/// nearest thing around, which the book follows, cannot take its place. The follower closes up to a gap with the speed of the
-/// robot ahead, and goes round what stands between.
+/// The follower tracks the robot ahead: the thing of its size nearest to the predicted position. The book
+/// follows the nearest thing around, so any other object can take the leader's place. The follower closes up
+/// to the gap, adds the leader's own speed, and goes round obstacles in between.
+///
+/// ```
+/// use roverlab::drive::{Follower, FollowerObservation, FollowerParameters};
+/// use roverlab::geometry::{Point, Pose};
+/// let mut follower = Follower::new(FollowerParameters::default())?;
+/// let leader = [Point::new(1.0, 0.2)];
+/// let seen = FollowerObservation { time: 0.0, pose: Pose::default(), candidates: &leader, obstacles: &[] };
+/// let twist = follower.step(&seen)?;
+/// assert!(twist.linear > 0.0 && twist.angular > 0.0, "after it, to the left");
+/// assert!(follower.target().is_some() && !follower.is_lost(0.1));
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Follower {
     parameters: FollowerParameters,
-    /// The robot ahead in the frame of odometry, its velocity, and when it was seen.
+    /// The robot ahead: position in the odometry frame, velocity, and time of the last detection.
     target: Option<Target>,
-    /// To which side it looks round for a robot that it has lost, as a bearing.
+    /// Bearing towards which it looks round for a lost robot.
     looking: Option<f64>,
 }
 
@@ -99,18 +111,18 @@ const GATE: f64 = 0.15;
 const OF_PLACE: f64 = 0.5;
 
 impl Follower {
-    /// A follower that has not seen anybody.
+    /// Creates a follower without a target.
     pub fn new(parameters: FollowerParameters) -> Result<Self> {
         parameters.validate()?;
         Ok(Self { parameters, target: None, looking: None })
     }
 
-    /// Where the robot ahead is in the frame of odometry, as far as that is known.
+    /// Estimated position of the robot ahead in the odometry frame, if it has been seen.
     pub fn target(&self) -> Option<Point> {
         self.target.map(|target| target.place)
     }
 
-    /// Seconds since the robot ahead was seen; infinite before the first sight.
+    /// Time since the last detection of the robot ahead (s); infinite before the first.
     pub fn unseen(&self, time: f64) -> f64 {
         self.target.map_or(f64::INFINITY, |target| time - target.seen)
     }
@@ -120,7 +132,7 @@ impl Follower {
         self.unseen(time) > self.parameters.patience
     }
 
-    /// The next speed.
+    /// The next velocity. Fails if pose or time is not finite.
     pub fn step(&mut self, seen: &FollowerObservation<'_>) -> Result<Twist> {
         if !(seen.pose.is_finite() && seen.time.is_finite()) {
             let found = format!("{:?} at {} s", seen.pose, seen.time);
@@ -139,19 +151,19 @@ impl Follower {
             return Ok(Twist::new(0.0, parameters.turn_rate.copysign(side)));
         }
         self.looking = None;
-        // The robot ahead is no obstacle on the way to its gap.
+        // The robot ahead is not an obstacle.
         let near_target = parameters.leader_radius + 0.05;
         let obstacles: Vec<Point> =
             seen.obstacles.iter().copied().filter(|point| (point - away).norm() > near_target).collect();
         let way = Way { radius: parameters.radius, margin: parameters.margin };
         let (towards, free) = way.towards(&obstacles, bearing, AHEAD.min(distance));
         let along = crate::geometry::direction(seen.pose.heading + bearing).dot(&target.velocity);
-        // A robot that is out of sight is looked for where it was seen last.
+        // A lost robot is looked for where it was last seen.
         let closing =
             if lost { parameters.speed } else { (distance - parameters.gap) / BRAKING + along };
         let turn = normalize_angle(towards);
         let facing = math::cos(turn).max(0.0);
-        // What stands straight ahead of the robot as it points now limits its speed as well.
+        // Obstacles straight ahead limit the speed as well.
         let free =
             free.min(way.free(&obstacles, 0.0)).min(distance - parameters.radius - parameters.leader_radius);
         let most = ((free - parameters.margin) / BRAKING).clamp(0.0, parameters.speed);
@@ -159,7 +171,7 @@ impl Follower {
         Ok(Twist::new(linear, (TURN_GAIN * turn).clamp(-parameters.turn_rate, parameters.turn_rate)))
     }
 
-    /// Finds the robot ahead among the candidates.
+    /// Associates the robot ahead with one of the candidates.
     fn track(&mut self, seen: &FollowerObservation<'_>) {
         let nearest_to = |place: Point| {
             let candidates = seen.candidates.iter().map(|&candidate| seen.pose.to_world(candidate));
@@ -167,14 +179,14 @@ impl Follower {
         };
         let begin = |place: Point| Target { place, velocity: Vector::zeros(), seen: seen.time };
         let Some(target) = self.target else {
-            // At first it is the nearest one ahead.
+            // The first target is the nearest candidate ahead.
             let ahead = seen.candidates.iter().filter(|point| math::atan2(point.y, point.x).abs() < 0.3 * PI);
             let first = ahead.min_by(|a, b| a.coords.norm().total_cmp(&b.coords.norm()));
             self.target = first.map(|&point| begin(seen.pose.to_world(point)));
             return;
         };
         if self.is_lost(seen.time) {
-            // When it was lost, it is the one nearest to where it was, if it can have come so far.
+            // A lost target is the candidate nearest to its last position, if within reach since then.
             let reach = GATE + self.parameters.speed * (seen.time - target.seen);
             let found = nearest_to(target.place).filter(|found| (found - target.place).norm() < reach);
             self.target = found.map(begin).or(self.target);
@@ -197,10 +209,31 @@ impl Follower {
     }
 }
 
-/// The middles of the things in a scan that may be a robot of some radius, in the robot's frame.
+/// Centres of the things in a scan that may be a robot of this radius, in the robot's frame.
 ///
-/// Neighbouring beams whose ranges differ by less than that radius make a thing; it counts if as many beams hit it as would hit the robot,
-/// and what is beside it is farther away. What is seen of a round robot is its front.
+/// Neighbouring beams with end points near each other form a thing. It counts if about as many beams hit it
+/// as would hit a round robot, and if its surroundings are farther away.
+///
+/// ```
+/// use roverlab::drive::robots_in;
+/// use roverlab::io::LidarScan;
+/// // A round robot of 90 mm radius, 0.8 m ahead, in a scan of a beam for each degree.
+/// let step = 1_f64.to_radians();
+/// let range = |beam: i32| {
+///     let (sin, cos) = (f64::from(beam - 180) * step).sin_cos();
+///     let half = 0.09 * 0.09 - 0.64 * sin * sin;
+///     if cos > 0.0 && half > 0.0 { 0.8 * cos - half.sqrt() } else { 3.0 }
+/// };
+/// let scan = LidarScan {
+///     angle_min: -180.0 * step,
+///     angle_increment: step,
+///     range_max: 4.0,
+///     ranges: (0..360).map(range).collect(),
+///     ..LidarScan::default()
+/// };
+/// let found = robots_in(&scan, 0.09);
+/// assert!(found.len() == 1 && (found[0].x - 0.8).abs() < 0.02 && found[0].y.abs() < 0.02);
+/// ```
 pub fn robots_in(scan: &LidarScan, radius: f64) -> Vec<Point> {
     let beams = scan.ranges.len();
     let all_round = (scan.angle_increment.abs() * beams as f64 - std::f64::consts::TAU).abs() < 1e-6;
@@ -219,10 +252,10 @@ pub fn robots_in(scan: &LidarScan, radius: f64) -> Vec<Point> {
             continue;
         }
         let thing: Vec<usize> = (start..step).map(at).collect();
-        // What is beside it has to be farther away.
+        // The surroundings must be farther away.
         let before = if start > 0 || all_round { Some(at(start + beams - 1)) } else { None };
         let after = if step < beams || all_round { Some(at(step)) } else { None };
-        // At the edge of what the lidar sees a wall may end anywhere.
+        // At the edge of the field of view a wall may end anywhere.
         let farther = |beside: Option<usize>, end: usize| {
             beside.is_some_and(|beside| scan.ranges[beside] > scan.ranges[end] + radius)
         };
@@ -234,7 +267,7 @@ pub fn robots_in(scan: &LidarScan, radius: f64) -> Vec<Point> {
     found
 }
 
-/// The middle of the disc that a row of beams hits, if it may be one.
+/// Centre of the disc hit by a run of beams, if it can be one.
 fn middle_of(scan: &LidarScan, beams: &[usize], radius: f64) -> Option<Point> {
     /// The least and the greatest share of the robot's width that may seem to be seen: range noise widens it,
     /// missed beams narrow it.
@@ -247,7 +280,7 @@ fn middle_of(scan: &LidarScan, beams: &[usize], radius: f64) -> Option<Point> {
         return None;
     }
     let mean = ranges().sum::<f64>() / count as f64;
-    // What is seen of a disc is on average pi/4 of its radius before its middle.
+    // Beams hit a disc's front on average pi/4 of its radius before its centre.
     let distance = mean + radius * std::f64::consts::FRAC_PI_4;
     let expected = 2.0 * math::asin((radius / distance).min(1.0)) / scan.angle_increment.abs();
     let likely = SEEN[0] * expected - BEAMS[0]..=SEEN[1] * expected + BEAMS[1];
@@ -301,10 +334,10 @@ mod tests {
             follower.step(&seen).unwrap()
         };
         step(&mut follower, 0.0, &[Point::new(0.8, 0.0), Point::new(0.5, 0.9)]);
-        // The other one comes nearer.
+        // The other robot comes nearer.
         let twist = step(&mut follower, 0.1, &[Point::new(0.8, 0.01), Point::new(0.4, 0.4)]);
         assert!(twist.angular.abs() < 0.2 && twist.linear > 0.0);
-        // The robot ahead is gone: first it is expected to be there still, then it is lost.
+        // The robot ahead is gone: its position is predicted at first, then it counts as lost.
         assert!(step(&mut follower, 0.2, &[Point::new(0.2, 0.9)]).linear > 0.0);
         let twist = step(&mut follower, 5.0, &[Point::new(-1.9, 0.9)]);
         assert!(follower.is_lost(5.0) && twist.linear > 0.0, "it drives to where the robot was");

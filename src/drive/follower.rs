@@ -9,40 +9,41 @@ use crate::parameter::require_positive;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Steering {
-    /// Along the arc to a point of the path so many metres ahead (R. C. Coulter, "Implementation of the pure pursuit path
-    /// tracking algorithm", 1992). Exact on lines and circles; cuts what bends within its lookahead.
+    /// Pure pursuit: along the arc to the path point at the lookahead distance (R. C. Coulter,
+    /// "Implementation of the pure pursuit path tracking algorithm", 1992). Exact on lines and circles; cuts
+    /// bends shorter than the lookahead.
     PurePursuit {
-        /// Metres.
+        /// Lookahead distance (m).
         lookahead: f64,
     },
-    /// By the path's own curvature, corrected by heading error and distance to the path, so that both die away within
-    /// about three times `reach` metres of path without swinging (C. Samson, "Path following and time-varying feedback
+    /// The path's own curvature plus feedback of heading error and cross-track error, critically damped:
+    /// errors decay within about three times `reach` (C. Samson, "Path following and time-varying feedback
     /// stabilization of a wheeled mobile robot", 1992).
     CrossTrack {
-        /// Metres.
+        /// Decay length of the errors (m).
         reach: f64,
     },
 }
 
-/// What a [`PathFollower`] goes by.
+/// Parameters of [`PathFollower`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathFollowerParameters {
-    /// The fastest speed in m/s.
+    /// Maximum speed (m/s).
     pub speed: f64,
-    /// The fastest turn in rad/s: bends are taken more slowly.
+    /// Maximum turn rate (rad/s); limits the speed in bends.
     pub turn_rate: f64,
-    /// How hard it brakes before bends and the end, in m/s².
+    /// Deceleration before bends and the end (m/s²).
     pub deceleration: f64,
-    /// How fast the last centimetres are closed, in 1/s.
+    /// Rate at which the remaining distance is closed (1/s).
     pub approach_rate: f64,
-    /// The seconds by which the robot turns later than it is told, which are looked ahead.
+    /// Delay between command and turn (s), compensated by looking ahead.
     pub lag: f64,
-    /// How it steers.
+    /// Steering law.
     pub steering: Steering,
 }
 
 impl Default for PathFollowerParameters {
-    /// 0.25 m/s, by heading and cross-track error, for a robot as fast in its turns as an S4.
+    /// 0.25 m/s by heading and cross-track error, for a robot that turns as fast as an S4.
     fn default() -> Self {
         Self {
             speed: 0.25,
@@ -56,7 +57,7 @@ impl Default for PathFollowerParameters {
 }
 
 impl PathFollowerParameters {
-    /// Fails with the name of the parameter that is out of range.
+    /// Checks every parameter; the error names the one out of range.
     pub fn validate(&self) -> std::result::Result<(), ParameterError> {
         require_positive("speed", self.speed)?;
         require_positive("turn rate", self.turn_rate)?;
@@ -70,7 +71,7 @@ impl PathFollowerParameters {
     }
 }
 
-/// Drives along a path with feedback: from the pose at each step to a speed.
+/// Drives along a path with feedback: velocity from pose at each step.
 ///
 /// ```
 /// use roverlab::drive::{PathFollowerParameters, Path, PathFollower};
@@ -91,7 +92,7 @@ impl PathFollowerParameters {
 pub struct PathFollower {
     path: Path,
     parameters: PathFollowerParameters,
-    /// The fastest speed at each point of the path.
+    /// Maximum speed at each point of the path (m/s).
     speeds: Vec<f64>,
     reverse: bool,
     travelled: f64,
@@ -106,7 +107,7 @@ pub(super) const PATIENCE: f64 = 3.0;
 const TIGHTEST: f64 = 30.0;
 
 impl PathFollower {
-    /// A follower at the start of a path.
+    /// Creates a follower at the start of a path. Fails for parameters out of range.
     pub fn new(path: Path, parameters: PathFollowerParameters) -> Result<Self> {
         parameters.validate()?;
         let speeds = speed_profile(&path, &parameters);
@@ -123,13 +124,13 @@ impl PathFollower {
         })
     }
 
-    /// The same, driving backwards: the path's directions are those of the robot's back.
+    /// The same follower in reverse: the path's directions are those of the robot's back.
     #[must_use]
     pub fn reversed(self) -> Self {
         Self { reverse: true, ..self }
     }
 
-    /// The speed for a robot at a pose.
+    /// The velocity for a robot at a pose.
     pub fn step(&mut self, pose: Pose) -> Twist {
         let pose = if self.reverse {
             Pose { heading: normalize_angle(pose.heading + std::f64::consts::PI), ..pose }
@@ -143,7 +144,7 @@ impl PathFollower {
             Steering::CrossTrack { reach } => self.correct(speed, reach),
         };
         let angular = speed * curvature;
-        // What turns too fast is driven more slowly: the curvature stays.
+        // A turn above the maximum rate scales the speed as well: the curvature stays.
         let scale = if angular.abs() > self.parameters.turn_rate {
             self.parameters.turn_rate / angular.abs()
         } else {
@@ -154,7 +155,7 @@ impl PathFollower {
         Twist::new(scale * if self.reverse { -along } else { along }, scale * angular)
     }
 
-    /// Finds where on the path the robot is.
+    /// Projects the robot's position onto the path.
     fn locate(&mut self, pose: Pose) {
         let nearest = self.path.nearest(pose.position(), self.travelled, self.travelled + AHEAD);
         self.travelled = self.travelled.max(nearest);
@@ -163,7 +164,7 @@ impl PathFollower {
         self.heading_error = angle_difference(pose.heading, place.heading);
         self.rest = self.path.length() - self.travelled;
         if self.rest <= 0.0 {
-            // Beyond the end the rest is negative.
+            // Beyond the end the remaining distance is negative.
             self.rest = -self.path.end().to_local(pose.position()).x;
         }
     }
@@ -184,28 +185,28 @@ impl PathFollower {
 
     fn correct(&self, speed: f64, reach: f64) -> f64 {
         let ahead = self.path.at((self.travelled + speed * self.parameters.lag).min(self.path.length()));
-        // A robot far off the path approaches it under about 45 degrees.
+        // Far from the path the robot approaches it at about 45 degrees.
         let aside = (self.cross_track / reach).clamp(-1.5, 1.5);
         let bend = ahead.curvature.clamp(-TIGHTEST, TIGHTEST);
         bend - (2.0 * self.heading_error + aside) / reach
     }
 
-    /// Metres of path that are left; negative beyond the end.
+    /// Remaining path length (m); negative beyond the end.
     pub fn rest(&self) -> f64 {
         self.rest
     }
 
-    /// Metres of path behind the robot.
+    /// Path length travelled (m).
     pub fn travelled(&self) -> f64 {
         self.travelled
     }
 
-    /// Metres by which the robot is to the left of the path.
+    /// Cross-track error (m); positive to the left of the path.
     pub fn cross_track_error(&self) -> f64 {
         self.cross_track
     }
 
-    /// Radians by which the robot points to the left of the path.
+    /// Heading error (rad); positive when the robot points to the left of the path.
     pub fn heading_error(&self) -> f64 {
         self.heading_error
     }
@@ -216,7 +217,7 @@ impl PathFollower {
     }
 }
 
-/// The fastest speed at each point, so that bends and the end are met slowly enough.
+/// Maximum speed at each point that allows braking before bends and the end.
 fn speed_profile(path: &Path, parameters: &PathFollowerParameters) -> Vec<f64> {
     let points = path.points();
     let mut speeds = vec![0.0; points.len()];
@@ -237,7 +238,8 @@ mod tests {
     use crate::kinematics::{Displacement, advance};
     use proptest::prelude::*;
 
-    /// A robot that turns 0.2 s after it is told to. Returns the worst distance to the path after its first 0.5 m.
+    /// A robot that turns with a delay of 0.2 s. Returns its end and the largest cross-track error after the
+    /// first 0.5 m.
     fn drive(path: Path, start: Pose, steering: Steering, reverse: bool) -> (Pose, f64) {
         let parameters = PathFollowerParameters { steering, ..PathFollowerParameters::default() };
         let mut follower = PathFollower::new(path, parameters).unwrap();

@@ -4,29 +4,42 @@ use crate::geometry::{Point, Pose, Twist, math};
 use crate::io::{Error, Result};
 use crate::parameter::{require, require_positive, require_up_to};
 
-/// A place in a formation that is kept by radio: the leader sends where it is, and each follower keeps to its place beside or
-/// behind it (book, section 5.3, the first of its three ways).
+/// A position in a formation kept by radio: the leader sends its pose, and each follower keeps its offset to
+/// it (book, section 5.3, the first of its three methods).
+///
+/// ```
+/// use roverlab::drive::Formation;
+/// use roverlab::geometry::{Point, Pose};
+/// // A place half a metre behind the leader.
+/// let formation = Formation::at(Point::new(-0.5, 0.0));
+/// let message = Formation::message(Pose::new(2.0, 0.0, 0.0), 0.2);
+/// let (leader, speed) = Formation::read(&message)?;
+/// let twist = formation.step(Pose::default(), leader, speed, &[]);
+/// assert!(twist.linear > 0.2, "it is far behind and drives faster than the leader");
+/// assert!(Formation::read(b"hello").is_err());
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Formation {
-    /// Where the follower's place is, in the leader's frame.
+    /// Follower's position in the leader's frame (m).
     pub offset: Point,
-    /// The fastest speed in m/s.
+    /// Maximum speed (m/s).
     pub speed: f64,
-    /// The fastest turn in rad/s.
+    /// Maximum turn rate (rad/s).
     pub turn_rate: f64,
-    /// The radius of the robot in metres.
+    /// Radius of the robot (m).
     pub radius: f64,
-    /// Metres that are kept free beside it.
+    /// Clearance kept beside the robot (m).
     pub margin: f64,
 }
 
 impl Formation {
-    /// A place in the leader's frame, for an S4.
+    /// A formation position for an S4, given in the leader's frame.
     pub fn at(offset: Point) -> Self {
         Self { offset, speed: 0.35, turn_rate: 2.0, radius: 0.06, margin: 0.06 }
     }
 
-    /// Fails with the name of what is out of range.
+    /// Checks every parameter; the error names the one out of range.
     pub fn validate(&self) -> std::result::Result<(), ParameterError> {
         require_positive("speed", self.speed)?;
         require_positive("turn rate", self.turn_rate)?;
@@ -37,12 +50,12 @@ impl Formation {
         require("length of the offset", away, good, "a place beside the leader")
     }
 
-    /// What the leader sends: its pose, in a frame that all share, and its speed.
+    /// The leader's message: its pose in the shared frame, and its speed (m/s).
     pub fn message(pose: Pose, speed: f64) -> Vec<u8> {
         [pose.x, pose.y, pose.heading, speed].iter().flat_map(|number| number.to_le_bytes()).collect()
     }
 
-    /// What a message says. Fails for one that is none of a leader's.
+    /// Decodes a leader's message. Fails for any other message.
     pub fn read(message: &[u8]) -> Result<(Pose, f64)> {
         let numbers: Vec<f64> = message
             .chunks(8)
@@ -59,7 +72,7 @@ impl Formation {
         }
     }
 
-    /// The next speed, for the robot's pose in the frame that all share, the leader's pose and speed, and what is seen.
+    /// The next velocity. Both poses are in the shared frame; `points` are obstacles in the robot's frame.
     pub fn step(&self, pose: Pose, leader: Pose, leader_speed: f64, points: &[Point]) -> Twist {
         let place = leader.to_world(self.offset);
         let behind = pose.to_local(place);
@@ -69,7 +82,7 @@ impl Formation {
         let way = Way { radius: self.radius, margin: self.margin };
         let (towards, _) = way.towards(points, bearing, AHEAD);
         let most = ((way.free(points, 0.0) - self.margin) / BRAKING).clamp(0.0, self.speed);
-        // Who stands where he should, waits for the leader without turning.
+        // A follower in position waits for a standing leader without turning.
         let waits = leader_speed.abs() < 0.01 && behind.coords.norm() < 0.05;
         if waits {
             return Twist::STOP;

@@ -1,7 +1,7 @@
-//! Driving (book, chapters 3 and 7): controllers, paths and how to follow them, and the ways from A to B.
+//! Driving (book, chapters 3 and 7): controllers, paths and path followers, and the methods from A to B.
 //!
-//! A behaviour takes what was observed and returns a command; a short `run` loops it on any robot that has what it
-//! needs.
+//! A behaviour takes an observation and returns a command; [`run`](crate::io::control::run) loops it on any
+//! robot with the necessary capabilities.
 //!
 //! - [`Path`]: lines, arcs, Hermite splines, Catmull-Rom chains and Dubins paths, by their length;
 //! - [`PathFollower`]: drives along any of them with feedback, by pure pursuit or by heading and cross-track error;
@@ -16,6 +16,7 @@
 //! - [`WallFollower`]: along walls of any shape by three distance sensors (chapter 6); [`PidWallFollower`],
 //!   [`LidarWallFollower`] and the book's [`TwoLevelWallFollower`] beside it;
 //! - [`colour`]: to what has a taught colour, and home with it (chapter 11);
+//! - [`lane_keeping`]: along the lane of a road, by what a camera sees, and [`traffic`]: who judges that (chapter 13);
 //! - [`motion_watch`]: turning to what moves (chapter 11);
 //! - [`Pid`] and [`RelayTuner`]: a PID controller and how to find its gains.
 
@@ -30,6 +31,7 @@ mod dubins;
 mod follow_me;
 mod follower;
 mod formation;
+pub mod lane_keeping;
 pub mod motion_watch;
 mod omni;
 mod path;
@@ -37,6 +39,7 @@ mod pid;
 mod random_drive;
 mod relay;
 mod spline;
+pub mod traffic;
 mod wall_following;
 mod way;
 

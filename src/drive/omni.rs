@@ -8,8 +8,18 @@ use crate::io::{Error, Motors, Odometry, Result};
 use crate::kinematics::{Omni, PlanarTwist};
 use crate::parameter::{require_finite, require_positive};
 
-/// Velocities of a robot on four wheels with rollers as commands of its motors (book, section 7.4: an interface from a
-/// driving angle to wheel speeds).
+/// Converts velocities of a robot on four wheels with rollers to motor commands (book, section 7.4: an
+/// interface from driving angle to wheel speeds).
+///
+/// ```
+/// use roverlab::drive::OmniDriver;
+/// use roverlab::kinematics::{Omni, PlanarTwist};
+/// let driver = OmniDriver::new(Omni::mecanum(0.2, 0.15)?, 0.5)?;
+/// assert_eq!(driver.command(PlanarTwist::new(0.25, 0.0, 0.0)), [0.5; 4], "half of full speed");
+/// let sideways = driver.command(PlanarTwist::new(0.0, 0.25, 0.0));
+/// assert_eq!(sideways.iter().sum::<f64>(), 0.0, "two wheels each way");
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OmniDriver {
     kinematics: Omni<4>,
@@ -17,45 +27,45 @@ pub struct OmniDriver {
 }
 
 impl OmniDriver {
-    /// For a drive of a geometry whose wheels have that rim speed, in m/s, at full motor speed. Fails unless it is positive and
-    /// finite.
+    /// Creates a driver; `full_speed` is the rim speed of the wheels at full motor speed (m/s). Fails unless
+    /// it is positive and finite.
     pub fn new(kinematics: Omni<4>, full_speed: f64) -> std::result::Result<Self, ParameterError> {
         require_positive("full speed", full_speed)?;
         Ok(Self { kinematics, full_speed })
     }
 
-    /// The drive's geometry.
+    /// Geometry of the drive.
     pub fn kinematics(&self) -> &Omni<4> {
         &self.kinematics
     }
 
-    /// The motors' fractions of their full speed; slower in the same direction where one would have to exceed it.
+    /// Fractions of the motors' full speed. A twist too fast for a motor is scaled down; its direction stays.
     pub fn command(&self, twist: PlanarTwist) -> [f64; 4] {
         let wheels = self.kinematics.inverse_limited(twist, self.full_speed);
         wheels.map(|speed| (speed / self.full_speed).clamp(-1.0, 1.0))
     }
 }
 
-/// What [`OmniTracker`] goes by.
+/// Parameters of [`OmniTracker`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OmniParameters {
-    /// The speed along the route in m/s.
+    /// Speed along the route (m/s).
     pub speed: f64,
-    /// How hard it speeds up and brakes, in m/s².
+    /// Acceleration and deceleration (m/s²).
     pub acceleration: f64,
-    /// The rate in rad/s at which the robot turns about itself meanwhile; 0 keeps its heading.
+    /// Rotation about the robot's own axis (rad/s); 0 keeps the heading.
     pub spin: f64,
-    /// How fast an error of the position is corrected, in 1/s.
+    /// Position gain (1/s).
     pub position_gain: f64,
-    /// How fast an error of the heading is corrected, in 1/s.
+    /// Heading gain (1/s).
     pub heading_gain: f64,
-    /// The seconds by which the motors follow late, which are looked ahead.
+    /// Delay of the motors (s), compensated by looking ahead.
     pub lag: f64,
-    /// How near the robot comes to the end of the route, in metres.
+    /// Position error allowed at the end of the route (m).
     pub tolerance: f64,
-    /// How near it comes to its heading there, in radians.
+    /// Heading error allowed there (rad).
     pub heading_tolerance: f64,
-    /// Seconds from one control step to the next.
+    /// Control period (s).
     pub period: f64,
 }
 
@@ -75,18 +85,18 @@ impl Default for OmniParameters {
     }
 }
 
-/// Where the robot shall be at a time, and how it shall move then.
+/// Reference pose and velocity at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OmniReference {
-    /// The pose.
+    /// Reference pose.
     pub pose: Pose,
-    /// Metres per second, in the frame of the pose's own coordinates.
+    /// Reference velocity in world coordinates (m/s).
     pub velocity: Vector,
-    /// Radians per second.
+    /// Reference angular velocity (rad/s).
     pub angular: f64,
 }
 
-/// Drives along a route of straight legs while the heading does as it likes: kept in a square without turning, or spinning
+/// Drives a route of straight legs with an independent heading: round a square without turning, or spinning
 /// on a straight line (book, section 7.4).
 ///
 /// ```
@@ -112,13 +122,14 @@ struct Leg {
     along: Vector,
     length: f64,
     begin: f64,
-    /// Seconds of speeding up, and of the whole.
+    /// Duration of the acceleration, and of the whole leg (s).
     ramp: f64,
     duration: f64,
 }
 
 impl OmniTracker {
-    /// A robot at a pose that is to drive from there through points, each reached at rest.
+    /// Creates a tracker that drives from `start` through the points of `route` and stops at each. Fails for
+    /// parameters out of range and a route that is not finite.
     pub fn new(start: Pose, route: &[Point], parameters: OmniParameters) -> Result<Self> {
         for (name, value) in [
             ("speed", parameters.speed),
@@ -148,12 +159,12 @@ impl OmniTracker {
         Ok(Self { start, legs, parameters })
     }
 
-    /// Seconds that the route takes.
+    /// Duration of the route (s).
     pub fn duration(&self) -> f64 {
         self.legs.last().map_or(0.0, |leg| leg.begin + leg.duration)
     }
 
-    /// Where the robot shall be, and how it shall move, at a time in seconds since the start.
+    /// Reference at a time since the start (s).
     pub fn reference(&self, time: f64) -> OmniReference {
         let end = self.duration();
         let time_on_way = time.clamp(0.0, end);
@@ -168,7 +179,8 @@ impl OmniTracker {
         OmniReference { pose: Pose::new(place.x, place.y, heading), velocity: leg.along * speed, angular }
     }
 
-    /// The velocity for a robot at a pose at a time; `None` at the end of the route.
+    /// The velocity for a robot at a pose and a time (s); `None` at the end of the route. Fails if either is
+    /// not finite.
     pub fn step(&self, time: f64, pose: Pose) -> Result<Option<PlanarTwist>> {
         if !(pose.is_finite() && time.is_finite()) {
             return Err(Error::invalid_input("observed pose", format!("{pose:?}"), "finite numbers"));
@@ -179,7 +191,7 @@ impl OmniTracker {
         if time >= self.duration() && (self.is_there(time, pose) || time >= self.duration() + PATIENCE) {
             return Ok(None);
         }
-        // The motors will do what they are told by the time that the lag has passed; by then the robot has turned on.
+        // The motors respond after the lag; by then the robot has turned on.
         let ahead = self.reference(time + self.parameters.lag);
         let heading = pose.heading + angle_difference(ahead.pose.heading, now.pose.heading);
         let velocity = ahead.velocity + away * self.parameters.position_gain;
@@ -188,39 +200,55 @@ impl OmniTracker {
         Ok(Some(PlanarTwist::new(velocity.dot(&forward), velocity.dot(&left), angular)))
     }
 
-    /// Whether the robot is where it shall be.
+    /// Whether the robot is within the tolerances.
     fn is_there(&self, time: f64, pose: Pose) -> bool {
         let now = self.reference(time).pose;
         now.distance_to(pose.position()) <= self.parameters.tolerance
             && angle_difference(now.heading, pose.heading).abs() <= self.parameters.heading_tolerance
     }
 
-    /// The behaviour on the wheels of a robot.
+    /// The behaviour for a robot with this driver.
     pub fn by(&self, driver: OmniDriver) -> OmniPilot<'_> {
         OmniPilot { tracker: self, driver, begin: None }
     }
 }
 
-/// An [`OmniTracker`] on the wheels of a robot, made by [`OmniTracker::by`].
+/// An [`OmniTracker`] bound to a robot's wheels, made by [`OmniTracker::by`].
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use roverlab::drive::{OmniDriver, OmniParameters, OmniPilot, OmniTracker};
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::io::control::Behaviour;
+/// use roverlab::kinematics::Omni;
+/// let driver = OmniDriver::new(Omni::mecanum(0.2, 0.15)?, 0.5)?;
+/// let tracker = OmniTracker::new(Pose::default(), &[Point::new(0.0, 1.0)], OmniParameters::default())?;
+/// let mut pilot: OmniPilot<'_> = tracker.by(driver);
+/// pilot.step(0.0, &Pose::default())?;
+/// let step = pilot.step(1.0, &Pose::new(0.0, 0.2, 0.0))?;
+/// let ControlFlow::Continue(wheels) = step else { panic!("at the end") };
+/// assert!(wheels.0.iter().any(|&w| w > 0.1) && wheels.0.iter().any(|&w| w < -0.1), "to the left");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct OmniPilot<'t> {
     tracker: &'t OmniTracker,
     driver: OmniDriver,
-    /// When the first step was.
+    /// Time of the first step (s).
     begin: Option<f64>,
 }
 
-/// How a drive along a route ended.
+/// Outcome of a drive along a route.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum OmniOutcome {
-    /// The robot takes itself to be at the end of the route.
+    /// The estimated pose is at the end of the route.
     Reached,
-    /// It is not, seconds after it should have been.
+    /// The route's time is long over, and the robot is not at its end.
     Missed,
-    /// The time was over first.
+    /// The time limit came first.
     TimedOut,
-    /// Who watched had seen enough.
+    /// The observer stopped the run.
     Stopped,
 }
 
@@ -252,7 +280,7 @@ impl<R: Odometry + ?Sized> Senses<R> for OmniPilot<'_> {
     }
 }
 
-/// What motors 1 to 4 are told: fractions of their full speed.
+/// Commands for motors 1 to 4, as fractions of full speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WheelCommand(pub [f64; 4]);
 
@@ -271,14 +299,14 @@ impl Leg {
         let way = to - from;
         let length = way.norm();
         let along = if length > 0.0 { way / length } else { Vector::zeros() };
-        // A short leg is braked before it comes to full speed.
+        // A short leg is braked before it reaches full speed.
         let speed = parameters.speed.min((length * parameters.acceleration).sqrt());
         let ramp = speed / parameters.acceleration;
         let cruise = if speed > 0.0 { (length - speed * ramp) / speed } else { 0.0 };
         Self { from, along, length, begin, ramp, duration: 2.0 * ramp + cruise }
     }
 
-    /// Metres behind, and the speed, so many seconds after the leg's start.
+    /// Distance travelled (m) and speed (m/s) at a time since the leg's start (s).
     fn at(&self, time: f64, acceleration: f64) -> (f64, f64) {
         let speed = acceleration * self.ramp;
         let rest = self.duration - time;

@@ -4,27 +4,27 @@ use crate::geometry::{Point, Pose, angle_difference, math, normalize_angle};
 use crate::io::{Error, Result};
 use crate::kinematics::{Displacement, advance};
 
-/// A place on a path.
+/// A point of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathPoint {
-    /// The position, and the direction of the path.
+    /// Position, and direction of the path.
     pub pose: Pose,
-    /// The curvature in 1/m, positive to the left.
+    /// Curvature (1/m), positive to the left.
     pub curvature: f64,
-    /// Metres from the start of the path.
+    /// Distance from the start of the path (m).
     pub distance: f64,
 }
 
-/// A point that a chain of waypoints passes, with the direction in which it does, if that matters.
+/// A point to pass, with an optional direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Waypoint {
-    /// The point.
+    /// Position.
     pub position: Point,
-    /// The direction there in radians.
+    /// Direction of travel (rad); `None` lets the chain choose.
     pub heading: Option<f64>,
 }
 
-/// A path for a robot to follow, as a dense list of points with directions and curvatures.
+/// A path for a robot: densely sampled points with direction and curvature.
 ///
 /// ```
 /// use roverlab::drive::Path;
@@ -46,7 +46,8 @@ pub(super) const SPACING: f64 = 0.005;
 const LONGEST: f64 = 10_000.0;
 
 impl Path {
-    /// A path of pieces, each with a length in metres and a curvature in 1/m.
+    /// A path of arcs from `start`, each given by length (m) and curvature (1/m). Fails for a length that is
+    /// not positive and for more than 10 km in all.
     pub fn of_arcs(start: Pose, pieces: &[(f64, f64)]) -> Result<Self> {
         check_pose("start", start)?;
         let mut points = Vec::new();
@@ -76,7 +77,7 @@ impl Path {
         Self::checked(points)
     }
 
-    /// The straight line between two points.
+    /// The straight line between two points. Fails if they coincide or are too far apart.
     pub fn straight(start: Point, goal: Point) -> Result<Self> {
         let along = goal - start;
         check_apart(start, goal)?;
@@ -84,8 +85,8 @@ impl Path {
         Self::of_arcs(Pose::new(start.x, start.y, heading), &[(along.norm(), 0.0)])
     }
 
-    /// The one arc that leaves a pose forward and ends at a point (book, section 3.4). A point behind needs more than a
-    /// half turn. Fails for a point straight behind.
+    /// The single arc that leaves a pose forward and ends at a point (book, section 3.4). A point behind
+    /// needs more than a half turn. Fails for a point straight behind.
     pub fn arc(start: Pose, goal: Point) -> Result<Self> {
         check_apart(start.position(), goal)?;
         let local = start.to_local(goal);
@@ -102,8 +103,8 @@ impl Path {
         Self::of_arcs(start, &[(length, curvature)])
     }
 
-    /// The Hermite spline from a pose to another (book, section 3.6). `scale` is the book's k: the length of the
-    /// tangents in terms of the distance.
+    /// The Hermite spline between two poses (book, section 3.6). `scale` is the book's k: tangent length as a
+    /// multiple of the distance.
     pub fn hermite(start: Pose, goal: Pose, scale: f64) -> Result<Self> {
         check_pose("start", start)?;
         check_pose("goal", goal)?;
@@ -114,8 +115,8 @@ impl Path {
         Self::of_splines(&[Hermite::between(start, goal, scale)])
     }
 
-    /// A smooth path through waypoints: a centripetal Catmull-Rom chain, which takes the directions that are given and
-    /// finds the others. It has no kink.
+    /// A smooth path through waypoints: a centripetal Catmull-Rom chain that keeps the given directions and
+    /// chooses the others. It has no kinks. Fails for fewer than two waypoints.
     pub fn through(waypoints: &[Waypoint]) -> Result<Self> {
         if waypoints.len() < 2 {
             return Err(Error::invalid_input("number of waypoints", waypoints.len(), "at least 2"));
@@ -163,41 +164,40 @@ impl Path {
         Ok(Self { points })
     }
 
-    /// Metres from start to end.
+    /// Length (m).
     pub fn length(&self) -> f64 {
         self.points[self.points.len() - 1].distance
     }
 
-    /// Its points, some millimetres apart.
+    /// The sampled points, a few millimetres apart.
     pub fn points(&self) -> &[PathPoint] {
         &self.points
     }
 
-    /// Where it starts.
+    /// Pose at the start.
     pub fn start(&self) -> Pose {
         self.points[0].pose
     }
 
-    /// Where it ends.
+    /// Pose at the end.
     pub fn end(&self) -> Pose {
         self.points[self.points.len() - 1].pose
     }
 
-    /// The largest curvature to either side, in 1/m.
+    /// Maximum absolute curvature (1/m).
     pub fn max_curvature(&self) -> f64 {
         self.points.iter().map(|point| point.curvature.abs()).fold(0.0, f64::max)
     }
 
-    /// The largest change of direction, in radians, from one of its points to the next: large where a spline turns back
-    /// in a cusp.
+    /// Maximum change of direction between neighbouring points (rad); large at a cusp.
     pub fn sharpest_turn(&self) -> f64 {
         let turns =
             self.points.windows(2).map(|pair| angle_difference(pair[1].pose.heading, pair[0].pose.heading));
         turns.map(f64::abs).fold(0.0, f64::max)
     }
 
-    /// The pieces between places at which the curvature jumps by more than `jump`, in 1/m: where a car has to stop and
-    /// turn its wheels.
+    /// Splits the path where its curvature jumps by more than `jump` (1/m): there a car must stop to turn its
+    /// wheels.
     pub fn split_at_jumps(&self, jump: f64) -> Vec<Path> {
         let jumps = |pair: &[PathPoint]| (pair[1].curvature - pair[0].curvature).abs() > jump;
         let mut pieces = Vec::new();
@@ -221,13 +221,13 @@ impl Path {
         }
     }
 
-    /// The place at a distance from the start; the path goes on straight beyond both ends.
+    /// The point at a distance from the start (m); the path continues straight beyond both ends.
     pub fn at(&self, distance: f64) -> PathPoint {
         let (first, last) = (self.points[0], self.points[self.points.len() - 1]);
         if distance <= 0.0 || distance >= last.distance {
             let end = if distance <= 0.0 { first } else { last };
             let ahead = end.pose.position() + end.pose.forward() * (distance - end.distance);
-            // An end has its own curvature; what lies beyond has none.
+            // An end keeps its curvature; the extension has none.
             let curvature = if distance == end.distance { end.curvature } else { 0.0 };
             return PathPoint { pose: Pose::new(ahead.x, ahead.y, end.pose.heading), curvature, distance };
         }
@@ -247,7 +247,7 @@ impl Path {
         }
     }
 
-    /// The distance along the path of the place nearest to a point, among those between two distances.
+    /// The distance along the path of the point nearest to `point`, among those from `from` to `to` (m).
     pub fn nearest(&self, point: Point, from: f64, to: f64) -> f64 {
         let first = self.points.partition_point(|p| p.distance < from).saturating_sub(1);
         let last = self.points.partition_point(|p| p.distance <= to).min(self.points.len() - 1);

@@ -1,23 +1,23 @@
 use crate::io::{Error, Result};
 use crate::parameter::{require_finite, require_not_negative, require_positive};
 
-/// The gains and limits of a [`Pid`].
+/// Gains and limits of a [`Pid`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PidParameters {
-    /// Output for an error of 1.
+    /// Output per unit of error.
     pub proportional: f64,
-    /// Output for an error of 1 that has lasted for a second.
+    /// Output per unit of error and second.
     pub integral: f64,
-    /// Output against a measurement that changes by 1 in a second.
+    /// Output per unit of rate of change of the measurement, which it opposes.
     pub derivative: f64,
-    /// The time constant, in seconds, of the low-pass filter on the derivative; 0 without a filter.
+    /// Time constant of the low-pass filter on the derivative (s); 0 disables the filter.
     pub derivative_filter: f64,
-    /// The least and the largest output.
+    /// Minimum and maximum output.
     pub limits: [f64; 2],
 }
 
 impl Default for PidParameters {
-    /// A proportional gain of 1, nothing else, and no limits.
+    /// A proportional gain of 1 and no limits.
     fn default() -> Self {
         Self {
             proportional: 1.0,
@@ -31,9 +31,8 @@ impl Default for PidParameters {
 
 /// A PID controller (K. J. Åström and T. Hägglund, "PID controllers: theory, design, and tuning", 1995).
 ///
-/// The derivative is that of the measurement, so that a jump of the setpoint does not kick the output. The integral stops
-/// growing while the output is at a limit that it would push farther (*anti-windup*), so that the controller does not
-/// overshoot after it could not do as it wished.
+/// The derivative acts on the measurement, so a jump of the setpoint does not kick the output. The integral
+/// stops growing while the output is saturated (*anti-windup*), which avoids overshoot afterwards.
 ///
 /// ```
 /// use roverlab::drive::{Pid, PidParameters};
@@ -50,15 +49,16 @@ impl Default for PidParameters {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pid {
     parameters: PidParameters,
-    /// The integral's share of the output.
+    /// Integral part of the output.
     integral: f64,
-    /// The last measurement, and its filtered rate of change.
+    /// Last measurement, and its filtered rate of change.
     last: Option<f64>,
     rate: f64,
 }
 
 impl Pid {
-    /// A controller at rest. Fails for gains that are not finite or negative times, and for limits in the wrong order.
+    /// Creates a controller at rest. Fails for gains that are not finite, a negative filter time and limits
+    /// in the wrong order.
     pub fn new(parameters: PidParameters) -> Result<Self> {
         require_finite("proportional gain", parameters.proportional)?;
         require_finite("integral gain", parameters.integral)?;
@@ -72,9 +72,10 @@ impl Pid {
         Ok(Self { parameters, integral: 0.0, last: None, rate: 0.0 })
     }
 
-    /// The output for a setpoint and a measurement, `seconds` after the last one.
+    /// The output for a setpoint and a measurement, `seconds` after the last step.
     ///
-    /// Fails for numbers that are not finite, as a sensor without a return gives, and leaves the controller as it was.
+    /// Fails for numbers that are not finite, such as a missing sensor return; the controller's state stays
+    /// unchanged.
     pub fn step(&mut self, setpoint: f64, measurement: f64, seconds: f64) -> Result<f64> {
         require_finite("setpoint", setpoint)?;
         require_finite("measurement", measurement)?;
@@ -96,12 +97,12 @@ impl Pid {
         Ok((proportional * error + self.integral - derivative * self.rate).clamp(least, most))
     }
 
-    /// The integral's share of the output.
+    /// Integral part of the output.
     pub fn integral(&self) -> f64 {
         self.integral
     }
 
-    /// Forgets the past, for a controller that has rested.
+    /// Resets the controller to rest.
     pub fn reset(&mut self) {
         (self.integral, self.last, self.rate) = (0.0, None, 0.0);
     }
@@ -112,7 +113,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// A wheel of unit inertia with friction; returns its largest and its last speed.
+    /// A wheel of unit inertia with friction; returns its maximum and its final speed.
     fn drive_wheel(pid: &mut Pid, setpoint: f64, seconds: f64) -> (f64, f64) {
         let (mut speed, mut most, step) = (0.0_f64, 0.0_f64, 0.01);
         for _ in 0..(seconds / step) as u32 {
@@ -164,7 +165,7 @@ mod tests {
             ..PidParameters::default()
         };
         let mut pid = Pid::new(gains).unwrap();
-        // 1.2 is as fast as the limit gets the wheel: it takes long.
+        // The limit allows a speed of 1.2 at most, so the approach takes long.
         let (most, last) = drive_wheel(&mut pid, 1.1, 40.0);
         assert!(most < 1.1 * 1.02 && (last - 1.1).abs() < 0.01, "{most} {last}");
         assert!(pid.integral() <= 0.6);
@@ -176,7 +177,7 @@ mod tests {
         let mut pid = Pid::new(gains).unwrap();
         assert_eq!(pid.step(0.0, 0.3, 0.01).unwrap(), -0.3);
         assert_eq!(pid.step(1.0, 0.3, 0.01).unwrap(), 0.7);
-        // The measurement's own jump does.
+        // A jump of the measurement kicks the output.
         assert!(pid.step(1.0, 0.4, 0.01).unwrap() < -40.0);
         pid.reset();
         assert_eq!(pid.step(1.0, 0.5, 0.01).unwrap(), 0.5);

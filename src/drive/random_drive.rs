@@ -9,34 +9,34 @@ use crate::io::{DistanceSensors, Error, ErrorKind, Lidar, LidarScan, Odometry, P
 use crate::parameter::require_positive;
 use crate::random::Stream;
 
-/// What [`RandomDrive`] goes by.
+/// Parameters of [`RandomDrive`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RandomDriveParameters {
-    /// Metres per second straight on.
+    /// Driving speed (m/s).
     pub speed: f64,
-    /// Radians per second on the spot.
+    /// Turn rate on the spot (rad/s).
     pub turn_rate: f64,
-    /// Metres between the robot's outline and what is ahead at which it turns away.
+    /// Distance from the robot's outline to an obstacle ahead at which it turns away (m).
     pub safe: f64,
-    /// The radius of the circle about the robot's middle that holds it, in metres.
+    /// Radius of the circle around the robot's centre that encloses it (m).
     pub radius: f64,
-    /// Metres that are kept free beside it.
+    /// Clearance kept beside the robot (m).
     pub margin: f64,
-    /// The seconds by which the robot does later what it is told.
+    /// Delay of the robot's response to commands (s).
     pub lag: f64,
-    /// Seconds from one step to the next.
+    /// Control period (s).
     pub period: f64,
 }
 
 impl Default for RandomDriveParameters {
-    /// The book's speed; an S4 that turns away where it has 150 mm left.
+    /// The book's speed, for an S4 that turns away 150 mm from an obstacle.
     fn default() -> Self {
         Self { speed: 0.2, turn_rate: 1.5, safe: 0.15, radius: 0.06, margin: 0.04, lag: 0.2, period: 0.05 }
     }
 }
 
 impl RandomDriveParameters {
-    /// Fails with the name of the parameter that is out of range.
+    /// Checks every parameter; the error names the one out of range.
     pub fn validate(&self) -> std::result::Result<(), ParameterError> {
         require_positive("speed", self.speed)?;
         require_positive("turn rate", self.turn_rate)?;
@@ -48,10 +48,10 @@ impl RandomDriveParameters {
     }
 }
 
-/// Drives straight on until something is ahead, turns by a random angle, and so on (book, section 3.1).
+/// Drives straight on until an obstacle is ahead, turns by a random angle, and repeats (book, section 3.1).
 ///
-/// The robot only ever moves forwards into what it sees to be free, as wide as it is, and slows down before it stops. So
-/// several of them can share a world without touching each other: whoever sees another one ahead stops for it.
+/// The robot only moves forwards into space seen to be free over its whole width, and slows down before it
+/// stops. So several of them can share a world without contact: each stops for the others.
 ///
 /// ```
 /// use roverlab::drive::{RandomDrive, RandomDriveParameters};
@@ -74,7 +74,7 @@ impl RandomDriveParameters {
 pub struct RandomDrive {
     parameters: RandomDriveParameters,
     stream: Stream,
-    /// The heading of the turn that is running.
+    /// Target heading of the current turn.
     turning_to: Option<f64>,
     turns: u32,
 }
@@ -83,18 +83,19 @@ pub struct RandomDrive {
 const DRAWN: usize = 12;
 
 impl RandomDrive {
-    /// A robot about to drive, with random numbers of its own.
+    /// Creates a robot about to drive, with its own random stream. Fails for parameters out of range.
     pub fn new(parameters: RandomDriveParameters, stream: Stream) -> Result<Self> {
         parameters.validate()?;
         Ok(Self { parameters, stream, turning_to: None, turns: 0 })
     }
 
-    /// How often it has turned.
+    /// Number of turns so far.
     pub fn turns(&self) -> u32 {
         self.turns
     }
 
-    /// The next speed, for a pose by odometry and what is seen, as points in the robot's frame.
+    /// The next velocity, from the odometry pose and the obstacle points in the robot's frame. Fails if the
+    /// pose is not finite.
     pub fn step(&mut self, pose: Pose, points: &[Point]) -> Result<Twist> {
         if !pose.is_finite() {
             return Err(Error::invalid_input("observed pose", format!("{pose:?}"), "finite numbers"));
@@ -117,7 +118,7 @@ impl RandomDrive {
         Ok(Twist::STOP)
     }
 
-    /// A turn towards free floor, if there is any.
+    /// The heading of a random turn towards free floor, if there is any.
     fn draw_turn(&mut self, points: &[Point]) -> f64 {
         let mut best = (PI, f64::NEG_INFINITY);
         for _ in 0..DRAWN {
@@ -134,25 +135,25 @@ impl RandomDrive {
         best.0
     }
 
-    /// Metres that the robot can drive in a direction until its outline is at a point.
+    /// Distance that the robot can drive in a direction before its outline touches a point (m).
     fn free_way(&self, points: &[Point], direction: f64) -> f64 {
         Way { radius: self.parameters.radius, margin: self.parameters.margin }.free(points, direction)
     }
 }
 
-/// What a [`RandomDrive`] sees at a step.
+/// Observation of a [`RandomDrive`].
 #[derive(Debug, Clone, Default)]
 pub struct RandomDriveObservation {
-    /// Where odometry takes the robot to be.
+    /// Pose by odometry.
     pub pose: Pose,
-    /// What is around, as points in the robot's frame.
+    /// Obstacle points in the robot's frame (m).
     pub points: Vec<Point>,
-    /// The scan that they are from, if the robot has a lidar.
+    /// The scan behind the points, if the robot has a lidar.
     pub scan: LidarScan,
 }
 
 impl RandomDriveObservation {
-    /// Looks by the lidar, or by the distance sensors of a robot without one.
+    /// Reads the lidar, or the distance sensors of a robot without one.
     fn look<R: DistanceSensors + Lidar + ?Sized>(&mut self, robot: &mut R) -> Result<()> {
         self.points.clear();
         match robot.scan_into(&mut self.scan) {

@@ -4,14 +4,14 @@ use super::PidParameters;
 use crate::io::Result;
 use crate::parameter::{require_finite, require_not_negative, require_positive};
 
-/// Finds a PID controller's gains: a relay in the controller's place makes the process swing, and the swing's height and
-/// period say how the process answers (K. J. Åström and T. Hägglund, "Automatic tuning of simple regulators with
+/// Tunes a PID controller: a relay in its place makes the process oscillate, and amplitude and period of the
+/// oscillation yield the gains (K. J. Åström and T. Hägglund, "Automatic tuning of simple regulators with
 /// specifications on phase and amplitude margins", 1984).
 ///
 /// ```
 /// use roverlab::drive::RelayTuner;
 /// let mut tuner = RelayTuner::new(1.0, 0.0)?;
-/// // A process that answers late: three lags of 0.2 s in a row.
+/// // A slow process: three lags of 0.2 s in series.
 /// let (mut lags, step) = ([0.0_f64; 3], 0.002);
 /// let result = loop {
 ///     let output = tuner.step(0.0 - lags[2], step)?;
@@ -21,7 +21,7 @@ use crate::parameter::{require_finite, require_not_negative, require_positive};
 ///         break result;
 ///     }
 /// };
-/// // In theory it swings on with a gain of 8, in 2 pi 0.2 / sqrt(3) seconds.
+/// // In theory its ultimate gain is 8, its period 2 pi 0.2 / sqrt(3) s.
 /// assert!((result.gain - 8.0).abs() < 1.2 && (result.period - 0.7255).abs() < 0.05);
 /// # Ok::<(), roverlab::io::Error>(())
 /// ```
@@ -31,20 +31,20 @@ pub struct RelayTuner {
     hysteresis: f64,
     time: f64,
     high: bool,
-    /// When the relay last switched up, and the extremes of the error since.
+    /// Time of the last upward switch (s), and the extremes of the error since.
     switched_up: Option<f64>,
     extremes: [f64; 2],
-    /// Height and period of each whole swing.
+    /// Height and period (s) of each full oscillation.
     swings: Vec<[f64; 2]>,
 }
 
-/// What a relay has found out: the proportional gain at which the process would swing for ever, and the period in seconds
-/// in which it would.
+/// Ultimate gain and period: the proportional gain at which the process oscillates for ever, and the period
+/// of that oscillation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UltimateGain {
     /// Output for an error of 1.
     pub gain: f64,
-    /// Seconds.
+    /// Period (s).
     pub period: f64,
 }
 
@@ -56,8 +56,9 @@ const MEASURED: usize = 4;
 const STEADY: f64 = 0.05;
 
 impl RelayTuner {
-    /// A relay with an output of plus or minus `amplitude`, which switches when the error has passed `hysteresis` beyond
-    /// 0: choose it above the noise of the measurement.
+    /// Creates a relay with an output of ±`amplitude` that switches when the error is `hysteresis` beyond 0.
+    /// Choose a hysteresis above the measurement noise. Fails for an amplitude that is not positive or a
+    /// negative hysteresis.
     pub fn new(amplitude: f64, hysteresis: f64) -> Result<Self> {
         require_positive("amplitude", amplitude)?;
         require_not_negative("hysteresis", hysteresis)?;
@@ -72,7 +73,8 @@ impl RelayTuner {
         })
     }
 
-    /// The output for an error, setpoint minus measurement, `seconds` after the last one.
+    /// The output for an error (setpoint minus measurement), `seconds` after the last step. Fails for numbers
+    /// that are not finite.
     pub fn step(&mut self, error: f64, seconds: f64) -> Result<f64> {
         require_finite("error", error)?;
         require_positive("time since the last step", seconds)?;
@@ -95,7 +97,7 @@ impl RelayTuner {
         self.extremes = [f64::INFINITY, f64::NEG_INFINITY];
     }
 
-    /// What has been found out, once the swings are all the same.
+    /// The result, once the oscillation is steady.
     pub fn result(&self) -> Option<UltimateGain> {
         if self.swings.len() < SETTLING + MEASURED {
             return None;
@@ -106,26 +108,27 @@ impl RelayTuner {
         let steady =
             last.iter().all(|swing| [0, 1].iter().all(|&i| (swing[i] / means[i] - 1.0).abs() <= STEADY));
         let height = (means[0] * means[0] - self.hysteresis * self.hysteresis).max(0.0).sqrt();
-        // The first harmonic of a square wave is 4 / pi times as high as the wave.
+        // The fundamental of a square wave has 4 / pi times its amplitude.
         (steady && height > 0.0)
             .then(|| UltimateGain { gain: 4.0 * self.amplitude / (PI * height), period: means[1] })
     }
 }
 
 impl UltimateGain {
-    /// The gains of J. G. Ziegler and N. B. Nichols, "Optimum settings for automatic controllers", 1942: quick, with some
-    /// overshoot.
+    /// Gains by J. G. Ziegler and N. B. Nichols, "Optimum settings for automatic controllers", 1942: fast,
+    /// with some overshoot.
     pub fn ziegler_nichols(&self) -> PidParameters {
         self.parameters(0.6, 0.5, 0.125)
     }
 
-    /// The gains of B. D. Tyreus and W. L. Luyben, "Tuning PI controllers for integrator/dead time processes", 1992: slower,
-    /// with hardly any overshoot.
+    /// Gains by B. D. Tyreus and W. L. Luyben, "Tuning PI controllers for integrator/dead time processes",
+    /// 1992: slower, with hardly any overshoot.
     pub fn tyreus_luyben(&self) -> PidParameters {
         self.parameters(1.0 / 2.2, 2.2, 1.0 / 6.3)
     }
 
-    /// Gains from a share of the gain, and the integral and derivative times in terms of the period.
+    /// Gains from a fraction of the ultimate gain, and from integral and derivative times as multiples of the
+    /// period.
     fn parameters(&self, share: f64, integral_time: f64, derivative_time: f64) -> PidParameters {
         let proportional = share * self.gain;
         let derivative_time = derivative_time * self.period;
@@ -144,7 +147,7 @@ mod tests {
     use super::*;
     use crate::drive::Pid;
 
-    /// Lags in a row.
+    /// First-order lags in series.
     struct Lags([f64; 3]);
 
     impl Lags {

@@ -1,6 +1,7 @@
 use crate::geometry::{Point, Pose, Vector, cross, direction};
 
-/// A cubic Hermite spline between two points with given tangents (book, section 3.6). Its parameter runs from 0 to 1.
+/// A cubic Hermite spline between two points with given tangents (book, section 3.6), with a parameter from 0
+/// to 1.
 ///
 /// ```
 /// use roverlab::drive::Hermite;
@@ -11,15 +12,15 @@ use crate::geometry::{Point, Pose, Vector, cross, direction};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hermite {
-    /// Where it starts and ends.
+    /// Start and end point.
     pub ends: [Point; 2],
-    /// The derivatives by the parameter there, in metres.
+    /// Derivatives with respect to the parameter at both ends (m).
     pub tangents: [Vector; 2],
 }
 
 impl Hermite {
-    /// The spline from one pose to another, with tangents as long as the distance between them times `scale`: the
-    /// larger, the farther it swings out.
+    /// The spline between two poses, with tangents of `scale` times the distance between them: larger ones
+    /// swing out farther.
     pub fn between(start: Pose, goal: Pose, scale: f64) -> Self {
         let length = scale * start.distance_to(goal.position());
         Self {
@@ -38,7 +39,7 @@ impl Hermite {
         )
     }
 
-    /// The first derivative by the parameter.
+    /// First derivative with respect to the parameter.
     pub fn derivative(&self, u: f64) -> Vector {
         let u2 = u * u;
         (self.ends[1] - self.ends[0]) * (6.0 * (u - u2))
@@ -46,21 +47,21 @@ impl Hermite {
             + self.tangents[1] * (3.0 * u2 - 2.0 * u)
     }
 
-    /// The second derivative by the parameter.
+    /// Second derivative with respect to the parameter.
     pub fn second_derivative(&self, u: f64) -> Vector {
         (self.ends[1] - self.ends[0]) * (6.0 - 12.0 * u)
             + self.tangents[0] * (6.0 * u - 4.0)
             + self.tangents[1] * (6.0 * u - 2.0)
     }
 
-    /// The direction at a parameter; that of the whole where the spline stands still for an instant.
+    /// Direction at a parameter (rad); where the derivative vanishes, the direction from start to end.
     pub fn heading(&self, u: f64) -> f64 {
         let along = self.derivative(u);
         let along = if along.norm() > 1e-12 { along } else { self.ends[1] - self.ends[0] };
         crate::geometry::math::atan2(along.y, along.x)
     }
 
-    /// The curvature at a parameter, in 1/m, positive to the left; 0 where the spline stands still for an instant.
+    /// Curvature at a parameter (1/m), positive to the left; 0 where the derivative vanishes.
     pub fn curvature(&self, u: f64) -> f64 {
         let along = self.derivative(u);
         let speed = along.norm();
@@ -68,11 +69,11 @@ impl Hermite {
     }
 }
 
-/// The splines of a centripetal Catmull-Rom chain through points, with the direction given at some of them (E. Catmull and
-/// R. Rom, "A class of local interpolating splines", 1974; the parameters after C. Yuksel, S. Schaefer and J. Keyser,
-/// "Parameterization and applications of Catmull-Rom curves", 2011).
+/// The splines of a centripetal Catmull-Rom chain through points with optional directions (E. Catmull and R.
+/// Rom, "A class of local interpolating splines", 1974; parametrised after C. Yuksel, S. Schaefer and J.
+/// Keyser, "Parameterization and applications of Catmull-Rom curves", 2011).
 pub(super) fn catmull_rom(points: &[(Point, Option<f64>)]) -> Vec<Hermite> {
-    // The root of each chord is the parameter's growth along it, which keeps loops and cusps away.
+    // Centripetal parametrisation, by the root of the chord length, avoids loops and cusps.
     let step = |i: usize| (points[i + 1].0 - points[i].0).norm().sqrt();
     let chord = |i: usize| (points[i + 1].0 - points[i].0) / step(i);
     let last = points.len() - 1;

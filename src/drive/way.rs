@@ -1,9 +1,9 @@
 use crate::geometry::{Point, direction, meeting};
 
-/// How far a round robot can drive among points that it sees, in its own frame.
+/// Free distances of a round robot among obstacle points in its own frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Way {
-    /// The robot's radius in metres, and what is kept free beside it.
+    /// Radius of the robot, and clearance kept beside it (m).
     pub(super) radius: f64,
     pub(super) margin: f64,
 }
@@ -22,15 +22,16 @@ const TRIED: u32 = 18;
 const SPACING: f64 = 0.13;
 
 impl Way {
-    /// Metres straight on in a direction until the outline is at a point. What has been passed does not count.
+    /// Distance straight on in a direction until the outline touches a point (m). Points already passed do
+    /// not count.
     pub(super) fn free(&self, points: &[Point], towards: f64) -> f64 {
         let (ahead, half) = (direction(towards), self.radius + self.margin);
         let room = |(along, before): (f64, f64)| along - (before - self.margin).max(0.0);
         points.iter().filter_map(|point| meeting(point, ahead, half)).map(room).fold(f64::INFINITY, f64::min)
     }
 
-    /// The direction nearest to a wished one in which so many metres are free, or else the one with the most room; and the
-    /// room there.
+    /// The direction nearest to `wished` with at least `room` metres free, or else the one with the most
+    /// room; and the room there (m).
     pub(super) fn towards(&self, points: &[Point], wished: f64, room: f64) -> (f64, f64) {
         let mut best = (wished, self.free(points, wished));
         if best.1 >= room {

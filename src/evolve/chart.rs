@@ -3,14 +3,14 @@ use crate::geometry::Point;
 use crate::picture::{Picture, Style};
 use crate::world::{Colour, World};
 
-/// Metres of a panel's width on the sheet.
+/// Width of a panel (m on the sheet).
 const WIDTH: f64 = 1.6;
 /// Metres of the height of a panel.
 const HEIGHT: f64 = 0.5;
-/// Metres that are left round panels for the scales.
+/// Margin around the panels, for the scales (m on the sheet).
 const MARGIN: f64 = 0.12;
 
-/// Draws a run: the best, mean and worst fitness of each generation, and below it the diversity.
+/// Plots a run: best, mean and worst fitness per generation, and below them the diversity.
 ///
 /// ```
 /// use roverlab::evolve::{Evolution, Genetic, Recipe, Serial, StopRules, Trial, chart};
@@ -33,17 +33,17 @@ pub fn chart(history: &[GenerationStatistics]) -> Picture {
     let lower = Panel { history, bottom: MARGIN, height: HEIGHT };
     let upper = Panel { history, bottom: 2.0 * MARGIN + HEIGHT, height: HEIGHT };
     lower.draw(&mut picture, &[("diversity", Colour::from_hex(0x002b_8a3e), |row| row.diversity)], 0.0);
-    // One that failed must not flatten what the best have learnt.
+    // The scale follows the best fitness, so that one failed individual does not flatten the curves.
     let bests = || history.iter().map(|row| row.best);
     let (first, last) = (bests().fold(f64::INFINITY, f64::min), bests().fold(f64::NEG_INFINITY, f64::max));
     upper.draw(&mut picture, &fitness, first - (last - first).max(0.05 * last.abs()));
     picture
 }
 
-/// A name, a colour, and what of a row is drawn.
+/// Name and colour of a curve, and the value it shows.
 type Curve<'a> = (&'a str, Colour, fn(&GenerationStatistics) -> f64);
 
-/// Curves on one scale.
+/// A panel of curves on a common scale.
 struct Panel<'a> {
     history: &'a [GenerationStatistics],
     bottom: f64,
@@ -95,7 +95,7 @@ mod tests {
             let history: Vec<_> = (0..length).map(row).collect();
             let svg = chart(&history).to_svg();
             let named = ["best", "mean", "worst", "diversity"].iter().all(|name| svg.contains(name));
-            // A legend names what is drawn, and it takes two generations for a line.
+            // The legend lists what is drawn; a line takes two generations.
             assert_eq!(named, length > 1, "{length}");
             assert!(!svg.contains("NaN") && !svg.contains("inf"), "{length}");
             assert!(!svg.contains(" m<"), "a chart has no scale in metres: {svg}");

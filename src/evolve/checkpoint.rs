@@ -1,4 +1,4 @@
-//! Runs on disk, so that they survive being killed (feature `checkpoint`).
+//! Checkpoints of runs on disk (feature `checkpoint`).
 //!
 //! ```
 //! use roverlab::evolve::{Evolution, Genetic, Population, Recipe, Serial, StopRules, Trial, checkpoint};
@@ -6,7 +6,7 @@
 //! # fn main() -> roverlab::io::Result<()> {
 //! # let (first, fitness) = (vec![vec![0_u8; 8]; 10], |genome: &Vec<u8>, _: Trial| Ok(f64::from(genome[0])));
 //! let file = &std::env::temp_dir().join(format!("run-{}.json", std::process::id()));
-//! // What affects the run, so that a checkpoint of another one is told apart.
+//! // Everything that affects the run, so that checkpoints of other runs are rejected.
 //! let settings = "ten individuals of eight genes, six mutations, seed 1";
 //! let population = match checkpoint::load(file, settings)? {
 //!     Some(population) => population,
@@ -32,7 +32,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::io::{Error, ErrorKind, Result};
 
-/// The version of the form below.
+/// Version of the file format.
 const VERSION: u32 = 1;
 
 #[derive(Serialize, Deserialize)]
@@ -42,8 +42,12 @@ struct Checkpoint<S> {
     state: S,
 }
 
-/// Writes a run's state, a [`Population`](super::Population) or more, into a file. At every moment the file is whole:
-/// either as it was or as it is then, even if the process is killed or the disk is full.
+/// Writes the state of a run, a [`Population`](super::Population) or more, to a file. The write is atomic:
+/// even if the process is killed or the disk is full, the file holds either the old state or the new one.
+///
+/// # Errors
+///
+/// If the file cannot be written.
 pub fn save<S: Serialize>(file: &Path, settings: &str, state: &S) -> Result<()> {
     let failed = |what: &str, error: std::io::Error| {
         let message = format!("{}: the checkpoint cannot be {what}", file.display());
@@ -51,13 +55,13 @@ pub fn save<S: Serialize>(file: &Path, settings: &str, state: &S) -> Result<()> 
     };
     let checkpoint = Checkpoint { version: VERSION, settings: settings.into(), state };
     let text = serde_json::to_vec(&checkpoint).map_err(|error| failed("written", error.into()))?;
-    // What a link leads to is replaced, not the link.
+    // Replace the target of a symbolic link, not the link.
     let file = &fs::canonicalize(file).unwrap_or_else(|_| file.to_owned());
     let aside = aside(file);
     let write = || -> std::io::Result<()> {
         let mut new = File::create(&aside)?;
         new.write_all(&text)?;
-        // The bytes are on the disk before the name points to them.
+        // The data must reach the disk before the rename.
         new.sync_all()
     };
     write().and_then(|()| fs::rename(&aside, file)).map_err(|error| {
@@ -66,14 +70,17 @@ pub fn save<S: Serialize>(file: &Path, settings: &str, state: &S) -> Result<()> 
     })
 }
 
-/// Reads the state that [`save`] wrote; `None` if there is no such file. Fails when the file is of another form, of
-/// another version, or of a run with other settings.
+/// Reads a state written by [`save`]; `None` if there is no such file.
+///
+/// # Errors
+///
+/// If the file has another format or version, or belongs to a run with other settings.
 pub fn load<S: DeserializeOwned>(file: &Path, settings: &str) -> Result<Option<S>> {
     let refused = |found: &str, expected: &str| {
         let message = format!("{}: {found}; expected {expected}", file.display());
         Error::new(ErrorKind::InvalidInput, message)
     };
-    // A device may have no end.
+    // A device may never end.
     if fs::metadata(file).is_ok_and(|data| !data.is_file()) {
         return Err(refused("a folder or a device", "the name of a file"));
     }
@@ -99,7 +106,7 @@ pub fn load<S: DeserializeOwned>(file: &Path, settings: &str) -> Result<Option<S
     Ok(Some(state))
 }
 
-/// The file that is written before it takes the other's name, in the same folder so that this is one step.
+/// Temporary file in the same folder, so that the rename is atomic.
 fn aside(file: &Path) -> PathBuf {
     let mut name = file.file_name().unwrap_or_default().to_owned();
     name.push(format!(".{}.new", std::process::id()));
@@ -140,7 +147,7 @@ mod tests {
         let back: Population<Vec<f64>> = load(&file, "a").unwrap().unwrap();
         assert_eq!(&back, evolution.population());
         assert_eq!(back.hash(), evolution.population().hash());
-        assert_eq!(fs::read_dir(&folder).unwrap().count(), 1, "nothing is left beside it");
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 1, "no temporary file is left");
         fs::remove_dir_all(folder).unwrap();
     }
 

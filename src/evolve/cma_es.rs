@@ -7,32 +7,32 @@ use crate::io::{Error, Result};
 use crate::parameter::require_positive;
 use crate::random::Stream;
 
-/// The normal distribution that [`CmaEs`] adapts.
+/// The normal distribution adapted by [`CmaEs`].
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub struct Distribution {
-    /// Where the next individuals are drawn around.
+    /// Mean of the next individuals.
     pub mean: Vec<f64>,
-    /// How far from there, as a factor on the covariance's roots.
+    /// Step size: scale of the standard deviations.
     pub sigma: f64,
-    /// The shape of the cloud, row by row.
+    /// Covariance matrix, row by row.
     pub covariance: Vec<f64>,
-    /// The evolution path of the step size.
+    /// Evolution path of the step size.
     sigma_path: Vec<f64>,
-    /// The evolution path of the covariance.
+    /// Evolution path of the covariance.
     covariance_path: Vec<f64>,
 }
 
-/// Evolution strategy with covariance matrix adaptation, for real vectors (N. Hansen, "The CMA evolution strategy: a
-/// tutorial", arXiv 1604.00772, with its default settings).
+/// Evolution strategy with covariance matrix adaptation, for real vectors (N. Hansen, "The CMA evolution
+/// strategy: a tutorial", arXiv 1604.00772, with its default settings).
 ///
-/// It learns which directions are worth going and how far, so it needs far fewer evaluations than a genetic algorithm
-/// where fitness varies smoothly. Only the order of fitness counts, not its size. A generation takes
-/// O(population · n²) and an eigendecomposition, O(n³), for n genes.
+/// It learns useful directions and step sizes, so on smooth fitness it needs far fewer evaluations than a
+/// genetic algorithm. Only the ranking of the fitness matters. A generation takes O(population · n²) plus an
+/// eigendecomposition, O(n³), for n genes.
 ///
 /// ```
 /// use roverlab::evolve::{CmaEs, Evolution, Serial, StopRules, Trial};
-/// // Rosenbrock's valley: its floor is bent, and the best place is (1, 1).
+/// // Rosenbrock's function: a curved valley with its optimum at (1, 1).
 /// let valley = |x: &Vec<f64>, _: Trial| Ok(-(1.0 - x[0]).powi(2) - 100.0 * (x[1] - x[0] * x[0]).powi(2));
 /// let mut search = CmaEs::new(vec![-1.0, 1.0], 0.5, 12, 1)?;
 /// search.run(&mut Serial::new(valley), &StopRules::generations(150), |_| Ok(()))?;
@@ -47,19 +47,19 @@ pub struct CmaEs {
     settings: Settings,
 }
 
-/// The tutorial's constants, which follow from the number of genes and of individuals.
+/// Constants of the tutorial, derived from the number of genes and of individuals.
 #[derive(Debug, Clone)]
 struct Settings {
-    /// The weights of the fitter half, which add up to one.
+    /// Weights of the fitter half; they sum to 1.
     weights: Vec<f64>,
-    /// How many individuals the weighted mean is worth.
+    /// Variance-effective selection mass.
     effective: f64,
     sigma_rate: f64,
     sigma_damping: f64,
     path_rate: f64,
     rank_one: f64,
     rank_many: f64,
-    /// The expected length of a vector of normal numbers.
+    /// Expected norm of a standard normal vector.
     expected_length: f64,
 }
 
@@ -89,8 +89,11 @@ impl Settings {
 }
 
 impl CmaEs {
-    /// A search around `mean`, at first at distances of about `sigma`, with so many individuals in a generation.
-    /// Fails when there are no genes, when a number is not finite or sigma is not above zero, and for fewer than four
+    /// A search that starts at `mean` with step size `sigma` and `individuals` individuals per generation.
+    ///
+    /// # Errors
+    ///
+    /// If there are no genes, a number is not finite, `sigma` is not positive, or there are fewer than four
     /// individuals.
     pub fn new(mean: Vec<f64>, sigma: f64, individuals: usize, seed: u64) -> Result<Self> {
         let n = mean.len();
@@ -106,12 +109,16 @@ impl CmaEs {
         Self::resume(Population::new(genomes, seed)?, distribution)
     }
 
-    /// The individuals that are usual for so many genes: 4 + 3 ln n.
+    /// Default number of individuals: 4 + 3 ln(genes).
     pub fn usual_individuals(genes: usize) -> usize {
         4 + (3.0 * math::ln(genes.max(1) as f64)) as usize
     }
 
-    /// A run that goes on from where another one was.
+    /// Resumes a run.
+    ///
+    /// # Errors
+    ///
+    /// If population and distribution are invalid or do not fit together.
     pub fn resume(population: Population<Vec<f64>>, distribution: Distribution) -> Result<Self> {
         population.validate()?;
         distribution.validate()?;
@@ -127,12 +134,12 @@ impl CmaEs {
         Ok(Self { population, distribution, settings })
     }
 
-    /// What the next individuals are drawn from.
+    /// Distribution of the next individuals.
     pub fn distribution(&self) -> &Distribution {
         &self.distribution
     }
 
-    /// Draws the next generation from the distribution, moved and shaped by the present one.
+    /// Adapts the distribution to the present generation and draws the next one from it.
     fn breed(&mut self) {
         self.adapt();
         let population = &mut self.population;
@@ -142,12 +149,12 @@ impl CmaEs {
         population.fitness.clear();
     }
 
-    /// The tutorial's equations 38 to 47.
+    /// Equations 38 to 47 of the tutorial.
     fn adapt(&mut self) {
         let (settings, old) = (&self.settings, &self.distribution);
         let n = old.mean.len();
         let ranking = self.population.ranking();
-        // Steps of the fitter half from the mean, in units of sigma.
+        // Steps from the mean to the fitter half, in units of sigma.
         let steps: Vec<Vec<f64>> = ranking[..settings.weights.len()]
             .iter()
             .map(|&i| (0..n).map(|k| (self.population.genomes[i][k] - old.mean[k]) / old.sigma).collect())
@@ -162,7 +169,7 @@ impl CmaEs {
         let length = norm(&sigma_path);
         let generations = (self.population.generation + 1) as f64;
         let warm_up = 1.0 - math::pow(1.0 - settings.sigma_rate, 2.0 * generations);
-        // While the step size grows fast, the covariance's path would only learn its length.
+        // While the step size grows fast, the covariance path would only learn its length.
         let limit = (1.4 + 2.0 / (n as f64 + 1.0)) * settings.expected_length;
         let steady = f64::from(u8::from(length / warm_up.sqrt() < limit));
         let gain = steady * (settings.path_rate * (2.0 - settings.path_rate) * settings.effective).sqrt();
@@ -179,7 +186,7 @@ impl CmaEs {
         let growth = settings.sigma_rate / settings.sigma_damping * (length / settings.expected_length - 1.0);
         self.distribution = Distribution {
             mean: blend(&old.mean, 1.0, &step, old.sigma),
-            // A factor of e in a generation is more than ever makes sense.
+            // A growth by more than e per generation is never useful.
             sigma: old.sigma * math::exp(growth.min(1.0)),
             covariance,
             sigma_path,
@@ -201,7 +208,7 @@ impl Evolution<Vec<f64>> for CmaEs {
     }
 }
 
-/// The least root of the covariance that counts, so that a cloud never becomes flat for ever.
+/// Minimum standard deviation along an axis, so that the distribution never degenerates.
 const LEAST_ROOT: f64 = 1e-12;
 
 impl Distribution {
@@ -228,7 +235,7 @@ impl Distribution {
         Ok(())
     }
 
-    /// The roots of the covariance's eigenvalues, and its eigenvectors as columns.
+    /// Standard deviations along the principal axes, and the axes as columns.
     fn axes(&self) -> (Vec<f64>, Vec<f64>) {
         let (values, vectors) = symmetric_eigen(self.covariance.clone(), self.mean.len());
         (values.into_iter().map(|value| value.max(0.0).sqrt().max(LEAST_ROOT)).collect(), vectors)
@@ -245,7 +252,7 @@ impl Distribution {
         (0..count).map(|_| draw()).collect()
     }
 
-    /// A step in the coordinates in which the cloud is round.
+    /// Transforms a step to coordinates in which the distribution is isotropic.
     fn whiten(&self, step: &[f64]) -> Vec<f64> {
         let n = step.len();
         let (roots, vectors) = self.axes();
@@ -268,7 +275,7 @@ mod tests {
     use super::super::{Serial, StopReason, StopRules, Trial};
     use super::*;
 
-    /// Generations until the fitness is within 1e-8 of its maximum, zero.
+    /// Generations until the fitness is within 1e-8 of its maximum, 0.
     fn generations(fitness: impl Fn(&[f64]) -> f64, start: Vec<f64>, individuals: usize) -> u64 {
         let mut search = CmaEs::new(start, 0.5, individuals, 1).unwrap();
         let rules = StopRules { goal: Some(-1e-8), ..StopRules::generations(4000) };
@@ -278,7 +285,7 @@ mod tests {
         search.population().generation
     }
 
-    /// The tutorial's author gives about 2,000 evaluations for a bowl of ten genes, 6,000 for a stretched one.
+    /// The tutorial states about 2,000 evaluations for a sphere with ten genes and 6,000 for an ellipsoid.
     #[test]
     fn bowls_are_descended_as_fast_as_published() {
         let bowl = |x: &[f64]| -x.iter().map(|x| x * x).sum::<f64>();

@@ -3,14 +3,14 @@ use std::fmt::Debug;
 use super::genome::Genome;
 use crate::random::Stream;
 
-/// How two parents become two children.
+/// Recombines two parents into two children.
 pub trait Crossover<G>: Debug + Send + Sync {
-    /// Turns copies of two parents of one length into children.
+    /// Turns copies of two parents of equal length into children, in place.
     fn cross(&self, a: &mut G, b: &mut G, random: &mut Stream);
 }
 
-/// Cuts both at one random gene and swaps what is behind it (book, section 12.3). The cut is never at an end, so
-/// each child has genes of both parents; single genes have nowhere to be cut and are left alone.
+/// One-point crossover: swaps all genes behind a random cut (book, section 12.3). The cut is never at an end,
+/// so each child has genes of both parents. Genomes with a single gene stay as they are.
 ///
 /// ```
 /// use roverlab::evolve::{Crossover, OnePoint};
@@ -33,7 +33,7 @@ impl<G: Genome> Crossover<G> for OnePoint {
     }
 }
 
-/// Swaps each gene with a probability.
+/// Uniform crossover: swaps each gene with a probability.
 ///
 /// ```
 /// use roverlab::evolve::{Crossover, Uniform};
@@ -46,7 +46,7 @@ impl<G: Genome> Crossover<G> for OnePoint {
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Uniform {
-    /// From 0 to 1; one half mixes most.
+    /// Probability, 0 to 1; 0.5 mixes most.
     pub probability: f64,
 }
 
@@ -60,8 +60,8 @@ impl<G: Genome> Crossover<G> for Uniform {
     }
 }
 
-/// Mixes real vectors: each child lies at a random point between its parents, the other one as far from the other
-/// end.
+/// Arithmetic crossover of real vectors: each child lies at a random point between its parents, and the two
+/// are symmetric about the midpoint.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Arithmetic;
 

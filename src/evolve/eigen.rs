@@ -1,10 +1,10 @@
-/// Eigenvalues of a symmetric matrix and, as columns, its eigenvectors of length one, by cyclic Jacobi rotations
+/// Eigenvalues of a symmetric matrix and its normalised eigenvectors (as columns), by cyclic Jacobi rotations
 /// (G. Golub and C. Van Loan, "Matrix Computations", section 8.5).
 ///
-/// Rows come one after the other. The order of the pairs is that of the diagonal; the same input gives the same bits
-/// on every processor, unlike products that choose their code at run time.
+/// Matrices are stored row by row. The pairs are in the order of the diagonal. The same input gives the same
+/// bits on every processor, unlike libraries that select their code at run time.
 pub(super) fn symmetric_eigen(mut matrix: Vec<f64>, n: usize) -> (Vec<f64>, Vec<f64>) {
-    /// Rotations converge quadratically; six sweeps are usual.
+    /// Maximum number of sweeps; convergence is quadratic, and six are typical.
     const SWEEPS: usize = 30;
     let mut vectors = vec![0.0; n * n];
     for i in 0..n {
@@ -23,12 +23,12 @@ pub(super) fn symmetric_eigen(mut matrix: Vec<f64>, n: usize) -> (Vec<f64>, Vec<
     ((0..n).map(|i| matrix[i * n + i]).collect(), vectors)
 }
 
-/// The sum of squares above the diagonal.
+/// Sum of squares above the diagonal.
 fn off_diagonal(matrix: &[f64], n: usize) -> f64 {
     (0..n).flat_map(|i| (i + 1..n).map(move |j| i * n + j)).map(|k| matrix[k] * matrix[k]).sum()
 }
 
-/// Makes the element at row `p`, column `q` zero.
+/// Rotates the element at row `p`, column `q` to zero.
 fn rotate(matrix: &mut [f64], vectors: &mut [f64], n: usize, p: usize, q: usize) {
     let corner = matrix[p * n + q];
     if corner == 0.0 {

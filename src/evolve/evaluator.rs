@@ -1,17 +1,17 @@
 use crate::io::{Error, Result};
 use crate::random::Stream;
 
-/// What makes the trials of one generation: they are the same whoever carries them out.
+/// Identity of a generation's trials, independent of who evaluates them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Round {
-    /// The seed of the run.
+    /// Seed of the run.
     pub seed: u64,
-    /// The generation, from 0.
+    /// Index of the generation, from 0.
     pub generation: u64,
 }
 
 impl Round {
-    /// The trial of an individual of this generation.
+    /// Trial of an individual in this generation.
     pub fn trial(self, index: usize) -> Trial {
         Trial { round: self, index }
     }
@@ -20,14 +20,14 @@ impl Round {
 /// One evaluation of one individual.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Trial {
-    /// The generation that it belongs to.
+    /// Its generation.
     pub round: Round,
-    /// The individual's place in its generation.
+    /// Index of the individual in its generation.
     pub index: usize,
 }
 
 impl Trial {
-    /// This trial's own random numbers, for a fitness that has to do with chance.
+    /// The random stream of this trial, for a fitness with random effects.
     pub fn random(self) -> Stream {
         Stream::new(self.round.seed)
             .child("generation", self.round.generation)
@@ -35,20 +35,24 @@ impl Trial {
     }
 }
 
-/// Whoever finds out how fit individuals are.
+/// Computes the fitness of individuals.
 pub trait Evaluator<G> {
-    /// The fitness of each genome, in the same order. Greater is fitter.
+    /// Returns the fitness of each genome, in order. Greater is fitter.
+    ///
+    /// # Errors
+    ///
+    /// If an individual cannot be evaluated.
     fn evaluate(&mut self, genomes: &[G], round: Round) -> Result<Vec<f64>>;
 }
 
-/// Evaluates one individual after the other, in the caller's thread.
+/// Evaluates individuals one after another, in the calling thread.
 #[derive(Debug, Clone)]
 pub struct Serial<F> {
     fitness: F,
 }
 
 impl<F> Serial<F> {
-    /// An evaluator by a function of genome and trial.
+    /// An evaluator that calls a function of genome and trial.
     pub fn new(fitness: F) -> Self {
         Self { fitness }
     }
@@ -60,7 +64,7 @@ impl<G, F: FnMut(&G, Trial) -> Result<f64>> Evaluator<G> for Serial<F> {
     }
 }
 
-/// Fails unless there is one number for each individual.
+/// Checks that there is one finite fitness per individual.
 pub(super) fn check_fitness(fitness: &[f64], individuals: usize, round: Round) -> Result<()> {
     if fitness.len() != individuals {
         let found = format!("{} values", fitness.len());

@@ -5,12 +5,16 @@ use super::statistics::GenerationStatistics;
 use super::stop::{StopReason, StopRules};
 use crate::io::Result;
 
-/// A run of evolution, whatever the method.
+/// A run of evolution, independent of the method.
 pub trait Evolution<G: Genome> {
-    /// The present generation, and all that was before.
+    /// The present generation and the history of the run.
     fn population(&self) -> &Population<G>;
 
-    /// Goes on by a generation.
+    /// Advances by one generation.
+    ///
+    /// # Errors
+    ///
+    /// If the evaluation fails.
     fn step(&mut self, evaluator: &mut dyn Evaluator<G>) -> Result<()>;
 
     /// The fittest individual so far; `None` before the first evaluation.
@@ -18,13 +22,17 @@ pub trait Evolution<G: Genome> {
         self.population().best.as_ref()
     }
 
-    /// A row for each generation so far.
+    /// Statistics of each generation so far.
     fn history(&self) -> &[GenerationStatistics] {
         &self.population().history
     }
 
-    /// Goes on until a rule says stop. `observe` is called after every generation, with the run as it is then; when it
-    /// fails, the run ends with its error and can be gone on with.
+    /// Runs until a stop rule applies. `observe` is called after every generation; if it fails, the run ends
+    /// with its error and can be resumed.
+    ///
+    /// # Errors
+    ///
+    /// If the evaluation or `observe` fails.
     fn run(
         &mut self,
         evaluator: &mut dyn Evaluator<G>,

@@ -5,10 +5,10 @@ use crate::io::{Clock, Error, Result, Servos};
 use crate::parameter::require_positive;
 use crate::random::Stream;
 
-/// A way of moving servos that repeats (book, section 12.2): control points one after the other, each held for the
-/// same time, with a sequence that leads into the cycle if wished (section 12.5).
+/// A cyclic servo motion (book, section 12.2): a sequence of control points, each held for the same time. An
+/// initial sequence that is not repeated may lead into the cycle (section 12.5).
 ///
-/// Bytes code it, one for each servo and control point: 128 is the middle, 0 and 255 the ends.
+/// It is encoded in bytes, one per servo and control point: 128 is the middle, 0 and 255 are the ends.
 ///
 /// ```
 /// use roverlab::evolve::Gait;
@@ -25,15 +25,18 @@ pub struct Gait {
 }
 
 impl Gait {
-    /// Seconds for which a control point is held.
+    /// Time for which a control point is held (s).
     pub const PERIOD: f64 = 0.25;
-    /// Seconds in which a robot comes to rest at the first control point.
+    /// Time to come to rest at the first control point (s).
     pub const SETTLING: f64 = 2.0;
-    /// The middle of a servo's way, as a byte.
+    /// Middle of a servo's range, as a byte.
     const MIDDLE: i32 = 128;
 
-    /// The gait that these bytes code, of so many servos; the first `leading` control points are not repeated. Fails
-    /// unless the bytes make whole control points with at least one that is repeated.
+    /// Decodes a gait of `servos` servos; the first `leading` control points are not repeated.
+    ///
+    /// # Errors
+    ///
+    /// If the bytes are not whole control points, or none of them is repeated.
     pub fn from_bytes(bytes: &[u8], servos: usize, leading: usize) -> Result<Self> {
         let whole = servos > 0 && bytes.len().is_multiple_of(servos) && bytes.len() > leading * servos;
         if !whole {
@@ -48,7 +51,8 @@ impl Gait {
         Ok(Self { positions: bytes.iter().map(position).collect(), servos, leading })
     }
 
-    /// Random bytes near the middle: each control point differs from the one before by up to `step` (the book: 5).
+    /// Random bytes near the middle: each control point differs from the one before by at most `step` (5 in
+    /// the book).
     pub fn near_middle(servos: usize, points: usize, step: u8, random: &mut Stream) -> Vec<u8> {
         let mut bytes = vec![Self::MIDDLE as u8; servos];
         let changes = 2 * usize::from(step) + 1;
@@ -60,7 +64,7 @@ impl Gait {
         bytes
     }
 
-    /// The servos' positions, -1 to 1, at a control point of the endless sequence.
+    /// Servo positions, -1 to 1, at a control point of the endless sequence.
     pub fn point(&self, index: usize) -> &[f64] {
         let points = self.positions.len() / self.servos;
         let at =
@@ -68,25 +72,34 @@ impl Gait {
         &self.positions[at * self.servos..][..self.servos]
     }
 
-    /// Moves a robot to the first control point and lets it come to rest there, for [`SETTLING`](Self::SETTLING).
+    /// Moves a robot to the first control point and waits [`SETTLING`](Self::SETTLING) for it to come to
+    /// rest.
+    ///
+    /// # Errors
+    ///
+    /// If the robot reports one.
     pub fn settle<R: Clock + Servos + ?Sized>(&self, robot: &mut R) -> Result<()> {
         let mut stand = GaitWalk { gait: self, next: 0, period: Self::SETTLING };
         run(robot, &mut stand, Self::SETTLING, |_, _, _| {}).map(|_| ())
     }
 
-    /// Moves a robot that has settled for so many seconds, from the second control point on.
+    /// Moves a settled robot for `seconds`, from the second control point on.
+    ///
+    /// # Errors
+    ///
+    /// If `seconds` is not positive and finite, or the robot reports an error.
     pub fn walk<R: Clock + Servos + ?Sized>(&self, robot: &mut R, seconds: f64) -> Result<()> {
         require_positive("time to walk", seconds)?;
         run(robot, &mut self.walking(), seconds, |_, _, _| {}).map(|_| ())
     }
 
-    /// The gait as a behaviour of a robot that has settled, from the second control point on.
+    /// The gait as a behaviour of a settled robot, from the second control point on.
     pub fn walking(&self) -> GaitWalk<'_> {
         GaitWalk { gait: self, next: 1, period: Self::PERIOD }
     }
 }
 
-/// A [`Gait`] that is walked, made by [`Gait::walking`].
+/// Behaviour that walks a [`Gait`]; see [`Gait::walking`].
 ///
 /// ```
 /// use std::ops::ControlFlow;
@@ -126,7 +139,7 @@ impl<R: ?Sized> Senses<R> for GaitWalk<'_> {
     }
 }
 
-/// Where servos shall be, from the first one on: -1 to 1.
+/// Target positions of the servos, from the first one on: -1 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ServoPositions<'p>(pub &'p [f64]);
 
@@ -135,7 +148,7 @@ impl<R: Servos + ?Sized> Command<R> for ServoPositions<'_> {
         (1..).zip(self.0).try_for_each(|(servo, position)| robot.set_servo(servo, *position))
     }
 
-    /// Servos hold where they are.
+    /// Servos hold their position.
     fn stop(_robot: &mut R) -> Result<()> {
         Ok(())
     }

@@ -6,7 +6,8 @@ use super::recipe::Recipe;
 use crate::io::Result;
 use crate::random::Stream;
 
-/// A genetic algorithm (book, section 12.3): each generation is bred from the one before, the fittest go on unchanged.
+/// A genetic algorithm (book, section 12.3): each generation is bred from the one before, and the fittest
+/// individuals are kept unchanged.
 #[derive(Debug)]
 pub struct Genetic<G> {
     population: Population<G>,
@@ -14,13 +15,20 @@ pub struct Genetic<G> {
 }
 
 impl<G: Genome> Genetic<G> {
-    /// A run that starts from these genomes. Fails when there are none, when their lengths differ, or when the recipe
-    /// is out of range.
+    /// A run that starts from `genomes`.
+    ///
+    /// # Errors
+    ///
+    /// If there are no genomes, their lengths differ, or the recipe is out of range.
     pub fn new(genomes: Vec<G>, recipe: Recipe<G>, seed: u64) -> Result<Self> {
         Self::resume(Population::new(genomes, seed)?, recipe)
     }
 
-    /// A run that goes on from where another one was, with the same result as if it had not stopped.
+    /// Resumes a run, with the same result as without the interruption.
+    ///
+    /// # Errors
+    ///
+    /// As for [`new`](Self::new).
     pub fn resume(population: Population<G>, recipe: Recipe<G>) -> Result<Self> {
         population.validate()?;
         recipe.validate()?;
@@ -47,7 +55,7 @@ impl<G: Genome> Evolution<G> for Genetic<G> {
         &self.population
     }
 
-    /// Breeds the next generation, unless the present one still has to be evaluated, and evaluates it.
+    /// Breeds the next generation, unless the present one is not yet evaluated, and evaluates it.
     fn step(&mut self, evaluator: &mut dyn Evaluator<G>) -> Result<()> {
         if self.population.is_evaluated() {
             self.breed();
@@ -62,8 +70,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The number of bits set.
-    #[allow(clippy::unnecessary_wraps, clippy::ptr_arg, reason = "The form of a fitness")]
+    /// Number of set bits.
+    #[allow(clippy::unnecessary_wraps, clippy::ptr_arg, reason = "signature of a fitness function")]
     fn ones(genome: &Vec<u8>, _: Trial) -> Result<f64> {
         Ok(genome.iter().map(|gene| gene.count_ones()).sum::<u32>().into())
     }
@@ -151,7 +159,7 @@ mod tests {
         let error = evolution.run(&mut broken, &StopRules::generations(9), |_| Ok(())).unwrap_err();
         let expected = "fitness of individual 3 in generation 2 is NaN; expected a finite number";
         assert_eq!(error.to_string(), expected);
-        // Nothing of the generations before is lost.
+        // The earlier generations are kept.
         assert_eq!(evolution.history().len(), 2);
     }
 

@@ -1,11 +1,11 @@
 use std::fmt::Debug;
 
-/// A number that genomes are made of.
+/// A number in a genome.
 pub trait Gene: Copy + PartialEq + Debug + Send + Sync + Into<f64> + 'static {
-    /// Its bytes, most significant first, for hashes and for other processes.
+    /// Appends its bytes, most significant first, for hashes and other processes.
     fn write(self, bytes: &mut Vec<u8>);
 
-    /// The gene at the front of `bytes`, and the rest.
+    /// Reads the gene at the front of `bytes` and returns it with the rest.
     fn read(bytes: &[u8]) -> Option<(Self, &[u8])>;
 }
 
@@ -30,20 +30,20 @@ impl Gene for f64 {
     }
 }
 
-/// What evolves: a string of genes, all of one length in a population.
+/// A string of genes; all genomes of a population have the same length.
 ///
-/// Byte strings and real vectors are genomes; a type of one's own is one as soon as it can show its genes.
+/// Byte strings and real vectors are genomes. Implement the trait for other types that consist of genes.
 pub trait Genome: Clone + Debug + Send + Sync + 'static {
-    /// One number of it.
+    /// Type of one gene.
     type Gene: Gene;
 
-    /// A genome of these genes; `None` if there cannot be one.
+    /// A genome of these genes; `None` if they are invalid.
     fn from_genes(genes: Vec<Self::Gene>) -> Option<Self>;
 
-    /// The genes.
+    /// Its genes.
     fn genes(&self) -> &[Self::Gene];
 
-    /// The genes, to change them.
+    /// Its genes, mutable.
     fn genes_mut(&mut self) -> &mut [Self::Gene];
 
     /// All genes as bytes.
@@ -53,7 +53,7 @@ pub trait Genome: Clone + Debug + Send + Sync + 'static {
         bytes
     }
 
-    /// The genome that [`to_bytes`](Self::to_bytes) made these bytes of; `None` for any other bytes.
+    /// Inverse of [`to_bytes`](Self::to_bytes); `None` if the bytes are invalid.
     fn from_bytes(mut bytes: &[u8]) -> Option<Self> {
         let mut genes = Vec::new();
         while !bytes.is_empty() {

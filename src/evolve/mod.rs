@@ -1,19 +1,19 @@
-//! Evolution (book, chapter 12): genetic algorithms for whatever has a fitness.
+//! Evolution (book, chapter 12): genetic algorithms for any fitness function.
 //!
-//! A population of genomes is evaluated, and the next one is bred from it: [`Genetic`] replaces a generation at a time,
-//! [`SteadyState`] a few individuals at a time, and [`CmaEs`] adapts a normal distribution of real vectors. How parents
-//! are chosen ([`Selection`]), mixed ([`Crossover`]) and changed ([`Mutation`]) is a [`Recipe`]; the book's own is
+//! A population of genomes is evaluated, and the next one is bred from it: [`Genetic`] replaces whole
+//! generations, [`SteadyState`] a few individuals at a time, and [`CmaEs`] adapts a normal distribution of
+//! real vectors. A [`Recipe`] combines [`Selection`], [`Crossover`] and [`Mutation`]; the book's is
 //! [`Recipe::book`].
 //!
-//! Fitness is maximised. It is worked out by an [`Evaluator`]: in this thread ([`Serial`]), in several (`Parallel`, with
-//! the feature `rayon`), or by other processes ([`Processes`]). Every random number comes from streams named after the
-//! generation and the individual, so the result depends on the seed alone, not on who evaluated what, nor on where a
-//! run was interrupted and resumed (`checkpoint`, with the feature of that name).
+//! Fitness is maximised. An [`Evaluator`] computes it: in this thread ([`Serial`]), in several (`Parallel`,
+//! feature `rayon`), or in other processes ([`Processes`]). All random numbers come from streams named after
+//! generation and individual. The result therefore depends only on the seed, not on who evaluates what or on
+//! interruptions (`checkpoint`, feature of that name).
 //!
 //! # Example
 //!
-//! The scale of a spline's tangents, tuned so that the way from A to B is short but never bends sharper than 4 per
-//! metre:
+//! Tunes the tangent scale of a spline, so that the path from A to B is short but its curvature stays below 4
+//! 1/m:
 //!
 //! ```
 //! use roverlab::evolve::{Arithmetic, Evolution, Gaussian, Genetic, Recipe, Selection, Serial, StopRules, Trial};

@@ -3,13 +3,13 @@ use std::fmt::Debug;
 use super::genome::Genome;
 use crate::random::Stream;
 
-/// How a generation's children are changed at random.
+/// Changes the children of a generation at random.
 pub trait Mutation<G>: Debug + Send + Sync {
     /// Changes some of the children.
     fn mutate(&self, children: &mut [G], random: &mut Stream);
 }
 
-/// Flips single bits, each of a random gene of a random child (book, section 12.3).
+/// Flips single bits, each in a random gene of a random child (book, section 12.3).
 ///
 /// ```
 /// use roverlab::evolve::{BitFlip, Mutation};
@@ -20,7 +20,7 @@ pub trait Mutation<G>: Debug + Send + Sync {
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub struct BitFlip {
-    /// Bits flipped in a generation, over all children together.
+    /// Number of bits flipped per generation, over all children.
     pub count: usize,
 }
 
@@ -38,16 +38,16 @@ impl<G: Genome<Gene = u8>> Mutation<G> for BitFlip {
     }
 }
 
-/// Adds normal noise to genes of real vectors and keeps them within bounds.
+/// Adds normal noise to the genes of real vectors and keeps them within bounds.
 #[derive(Debug, Clone, Copy)]
 pub struct Gaussian {
-    /// The chance of each gene to be changed.
+    /// Probability that a gene changes.
     pub probability: f64,
-    /// The standard deviation of a change.
+    /// Standard deviation of a change.
     pub sigma: f64,
-    /// The least value of a gene.
+    /// Minimum value of a gene.
     pub low: f64,
-    /// The greatest value of a gene.
+    /// Maximum value of a gene.
     pub high: f64,
 }
 
@@ -55,7 +55,7 @@ impl<G: Genome<Gene = f64>> Mutation<G> for Gaussian {
     fn mutate(&self, children: &mut [G], random: &mut Stream) {
         for gene in children.iter_mut().flat_map(G::genes_mut) {
             if random.chance(self.probability) {
-                // Not `clamp`, which panics when the bounds are the wrong way round.
+                // Not `clamp`, which panics if the bounds are swapped.
                 *gene = (*gene + self.sigma * random.normal()).max(self.low).min(self.high);
             }
         }

@@ -4,7 +4,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use super::evaluator::{Evaluator, Round, Trial};
 use crate::io::{Error, ErrorKind, Result};
 
-/// Evaluates individuals in several threads. The result does not depend on how many.
+/// Evaluates individuals in several threads. The result does not depend on their number.
 ///
 /// ```
 /// use roverlab::evolve::{Evaluator, Parallel, Round, Serial, Trial};
@@ -21,15 +21,20 @@ pub struct Parallel<F> {
 }
 
 impl<F> Parallel<F> {
-    /// An evaluator by a function of genome and trial, in so many threads; 0 takes one for each processor.
+    /// An evaluator that calls a function of genome and trial in `threads` threads; 0 means one per
+    /// processor.
+    ///
+    /// # Errors
+    ///
+    /// If the threads cannot be started.
     pub fn new(threads: usize, fitness: F) -> Result<Self> {
         let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| {
-            Error::new(ErrorKind::Other, "no threads for the evaluation").with_source(error)
+            Error::new(ErrorKind::Other, "the evaluation threads cannot be started").with_source(error)
         })?;
         Ok(Self { fitness, pool })
     }
 
-    /// How many threads there are.
+    /// Number of threads.
     pub fn threads(&self) -> usize {
         self.pool.current_num_threads()
     }
@@ -39,7 +44,7 @@ impl<G: Sync, F: Fn(&G, Trial) -> Result<f64> + Sync> Evaluator<G> for Parallel<
     fn evaluate(&mut self, genomes: &[G], round: Round) -> Result<Vec<f64>> {
         let Self { fitness, pool } = self;
         let evaluate = |(i, genome): (usize, &G)| fitness(genome, round.trial(i));
-        // One at a time, as the time that an individual takes is anybody's guess.
+        // One at a time, because evaluation times vary.
         pool.install(|| genomes.par_iter().enumerate().with_max_len(1).map(evaluate).collect())
     }
 }

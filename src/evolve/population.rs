@@ -7,41 +7,45 @@ use crate::io::{Error, Result};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub struct Individual<G> {
-    /// What it is made of.
+    /// Its genome.
     pub genome: G,
-    /// How fit it is.
+    /// Its fitness.
     pub fitness: f64,
 }
 
-/// All that a run has come to: enough to go on from.
+/// State of a run, sufficient to resume it.
 ///
 /// ```
 /// use roverlab::evolve::Population;
 /// let mut population = Population::new(vec![vec![1_u8], vec![2], vec![3]], 1)?;
 /// population.fitness = vec![0.5, 2.0, 1.0];
 /// assert_eq!(population.ranking(), [1, 2, 0], "the fittest first");
-/// assert!(Population::<Vec<u8>>::new(Vec::new(), 1).is_err(), "nobody is no population");
+/// assert!(Population::<Vec<u8>>::new(Vec::new(), 1).is_err(), "an empty population");
 /// # Ok::<(), roverlab::io::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub struct Population<G> {
-    /// The seed of the run.
+    /// Seed of the run.
     pub seed: u64,
-    /// The generation, from 0.
+    /// Index of the generation, from 0.
     pub generation: u64,
-    /// The individuals.
+    /// The individuals' genomes.
     pub genomes: Vec<G>,
-    /// The fitness of each; empty until they are evaluated.
+    /// Fitness of each individual; empty until they are evaluated.
     pub fitness: Vec<f64>,
-    /// The fittest individual of all generations so far.
+    /// Fittest individual of all generations so far.
     pub best: Option<Individual<G>>,
-    /// A row for each generation that was evaluated.
+    /// Statistics of each evaluated generation.
     pub history: Vec<GenerationStatistics>,
 }
 
 impl<G: Genome> Population<G> {
-    /// A population at its beginning. Fails when there is nobody, or when lengths differ.
+    /// The initial population of a run.
+    ///
+    /// # Errors
+    ///
+    /// If there are no genomes, or their lengths differ.
     pub fn new(genomes: Vec<G>, seed: u64) -> Result<Self> {
         let population =
             Self { seed, generation: 0, genomes, fitness: Vec::new(), best: None, history: Vec::new() };
@@ -49,8 +53,12 @@ impl<G: Genome> Population<G> {
         Ok(population)
     }
 
-    /// Fails when this cannot be gone on from: nobody, genomes of different lengths, another number of fitness values
-    /// than of individuals, a history or a best individual that are not of this run.
+    /// Checks that the run can be resumed.
+    ///
+    /// # Errors
+    ///
+    /// If there are no genomes, their lengths differ, fitness values are missing, or history and best
+    /// individual do not fit the run.
     pub fn validate(&self) -> Result<()> {
         let Some(first) = self.genomes.first() else {
             return Err(Error::invalid_input("population", "empty", "at least one individual"));
@@ -70,7 +78,7 @@ impl<G: Genome> Population<G> {
         self.validate_past(length)
     }
 
-    /// Fails unless there is a row for each generation and a best individual among those evaluated.
+    /// Checks that there is a row per generation, and a best individual once there are any.
     fn validate_past(&self, length: usize) -> Result<()> {
         let rows = self.generation.saturating_add(u64::from(self.is_evaluated()));
         let numbered = self.history.iter().zip(0..).all(|(row, generation)| row.generation == generation);
@@ -92,24 +100,24 @@ impl<G: Genome> Population<G> {
         Ok(())
     }
 
-    /// Whether the fitness of this generation is known.
+    /// Whether this generation is evaluated.
     pub fn is_evaluated(&self) -> bool {
         !self.fitness.is_empty()
     }
 
-    /// The present generation's trials.
+    /// Identity of the present generation's trials.
     pub fn round(&self) -> Round {
         Round { seed: self.seed, generation: self.generation }
     }
 
-    /// Places of the individuals, the fittest first; equals in the order in which they stand.
+    /// Indices of the individuals, fittest first; ties keep their order.
     pub fn ranking(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.fitness.len()).collect();
         order.sort_by(|&a, &b| self.fitness[b].total_cmp(&self.fitness[a]));
         order
     }
 
-    /// A number that tells populations apart: FNV-1a over all genes and fitness values.
+    /// FNV-1a hash of all genes and fitness values.
     pub fn hash(&self) -> u64 {
         let mut hash = 0xcbf2_9ce4_8422_2325_u64;
         let mut mix = |bytes: &[u8]| {
@@ -126,7 +134,7 @@ impl<G: Genome> Population<G> {
         self.history.last().map_or(0, |row| row.evaluations)
     }
 
-    /// Finds out how fit everybody is.
+    /// Evaluates all individuals.
     pub(super) fn evaluate(&mut self, evaluator: &mut dyn Evaluator<G>) -> Result<()> {
         let fitness = evaluator.evaluate(&self.genomes, self.round())?;
         check_fitness(&fitness, self.genomes.len(), self.round())?;
@@ -135,7 +143,7 @@ impl<G: Genome> Population<G> {
         Ok(())
     }
 
-    /// Takes in the generation after so many new evaluations: its row, and the fittest so far.
+    /// Records the generation after `evaluated` new evaluations: statistics and fittest individual.
     pub(super) fn note(&mut self, evaluated: usize) {
         let evaluations = self.evaluations() + evaluated as u64;
         let row = GenerationStatistics::new(self.generation, evaluations, &self.genomes, &self.fitness);

@@ -6,11 +6,11 @@ use super::evaluator::{Evaluator, Round, Trial};
 use super::genome::Genome;
 use crate::io::{Error, ErrorKind, Result};
 
-/// Evaluates individuals in other processes, which may run on other machines.
+/// Evaluates individuals in other processes, possibly on other machines.
 ///
-/// A process gets one individual a line on its standard input: seed, generation, index, and the genome's bytes in
-/// hexadecimal digits. It answers each with a line: the index and the bits of the fitness in hexadecimal digits, or
-/// `error` and a message. [`serve`] is such a process in one call.
+/// A process receives one individual per line on standard input: seed, generation, index, and the genome's
+/// bytes in hexadecimal. It answers each with a line: the index and the bits of the fitness in hexadecimal,
+/// or `error` and a message. [`serve`] implements such a process.
 #[derive(Debug)]
 pub struct Processes {
     workers: Vec<Worker>,
@@ -24,7 +24,11 @@ struct Worker {
 }
 
 impl Processes {
-    /// Starts so many processes of a command. Fails when one cannot be started.
+    /// Starts `count` processes of a command.
+    ///
+    /// # Errors
+    ///
+    /// If `count` is 0 or a process cannot be started.
     pub fn start(count: usize, mut command: impl FnMut() -> Command) -> Result<Self> {
         if count == 0 {
             return Err(Error::invalid_input("processes", count, "at least 1"));
@@ -37,7 +41,7 @@ impl Processes {
 impl<G: Genome> Evaluator<G> for Processes {
     fn evaluate(&mut self, genomes: &[G], round: Round) -> Result<Vec<f64>> {
         let next = AtomicUsize::new(0);
-        // Whoever is free takes the next individual; its place decides where the fitness goes.
+        // Any idle worker takes the next individual; the index determines where the fitness goes.
         let work = |worker: &mut Worker| -> Result<Vec<(usize, f64)>> {
             let mut found = Vec::new();
             loop {
@@ -49,7 +53,7 @@ impl<G: Genome> Evaluator<G> for Processes {
         let answers = std::thread::scope(|scope| {
             let threads: Vec<_> =
                 self.workers.iter_mut().map(|worker| scope.spawn(|| work(worker))).collect();
-            let crashed = |_| Err(Error::new(ErrorKind::Other, "a thread of the evaluation panicked"));
+            let crashed = |_| Err(Error::new(ErrorKind::Other, "an evaluation thread panicked"));
             threads
                 .into_iter()
                 .map(|thread| thread.join().unwrap_or_else(crashed))
@@ -75,7 +79,7 @@ impl Worker {
         Ok(Self { child, input, output: BufReader::new(output) })
     }
 
-    /// The fitness that the process finds.
+    /// Asks the process for the fitness.
     fn ask<G: Genome>(&mut self, genome: &G, trial: Trial) -> Result<f64> {
         let question = question(genome, trial);
         let mut answer = String::new();
@@ -87,7 +91,7 @@ impl Worker {
         }
     }
 
-    /// The error of a process that is gone.
+    /// The error of a process that has ended.
     fn lost(&mut self, error: Option<std::io::Error>) -> Error {
         let status = self.child.wait().map_or_else(|_| "unknown".into(), |status| status.to_string());
         let message = format!("a process of the evaluation ended: {status}");
@@ -101,13 +105,17 @@ impl Worker {
 
 impl Drop for Worker {
     fn drop(&mut self) {
-        // The end of its input ends a process that reads it; one that does not is ended here.
+        // A process that reads its input ends with it; any other is killed here.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// Answers what [`Processes`] asks, until the input ends: the main function of an evaluating process.
+/// Answers the questions of [`Processes`] until the input ends: the main function of an evaluation process.
+///
+/// # Errors
+///
+/// If a question is malformed or the connection breaks.
 pub fn serve<G: Genome>(
     input: impl BufRead,
     mut output: impl Write,
@@ -205,7 +213,7 @@ mod tests {
     fn processes_that_end_or_cannot_start_are_errors() {
         let error = Processes::start(1, || Command::new("/no/such/program")).unwrap_err();
         assert_eq!(error.to_string(), "a process of the evaluation cannot be started");
-        // The test program, told to run a test that it does not have, ends without an answer.
+        // The test binary, run with a test name that does not exist, ends without an answer.
         let idle = || {
             let mut command = Command::new(std::env::current_exe().unwrap());
             command.args(["--exact", "no such test"]);

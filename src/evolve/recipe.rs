@@ -5,21 +5,22 @@ use super::selection::Selection;
 use crate::io::Result;
 use crate::random::Stream;
 
-/// How the next individuals come from the present ones.
+/// How the next individuals are bred.
 #[derive(Debug)]
 pub struct Recipe<G> {
-    /// How parents are chosen.
+    /// Selection of parents.
     pub selection: Selection,
-    /// How two parents become two children.
+    /// Recombination of two parents.
     pub crossover: Box<dyn Crossover<G>>,
-    /// How children are changed.
+    /// Mutation of the children.
     pub mutation: Box<dyn Mutation<G>>,
-    /// Individuals that enter the next generation unchanged, the fittest first.
+    /// Number of the fittest individuals that enter the next generation unchanged.
     pub elite: usize,
 }
 
 impl<G: Genome<Gene = u8>> Recipe<G> {
-    /// The book's: wheel of fitness, one cut, so many flipped bits in a generation, the best one kept.
+    /// The book's recipe: roulette wheel, one-point crossover, `mutations` flipped bits per generation, elite
+    /// of one.
     pub fn book(mutations: usize) -> Self {
         Self {
             selection: Selection::Wheel,
@@ -35,7 +36,7 @@ impl<G: Genome> Recipe<G> {
         self.selection.validate()
     }
 
-    /// So many mutated children of parents chosen by fitness.
+    /// Breeds `count` mutated children.
     pub(super) fn breed(&self, parents: &[G], fitness: &[f64], count: usize, random: &mut Stream) -> Vec<G> {
         let selector = self.selection.among(fitness);
         let mut children = Vec::with_capacity(count + 1);

@@ -1,27 +1,31 @@
 use crate::io::{Error, Result};
 use crate::random::Stream;
 
-/// How parents are chosen.
+/// Selection of parents.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Selection {
-    /// The wheel of fitness (book, section 12.3): an individual with twice the fitness is chosen twice as often.
-    /// Fitness below zero counts as zero; when no fitness is above zero, all are chosen alike.
+    /// Roulette wheel (book, section 12.3): the probability is proportional to the fitness. Negative fitness
+    /// counts as 0; if no fitness is positive, all are equally likely.
     Wheel,
-    /// The fittest of so many individuals drawn at random.
+    /// Tournament: the fittest of `size` individuals drawn at random.
     Tournament {
-        /// Individuals in a tournament, at least 1.
+        /// Tournament size, at least 1.
         size: usize,
     },
-    /// By rank: the fittest is chosen `pressure` times as often as the average, the least fit `2 - pressure` times,
-    /// the others in between. Equal fitness shares its ranks.
+    /// Linear ranking: the fittest is selected `pressure` times as often as the average, the least fit
+    /// `2 - pressure` times. Equal fitness shares its ranks.
     Rank {
-        /// From 1, all alike, to 2.
+        /// Selection pressure, from 1 (uniform) to 2.
         pressure: f64,
     },
 }
 
 impl Selection {
-    /// Fails with what is out of range.
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    ///
+    /// If one is out of range.
     pub fn validate(&self) -> Result<()> {
         match *self {
             Selection::Tournament { size: 0 } => {
@@ -34,7 +38,7 @@ impl Selection {
         }
     }
 
-    /// Prepares to choose among individuals of the given fitness.
+    /// Prepares the selection for the given fitness values.
     pub fn among(self, fitness: &[f64]) -> Selector<'_> {
         let cumulative = match self {
             Selection::Wheel => running_sums(fitness.iter().map(|f| f.max(0.0))),
@@ -45,17 +49,17 @@ impl Selection {
     }
 }
 
-/// Chooses parents of one generation.
+/// Selects parents of one generation.
 #[derive(Debug, Clone)]
 pub struct Selector<'a> {
     selection: Selection,
     fitness: &'a [f64],
-    /// Sums of the weights up to and including each individual.
+    /// Running sums of the weights.
     cumulative: Vec<f64>,
 }
 
 impl Selector<'_> {
-    /// The index of a parent; 0 when there is nobody.
+    /// Draws the index of a parent; 0 if there are no individuals.
     pub fn select(&self, random: &mut Stream) -> usize {
         match self.selection {
             Selection::Tournament { size } => self.tournament(size, random),
@@ -93,7 +97,7 @@ fn running_sums(weights: impl Iterator<Item = f64>) -> Vec<f64> {
         .collect()
 }
 
-/// The weight of each individual by its rank among all.
+/// Weight of each individual by its rank.
 fn rank_weights(fitness: &[f64], pressure: f64) -> Vec<f64> {
     let mut order: Vec<usize> = (0..fitness.len()).collect();
     order.sort_by(|&a, &b| fitness[a].total_cmp(&fitness[b]));
@@ -114,7 +118,7 @@ fn rank_weights(fitness: &[f64], pressure: f64) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// How often each is chosen in many draws, as a part of all.
+    /// Relative frequency of each individual in many draws.
     fn shares(selection: Selection, fitness: &[f64]) -> Vec<f64> {
         let selector = selection.among(fitness);
         let mut random = Stream::new(5);
@@ -159,7 +163,7 @@ mod tests {
 
     #[test]
     fn the_fittest_wins_every_tournament_that_it_is_in() {
-        // Chances that the best of two draws is the lowest, the middle, the highest.
+        // Probabilities that the better of two draws is the lowest, the middle, the highest.
         let expected = [1.0 / 9.0, 3.0 / 9.0, 5.0 / 9.0];
         assert!(near(&shares(Selection::Tournament { size: 2 }, &[1.0, 2.0, 9.0]), &expected));
     }

@@ -1,21 +1,20 @@
 use super::genome::Genome;
 
-/// A generation in numbers.
+/// Statistics of a generation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub struct GenerationStatistics {
-    /// The generation, from 0.
+    /// Index of the generation, from 0.
     pub generation: u64,
-    /// Individuals evaluated since the start, this generation included.
+    /// Number of evaluations since the start, this generation included.
     pub evaluations: u64,
-    /// The greatest fitness.
+    /// Maximum fitness.
     pub best: f64,
-    /// The mean fitness.
+    /// Mean fitness.
     pub mean: f64,
-    /// The least fitness.
+    /// Minimum fitness.
     pub worst: f64,
-    /// How much the genomes differ: the standard deviation of a gene among the individuals, as the mean over all
-    /// genes.
+    /// Diversity of the genomes: standard deviation of a gene over the individuals, averaged over the genes.
     pub diversity: f64,
 }
 
@@ -32,7 +31,7 @@ impl GenerationStatistics {
     }
 }
 
-/// Generations as lines of comma-separated values, the first line with their names.
+/// The generations as comma-separated values with a header line.
 ///
 /// ```
 /// use roverlab::evolve::{Evolution, Genetic, Recipe, Serial, StopRules, Trial, table};

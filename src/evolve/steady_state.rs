@@ -6,11 +6,11 @@ use super::recipe::Recipe;
 use crate::io::{Error, Result};
 use crate::random::Stream;
 
-/// A genetic algorithm without generations: a few children at a time take the places of the least fit, if they are
-/// fitter (D. Whitley, "The GENITOR algorithm and selection pressure", ICGA 1989).
+/// A steady-state genetic algorithm: a few children at a time replace the least fit individuals, if they are
+/// at least as fit (D. Whitley, "The GENITOR algorithm and selection pressure", ICGA 1989).
 ///
-/// What other algorithms call a generation is one such replacement here; the first is the evaluation of everybody. The
-/// recipe's elite has no meaning, as the fittest always stay.
+/// One such replacement counts as a generation; the first one evaluates the whole population. The elite of
+/// the recipe is ignored, because the fittest always stay.
 ///
 /// ```
 /// use roverlab::evolve::{Evolution, Recipe, Serial, SteadyState, StopRules, Trial};
@@ -29,12 +29,20 @@ pub struct SteadyState<G> {
 }
 
 impl<G: Genome> SteadyState<G> {
-    /// A run that starts from these genomes and makes so many children at a time.
+    /// A run that starts from `genomes` and breeds `children` children at a time.
+    ///
+    /// # Errors
+    ///
+    /// If there are no genomes, their lengths differ, the recipe is out of range, or `children` is 0.
     pub fn new(genomes: Vec<G>, recipe: Recipe<G>, children: usize, seed: u64) -> Result<Self> {
         Self::resume(Population::new(genomes, seed)?, recipe, children)
     }
 
-    /// A run that goes on from where another one was.
+    /// Resumes a run.
+    ///
+    /// # Errors
+    ///
+    /// As for [`new`](Self::new).
     pub fn resume(population: Population<G>, recipe: Recipe<G>, children: usize) -> Result<Self> {
         population.validate()?;
         recipe.validate()?;
@@ -44,7 +52,7 @@ impl<G: Genome> SteadyState<G> {
         Ok(Self { population, recipe, children })
     }
 
-    /// Puts a child into the place of the least fit, if it is no less fit.
+    /// Replaces the least fit individual by a child that is at least as fit.
     fn place(&mut self, genome: G, fitness: f64) {
         let Some(&last) = self.population.ranking().last() else { return };
         if fitness >= self.population.fitness[last] {
@@ -59,7 +67,7 @@ impl<G: Genome> Evolution<G> for SteadyState<G> {
         &self.population
     }
 
-    /// Evaluates everybody at first, and afterwards makes and places children.
+    /// Evaluates the initial population first; afterwards breeds and places children.
     fn step(&mut self, evaluator: &mut dyn Evaluator<G>) -> Result<()> {
         if !self.population.is_evaluated() {
             return self.population.evaluate(evaluator);

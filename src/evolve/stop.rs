@@ -3,32 +3,32 @@ use super::statistics::GenerationStatistics;
 /// When to stop. A run has at least one generation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StopRules {
-    /// After so many generations, the first included.
+    /// Maximum number of generations, the first included.
     pub generations: u64,
-    /// As soon as somebody is this fit.
+    /// Fitness that ends the run.
     pub goal: Option<f64>,
-    /// After so many generations in which the best fitness has not grown.
+    /// Number of generations without improvement that ends the run.
     pub stagnation: Option<u64>,
 }
 
 /// Why a run stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StopReason {
-    /// All generations are over.
+    /// The maximum number of generations was reached.
     Generations,
-    /// Somebody is fit enough.
+    /// The goal was reached.
     Goal,
-    /// The best fitness has not grown for too long.
+    /// The best fitness stagnated.
     Stagnation,
 }
 
 impl StopRules {
-    /// After so many generations, whatever happens.
+    /// Stops only after a number of generations.
     pub fn generations(generations: u64) -> Self {
         Self { generations, goal: None, stagnation: None }
     }
 
-    /// Why to stop after these generations, if at all.
+    /// The rule that stops a run with this history, if any.
     pub fn verdict(&self, history: &[GenerationStatistics]) -> Option<StopReason> {
         let last = history.last()?;
         if self.goal.is_some_and(|goal| history.iter().any(|row| row.best >= goal)) {

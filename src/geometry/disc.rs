@@ -1,7 +1,8 @@
 use super::{Point, Vector, cross};
 
-/// How a disc about the origin that moves in a direction, a unit vector, meets a point: the metres until its middle is beside
-/// the point, and by how many its rim is there before. `None` for what it passes, and for what lies behind its middle.
+/// Meeting of a moving disc with a point. The disc is centred at the origin and moves along the unit vector
+/// `towards`. Returns the distance (m) until its centre is level with the point, and by how much (m) its rim
+/// gets there earlier. `None` for points beside its path or behind its centre.
 ///
 /// ```
 /// use roverlab::geometry::{Point, Vector, meeting};
@@ -15,8 +16,9 @@ pub fn meeting(point: &Point, towards: Vector, radius: f64) -> Option<(f64, f64)
     (along > 0.0 && depth > 0.0).then(|| (along, depth.sqrt()))
 }
 
-/// How far such a disc can move until it touches one of some points, and which: in metres, infinite where none is in the way.
-/// Less than 0 for a point ahead that lies within the disc already.
+/// Distance (m) that the disc can move until it touches one of `points`, and that point; infinite and `None`
+/// if its path is free. Negative for a point ahead that is already inside the disc. Linear in the number of
+/// points.
 ///
 /// ```
 /// use roverlab::geometry::{Point, Vector, free_distance};

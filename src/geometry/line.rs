@@ -2,8 +2,8 @@ use nalgebra::Vector2;
 
 use super::{Point, Vector, cross, direction, math};
 
-/// A straight line through points, such that the sum of its squared distances from them is least (K. Pearson, "On lines and
-/// planes of closest fit to systems of points in space", 1901).
+/// Total least-squares fit of a straight line: minimises the squared perpendicular distances (K. Pearson, "On
+/// lines and planes of closest fit to systems of points in space", 1901).
 ///
 /// ```
 /// use roverlab::geometry::{FittedLine, Point};
@@ -13,20 +13,20 @@ use super::{Point, Vector, cross, direction, math};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FittedLine {
-    /// The mean of the points.
+    /// Mean of the points.
     pub middle: Point,
     /// Unit vector along the line, from the first points to the last.
     pub direction: Vector,
-    /// Root of the mean squared distance of the points from the line, in metres.
+    /// RMS distance of the points from the line (m).
     pub rms: f64,
-    /// How far the points reach along the line, in metres.
+    /// Extent of the points along the line (m).
     pub length: f64,
-    /// How many points there are.
+    /// Number of points.
     pub points: usize,
 }
 
 impl FittedLine {
-    /// The line through two points or more that are not all the same; `None` for fewer.
+    /// Fits a line to at least two points that are not all equal; otherwise `None`.
     pub fn through(points: impl Iterator<Item = Point> + Clone) -> Option<Self> {
         let mut count = 0_usize;
         let mut sum = Vector2::zeros();
@@ -48,13 +48,13 @@ impl FittedLine {
         if (xx + yy).is_nan() || xx + yy <= 1e-18 * count as f64 {
             return None;
         }
-        // The direction of the larger eigenvector.
+        // Direction of the eigenvector with the larger eigenvalue.
         let angle = 0.5 * math::atan2(2.0 * xy, xx - yy);
         let mut along_line = direction(angle);
         let spread = math::hypot(0.5 * (xx - yy), xy);
         let rms = ((0.5 * (xx + yy) - spread).max(0.0) / count as f64).sqrt();
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        // Later points lie farther along the line.
+        // Later points shall lie farther along the line.
         let mut trend = 0.0;
         for (index, point) in points.enumerate() {
             let along = (point - middle).dot(&along_line);
@@ -68,17 +68,17 @@ impl FittedLine {
         Some(Self { middle, direction: along_line, rms, length: high - low, points: count })
     }
 
-    /// Metres from the line to a point, positive to the left of its direction.
+    /// Signed distance from the line to a point, positive to the left (m).
     pub fn distance_to(&self, point: Point) -> f64 {
         cross(self.direction, point - self.middle)
     }
 
-    /// The angle of the direction in radians.
+    /// Angle of the direction (rad).
     pub fn angle(&self) -> f64 {
         math::atan2(self.direction.y, self.direction.x)
     }
 
-    /// Where the lines cross; `None` for parallel ones.
+    /// Intersection of two lines; `None` if they are parallel.
     pub fn crossing(&self, other: &Self) -> Option<Point> {
         let parallel = cross(self.direction, other.direction);
         if parallel.abs() < 1e-9 {
@@ -88,7 +88,7 @@ impl FittedLine {
         Some(self.middle + self.direction * along)
     }
 
-    /// The foot of a point on the line.
+    /// Projection of a point onto the line.
     pub fn foot(&self, point: Point) -> Point {
         self.middle + self.direction * (point - self.middle).dot(&self.direction)
     }

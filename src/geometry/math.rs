@@ -1,8 +1,8 @@
-//! Elementary functions with the same bits on every platform.
+//! Elementary functions with identical bits on every platform.
 //!
-//! The platform's own `sin`, `ln` and friends differ in the last bit between C libraries, which is enough to make
-//! two simulated runs part. These go through the `libm` crate. Square roots, fused products aside, are exact by
-//! IEEE 754 and need no detour.
+//! `sin`, `ln` and the like differ in the last bit between C libraries, which is enough to make two simulated
+//! runs diverge. These functions use the `libm` crate. Square roots are exact by IEEE 754 and need no
+//! replacement.
 //!
 //! ```
 //! use roverlab::geometry::math::{acos, asin, atan, atan2, cos, exp, hypot, ln, pow, sin, sin_cos, tan};
@@ -15,25 +15,25 @@
 //! assert!(is(hypot(3.0, 4.0), 5.0) && is(ln(exp(2.0)), 2.0) && is(pow(9.0, 0.5), 3.0));
 //! ```
 
-/// Sine of an angle in radians.
+/// Sine of an angle (rad).
 #[inline]
 pub fn sin(x: f64) -> f64 {
     libm::sin(x)
 }
 
-/// Cosine of an angle in radians.
+/// Cosine of an angle (rad).
 #[inline]
 pub fn cos(x: f64) -> f64 {
     libm::cos(x)
 }
 
-/// Sine and cosine of an angle in radians.
+/// Sine and cosine of an angle (rad).
 #[inline]
 pub fn sin_cos(x: f64) -> (f64, f64) {
     libm::sincos(x)
 }
 
-/// Tangent of an angle in radians.
+/// Tangent of an angle (rad).
 #[inline]
 pub fn tan(x: f64) -> f64 {
     libm::tan(x)
@@ -57,19 +57,19 @@ pub fn atan(x: f64) -> f64 {
     libm::atan(x)
 }
 
-/// The angle of the vector `(x, y)`, in `-pi..=pi`.
+/// Angle of the vector `(x, y)`, in `-pi..=pi`.
 #[inline]
 pub fn atan2(y: f64, x: f64) -> f64 {
     libm::atan2(y, x)
 }
 
-/// The natural exponential.
+/// Natural exponential.
 #[inline]
 pub fn exp(x: f64) -> f64 {
     libm::exp(x)
 }
 
-/// The natural logarithm.
+/// Natural logarithm.
 #[inline]
 pub fn ln(x: f64) -> f64 {
     libm::log(x)
@@ -81,7 +81,7 @@ pub fn pow(x: f64, y: f64) -> f64 {
     libm::pow(x, y)
 }
 
-/// The length of the vector `(x, y)`. Plain: no care for overflow, which metres do not reach.
+/// Length of the vector `(x, y)`, without protection against overflow.
 #[inline]
 pub fn hypot(x: f64, y: f64) -> f64 {
     (x * x + y * y).sqrt()

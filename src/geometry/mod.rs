@@ -1,7 +1,7 @@
-//! Poses, twists, angles and unit conversions: the geometry that every other module shares.
+//! Poses, twists, angles and unit conversions, shared by all modules.
 //!
-//! Conventions follow ROS REP 103: metres and radians, x forward, y left, angles counter-clockwise. Millimetres
-//! and degrees, which the book, EyeSim's files and the command line use, are converted here and nowhere else.
+//! Conventions follow ROS REP 103: metres and radians, x forward, y left, angles counter-clockwise. The book,
+//! EyeSim's files and the command line use millimetres and degrees; only this module converts them.
 
 mod disc;
 mod line;
@@ -19,19 +19,20 @@ pub use pose3::Pose3;
 pub use shapes::{Aabb, Segment};
 pub use side::WallSide;
 
-/// A point in the plane, in metres.
+/// A point in the plane (m).
 pub type Point = nalgebra::Point2<f64>;
 
-/// A vector in the plane, in metres.
+/// A vector in the plane (m).
 pub type Vector = nalgebra::Vector2<f64>;
 
-/// A point in space, in metres.
+/// A point in space (m).
 pub type Point3 = nalgebra::Point3<f64>;
 
-/// A vector in space, in metres.
+/// A vector in space (m).
 pub type Vector3 = nalgebra::Vector3<f64>;
 
-/// The cross product's z component, `a.x * b.y - a.y * b.x`: positive when `b` lies counter-clockwise of `a`.
+/// The z component of the cross product, `a.x * b.y - a.y * b.x`: positive if `b` lies counter-clockwise of
+/// `a`.
 ///
 /// ```
 /// use roverlab::geometry::{Vector, cross};
@@ -42,7 +43,7 @@ pub fn cross(a: Vector, b: Vector) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
-/// The unit vector that points in the direction `angle`.
+/// Unit vector in the direction `angle` (rad).
 ///
 /// ```
 /// use roverlab::geometry::direction;

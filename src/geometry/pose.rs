@@ -2,9 +2,9 @@ use std::f64::consts::{PI, TAU};
 
 use super::{Point, Vector, direction, math, units};
 
-/// A position and a heading in the plane.
+/// Position and heading in the plane.
 ///
-/// As a transformation it maps points of its own frame (x forward, y left) to the frame it is given in:
+/// As a transformation it maps points of its own frame (x forward, y left) to its parent frame:
 ///
 /// ```
 /// use roverlab::geometry::{Point, Pose};
@@ -14,11 +14,11 @@ use super::{Point, Vector, direction, math, units};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Pose {
-    /// Metres along x.
+    /// x coordinate (m).
     pub x: f64,
-    /// Metres along y.
+    /// y coordinate (m).
     pub y: f64,
-    /// Radians counter-clockwise from the x axis.
+    /// Angle from the x axis, counter-clockwise (rad).
     pub heading: f64,
 }
 
@@ -33,62 +33,62 @@ impl Pose {
         Self::new(units::from_mm(x), units::from_mm(y), units::from_deg(heading))
     }
 
-    /// The position alone.
+    /// Position.
     #[inline]
     pub fn position(&self) -> Point {
         Point::new(self.x, self.y)
     }
 
-    /// The unit vector along the heading.
+    /// Unit vector along the heading.
     #[inline]
     pub fn forward(&self) -> Vector {
         direction(self.heading)
     }
 
-    /// Maps a point of this pose's frame to the frame that the pose is given in.
+    /// Transforms a point from the pose's own frame to the parent frame.
     pub fn to_world(&self, local: Point) -> Point {
         let (sin, cos) = math::sin_cos(self.heading);
         Point::new(self.x + cos * local.x - sin * local.y, self.y + sin * local.x + cos * local.y)
     }
 
-    /// Maps a point of the frame that this pose is given in to the pose's own frame.
+    /// Transforms a point from the parent frame to the pose's own frame.
     pub fn to_local(&self, world: Point) -> Point {
         let (sin, cos) = math::sin_cos(self.heading);
         let (dx, dy) = (world.x - self.x, world.y - self.y);
         Point::new(cos * dx + sin * dy, cos * dy - sin * dx)
     }
 
-    /// The pose `other`, given in this pose's frame, in the frame that this pose is given in.
+    /// Transforms the pose `other` from this pose's own frame to the parent frame.
     #[must_use]
     pub fn compose(&self, other: &Pose) -> Pose {
         let position = self.to_world(other.position());
         Pose::new(position.x, position.y, normalize_angle(self.heading + other.heading))
     }
 
-    /// The pose that undoes this one: `p.compose(&p.inverse())` is the origin.
+    /// Inverse transformation: `p.compose(&p.inverse())` is the origin.
     #[must_use]
     pub fn inverse(&self) -> Pose {
         let origin = self.to_local(Point::origin());
         Pose::new(origin.x, origin.y, normalize_angle(-self.heading))
     }
 
-    /// The angle, relative to the heading, under which a point is seen, in `-pi..=pi`.
+    /// Bearing of a point relative to the heading, in `-pi..=pi` (rad).
     pub fn bearing_to(&self, point: Point) -> f64 {
         normalize_angle(math::atan2(point.y - self.y, point.x - self.x) - self.heading)
     }
 
-    /// The distance to a point in metres.
+    /// Distance to a point (m).
     pub fn distance_to(&self, point: Point) -> f64 {
         (point - self.position()).norm()
     }
 
-    /// Whether every component is a finite number.
+    /// Whether all components are finite.
     pub fn is_finite(&self) -> bool {
         self.x.is_finite() && self.y.is_finite() && self.heading.is_finite()
     }
 }
 
-/// A velocity in the plane: the v-omega of RoBIOS and the planar part of a ROS `Twist`.
+/// Velocity in the plane: the v-omega of RoBIOS and the planar part of a ROS `Twist`.
 ///
 /// ```
 /// use roverlab::geometry::Twist;
@@ -97,28 +97,28 @@ impl Pose {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Twist {
-    /// Metres per second forward.
+    /// Forward speed (m/s).
     pub linear: f64,
-    /// Radians per second counter-clockwise.
+    /// Angular velocity, counter-clockwise (rad/s).
     pub angular: f64,
 }
 
 impl Twist {
-    /// Standing still.
+    /// Zero velocity.
     pub const STOP: Twist = Twist { linear: 0.0, angular: 0.0 };
 
-    /// A twist from metres per second and radians per second.
+    /// A twist from m/s and rad/s.
     pub const fn new(linear: f64, angular: f64) -> Self {
         Self { linear, angular }
     }
 
-    /// Whether both components are finite numbers.
+    /// Whether both components are finite.
     pub fn is_finite(&self) -> bool {
         self.linear.is_finite() && self.angular.is_finite()
     }
 }
 
-/// The same direction in `-pi..=pi`.
+/// The equivalent angle in `-pi..=pi`.
 ///
 /// ```
 /// use roverlab::geometry::normalize_angle;
@@ -133,7 +133,7 @@ pub fn normalize_angle(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }
 
-/// The turn from direction `from` to direction `to`, in `-pi..=pi`.
+/// Angle from direction `from` to direction `to`, in `-pi..=pi`.
 ///
 /// ```
 /// use roverlab::geometry::angle_difference;

@@ -2,11 +2,11 @@ use nalgebra::{Quaternion, UnitQuaternion};
 
 use super::{Point3, Pose, Vector3, math};
 
-/// A place and an attitude in space.
+/// Position and attitude in space.
 ///
-/// As a transformation it maps points of its own frame (x forward, y left, z up) to the frame it is given in. Its
-/// attitude is a unit quaternion; roll, pitch and yaw are its fixed-axis angles about x, y and z in this order (ROS
-/// REP 103), so that a positive pitch lowers the nose and a positive roll lifts the left side.
+/// As a transformation it maps points of its own frame (x forward, y left, z up) to its parent frame. The
+/// attitude is a unit quaternion; roll, pitch and yaw are fixed-axis rotations about x, y and z in this order
+/// (ROS REP 103), so a positive pitch lowers the nose and a positive roll lifts the left side.
 ///
 /// ```
 /// use roverlab::geometry::{Point3, Pose, Pose3};
@@ -16,22 +16,22 @@ use super::{Point3, Pose, Vector3, math};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose3 {
-    /// Metres along x, y and upwards.
+    /// Coordinates, z upwards (m).
     pub position: Point3,
-    /// The rotation from its own frame to the frame it is given in.
+    /// Rotation from its own frame to the parent frame.
     pub attitude: UnitQuaternion<f64>,
 }
 
-/// How near to 1 the sine of a pitch is when roll and yaw turn about the same axis.
+/// Sine of the pitch above which roll and yaw are indistinguishable (gimbal lock).
 const UPRIGHT: f64 = 1.0 - 1e-12;
 
 impl Pose3 {
-    /// A pose from a place and a rotation.
+    /// A pose from position and rotation.
     pub fn new(position: Point3, attitude: UnitQuaternion<f64>) -> Self {
         Self { position, attitude }
     }
 
-    /// A pose from a place and angles in radians.
+    /// A pose from position and angles (rad).
     pub fn from_angles(position: Point3, roll: f64, pitch: f64, yaw: f64) -> Self {
         let [(sr, cr), (sp, cp), (sy, cy)] = [roll, pitch, yaw].map(|angle| math::sin_cos(0.5 * angle));
         let attitude = Quaternion::new(
@@ -43,20 +43,20 @@ impl Pose3 {
         Self { position, attitude: UnitQuaternion::new_unchecked(attitude) }
     }
 
-    /// A level pose above one in the plane.
+    /// A level pose at an elevation (m) above a planar pose.
     pub fn level(pose: Pose, elevation: f64) -> Self {
         Self::from_angles(Point3::new(pose.x, pose.y, elevation), 0.0, 0.0, pose.heading)
     }
 
-    /// Its projection onto the plane.
+    /// Projection onto the plane.
     pub fn pose(&self) -> Pose {
         let [_, _, yaw] = self.roll_pitch_yaw();
         Pose::new(self.position.x, self.position.y, yaw)
     }
 
-    /// Roll, pitch and yaw in radians: roll and yaw in `-pi..=pi`, pitch in `-pi/2..=pi/2`.
+    /// Roll and yaw in `-pi..=pi`, pitch in `-pi/2..=pi/2` (rad).
     ///
-    /// With the nose straight up or down roll and yaw turn about one axis; the roll is 0 then.
+    /// If the nose points straight up or down, the roll is 0.
     pub fn roll_pitch_yaw(&self) -> [f64; 3] {
         let [forward, left, up] = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| self.rotate(axis));
         if forward.z.abs() >= UPRIGHT {
@@ -66,45 +66,45 @@ impl Pose3 {
         [math::atan2(left.z, up.z), math::asin(-forward.z), math::atan2(forward.y, forward.x)]
     }
 
-    /// The angle between its upright axis and the vertical, in `0..=pi`.
+    /// Angle between its z axis and the vertical, in `0..=pi` (rad).
     pub fn tilt(&self) -> f64 {
         let up = self.up();
         math::atan2(math::hypot(up.x, up.y), up.z)
     }
 
-    /// Its upright axis.
+    /// Its z axis in the parent frame.
     pub fn up(&self) -> Vector3 {
         self.rotate(Vector3::z())
     }
 
-    /// A vector of its own frame in the frame it is given in.
+    /// Rotates a vector from its own frame to the parent frame.
     pub fn rotate(&self, own: Vector3) -> Vector3 {
         self.attitude * own
     }
 
-    /// Maps a point of its own frame to the frame it is given in.
+    /// Transforms a point from its own frame to the parent frame.
     pub fn to_world(&self, local: Point3) -> Point3 {
         self.position + self.rotate(local.coords)
     }
 
-    /// Maps a point of the frame it is given in to its own frame.
+    /// Transforms a point from the parent frame to its own frame.
     pub fn to_local(&self, world: Point3) -> Point3 {
         Point3::from(self.attitude.inverse() * (world - self.position))
     }
 
-    /// The pose `other`, given in this pose's frame, in the frame that this pose is given in.
+    /// Transforms the pose `other` from this pose's own frame to the parent frame.
     #[must_use]
     pub fn compose(&self, other: &Pose3) -> Pose3 {
         Self { position: self.to_world(other.position), attitude: self.attitude * other.attitude }
     }
 
-    /// The pose that undoes this one: `p.compose(&p.inverse())` is the origin.
+    /// Inverse transformation: `p.compose(&p.inverse())` is the origin.
     #[must_use]
     pub fn inverse(&self) -> Pose3 {
         Self { position: self.to_local(Point3::origin()), attitude: self.attitude.inverse() }
     }
 
-    /// Whether every component is a finite number.
+    /// Whether all components are finite.
     pub fn is_finite(&self) -> bool {
         self.position.coords.iter().chain(self.attitude.coords.iter()).all(|part| part.is_finite())
     }
@@ -168,7 +168,7 @@ mod tests {
             let [r, q, y] = p.roll_pitch_yaw();
             prop_assert!((q - pitch).abs() < 1e-6);
             let (dr, dy) = (angle_difference(r, roll), angle_difference(y, yaw));
-            // Near the upright they are badly told apart, but their difference or sum is not.
+            // Near gimbal lock, only the sum or difference of roll and yaw is well determined.
             prop_assert!(p.to_world(point).coords.metric_distance(&turn(r, q, y).to_world(point).coords) < 1e-10);
             prop_assert!(pitch.abs() > 1.5 || (dr.abs() < 1e-10 && dy.abs() < 1e-10));
         }

@@ -1,12 +1,12 @@
 use super::{Point, Vector};
 
-/// A straight line between two points.
+/// A line segment between two points.
 ///
 /// ```
 /// use roverlab::geometry::{Point, Segment};
 /// let wall = Segment::new(Point::new(0.0, 0.0), Point::new(2.0, 0.0));
 /// assert_eq!(wall.closest_point(Point::new(0.5, 1.0)), Point::new(0.5, 0.0));
-/// assert_eq!(wall.distance_to(Point::new(5.0, 4.0)), 5.0, "to its end: 3, 4, 5");
+/// assert_eq!(wall.distance_to(Point::new(5.0, 4.0)), 5.0, "to its end: a 3-4-5 triangle");
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Segment {
@@ -22,12 +22,12 @@ impl Segment {
         Self { a, b }
     }
 
-    /// The length in metres.
+    /// Length (m).
     pub fn length(&self) -> f64 {
         (self.b - self.a).norm()
     }
 
-    /// The point of the segment nearest to `point`.
+    /// Point of the segment closest to `point`.
     #[inline]
     pub fn closest_point(&self, point: Point) -> Point {
         let along = self.b - self.a;
@@ -39,14 +39,14 @@ impl Segment {
         self.a + along * t
     }
 
-    /// The distance to a point in metres.
+    /// Distance to a point (m).
     #[inline]
     pub fn distance_to(&self, point: Point) -> f64 {
         (self.closest_point(point) - point).norm()
     }
 }
 
-/// An axis-aligned box.
+/// An axis-aligned bounding box.
 ///
 /// ```
 /// use roverlab::geometry::{Aabb, Point, Vector};
@@ -58,19 +58,19 @@ impl Segment {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Aabb {
-    /// The corner with the smallest coordinates.
+    /// Corner with the smallest coordinates.
     pub min: Point,
-    /// The corner with the largest coordinates.
+    /// Corner with the largest coordinates.
     pub max: Point,
 }
 
 impl Aabb {
-    /// A box between two opposite corners, in any order.
+    /// The box between two opposite corners, in any order.
     pub fn new(a: Point, b: Point) -> Self {
         Self { min: a.inf(&b), max: a.sup(&b) }
     }
 
-    /// The smallest box around some points; `None` without points.
+    /// Bounding box of points; `None` without points.
     pub fn around(points: impl IntoIterator<Item = Point>) -> Option<Self> {
         points.into_iter().fold(None, |bounds: Option<Self>, point| match bounds {
             None => Some(Self { min: point, max: point }),
@@ -78,7 +78,7 @@ impl Aabb {
         })
     }
 
-    /// Width and height in metres.
+    /// Width and height (m).
     pub fn size(&self) -> Vector {
         self.max - self.min
     }
@@ -88,14 +88,14 @@ impl Aabb {
         self.min.x <= point.x && point.x <= self.max.x && self.min.y <= point.y && point.y <= self.max.y
     }
 
-    /// The box grown by `margin` metres on every side.
+    /// The box extended by `margin` (m) on every side.
     #[must_use]
     pub fn inflated(&self, margin: f64) -> Self {
         let m = Vector::new(margin, margin);
         Self { min: self.min - m, max: self.max + m }
     }
 
-    /// The smallest box around both.
+    /// Bounding box of both.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
         Self { min: self.min.inf(&other.min), max: self.max.sup(&other.max) }

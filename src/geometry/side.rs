@@ -1,14 +1,14 @@
-/// A side of the robot: where the wall or the obstacle is that it follows.
+/// Side on which the robot has the wall or obstacle that it follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WallSide {
-    /// To the left: an obstacle is gone round clockwise.
+    /// On the left: it circles an obstacle clockwise.
     Left,
-    /// To the right: an obstacle is gone round counter-clockwise.
+    /// On the right: it circles an obstacle counter-clockwise.
     Right,
 }
 
 impl WallSide {
-    /// The other side.
+    /// The opposite side.
     #[must_use]
     pub fn other(self) -> Self {
         match self {
@@ -17,7 +17,7 @@ impl WallSide {
         }
     }
 
-    /// The sense in which headings are tried from the obstacle outwards: +1 counter-clockwise, -1 clockwise.
+    /// Direction in which headings are scanned, away from the obstacle: +1 counter-clockwise, -1 clockwise.
     #[cfg(feature = "nav")]
     pub(crate) fn sense(self) -> f64 {
         match self {

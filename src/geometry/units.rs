@@ -1,4 +1,4 @@
-//! Millimetres and degrees, as the book, EyeSim's files, RoBIOS and the command line use them.
+//! Conversion of the millimetres and degrees that the book, EyeSim's files, RoBIOS and the command line use.
 //!
 //! ```
 //! use roverlab::geometry::units::{from_deg, from_mm, to_deg, to_mm};
@@ -8,7 +8,7 @@
 
 use std::f64::consts::PI;
 
-/// What gravity accelerates by, in m/s²: standard gravity, 9.80665, as it is usually rounded.
+/// Standard gravity, 9.80665, rounded as usual (m/s²).
 pub const GRAVITY: f64 = 9.81;
 
 /// The farthest from the origin, in metres, that anything stands: larger numbers are mistakes.

@@ -1,11 +1,11 @@
 use super::Result;
 
-/// Motors that a program drives one by one, below the v-omega interface. They are numbered from 1: left, right; or
-/// front left, front right, back left, back right.
+/// Motors driven one by one, below the v-omega interface. They are numbered from 1: left, right; or front
+/// left, front right, back left, back right.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Motors {
-    /// Drives a motor with a fraction of its full speed, -1 to 1, until the next command.
+    /// Drives a motor at a fraction of its full speed, -1 to 1, until the next command.
     fn set_motor(&mut self, motor: u8, fraction: f64) -> Result<()>;
 }
 
@@ -17,13 +17,13 @@ pub trait Servos {
     fn set_servo(&mut self, servo: u8, position: f64) -> Result<()>;
 }
 
-/// Encoders on the motors' shafts, numbered as the motors.
+/// Encoders on the motor shafts, numbered like the motors.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Encoders {
     /// Ticks since the start or the last reset.
     fn encoder(&mut self, motor: u8) -> Result<i64>;
 
-    /// Sets an encoder's count to zero. Odometry is not affected.
+    /// Resets an encoder to zero. Odometry is not affected.
     fn reset_encoder(&mut self, motor: u8) -> Result<()>;
 }

@@ -24,10 +24,10 @@ pub enum Resolution {
 }
 
 impl Resolution {
-    /// All of them, in the order of RoBIOS's numbers.
+    /// All resolutions in RoBIOS's order.
     pub const ALL: [Self; 6] = [Self::Qqvga, Self::Qvga, Self::Vga, Self::Cam1Mp, Self::CamHd, Self::Cam5Mp];
 
-    /// The one of so many columns and rows. Fails if there is none.
+    /// The resolution with these columns and rows. Fails if there is none.
     pub fn of(dimensions: (u32, u32)) -> Result<Self> {
         let found = Self::ALL.into_iter().find(|resolution| resolution.dimensions() == dimensions);
         found.ok_or_else(|| {
@@ -40,7 +40,7 @@ impl Resolution {
         })
     }
 
-    /// Columns and rows.
+    /// Number of columns and rows.
     ///
     /// ```
     /// use roverlab::io::Resolution;
@@ -60,28 +60,28 @@ impl Resolution {
 
 /// A camera (book, section 11.1).
 ///
-/// Images are in colour, 8 bits a channel, the first row on top. A camera on a pan-tilt head is turned through
-/// [`Servos`](super::Servos).
+/// Images are RGB with 8 bits per channel, top row first. [`Servos`](super::Servos) turn a camera on a
+/// pan-tilt head.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Camera {
-    /// Changes the size of the images taken from now on. [`Resolution::Qqvga`] at first.
+    /// Sets the size of later images. Initially [`Resolution::Qqvga`].
     fn set_resolution(&mut self, resolution: Resolution) -> Result<()>;
 
-    /// The size of the images taken now.
+    /// Current image size.
     fn resolution(&mut self) -> Result<Resolution>;
 
-    /// Takes an image into an existing one, whose memory is used again if it has the right size.
+    /// Captures an image into an existing one; its memory is reused if the size matches.
     fn image_into(&mut self, image: &mut RgbImage) -> Result<()>;
 
-    /// Takes an image.
+    /// Captures an image.
     fn image(&mut self) -> Result<RgbImage> {
         let mut image = RgbImage::default();
         self.image_into(&mut image)?;
         Ok(image)
     }
 
-    /// Takes an image in shades of gray: `(red + blue) / 4 + green / 2`, as RoBIOS reckons it.
+    /// Captures a grayscale image: `(red + blue) / 4 + green / 2`, as in RoBIOS.
     fn gray_image(&mut self) -> Result<GrayImage> {
         let image = self.image()?;
         let gray = image.pixels().map(|pixel| {
@@ -89,7 +89,7 @@ pub trait Camera {
             ((red + blue) / 4 + green / 2) as u8
         });
         let (width, height) = image.dimensions();
-        // There is one shade for each pixel, so the buffer fits.
+        // One gray level per pixel, so the buffer fits.
         Ok(GrayImage::from_raw(width, height, gray.collect()).unwrap_or_default())
     }
 }

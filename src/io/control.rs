@@ -1,10 +1,9 @@
 //! The loop that runs every behaviour.
 //!
-//! A [`Behaviour`] decides: its [`step`](Behaviour::step) is given what was observed, and answers with a
-//! command or with an outcome, without a robot. What it observes is read from a robot by [`Senses`], and its
-//! commands are given to one by [`Command`]. [`run`] puts these together on a robot that can wait; [`Run`]
-//! does the same step by step, for a [`Fleet`](super::sim::Fleet), a page or a program with a loop of its
-//! own.
+//! A [`Behaviour`] decides without a robot: its [`step`](Behaviour::step) takes an observation and returns a
+//! command or an outcome. [`Senses`] reads observations from a robot, [`Command`] applies commands to one.
+//! [`run`] loops these on a robot that can wait; [`Run`] does single steps, for a
+//! [`Fleet`](super::sim::Fleet), a web page or a program with its own loop.
 //!
 //! ```
 //! use std::ops::ControlFlow;

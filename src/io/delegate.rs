@@ -1,7 +1,7 @@
-//! Macros for writing wrappers: robots that change one thing and pass on the rest.
+//! Macros for wrappers: robots that change one capability and forward the rest.
 //!
-//! Each forwards one capability to a field through the `ambassador` crate's derive macro. The wrapper then has every
-//! such capability that the robot inside it has. The types that the macros need come along with a glob import:
+//! Each macro forwards one capability to a field through the `ambassador` crate's derive macro. The wrapper
+//! then has this capability if the robot inside has it. A glob import brings the types that the macros need:
 //!
 //! ```
 //! use ambassador::Delegate;
@@ -36,12 +36,12 @@
 //! # }
 //! ```
 
-// A macro names the types of its capability's methods as the trait does, so they have to be in scope where it is used.
+// A macro names the types of its methods as the trait does, so they must be in scope at its use.
 pub use super::{
-    DisplayImage, DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, Pixel, Psd, RadioMessage,
-    Resolution, Result, Viewport,
+    Attitude, DisplayImage, DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, Pixel, Psd,
+    RadioMessage, Resolution, Result, Viewport,
 };
-pub use crate::geometry::{Pose, Twist};
+pub use crate::geometry::{Pose, Twist, Vector3};
 pub use crate::world::Colour;
 pub use image::{GrayImage, RgbImage};
 
@@ -53,6 +53,7 @@ pub use super::drive::{
     ambassador_impl_Drive, ambassador_impl_Manoeuvres, ambassador_impl_Odometry,
     ambassador_impl_StallDetector,
 };
+pub use super::inertial::ambassador_impl_Inertial;
 pub use super::keys::ambassador_impl_Keys;
 pub use super::lidar::ambassador_impl_Lidar;
 pub use super::psd::ambassador_impl_DistanceSensors;

@@ -3,10 +3,10 @@ use image::{GrayImage, Rgb, RgbImage};
 use super::{Key, Result};
 use crate::world::Colour;
 
-/// A pixel of the display: columns to the right and rows down from the upper left corner, which is `(0, 0)`.
+/// A pixel of the display: column and row from the upper left corner, which is `(0, 0)`.
 pub type Pixel = (i32, i32);
 
-/// How a closed shape is drawn.
+/// Filling of a closed shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Fill {
     /// Its border alone, one pixel wide.
@@ -15,18 +15,18 @@ pub enum Fill {
     Solid,
 }
 
-/// The look of text, as RoBIOS has it. A display that lacks a family, a style or a size takes its nearest.
+/// Font of text, as in RoBIOS. A display that lacks a family, style or size uses the nearest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Font {
-    /// The design of the letters.
+    /// Typeface.
     pub family: FontFamily,
-    /// Their weight and slant.
+    /// Weight and slant.
     pub style: FontStyle,
-    /// Their size: 8, 10, 12, 14, 18 or 24; others take the nearest, and 0 or less means the default of 12.
+    /// Size: 8, 10, 12, 14, 18 or 24. Others are rounded to the nearest; 0 or less means the default of 12.
     pub size: i32,
 }
 
-/// The design of a font's letters.
+/// Typeface of a font.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum FontFamily {
     /// Without serifs.
@@ -34,11 +34,11 @@ pub enum FontFamily {
     Helvetica,
     /// With serifs.
     Times,
-    /// Like a typewriter's.
+    /// Monospaced.
     Courier,
 }
 
-/// The weight and slant of a font.
+/// Weight and slant of a font.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum FontStyle {
     /// Upright.
@@ -50,41 +50,48 @@ pub enum FontStyle {
     Italic,
 }
 
-/// A habit of the display that can be switched.
+/// A display setting that can be switched on or off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum DisplayOption {
-    /// What is drawn is visible at once; without it, at the next [`refresh`](Display::refresh). On at first.
+    /// Drawing is visible at once; otherwise at the next [`refresh`](Display::refresh). Initially on.
     AutoRefresh,
-    /// A new line below the last row moves everything up by one row; without it, further rows are lost. On at first.
+    /// A new line below the last row scrolls by one row; otherwise further rows are lost. Initially on.
     Scrolling,
-    /// A newline goes to the start of the next row; without it, straight down. On at first.
+    /// A newline moves to the start of the next row; otherwise straight down. Initially on.
     LineFeed,
-    /// The soft keys' labels are shown. Off until a label is set.
+    /// Shows the soft keys' labels. Off until a label is set.
     Menu,
-    /// Text leaves the pixels between its strokes as they were, instead of in the background colour. Off at first.
+    /// Text leaves the pixels between its strokes unchanged instead of filling the background. Initially off.
     TransparentText,
-    /// Text is drawn in the opposite of the foreground colour. Off at first.
+    /// Inverts the foreground colour of text. Initially off.
     InvertedForeground,
-    /// Text stands on the opposite of the background colour. Off at first.
+    /// Inverts the background colour of text. Initially off.
     InvertedBackground,
 }
 
-/// Where an image goes on the display, and at what size.
+/// Position and size of an image on the display.
 ///
-/// The default is where RoBIOS puts camera images: a QVGA window, 320 x 240 pixels, in the upper left corner.
+/// The default is RoBIOS's place for camera images: a QVGA window, 320 x 240 pixels, in the upper left
+/// corner.
+///
+/// ```
+/// use roverlab::io::Viewport;
+/// let right_half = Viewport::new((160, 0), 160, 240);
+/// assert_eq!((right_half.corner, right_half.width, right_half.height), ((160, 0), 160, 240));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Viewport {
-    /// The upper left corner.
+    /// Upper left corner.
     pub corner: Pixel,
-    /// Pixels across; nothing is drawn for 0 or less.
+    /// Width in pixels; nothing is drawn for 0 or less.
     pub width: i32,
-    /// Pixels down; nothing is drawn for 0 or less.
+    /// Height in pixels; nothing is drawn for 0 or less.
     pub height: i32,
 }
 
 impl Viewport {
-    /// A window from its upper left corner and its size.
+    /// Creates a window from its upper left corner and its size.
     pub const fn new(corner: Pixel, width: i32, height: i32) -> Self {
         Self { corner, width, height }
     }
@@ -101,14 +108,14 @@ impl Default for Viewport {
 pub enum DisplayImage<'a> {
     /// In colour.
     Rgb(&'a RgbImage),
-    /// In shades of gray, 0 black to 255 white.
+    /// Grayscale, 0 black to 255 white.
     Gray(&'a GrayImage),
-    /// In black and white: 0 is white and anything else black, as in RoBIOS and in the PBM format.
+    /// Black and white: 0 is white and anything else black, as in RoBIOS and the PBM format.
     Binary(&'a GrayImage),
 }
 
 impl DisplayImage<'_> {
-    /// Columns and rows.
+    /// Number of columns and rows.
     pub fn dimensions(&self) -> (u32, u32) {
         match self {
             DisplayImage::Rgb(image) => image.dimensions(),
@@ -142,13 +149,14 @@ impl<'a> From<&'a GrayImage> for DisplayImage<'a> {
     }
 }
 
-/// A colour display with text and graphics, as RoBIOS has it (book, appendix, LCD functions).
+/// A colour display with text and graphics, as in RoBIOS (book, appendix, LCD functions).
 ///
-/// Everything clips: what lies off the display, however far, is left out, and it is no error.
+/// All drawing is clipped: parts outside the display are ignored without an error.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Display {
-    /// Prints at the cursor and moves it behind the text. Lines wrap at the right edge; `\n` starts a new line.
+    /// Prints at the cursor and moves it behind the text. Lines wrap at the right edge; `\n` starts a new
+    /// line.
     fn print(&mut self, text: &str) -> Result<()>;
 
     /// Moves the cursor and prints there.
@@ -157,42 +165,42 @@ pub trait Display {
         self.print(text)
     }
 
-    /// Moves the cursor; rows and columns are those of the present font and count from 0.
+    /// Moves the cursor; rows and columns are those of the current font, counted from 0.
     fn set_cursor(&mut self, row: i32, column: i32) -> Result<()>;
 
-    /// The cursor's row and column.
+    /// Row and column of the cursor.
     fn cursor(&mut self) -> Result<(i32, i32)>;
 
-    /// The colours of text printed from now on, and of the cleared display.
+    /// Sets the colours of later text, and of the cleared display.
     fn set_text_colours(&mut self, foreground: Colour, background: Colour) -> Result<()>;
 
-    /// The font of text printed from now on.
+    /// Sets the font of later text.
     fn set_font(&mut self, font: Font) -> Result<()>;
 
-    /// Fills the display with the background colour and moves the cursor to row 0, column 0. The soft keys' labels
-    /// stay.
+    /// Fills the display with the background colour and moves the cursor to row 0, column 0. The soft keys'
+    /// labels stay.
     fn clear_display(&mut self) -> Result<()>;
 
-    /// Pixels across and down, the soft keys' bar included.
+    /// Width and height in pixels, including the bar of the soft keys.
     fn display_size(&mut self) -> Result<(i32, i32)>;
 
     /// Sets a pixel.
     fn set_pixel(&mut self, at: Pixel, colour: Colour) -> Result<()>;
 
-    /// The colour of a pixel as last drawn, visible yet or not; `None` off the display.
+    /// Colour of a pixel as last drawn, whether or not visible yet; `None` outside the display.
     fn pixel(&mut self, at: Pixel) -> Result<Option<Colour>>;
 
     /// Draws a line that includes both ends.
     fn draw_line(&mut self, from: Pixel, to: Pixel, colour: Colour) -> Result<()>;
 
-    /// Draws an upright rectangle between two opposite corners, both included, in any order.
+    /// Draws an axis-parallel rectangle between two opposite corners, both included, in any order.
     fn draw_rectangle(&mut self, corner: Pixel, opposite: Pixel, colour: Colour, fill: Fill) -> Result<()>;
 
-    /// Draws a circle of `diameter` pixels; where that is even, the centre is the pixel to the upper left of the true
-    /// one. Nothing is drawn for 0 or less.
+    /// Draws a circle of `diameter` pixels. With an even diameter, the centre is the pixel to the upper left
+    /// of the true one. Nothing is drawn for 0 or less.
     fn draw_circle(&mut self, centre: Pixel, diameter: i32, colour: Colour, fill: Fill) -> Result<()>;
 
-    /// Draws an image, scaled to fill a window; every pixel of the window shows the image's nearest.
+    /// Draws an image, scaled to a window by nearest-neighbour sampling.
     fn draw_image(&mut self, picture: DisplayImage<'_>, viewport: Viewport) -> Result<()>;
 
     /// Labels a soft key in the bar at the bottom of the display, and shows the bar.
@@ -202,10 +210,10 @@ pub trait Display {
     /// Labels all four soft keys from left to right in the default colours, and shows the bar.
     fn set_menu(&mut self, labels: [&str; 4]) -> Result<()>;
 
-    /// Switches a habit of the display on or off.
+    /// Switches a display setting on or off.
     fn set_display_option(&mut self, option: DisplayOption, on: bool) -> Result<()>;
 
-    /// Makes visible what was drawn while [`DisplayOption::AutoRefresh`] is off.
+    /// Shows what was drawn while [`DisplayOption::AutoRefresh`] was off.
     fn refresh(&mut self) -> Result<()>;
 
     /// A copy of what the display shows.

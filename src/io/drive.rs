@@ -1,60 +1,62 @@
 use super::{Error, Result};
 use crate::geometry::{Pose, Twist, math};
 
-/// What every drive can: go at a speed.
+/// Velocity control, common to all drives.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Drive {
-    /// Drives at a speed until the next command. Speeds beyond what the wheels can do are scaled down so that the
+    /// Drives at a velocity until the next command. Velocities beyond the wheels' limits are scaled down; the
     /// curvature stays.
     fn set_speed(&mut self, twist: Twist) -> Result<()>;
 
-    /// Stops: the speed 0, whatever was running.
+    /// Stops the robot, whatever was running.
     fn stop(&mut self) -> Result<()> {
         self.set_speed(Twist::STOP)
     }
 }
 
-/// Where a robot is and how fast it goes, as it measures that by its wheels.
+/// Pose and velocity as measured by the wheels.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Odometry {
-    /// The speed.
+    /// Measured velocity.
     fn speed(&mut self) -> Result<Twist>;
 
-    /// The pose, relative to the start or to the last [`set_pose`](Odometry::set_pose).
+    /// Pose relative to the start or to the last [`set_pose`](Odometry::set_pose).
     fn pose(&mut self) -> Result<Pose>;
 
-    /// Sets what odometry takes as the present pose; the robot does not move.
+    /// Sets the current pose of odometry; the robot does not move.
     fn set_pose(&mut self, pose: Pose) -> Result<()>;
 }
 
-/// Short ways that a drive goes by itself, as RoBIOS's v-omega interface does.
+/// Short manoeuvres executed by the drive itself, like RoBIOS's v-omega interface.
 ///
-/// A manoeuvre (`straight`, `turn`, `curve`, `drive_to`) returns at once and replaces whatever was running;
-/// [`wait_done`](Manoeuvres::wait_done) blocks until it has ended. A robot without them gets them from its speed and its
-/// odometry by [`Manoeuvring`](crate::io::wrappers::Manoeuvring).
+/// A manoeuvre (`straight`, `turn`, `curve`, `drive_to`) returns at once and replaces a running one;
+/// [`wait_done`](Manoeuvres::wait_done) blocks until it ends.
+/// [`Manoeuvring`](crate::io::wrappers::Manoeuvring) implements them for a robot with velocity control and
+/// odometry.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Manoeuvres {
-    /// Drives `distance` metres straight on, backwards if negative, at `speed` m/s (its sign is ignored).
+    /// Drives `distance` metres straight ahead, backwards if negative, at `speed` m/s (its sign is ignored).
     fn straight(&mut self, distance: f64, speed: f64) -> Result<()>;
 
     /// Turns on the spot by `angle` radians, clockwise if negative, at `speed` rad/s (its sign is ignored).
     fn turn(&mut self, angle: f64, speed: f64) -> Result<()>;
 
-    /// Drives an arc `length` metres long while the heading changes by `angle` radians in all, at `speed` m/s along
+    /// Drives an arc `length` metres long while the heading changes by `angle` radians, at `speed` m/s along
     /// the arc (its sign is ignored).
     fn curve(&mut self, length: f64, angle: f64, speed: f64) -> Result<()>;
 
-    /// Drives the one arc that leads to a point `forward` metres ahead and `left` metres to the left, at `speed` m/s
-    /// along the arc. A point behind is reached by an arc of more than a half turn, as by RoBIOS's `VWDrive`.
+    /// Drives the single arc to a point `forward` metres ahead and `left` metres to the left, at `speed` m/s
+    /// along the arc. A point behind takes an arc of more than a half turn, like RoBIOS's `VWDrive`.
     fn drive_to(&mut self, forward: f64, left: f64, speed: f64) -> Result<()> {
         let (length, angle) = arc_to(forward, left)?;
         self.curve(length, angle, speed)
     }
 
-    /// Metres, or radians for a turn on the spot, that the running manoeuvre has left; 0 when none is running.
+    /// Remaining distance (m), or angle for a turn on the spot (rad), of the running manoeuvre; 0 when none
+    /// is running.
     fn remaining(&mut self) -> Result<f64>;
 
     /// Whether no manoeuvre is running.
@@ -64,7 +66,7 @@ pub trait Manoeuvres {
     fn wait_done(&mut self) -> Result<()>;
 }
 
-/// What notices that a robot is held.
+/// Detects that a robot is held.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait StallDetector {
@@ -84,7 +86,7 @@ fn arc_to(forward: f64, left: f64) -> Result<(f64, f64)> {
         return Err(Error::invalid_input("target", "straight behind", "a point that one arc can reach"));
     }
     let half = math::atan2(left, forward);
-    // A short arc's length differs from its chord by a factor of half / sin(half), which is 1 in the limit.
+    // A short arc's length is its chord times half / sin(half), which tends to 1.
     let length = if half.abs() < 1e-9 { chord } else { chord * half / math::sin(half) };
     Ok((length, 2.0 * half))
 }

@@ -3,11 +3,11 @@ use std::fmt;
 use crate::ParameterError;
 use crate::parameter::debug_as_sentence;
 
-/// The result of asking a robot for something.
+/// Result of a call to a robot.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// Why a robot could not do what it was asked, in the manner of [`std::io::Error`]: a kind to branch on, a sentence
-/// for people, and the error underneath, if there is one.
+/// Error of a call to a robot, in the manner of [`std::io::Error`]: a kind for programs, a message for
+/// people, and the source error, if any.
 ///
 /// ```
 /// use roverlab::io::{Error, ErrorKind};
@@ -23,54 +23,54 @@ pub struct Error {
 
 debug_as_sentence!(Error);
 
-/// What kind of thing went wrong.
+/// Kind of an [`Error`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ErrorKind {
     /// The robot has no such sensor, actuator or function.
     Unsupported,
-    /// The link to the robot or to a device is gone.
+    /// The link to the robot or to a device is lost.
     Disconnected,
-    /// The answer did not come in time.
+    /// The answer came too late.
     TimedOut,
-    /// An argument is out of its range or not a number.
+    /// An argument is out of range or NaN.
     InvalidInput,
     /// A recording has no more data.
     EndOfLog,
-    /// A replayed program did something other than what was recorded.
+    /// A replayed program deviated from its recording.
     Diverged,
     /// Anything else.
     Other,
 }
 
 impl Error {
-    /// An error of a kind, with a sentence that says what happened.
+    /// Creates an error from its kind and message.
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
         Self { kind, message: message.into(), source: None }
     }
 
-    /// The robot lacks a device.
+    /// The error of a missing device.
     pub fn unsupported(device: impl fmt::Display) -> Self {
         Self::new(ErrorKind::Unsupported, format!("the robot has no {device}"))
     }
 
-    /// An argument is wrong: its name, what was given and what is accepted.
+    /// The error of a wrong argument: its name, the value found and the values accepted.
     pub fn invalid_input(name: &str, found: impl fmt::Display, expected: &str) -> Self {
         Self::new(ErrorKind::InvalidInput, format!("{name} is {found}; expected {expected}"))
     }
 
-    /// The same error with the one that caused it.
+    /// Adds the source error.
     #[must_use]
     pub fn with_source(self, source: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Self {
         Self { source: Some(source.into()), ..self }
     }
 
-    /// Another error as one of a robot's program.
+    /// Wraps another error.
     pub(crate) fn caused_by(error: impl std::error::Error + Send + Sync + 'static) -> Self {
         Self::new(ErrorKind::Other, error.to_string()).with_source(error)
     }
 
-    /// What kind of error this is.
+    /// Kind of the error.
     pub fn kind(&self) -> ErrorKind {
         self.kind
     }

@@ -3,12 +3,12 @@ use std::ops::ControlFlow;
 use super::{Error, ErrorKind, Result, RobotIo, RobotTruth};
 use crate::geometry::Pose;
 
-/// What a robot of a [`FleetIo`] does at each of its steps, until it breaks. A [`Run`](crate::io::control::Run)
-/// makes one of a behaviour.
+/// Step function of a [`FleetIo`]'s robot, called until it breaks. A [`Run`](crate::io::control::Run) turns a
+/// behaviour into one.
 pub type FleetStep<'a> = Box<dyn FnMut(&mut dyn RobotIo) -> Result<ControlFlow<()>> + 'a>;
 
-/// Robots whose behaviours are stepped in one thread: a simulator's [`Fleet`](crate::io::sim::Fleet), one
-/// that is recorded, or the recording of one.
+/// Robots with behaviours stepped in one thread: a simulator's [`Fleet`](crate::io::sim::Fleet), a recorded
+/// one, or the recording of one.
 ///
 /// ```
 /// use std::ops::ControlFlow;
@@ -35,23 +35,23 @@ pub type FleetStep<'a> = Box<dyn FnMut(&mut dyn RobotIo) -> Result<ControlFlow<(
 /// # }
 /// ```
 pub trait FleetIo<'a> {
-    /// How many robots there are.
+    /// Number of robots.
     fn robots(&self) -> usize;
 
-    /// Gives a robot a behaviour, which is called every `period` seconds until it breaks.
+    /// Assigns a behaviour to a robot, called every `period` seconds until it breaks.
     fn control(&mut self, robot: usize, period: f64, behaviour: FleetStep<'a>) -> Result<()>;
 
     /// Steps each behaviour when it is due, for `seconds` or until all behaviours have ended. The first error
     /// of a behaviour ends the run.
     fn run_for(&mut self, seconds: f64) -> Result<()>;
 
-    /// Seconds since the start.
+    /// Time since the start (s).
     fn time(&mut self) -> Result<f64>;
 
-    /// A robot's true pose in the world.
+    /// True pose of a robot in the world.
     fn pose(&mut self, robot: usize) -> Result<Pose>;
 
-    /// All that is true about a robot.
+    /// Ground truth of a robot.
     fn truth(&mut self, robot: usize) -> Result<RobotTruth>;
 }
 

@@ -3,13 +3,13 @@ use super::Result;
 /// One of the four soft keys below the display.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Key {
-    /// The leftmost.
+    /// Leftmost key.
     Key1,
-    /// The second from the left.
+    /// Second key from the left.
     Key2,
-    /// The third from the left.
+    /// Third key from the left.
     Key3,
-    /// The rightmost.
+    /// Rightmost key.
     Key4,
 }
 
@@ -18,16 +18,16 @@ impl Key {
     pub const ALL: [Key; 4] = [Key::Key1, Key::Key2, Key::Key3, Key::Key4];
 }
 
-/// The keys and the touch screen.
+/// Soft keys and touch screen.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Keys {
-    /// The oldest key press that has not been read, if any; does not wait.
+    /// The oldest unread key press, if any; does not block.
     fn read_key(&mut self) -> Result<Option<Key>>;
 
     /// Waits for a key press.
     fn wait_key(&mut self) -> Result<Key>;
 
-    /// The oldest touch of the display that has not been read, in pixels from the upper left corner; does not wait.
+    /// The oldest unread touch of the display, in pixels from the upper left corner; does not block.
     fn read_touch(&mut self) -> Result<Option<(i32, i32)>>;
 }

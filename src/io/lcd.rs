@@ -13,21 +13,21 @@ use canvas::Canvas;
 use crate::io::{Display, DisplayImage, DisplayOption, Fill, Font, Key, Pixel, Result, Viewport};
 use crate::world::Colour;
 
-/// Pixels above the first row of text. With them and the default font, row 18 is the first one wholly below a QVGA
-/// image and row 20 the last one above the soft keys' labels.
+/// Pixels above the first row of text. With this offset and the default font, row 18 is the first one wholly
+/// below a QVGA image and row 20 the last one above the soft keys' labels.
 const TEXT_TOP: i32 = 6;
 
-/// The gap between tab stops, in letters.
+/// Distance of tab stops (characters).
 const TAB: i32 = 8;
 
-/// The colours of a soft key's label and of the strip behind it, where a program names none.
+/// Default colours of a soft key's label and of its background.
 const DEFAULT_LABEL: (Colour, Colour) = (Colour::WHITE, Colour::from_hex(0x0040_4040));
 
-/// The display of a simulated robot: a frame buffer of 480 x 320 pixels that can be saved as a picture.
+/// Display of a simulated robot: a frame buffer of 480 x 320 pixels that can be saved as a picture.
 ///
-/// Text is drawn in fixed-width letters of the Latin-1 character set, whatever the font's family; other characters
-/// appear as a question mark. In the default font there are 24 rows of 80 letters, 21 rows while the soft keys'
-/// labels are shown, of which rows 18 to 20 lie below an image in the default [`Viewport`].
+/// Text is drawn in fixed-width letters of the Latin-1 character set, whatever the font's family; other
+/// characters appear as a question mark. The default font has 24 rows of 80 letters, 21 rows with the soft
+/// keys' labels; rows 18 to 20 lie below an image in the default [`Viewport`].
 ///
 /// ```
 /// use roverlab::io::Lcd;
@@ -38,7 +38,7 @@ const DEFAULT_LABEL: (Colour, Colour) = (Colour::WHITE, Colour::from_hex(0x0040_
 /// let mut lcd = Lcd::new();
 /// lcd.print("distance 0.42 m\n")?;
 /// lcd.draw_circle((240, 160), 50, Colour::RED, Fill::Solid)?;
-/// // Coordinates may lie anywhere: the display clips.
+/// // Any coordinates are valid: the display clips.
 /// lcd.draw_line((240, 160), (240, -9999), Colour::GREEN)?;
 /// assert_eq!(lcd.cursor()?, (1, 0));
 /// assert_eq!(lcd.frame().get_pixel(230, 160).0, [255, 0, 0]);
@@ -48,7 +48,7 @@ const DEFAULT_LABEL: (Colour, Colour) = (Colour::WHITE, Colour::from_hex(0x0040_
 #[derive(Debug, Clone)]
 pub struct Lcd {
     canvas: Canvas,
-    /// What the display shows while it is not refreshed at every call.
+    /// Visible image while automatic refresh is off.
     frozen: Option<RgbImage>,
     row: i32,
     column: i32,
@@ -90,11 +90,11 @@ impl Default for Lcd {
 }
 
 impl Lcd {
-    /// Pixels across.
+    /// Width in pixels.
     pub const WIDTH: u32 = 480;
-    /// Pixels down.
+    /// Height in pixels.
     pub const HEIGHT: u32 = 320;
-    /// Pixels down that the soft keys' labels take from the bottom.
+    /// Height of the soft keys' labels in pixels.
     pub const MENU_HEIGHT: u32 = 38;
 
     /// A black display with white text.
@@ -102,17 +102,17 @@ impl Lcd {
         Self::default()
     }
 
-    /// What the display shows.
+    /// The visible image.
     pub fn frame(&self) -> &RgbImage {
         self.frozen.as_ref().unwrap_or_else(|| self.canvas.image())
     }
 
-    /// The labels of the soft keys from left to right; empty without one.
+    /// Labels of the soft keys from left to right; empty without one.
     pub fn menu(&self) -> [&str; 4] {
         self.labels.each_ref().map(|label| label.text.as_str())
     }
 
-    /// Rows and columns of text that fit, in the present font.
+    /// Number of rows and columns of text in the current font.
     pub fn text_size(&self) -> (i32, i32) {
         let (width, height) = fonts::cell(self.face());
         ((self.text_bottom() - TEXT_TOP) / height, self.canvas.width() / width)
@@ -134,7 +134,7 @@ impl Lcd {
         if self.has(DisplayOption::Menu) { self.menu_top() } else { self.canvas.height() }
     }
 
-    /// The colours of text after inversion; the background is `None` where text is transparent.
+    /// Colours of text after inversion; the background is `None` for transparent text.
     fn text_colours(&self) -> (Colour, Option<Colour>) {
         let choose = |colour: Colour, option| if self.has(option) { inverse(colour) } else { colour };
         let foreground = choose(self.foreground, DisplayOption::InvertedForeground);
@@ -152,8 +152,8 @@ impl Lcd {
         }
     }
 
-    /// Draws a letter at the cursor. A full line wraps before the next letter, not behind its last one, so that a
-    /// newline that follows does not leave an empty row.
+    /// Draws a letter at the cursor. A full line wraps before the next letter, not after its last one, so
+    /// that a following newline leaves no empty row.
     fn print_glyph(&mut self, c: char) {
         let (rows, columns) = self.text_size();
         if self.column >= columns {
@@ -353,7 +353,7 @@ fn draw_text(
     let rgb = |c: Colour| Rgb888::new(c.red, c.green, c.blue);
     let mut style = MonoTextStyleBuilder::new().font(face).text_color(rgb(foreground)).build();
     style.background_color = background.map(rgb);
-    // Drawing on a canvas cannot fail, as its error type says.
+    // Drawing on a canvas is infallible.
     let Ok(_) = Text::with_baseline(text, Point::new(x, y), style, Baseline::Top).draw(canvas);
 }
 

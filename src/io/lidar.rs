@@ -5,24 +5,24 @@ use crate::ParameterError;
 use crate::geometry::{Point, Pose, direction};
 use crate::parameter::require;
 
-/// One turn of a laser scanner, laid out as ROS's `LaserScan`: counter-clockwise, in the robot's frame, no return is
-/// +infinity (REP 117).
+/// One turn of a laser scanner, laid out like ROS's `LaserScan`: counter-clockwise, in the robot's frame,
+/// with +infinity for no return (REP 117).
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LidarScan {
-    /// The direction of the first beam, in radians counter-clockwise from straight ahead.
+    /// Direction of the first beam (rad), counter-clockwise from straight ahead.
     pub angle_min: f64,
-    /// Radians from one beam to the next.
+    /// Angle between neighbouring beams (rad).
     pub angle_increment: f64,
-    /// The farthest distance that the scanner reports, in metres.
+    /// Maximum range of the scanner (m).
     pub range_max: f64,
-    /// Where the scanner sits in the robot's frame; the heading is that of its straight-ahead beam.
+    /// Mounting pose in the robot's frame; the heading is that of the straight-ahead beam.
     pub mount: Pose,
-    /// Metres from the scanner to what each beam hits.
+    /// Range of each beam (m).
     pub ranges: Vec<f64>,
 }
 
 impl LidarScan {
-    /// The direction of a beam relative to the scanner's mount, in radians.
+    /// Direction of a beam relative to the scanner's mount (rad).
     #[inline]
     pub fn angle(&self, index: usize) -> f64 {
         self.angle_min + self.angle_increment * index as f64
@@ -47,7 +47,7 @@ impl LidarScan {
         }
     }
 
-    /// The points that the beams hit, in the robot's frame; beams without a finite range are left out.
+    /// The points hit by the beams, in the robot's frame; beams without a finite range are omitted.
     pub fn points(&self) -> impl Iterator<Item = Point> + '_ {
         self.ranges.iter().enumerate().filter(|(_, range)| range.is_finite()).map(|(i, &range)| {
             let angle = self.mount.heading + self.angle(i);
@@ -56,23 +56,23 @@ impl LidarScan {
     }
 }
 
-/// How a scan is taken.
+/// Settings of a scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LidarSettings {
-    /// The angle that a scan covers, centred on straight ahead, in radians: more than 0, at most a full turn.
+    /// Field of view, centred on straight ahead (rad): more than 0, at most a full turn.
     pub field_of_view: f64,
-    /// Radians by which the beams point above the horizontal.
+    /// Elevation of the beams above the horizontal (rad).
     pub tilt: f64,
-    /// Beams in a scan.
+    /// Number of beams per scan.
     pub points: usize,
 }
 
 impl LidarSettings {
-    /// The largest number of beams that a scan may have.
+    /// Maximum number of beams per scan.
     pub const MAX_POINTS: usize = 100_000;
 
-    /// The direction of the first beam and the angle between beams. A full turn leaves out the last beam, which
-    /// would repeat the first; a smaller field of view has a beam on either edge.
+    /// Direction of the first beam, and angle between beams. A full turn omits the last beam, which would
+    /// repeat the first; a smaller field of view has a beam on either edge.
     pub fn beams(&self) -> (f64, f64) {
         let full_turn = self.field_of_view > TAU - 1e-9;
         let gaps = if full_turn { self.points } else { self.points.saturating_sub(1).max(1) };
@@ -80,7 +80,7 @@ impl LidarSettings {
         (first, self.field_of_view / gaps as f64)
     }
 
-    /// Fails with the name of the setting that is out of range.
+    /// Checks every setting; the error names the one out of range.
     pub fn validate(&self) -> std::result::Result<(), ParameterError> {
         let fov = self.field_of_view;
         let good = fov > 0.0 && fov <= TAU * (1.0 + 1e-9);
@@ -96,7 +96,7 @@ impl LidarSettings {
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Lidar {
-    /// Takes a scan into an existing one, whose memory is used again.
+    /// Takes a scan into an existing one; its memory is reused.
     fn scan_into(&mut self, scan: &mut LidarScan) -> Result<()>;
 
     /// Takes a scan.
@@ -106,6 +106,6 @@ pub trait Lidar {
         Ok(scan)
     }
 
-    /// Changes how scans are taken from now on.
+    /// Changes the settings of later scans.
     fn configure_lidar(&mut self, settings: LidarSettings) -> Result<()>;
 }

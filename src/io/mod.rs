@@ -1,16 +1,16 @@
-//! What any robot can be asked to do, whatever it is made of.
+//! Capabilities of any robot, simulated or real.
 //!
-//! One capability is one small trait. An algorithm asks for what it uses, `fn run(robot: &mut (impl Clock + Drive +
-//! Lidar))`, and so runs on a simulated robot, on a recording and on a real one. [`RobotIo`] is all of them at once.
-//! Every trait works behind `&mut R`, `Box<R>` and `dyn`.
+//! Each capability is one small trait. An algorithm requires only what it uses, `fn run(robot: &mut (impl
+//! Clock + Drive + Lidar))`, and so runs on simulated, recorded and real robots. [`RobotIo`] combines all
+//! traits. Every trait works behind `&mut R`, `Box<R>` and `dyn`.
 //!
-//! # Robots of one's own
+//! # Your own robot
 //!
-//! A robot implements what it has, and nothing else. [`Clock`] and [`Drive`] are enough for a behaviour that looks at
-//! nothing; [`Odometry`], if the robot measures how it moves, and the traits of its sensors open the others. A
-//! behaviour that needs more than the robot has does not compile. [`Manoeuvres`] and a [`StallDetector`], if it has
-//! none of its own, come with [`wrappers::Manoeuvring`]. No method makes up a value: where a program wants a full
-//! [`RobotIo`], what is missing answers [`Error::unsupported`].
+//! Implement the traits of the devices that the robot has, and no others. [`Clock`] and [`Drive`] suffice for
+//! a behaviour without sensing; [`Odometry`] and the traits of the sensors enable the others. A behaviour
+//! that needs more than the robot has does not compile. [`wrappers::Manoeuvring`] adds [`Manoeuvres`] and a
+//! [`StallDetector`]. No method makes up a value: where a program requires a full [`RobotIo`], missing
+//! devices return [`Error::unsupported`].
 
 mod actuators;
 mod camera;
@@ -20,6 +20,7 @@ pub mod delegate;
 mod display;
 mod drive;
 pub(crate) mod error;
+mod inertial;
 mod keys;
 mod lcd;
 mod lidar;
@@ -43,6 +44,7 @@ pub use display::{Display, DisplayImage, DisplayOption, Fill, Font, FontFamily, 
 pub use drive::{Drive, Manoeuvres, Odometry, StallDetector};
 pub use error::{Error, ErrorKind, Result};
 pub use fleet::{FleetIo, FleetStep};
+pub use inertial::{Attitude, Inertial};
 pub use keys::{Key, Keys};
 pub use lcd::Lcd;
 pub use lidar::{Lidar, LidarScan, LidarSettings};
@@ -51,7 +53,7 @@ pub use psd::{DistanceSensors, Psd};
 pub use radio::{Radio, RadioMessage};
 pub use truth::{GroundTruth, RobotTruth, TrailPoint};
 
-/// A full robot: every capability at once.
+/// A full robot with every capability.
 pub trait RobotIo:
     Clock
     + Drive
@@ -67,6 +69,7 @@ pub trait RobotIo:
     + Motors
     + Servos
     + Encoders
+    + Inertial
 {
 }
 
@@ -85,6 +88,7 @@ impl<R> RobotIo for R where
         + Motors
         + Servos
         + Encoders
+        + Inertial
         + ?Sized
 {
 }

@@ -2,9 +2,9 @@ use std::fmt;
 
 use super::Result;
 
-/// The number of a position-sensitive device, a distance sensor of one ray.
+/// Number of a position-sensitive device, a distance sensor with one ray.
 ///
-/// The constants are the simulator's numbers, which robot descriptions share; a robot may have others.
+/// The constants are the simulator's numbers, used by robot descriptions; a robot may have others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Psd(pub u8);
 
@@ -31,11 +31,11 @@ impl fmt::Display for Psd {
     }
 }
 
-/// Distance sensors of one ray each.
+/// Distance sensors with one ray each.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait DistanceSensors {
-    /// Metres from the sensor to what its ray hits; +infinity when nothing is within its range. A sensor that the
-    /// robot lacks is an error.
+    /// Distance to the object hit by a sensor's ray (m); +infinity if nothing is in range. Fails if the robot
+    /// lacks the sensor.
     fn distance(&mut self, sensor: Psd) -> Result<f64>;
 }

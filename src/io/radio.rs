@@ -1,27 +1,27 @@
 use super::Result;
 
-/// A message that a robot received.
+/// A received message.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RadioMessage {
-    /// The number of the robot that sent it.
+    /// Number of the sender.
     pub from: u32,
-    /// What it sent.
+    /// Content.
     pub data: Vec<u8>,
 }
 
-/// Messages between robots. Robots are numbered from 1 in the order in which they were placed.
+/// Messages between robots, which are numbered from 1 in the order of their placement.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Radio {
-    /// This robot's number.
+    /// Number of this robot.
     fn radio_id(&mut self) -> Result<u32>;
 
-    /// The numbers of all robots, this one included.
+    /// Numbers of all robots, including this one.
     fn radio_peers(&mut self) -> Result<Vec<u32>>;
 
-    /// Sends a message to a robot. Messages between two robots arrive in the order in which they were sent.
+    /// Sends a message to a robot. Messages between two robots arrive in order.
     fn send(&mut self, to: u32, data: &[u8]) -> Result<()>;
 
-    /// The oldest message that has not been received, if any; does not wait.
+    /// The oldest unread message, if any; does not block.
     fn receive(&mut self) -> Result<Option<RadioMessage>>;
 }

@@ -1,18 +1,18 @@
 use super::Result;
 use crate::geometry::{Point, Pose};
 
-/// Who knows what is true in a world: a simulator, or the recording of what one said.
+/// Ground truth of a world: a simulator, or the recording of one.
 pub trait GroundTruth {
-    /// Seconds since the start of the world.
+    /// Time since the start of the world (s).
     fn time(&mut self) -> Result<f64>;
 
-    /// A robot's pose in the world.
+    /// True pose of a robot in the world.
     fn pose(&mut self, robot: usize) -> Result<Pose>;
 
-    /// All that is true about a robot.
+    /// Ground truth of a robot.
     fn robot(&mut self, robot: usize) -> Result<RobotTruth>;
 
-    /// An object's pose in the world, by its index in the scene: robots may have pushed it.
+    /// Pose of an object in the world, by its index in the scene: robots may have pushed it.
     fn object(&mut self, object: usize) -> Result<Pose>;
 }
 
@@ -34,30 +34,30 @@ impl<T: GroundTruth + ?Sized> GroundTruth for Box<T> {
     }
 }
 
-/// What is true about one robot.
+/// Ground truth of one robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RobotTruth {
-    /// Its pose in the world.
+    /// Pose in the world.
     pub pose: Pose,
-    /// What its odometry says, relative to its start.
+    /// Pose by odometry, relative to the start.
     pub odometry: Pose,
-    /// How often it has come into contact with a wall, an object or a robot.
+    /// Number of contacts with walls, objects or robots.
     pub contacts: u32,
-    /// Where it first touched each time; at most the first 1,000.
+    /// Position of the start of each contact; the first 1,000 at most.
     pub contact_places: Vec<Point>,
-    /// Metres that its middle has moved.
+    /// Distance travelled by its centre (m).
     pub path_length: f64,
-    /// Where it was, if the options ask for a trail.
+    /// Trajectory, if the options ask for a trail.
     pub trail: Vec<TrailPoint>,
 }
 
-/// Where a robot was at a time, truly and by its own odometry.
+/// A robot's true pose and its odometry at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrailPoint {
-    /// Seconds since the start.
+    /// Time since the start (s).
     pub time: f64,
-    /// The true pose in the world.
+    /// True pose in the world.
     pub pose: Pose,
-    /// What its odometry said, in its own frame.
+    /// Pose by odometry, in its own frame.
     pub odometry: Pose,
 }

@@ -5,19 +5,20 @@ use crate::ParameterError;
 use crate::geometry::{Twist, math};
 use crate::parameter::{require, require_positive};
 
-/// The geometry of a car: driven rear wheels on a differential gear, steered front wheels (book, section 7.1).
+/// Kinematics of a car: driven rear wheels with a differential, steered front wheels (book, section 7.1).
 ///
-/// The robot's origin is the middle of the rear axle. The *steering angle* is that of the bicycle model, a wheel in the
-/// middle of the front axle, positive to the left; [`wheel_angles`](Ackermann::wheel_angles) has those of the two front
-/// wheels, which all point to the same centre of the turn.
+/// The robot's origin is the centre of the rear axle. The *steering angle* is that of the bicycle model, a
+/// virtual wheel in the middle of the front axle, positive to the left.
+/// [`wheel_angles`](Ackermann::wheel_angles) returns the angles of the two front wheels, whose axes meet at
+/// the turning centre.
 ///
 /// ```
 /// use roverlab::geometry::Twist;
 /// use roverlab::kinematics::Ackermann;
 /// let car = Ackermann::new(0.3, 0.2, 0.5)?;
-/// let state = car.inverse(Twist::new(1.0, 1.0)).expect("a bend of a metre's radius");
+/// let state = car.inverse(Twist::new(1.0, 1.0)).expect("a radius of 1 m");
 /// assert!((state.steering.tan() - 0.3).abs() < 1e-12, "wheelbase over radius");
-/// assert!(car.inverse(Twist::new(0.5, 1.0)).is_none(), "half a metre is tighter than it can");
+/// assert!(car.inverse(Twist::new(0.5, 1.0)).is_none(), "a radius of 0.5 m is too tight");
 /// # Ok::<(), roverlab::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,29 +28,30 @@ pub struct Ackermann {
     max_steering: f64,
 }
 
-/// What a car's motor and steering are set to.
+/// Speed and steering angle of a car.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CarState {
-    /// Metres per second of the middle of the rear axle.
+    /// Speed of the centre of the rear axle (m/s).
     pub speed: f64,
-    /// The steering angle in radians, positive to the left.
+    /// Steering angle, positive to the left (rad).
     pub steering: f64,
 }
 
-/// Rim speeds of a car's four wheels, in metres per second.
+/// Rim speeds of the four wheels (m/s).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CarWheels {
-    /// The driven wheels.
+    /// Driven wheels.
     pub rear: WheelSpeeds,
-    /// The steered wheels.
+    /// Steered wheels.
     pub front: WheelSpeeds,
 }
 
 impl Ackermann {
-    /// A car from the metres between its axles, the metres between the wheels of an axle, and the largest steering
-    /// angle, which is less than a right angle.
+    /// A car with a wheelbase (m), a track (m) and a maximum steering angle below `pi/2` (rad).
     ///
-    /// Fails if a length is not positive, or if the turn would be so tight that its centre lies between the wheels.
+    /// # Errors
+    ///
+    /// If a value is out of range, or the turning centre of the tightest turn would lie between the wheels.
     pub fn new(wheelbase: f64, track: f64, max_steering: f64) -> Result<Self, ParameterError> {
         require_positive("wheelbase", wheelbase)?;
         require_positive("track", track)?;
@@ -61,42 +63,42 @@ impl Ackermann {
         Ok(car)
     }
 
-    /// Metres between the axles.
+    /// Distance between the axles (m).
     pub fn wheelbase(&self) -> f64 {
         self.wheelbase
     }
 
-    /// The largest steering angle in radians.
+    /// Maximum steering angle (rad).
     pub fn max_steering(&self) -> f64 {
         self.max_steering
     }
 
-    /// Metres from the middle of the rear axle to the centre of the tightest turn.
+    /// Distance from the centre of the rear axle to the centre of the tightest turn (m).
     pub fn turning_radius(&self) -> f64 {
         self.wheelbase / math::tan(self.max_steering)
     }
 
-    /// The largest curvature that the car drives, the inverse of its turning radius.
+    /// Maximum curvature: inverse of the turning radius (1/m).
     pub fn max_curvature(&self) -> f64 {
         math::tan(self.max_steering) / self.wheelbase
     }
 
-    /// The curvature of the path under a steering angle, in 1/m.
+    /// Path curvature for a steering angle (1/m).
     pub fn curvature(&self, steering: f64) -> f64 {
         math::tan(steering) / self.wheelbase
     }
 
-    /// The steering angle for a curvature, as far as the steering goes.
+    /// Steering angle for a curvature, limited to the maximum (rad).
     pub fn steering_for(&self, curvature: f64) -> f64 {
         math::atan(curvature * self.wheelbase).clamp(-self.max_steering, self.max_steering)
     }
 
-    /// What the car does with its motor and steering set so.
+    /// Forward kinematics.
     pub fn forward(&self, state: CarState) -> Twist {
         Twist::new(state.speed, state.speed * self.curvature(state.steering))
     }
 
-    /// Speed and steering that give a twist; `None` if the car cannot turn so tightly, as on the spot.
+    /// Inverse kinematics; `None` if the turn is too tight, such as on the spot.
     pub fn inverse(&self, twist: Twist) -> Option<CarState> {
         if twist.angular == 0.0 {
             return Some(CarState { speed: twist.linear, steering: 0.0 });
@@ -106,10 +108,10 @@ impl Ackermann {
         possible.then(|| CarState { speed: twist.linear, steering: self.steering_for(curvature) })
     }
 
-    /// Speed and steering nearest to a twist: a turn that is too tight becomes the tightest one to that side, and the
-    /// speed is scaled down where the outer rear wheel would exceed `limit`, which keeps the curvature.
+    /// Inverse kinematics within limits. A turn that is too tight becomes the tightest one to that side; the
+    /// speed is reduced where the outer rear wheel would exceed `limit` (m/s), which preserves the curvature.
     ///
-    /// A car that shall turn on the spot turns its steering and stands.
+    /// For a turn on the spot, the car stands and turns its steering to the end.
     pub fn inverse_limited(&self, twist: Twist, limit: f64) -> CarState {
         let steering = if twist.linear == 0.0 {
             if twist.angular == 0.0 { 0.0 } else { self.max_steering.copysign(twist.angular) }
@@ -121,22 +123,22 @@ impl Ackermann {
         CarState { speed: twist.linear.clamp(-fastest, fastest), steering }
     }
 
-    /// What the car does while the middle of its rear axle rolls so many metres under a steering angle.
+    /// Motion while the centre of the rear axle rolls `length` metres at a steering angle.
     pub fn displacement(&self, length: f64, steering: f64) -> Displacement {
         Displacement { length, angle: length * self.curvature(steering) }
     }
 
-    /// The angles of the left and the right front wheel that roll without slip under a steering angle: the inner wheel
-    /// is turned farther.
+    /// Angles of the left and right front wheel that roll without slip at a steering angle (rad); the inner
+    /// wheel turns farther.
     pub fn wheel_angles(&self, steering: f64) -> [f64; 2] {
         let curvature = self.curvature(steering);
         [-0.5, 0.5].map(|side| {
-            // A point of the front axle moves across the line to the turn's centre.
+            // A point of the front axle moves perpendicular to the line to the turning centre.
             math::atan2(self.wheelbase * curvature, 1.0 + side * self.track * curvature)
         })
     }
 
-    /// The rim speeds of all four wheels.
+    /// Rim speeds of all four wheels.
     pub fn wheels(&self, state: CarState) -> CarWheels {
         let twist = self.forward(state);
         let rear = Differential { track: self.track }.inverse(twist);
@@ -195,7 +197,7 @@ mod tests {
             let h = length / f64::from(steps);
             let rate = math::tan(steering) / 0.25;
             for _ in 0..steps {
-                // Simpson's rule over the heading, which grows evenly.
+                // Simpson's rule over the heading, which changes at a constant rate.
                 let along = |t: f64| direction(pose.heading + t * h * rate);
                 let step = (along(0.0) + along(0.5) * 4.0 + along(1.0)) * (h / 6.0);
                 pose = Pose::new(pose.x + step.x, pose.y + step.y, pose.heading + h * rate);

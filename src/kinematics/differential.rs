@@ -1,42 +1,42 @@
 use super::Displacement;
 use crate::geometry::Twist;
 
-/// Rim speeds of the two driven wheels, in metres per second.
+/// Rim speeds of the two driven wheels (m/s).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct WheelSpeeds {
-    /// The left wheel.
+    /// Left wheel.
     pub left: f64,
-    /// The right wheel.
+    /// Right wheel.
     pub right: f64,
 }
 
-/// The geometry of a drive with two wheels side by side (book, section 7.1).
+/// Kinematics of a drive with two wheels side by side (book, section 7.1).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Differential {
-    /// Metres between the wheels' contact points.
+    /// Distance between the wheels' contact points (m).
     pub track: f64,
 }
 
 impl Differential {
-    /// What the robot does when its wheels' rims turn at these speeds.
+    /// Forward kinematics.
     pub fn forward(&self, wheels: WheelSpeeds) -> Twist {
         let Displacement { length, angle } = self.displacement(wheels.left, wheels.right);
         Twist::new(length, angle)
     }
 
-    /// The rim speeds that give a twist.
+    /// Inverse kinematics.
     pub fn inverse(&self, twist: Twist) -> WheelSpeeds {
         let half = 0.5 * self.track * twist.angular;
         WheelSpeeds { left: twist.linear - half, right: twist.linear + half }
     }
 
-    /// What the robot does while its wheels roll `left` and `right` metres at constant speeds.
+    /// Motion while the wheels roll `left` and `right` metres at constant speeds.
     pub fn displacement(&self, left: f64, right: f64) -> Displacement {
         Displacement { length: 0.5 * (left + right), angle: (right - left) / self.track }
     }
 
-    /// The rim speeds for a twist, scaled down where a wheel would exceed `limit` so that the ratio of the two, and
-    /// with it the path's curvature, stays.
+    /// Inverse kinematics within a limit: both rim speeds are scaled down where one would exceed `limit`
+    /// (m/s), which preserves the curvature.
     pub fn inverse_limited(&self, twist: Twist, limit: f64) -> WheelSpeeds {
         let wheels = self.inverse(twist);
         let fastest = wheels.left.abs().max(wheels.right.abs());

@@ -1,21 +1,21 @@
 use crate::geometry::{Pose, math, normalize_angle};
 
-/// A motion along one arc: what a robot without sideways slip does while its wheels turn at constant speeds.
+/// Motion along an arc: that of a robot without sideways slip whose wheels turn at constant speeds.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Displacement {
-    /// Metres along the arc, negative backwards.
+    /// Arc length, negative backwards (m).
     pub length: f64,
-    /// Radians that the heading changes, counter-clockwise.
+    /// Change of the heading, counter-clockwise (rad).
     pub angle: f64,
 }
 
-/// The pose after a motion along one arc, in closed form (book, chapter 7).
+/// Pose after a motion along an arc, in closed form (book, chapter 7).
 ///
 /// ```
 /// use roverlab::geometry::Pose;
 /// use roverlab::kinematics::{Displacement, advance};
 /// use std::f64::consts::{FRAC_PI_2, PI};
-/// // A quarter of a circle of 1 m radius.
+/// // A quarter circle with a radius of 1 m.
 /// let end = advance(Pose::default(), Displacement { length: FRAC_PI_2, angle: FRAC_PI_2 });
 /// assert!((end.x - 1.0).abs() < 1e-12 && (end.y - 1.0).abs() < 1e-12 && (end.heading - PI / 2.0).abs() < 1e-12);
 /// ```

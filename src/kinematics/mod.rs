@@ -1,13 +1,15 @@
-//! Pure geometry of drives: from wheel motions to robot motions and back, and exact integration over a step.
+//! Kinematics of drives: forward and inverse, and exact integration over a step.
 //!
-//! [`Differential`] has two driven wheels, [`Ackermann`] is a car, [`Omni`] moves in every direction on three or four
-//! wheels with rollers, [`Tracked`] skids on two belts. The wheeled ones have `forward`, `inverse`, and `inverse_limited`, which keeps the direction of motion where a
-//! wheel would have to turn too fast. [`advance`] and [`advance_planar`] integrate in closed form.
-//! [`OdometryUncertainty`] says how far odometry may be wrong.
+//! [`Differential`] has two driven wheels, [`Ackermann`] is a car, [`Omni`] moves in every direction on three
+//! or four wheels with rollers, [`Tracked`] skids on two belts. The wheeled drives have `forward`, `inverse`
+//! and `inverse_limited`; the last one preserves the direction of motion where a wheel would have to turn too
+//! fast. [`advance`] and [`advance_planar`] integrate in closed form. [`OdometryUncertainty`] propagates the
+//! uncertainty of odometry. [`marine`] moves craft in water.
 
 mod ackermann;
 mod differential;
 mod integrate;
+pub mod marine;
 mod omni;
 mod planar;
 mod tracked;

@@ -7,43 +7,47 @@ use crate::ParameterError;
 use crate::geometry::{Point, cross, direction};
 use crate::parameter::{require, require_positive};
 
-/// A wheel with free rollers on its rim.
+/// A wheel with passive rollers on its rim.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RollerWheel {
-    /// Where it stands in the robot's frame.
+    /// Position in the robot frame (m).
     pub position: Point,
-    /// The direction, in the robot's frame, in which it rolls when its motor turns forward, in radians.
+    /// Rolling direction in the robot frame when the motor turns forward (rad).
     pub heading: f64,
-    /// The direction of the axis of the roller that touches the floor, in radians, seen as `heading` is. It stands at
-    /// 45 degrees to the heading on a Mecanum wheel and along the heading on an omni-wheel.
+    /// Direction of the axis of the roller that touches the floor, in the robot frame (rad): 45 degrees to
+    /// the heading for Mecanum wheels, along the heading for omni-wheels.
     pub roller_axis: f64,
 }
 
-/// A drive of `N` wheels with rollers, which moves in any direction while it turns at any rate (book, section 7.2).
+/// An omnidirectional drive with `N` roller wheels (book, section 7.2).
 ///
-/// A roller turns freely about its axis, so a wheel holds the floor along that axis alone. Wheels are numbered as the
-/// motors; of four Mecanum wheels: front left, front right, back left, back right.
+/// A roller turns freely about its axis, so a wheel transmits force only along that axis. Wheels are numbered
+/// as the motors; four Mecanum wheels are front left, front right, back left, back right.
 ///
 /// ```
 /// use roverlab::kinematics::{Omni, PlanarTwist};
 /// let drive = Omni::mecanum(0.2, 0.2).unwrap();
-/// // To the left: the book's pattern of back, forth, forth, back.
+/// // To the left: the book's pattern back, forth, forth, back.
 /// let speeds = drive.inverse(PlanarTwist::new(0.0, 0.1, 0.0));
 /// assert_eq!(speeds.map(|v| (v * 1e6).round() / 1e6), [-0.1, 0.1, 0.1, -0.1]);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Omni<const N: usize> {
-    /// Rim speeds from a twist: one row for each wheel.
+    /// Maps a twist to rim speeds: one row per wheel.
     inverse: SMatrix<f64, N, 3>,
-    /// The twist from rim speeds, in the sense of least squares.
+    /// Maps rim speeds to a twist, by least squares.
     forward: SMatrix<f64, 3, N>,
 }
 
 impl Omni<4> {
-    /// Four Mecanum wheels at the corners of a rectangle. The axes of the rollers on the floor stand at -45 degrees
+    /// Four Mecanum wheels at the corners of a rectangle. The roller axes on the floor are at -45 degrees
     /// front left and back right, at 45 degrees front right and back left.
     ///
-    /// Takes the metres between left and right wheels, and between front and back wheels.
+    /// `track` is the distance between left and right wheels, `wheelbase` between front and back wheels (m).
+    ///
+    /// # Errors
+    ///
+    /// If a length is not positive and finite.
     pub fn mecanum(track: f64, wheelbase: f64) -> Result<Self, ParameterError> {
         require_positive("track", track)?;
         require_positive("wheelbase", wheelbase)?;
@@ -57,8 +61,12 @@ impl Omni<4> {
 }
 
 impl Omni<3> {
-    /// Three omni-wheels on a circle, 120 degrees apart, each rolling along it counter-clockwise: one at the left front,
-    /// one at the back, one at the right front.
+    /// Three omni-wheels on a circle of `radius` (m), 120 degrees apart, each rolling along it
+    /// counter-clockwise: left front, back, right front.
+    ///
+    /// # Errors
+    ///
+    /// If the radius is not positive and finite.
     pub fn three_wheels(radius: f64) -> Result<Self, ParameterError> {
         require_positive("radius", radius)?;
         Self::new([1.0, 3.0, 5.0].map(|sixths| {
@@ -68,8 +76,12 @@ impl Omni<3> {
         }))
     }
 
-    /// Three Mecanum wheels on a circle, as [`three_wheels`](Omni::three_wheels), their rollers at 45 degrees to the
-    /// rolling direction.
+    /// Three Mecanum wheels on a circle, placed as in [`three_wheels`](Omni::three_wheels), with rollers at
+    /// 45 degrees to the rolling direction.
+    ///
+    /// # Errors
+    ///
+    /// If the radius is not positive and finite.
     pub fn three_mecanum_wheels(radius: f64) -> Result<Self, ParameterError> {
         require_positive("radius", radius)?;
         Self::new([1.0, 3.0, 5.0].map(|sixths| {
@@ -82,10 +94,12 @@ impl Omni<3> {
 }
 
 impl<const N: usize> Omni<N> {
-    /// A drive from its wheels.
+    /// A drive with any wheels.
     ///
-    /// Fails if a wheel's rollers roll where the wheel does, or if the wheels together leave a direction free: fewer
-    /// than three, or all holding the floor along lines that meet in a point or are parallel.
+    /// # Errors
+    ///
+    /// If the rollers of a wheel roll in the direction of the wheel, or the wheels leave a direction
+    /// unconstrained: fewer than three, or roller axes that all meet in a point or are parallel.
     pub fn new(wheels: [RollerWheel; N]) -> Result<Self, ParameterError> {
         let mut inverse = SMatrix::<f64, N, 3>::zeros();
         for (row, wheel) in wheels.iter().enumerate() {
@@ -96,7 +110,7 @@ impl<const N: usize> Omni<N> {
             let turning = cross(wheel.position.coords, grip);
             inverse.set_row(row, &(nalgebra::RowVector3::new(grip.x, grip.y, turning) / share));
         }
-        // Turning is measured in units of the drive's size, so that the test does not depend on it.
+        // Scale rotation by the size of the drive, so that the test does not depend on it.
         let size = wheels.iter().map(|wheel| wheel.position.coords.norm()).fold(1e-9, f64::max);
         let scaled = inverse * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 1.0 / size));
         let grip = (scaled.transpose() * scaled).determinant();
@@ -106,34 +120,33 @@ impl<const N: usize> Omni<N> {
         Ok(Self { inverse, forward })
     }
 
-    /// What the robot does when its wheels' rims turn at these speeds. More than three wheels can contradict each
-    /// other; then some slip, and the robot moves as it fits all of them best.
+    /// Forward kinematics, by least squares: more than three wheels can be inconsistent, and some then slip.
     pub fn forward(&self, wheels: [f64; N]) -> PlanarTwist {
         let twist = self.forward * SVector::from(wheels);
         PlanarTwist::new(twist.x, twist.y, twist.z)
     }
 
-    /// The rim speeds that give a twist.
+    /// Inverse kinematics.
     pub fn inverse(&self, twist: PlanarTwist) -> [f64; N] {
         (self.inverse * Vector3::new(twist.forward, twist.left, twist.angular)).into()
     }
 
-    /// The rim speeds for driving in a direction, in radians counter-clockwise from straight ahead, without turning
+    /// Rim speeds for driving in a direction (rad, counter-clockwise from straight ahead) without turning
     /// (book, section 7.4).
     pub fn inverse_along(&self, heading: f64, speed: f64) -> [f64; N] {
         let along = direction(heading) * speed;
         self.inverse(PlanarTwist::new(along.x, along.y, 0.0))
     }
 
-    /// The rim speeds for a twist, all scaled down alike where a wheel would exceed `limit`, so that the direction of
-    /// motion and the curvature stay.
+    /// Inverse kinematics within a limit: all rim speeds are scaled down where one would exceed `limit`
+    /// (m/s), which preserves direction and curvature.
     pub fn inverse_limited(&self, twist: PlanarTwist, limit: f64) -> [f64; N] {
         let wheels = self.inverse(twist);
         let fastest = wheels.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
         if fastest <= limit { wheels } else { wheels.map(|v| v * (limit / fastest)) }
     }
 
-    /// What the robot does while its wheels roll so many metres, each at a constant speed.
+    /// Motion while the wheels roll these distances (m), each at a constant speed.
     pub fn displacement(&self, rolls: [f64; N]) -> PlanarMotion {
         self.forward(rolls).during(1.0)
     }
@@ -177,7 +190,7 @@ mod tests {
             prop_assert!(slower.forward * t.forward >= 0.0);
         }
 
-        /// Integrates what the floor demands of each wheel, step by step.
+        /// Integrates the constraint that the floor imposes on each wheel, step by step.
         #[test]
         fn fine_integration_agrees(rolls in prop::array::uniform3(-0.5..0.5f64)) {
             let drive = Omni::three_wheels(0.15).unwrap();
@@ -219,10 +232,10 @@ mod tests {
             heading: 0.0,
             roller_axis,
         };
-        // All hold the floor along x.
+        // All transmit force along x only.
         assert!(Omni::new([wheel(0.1, 0.1, 0.0), wheel(-0.1, 0.1, 0.0), wheel(0.0, -0.1, 0.0)]).is_err());
         assert!(Omni::new([wheel(0.1, 0.1, 0.7), wheel(-0.1, 0.1, -0.7)]).is_err());
-        // Rollers that roll as the wheel does.
+        // Rollers that roll in the direction of the wheel.
         assert!(
             Omni::new([wheel(0.1, 0.1, FRAC_PI_2), wheel(-0.1, 0.1, 0.7), wheel(0.0, -0.1, -0.7)]).is_err()
         );

@@ -2,33 +2,33 @@ use super::Displacement;
 use super::integrate::sinc;
 use crate::geometry::{Pose, Twist, angle_difference, math, normalize_angle};
 
-/// A velocity in the plane with a sideways part, as robots on Mecanum wheels have it; in the robot's own frame.
+/// Velocity in the plane with a sideways component, in the robot frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PlanarTwist {
-    /// Metres per second forward.
+    /// Forward speed (m/s).
     pub forward: f64,
-    /// Metres per second to the left.
+    /// Speed to the left (m/s).
     pub left: f64,
-    /// Radians per second counter-clockwise.
+    /// Angular velocity, counter-clockwise (rad/s).
     pub angular: f64,
 }
 
 impl PlanarTwist {
-    /// Standing still.
+    /// Zero velocity.
     pub const STOP: Self = Self { forward: 0.0, left: 0.0, angular: 0.0 };
 
-    /// A twist from metres per second and radians per second.
+    /// A twist from m/s and rad/s.
     pub const fn new(forward: f64, left: f64, angular: f64) -> Self {
         Self { forward, left, angular }
     }
 
-    /// Everything times a factor: the same direction of motion, faster or slower.
+    /// All components times a factor.
     #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
         Self::new(self.forward * factor, self.left * factor, self.angular * factor)
     }
 
-    /// The motion that it amounts to when it lasts for some seconds.
+    /// Motion at this velocity for `seconds`.
     pub fn during(self, seconds: f64) -> PlanarMotion {
         PlanarMotion {
             forward: self.forward * seconds,
@@ -44,8 +44,7 @@ impl From<Twist> for PlanarTwist {
     }
 }
 
-/// What a robot does while its velocity, in its own frame, stays the same: an arc, driven under a constant angle to the
-/// heading.
+/// Motion at a constant velocity in the robot frame: an arc, driven at a constant angle to the heading.
 ///
 /// ```
 /// use roverlab::geometry::Pose;
@@ -58,16 +57,16 @@ impl From<Twist> for PlanarTwist {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PlanarMotion {
-    /// Metres along the robot's own forward axis, which turns with it.
+    /// Distance along the robot's forward axis, which turns with it (m).
     pub forward: f64,
-    /// Metres along its own axis to the left.
+    /// Distance along its left axis (m).
     pub left: f64,
-    /// Radians that the heading changes, counter-clockwise.
+    /// Change of the heading, counter-clockwise (rad).
     pub angle: f64,
 }
 
 impl PlanarMotion {
-    /// The motion that leads from one pose to another, turning by less than a half turn.
+    /// Motion from one pose to another, turning by less than half a turn.
     pub fn between(start: Pose, end: Pose) -> Self {
         let angle = angle_difference(end.heading, start.heading);
         let half = 0.5 * angle;
@@ -77,12 +76,12 @@ impl PlanarMotion {
         Self { forward: (x * cos + y * sin) * scale, left: (y * cos - x * sin) * scale, angle }
     }
 
-    /// Metres along the path.
+    /// Path length (m).
     pub fn length(&self) -> f64 {
         if self.left == 0.0 { self.forward.abs() } else { math::hypot(self.forward, self.left) }
     }
 
-    /// A part of the motion, or several times the motion.
+    /// The motion times a factor.
     #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
         Self { forward: self.forward * factor, left: self.left * factor, angle: self.angle * factor }
@@ -95,7 +94,7 @@ impl From<Displacement> for PlanarMotion {
     }
 }
 
-/// The pose after a motion with a sideways part, in closed form; [`advance`](super::advance) for robots without one.
+/// Pose after a motion with a sideways component, in closed form; see [`advance`](super::advance) for arcs.
 ///
 /// ```
 /// use roverlab::geometry::Pose;
@@ -122,7 +121,7 @@ mod tests {
     use crate::kinematics::advance;
     use proptest::prelude::*;
 
-    /// One component's sum over the fine steps of Simpson's rule.
+    /// Integral over 0 to 1 by Simpson's rule.
     fn simpson(steps: i32, f: impl Fn(f64) -> f64) -> f64 {
         let h = 1.0 / f64::from(steps);
         let step = |i: i32| {

@@ -3,23 +3,27 @@ use crate::ParameterError;
 use crate::geometry::{Vector, math};
 use crate::parameter::require_positive;
 
-/// The geometry of a drive with two belts side by side, which turns by skidding (book, section 7.3).
+/// Geometry of a drive with two belts side by side, which turns by skidding (book, section 7.3).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tracked {
-    /// Metres between the belts' middles.
+    /// Distance between the centre lines of the belts (m).
     pub track: f64,
-    /// Metres of a belt that lie on the ground.
+    /// Length of the belts' contact areas (m).
     pub length: f64,
-    /// Metres across a belt.
+    /// Width of a belt (m).
     pub width: f64,
 }
 
-/// Where along and across a belt the ground carries it, as shares of its length and width from its middle.
+/// Sample points of the contact area, as fractions of the belt's length and width from its centre.
 const ALONG: [f64; 4] = [-0.5, -1.0 / 6.0, 1.0 / 6.0, 0.5];
 const ACROSS: [f64; 2] = [-0.5, 0.5];
 
 impl Tracked {
-    /// Belts of a size. Fails unless all lengths are positive and finite, and with belts wider than they are apart.
+    /// A drive with belts of a given size.
+    ///
+    /// # Errors
+    ///
+    /// If a length is not positive and finite, or the belts are wider than the track.
     pub fn new(track: f64, length: f64, width: f64) -> Result<Self, ParameterError> {
         require_positive("track", track)?;
         require_positive("belt length", length)?;
@@ -29,8 +33,8 @@ impl Tracked {
         Ok(Self { track, length, width })
     }
 
-    /// Places of a belt that carry a robot, on level ground alike: those of the left one for `side` 1, of the right one
-    /// for -1. From the middle between the belts.
+    /// Contact points of a belt, relative to the centre of the robot (m); on level ground all carry the same
+    /// load. `side` is 1 for the left belt, -1 for the right one.
     pub fn places(&self, side: f64) -> impl Iterator<Item = Vector> {
         let Self { track, length, width } = *self;
         ALONG.into_iter().flat_map(move |along| {
@@ -39,12 +43,12 @@ impl Tracked {
         })
     }
 
-    /// The two-wheeled drive that moves as this one does on level ground.
+    /// The differential drive that moves like this one on level ground.
     ///
-    /// Belts slide sideways when their robot turns, so it turns less than their speeds and distance say: its belts'
-    /// instantaneous centres of rotation lie outside of them (Martínez et al., *Approximating Kinematics for Tracked
-    /// Mobile Robots*, 2005). Coulomb friction under an even load puts them, for a turn on the spot, where it takes the
-    /// least power; the wheels of the equivalent drive are as far apart.
+    /// Belts slide sideways in turns, so the robot turns less than their speeds and distance suggest: the
+    /// instantaneous centres of rotation lie outside the belts (Martínez et al., *Approximating Kinematics
+    /// for Tracked Mobile Robots*, 2005). For a turn on the spot under Coulomb friction and even load, they
+    /// lie where the power is minimal; that distance is the track of the equivalent drive.
     ///
     /// ```
     /// use roverlab::kinematics::Tracked;
@@ -53,8 +57,8 @@ impl Tracked {
     /// # Ok::<(), roverlab::ParameterError>(())
     /// ```
     pub fn equivalent(&self) -> Differential {
-        // By symmetry the left belt says all. It moves back at 1 m/s while the robot turns counter-clockwise. The power
-        // is convex in the rate of turning, and falls up to where its slope is 0.
+        // By symmetry the left belt suffices. It moves backwards at 1 m/s while the robot turns
+        // counter-clockwise. The power is convex in the angular velocity and minimal where its slope is 0.
         let slope = |rate: f64| -> f64 {
             let pull = |place: Vector| {
                 let (ahead, aside) = (1.0 - rate * place.y, rate * place.x);

@@ -18,24 +18,24 @@ pub(crate) const SCALE_ERROR: f64 = 0.015;
 /// How wrong the odometry of a differential drive is, as standard deviations.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct OdometryErrors {
-    /// Relative error of both wheels' diameters together; stays the same for a robot.
+    /// Common relative error of both wheel diameters; constant for a robot.
     pub wheel_scale: f64,
-    /// Relative difference between the left and the right wheel's diameter; stays the same for a robot.
+    /// Relative difference between the wheel diameters; constant for a robot.
     pub wheel_mismatch: f64,
-    /// Relative error of the track; stays the same for a robot.
+    /// Relative error of the track; constant for a robot.
     pub track: f64,
-    /// Slip of each wheel, in metres after one metre; it grows with the square root of the distance.
+    /// Slip of each wheel after one metre (m); it grows with the square root of the distance.
     pub slip: f64,
 }
 
-/// The pose by odometry with the covariance of its error, step by step.
+/// Odometry with the covariance of its error.
 ///
-/// Two sorts of errors add up differently. Slip is new in every step, so that its variance grows with the distance. A
-/// wheel that is 1 % too large is so in every step, and what it does on the way there it may undo on the way back; so the
-/// derivatives of the pose by the three systematic errors are carried along, and make a covariance at the end only
-/// (after J. Borenstein and L. Feng, "Measurement and correction of systematic odometry errors in mobile robots", 1996,
-/// who tell the two sorts apart, with the propagation of K. S. Chong and L. Kleeman, "Accurate odometry and error modelling
-/// for a mobile robot", 1997).
+/// Two kinds of error accumulate differently. Slip is independent in every step, so its variance grows with
+/// the distance. A wheel that is 1 % too large is so in every step, and its effect on the way out may cancel
+/// on the way back. Therefore the derivatives of the pose with respect to the three systematic errors are
+/// propagated, and become a covariance only at the end. The distinction follows J. Borenstein and L. Feng,
+/// "Measurement and correction of systematic odometry errors in mobile robots", 1996; the propagation follows
+/// K. S. Chong and L. Kleeman, "Accurate odometry and error modelling for a mobile robot", 1997.
 ///
 /// ```
 /// use roverlab::geometry::Pose;
@@ -51,9 +51,9 @@ pub struct OdometryUncertainty {
     drive: Differential,
     errors: OdometryErrors,
     pose: Pose,
-    /// The covariance by slip alone.
+    /// Covariance due to slip.
     random: Matrix3<f64>,
-    /// Derivatives of the true pose by scale, mismatch and track.
+    /// Derivatives of the true pose with respect to scale, mismatch and track.
     systematic: Matrix3<f64>,
 }
 
@@ -63,13 +63,13 @@ impl OdometryUncertainty {
         Self { drive, errors, pose, random: Matrix3::zeros(), systematic: Matrix3::zeros() }
     }
 
-    /// The pose by odometry.
+    /// Pose by odometry.
     pub fn pose(&self) -> Pose {
         self.pose
     }
 
-    /// Goes on by what odometry measured in a step. Slip is taken as coming evenly over a short step: one that turns by
-    /// less than about half a radian.
+    /// Advances by a measured motion. Slip is assumed uniform over the step, which holds for turns of less
+    /// than about 0.5 rad.
     pub fn advance(&mut self, motion: Displacement) {
         let step = OdometryStep::new(self.pose, motion, self.drive, &self.errors);
         self.random = step.by_pose * self.random * step.by_pose.transpose() + step.slip;
@@ -77,22 +77,22 @@ impl OdometryUncertainty {
         self.pose = step.end;
     }
 
-    /// Goes on to where odometry is now, as one step along an arc.
+    /// Advances to the pose that odometry reports now, as one arc.
     pub fn advance_to(&mut self, pose: Pose) {
         self.advance(arc_between(self.pose, pose));
-        // An arc may miss the pose by a rounding error, or by what a tick of one wheel does.
+        // An arc may miss the pose by a rounding error, or by one tick of a wheel.
         self.pose = pose;
     }
 
-    /// The covariance of x, y and heading: how far the true pose may be from odometry's. Metres and radians.
+    /// Covariance of x, y and heading (m, rad).
     pub fn covariance(&self) -> Matrix3<f64> {
         let OdometryErrors { wheel_scale, wheel_mismatch, track, .. } = self.errors;
         let squares = Vector3::new(wheel_scale, wheel_mismatch, track).map(|sigma| sigma * sigma);
         self.random + self.systematic * Matrix3::from_diagonal(&squares) * self.systematic.transpose()
     }
 
-    /// The squared Mahalanobis distance of a true position from odometry's: above 5.99 for 5 of 100 robots. Infinite for
-    /// a position that an error-free robot cannot be at.
+    /// Squared Mahalanobis distance of a true position from that of odometry: above 5.99 for 5 % of all
+    /// robots. Infinite for a position that is impossible without errors.
     pub fn distance_squared(&self, position: Point) -> f64 {
         let covariance = self.covariance().fixed_view::<2, 2>(0, 0).into_owned();
         let away = position - self.pose.position();
@@ -104,16 +104,16 @@ impl OdometryUncertainty {
     }
 }
 
-/// A step of odometry, and how the pose after it depends on what may be wrong.
+/// A step of odometry with the derivatives of its end pose.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OdometryStep {
-    /// The pose after it, if odometry is right.
+    /// End pose, if odometry is right.
     pub(crate) end: Pose,
-    /// Derivatives by the pose before it.
+    /// Derivatives with respect to the start pose.
     pub(crate) by_pose: Matrix3<f64>,
-    /// Derivatives by scale, mismatch and track.
+    /// Derivatives with respect to scale, mismatch and track.
     pub(crate) by_errors: Matrix3<f64>,
-    /// The covariance that slip adds.
+    /// Covariance added by slip.
     pub(crate) slip: Matrix3<f64>,
 }
 
@@ -129,7 +129,7 @@ impl OdometryStep {
         let by_pose = Matrix3::new(1.0, 0.0, -moved.y, 0.0, 1.0, moved.x, 0.0, 0.0, 1.0);
         let by_motion = by_motion(pose, motion);
 
-        // How length and angle depend on how far the left and the right wheel go, and on the systematic errors.
+        // Derivatives of length and angle with respect to the wheel distances and the systematic errors.
         let track = drive.track;
         let by_wheels = Matrix2::new(0.5, 0.5, -1.0 / track, 1.0 / track);
         let half = 0.5 * track * motion.angle;
@@ -153,7 +153,7 @@ impl OdometryStep {
     }
 }
 
-/// Derivatives of the pose after an arc by the arc's length and angle.
+/// Derivatives of the pose after an arc with respect to its length and angle.
 fn by_motion(pose: Pose, motion: Displacement) -> SMatrix<f64, 3, 2> {
     let half = 0.5 * motion.angle;
     let (sin, cos) = math::sin_cos(pose.heading + half);
@@ -169,13 +169,13 @@ fn by_motion(pose: Pose, motion: Displacement) -> SMatrix<f64, 3, 2> {
     )
 }
 
-/// The derivative of `sin(x) / x`, whose value is at hand.
+/// Derivative of `sin(x) / x`, given its value.
 fn sinc_slope(x: f64, sinc: f64) -> f64 {
-    // What the series leaves out is below 4e-11 there, and the quotient would lose more.
+    // The truncated series errs by less than 4e-11 here; the quotient would lose more.
     if x.abs() < 0.01 { -x / 3.0 * (1.0 - 0.1 * x * x) } else { (math::cos(x) - sinc) / x }
 }
 
-/// The arc that leads from one pose to the next, for poses that lie on one.
+/// Arc from one pose to another; exact only if they lie on one.
 pub(crate) fn arc_between(from: Pose, to: Pose) -> Displacement {
     let angle = crate::geometry::angle_difference(to.heading, from.heading);
     let (sin, cos) = math::sin_cos(from.heading + 0.5 * angle);

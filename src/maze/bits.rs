@@ -1,4 +1,4 @@
-/// A rectangle of bits, each row in words of its own.
+/// A bit matrix; each row starts at a new word.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) struct BitGrid {
     columns: usize,
@@ -26,7 +26,7 @@ impl BitGrid {
         *word = if bit { *word | mask } else { *word & !mask };
     }
 
-    /// The first 64 columns of a row.
+    /// First 64 columns of a row.
     #[inline]
     pub(super) fn row(&self, row: usize) -> u64 {
         self.words[row * self.words_per_row]
@@ -40,7 +40,7 @@ impl BitGrid {
         self.words.fill(0);
     }
 
-    /// The columns and rows of the bits that are set, row by row.
+    /// Columns and rows of the set bits, row by row.
     pub(super) fn ones(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         self.words.iter().enumerate().flat_map(move |(index, &word)| {
             let (row, first) = (index / self.words_per_row, index % self.words_per_row * 64);
@@ -49,7 +49,7 @@ impl BitGrid {
     }
 }
 
-/// The places of the bits that are set in a word, the lowest first.
+/// Positions of the set bits of a word, lowest first.
 struct Ones(u64);
 
 impl Iterator for Ones {

@@ -1,7 +1,7 @@
 use std::f64::consts::FRAC_PI_2;
 use std::fmt;
 
-/// One of the four directions of a maze, clockwise from north. North is up in files and along y in worlds.
+/// One of the four directions, clockwise from north. North is up in files and along y in worlds.
 ///
 /// ```
 /// use roverlab::maze::Direction;
@@ -14,19 +14,19 @@ pub enum Direction {
     /// Up, along y.
     #[default]
     North,
-    /// To the right, along x.
+    /// Right, along x.
     East,
     /// Down.
     South,
-    /// To the left.
+    /// Left.
     West,
 }
 
 impl Direction {
-    /// All four, clockwise from north.
+    /// All directions, clockwise from north.
     pub const ALL: [Self; 4] = [Self::North, Self::East, Self::South, Self::West];
 
-    /// The direction after so many quarter turns to the right.
+    /// The direction after a number of quarter turns to the right.
     #[must_use]
     pub const fn turned_right(self, quarters: usize) -> Self {
         Self::ALL[(self as usize + quarters) % 4]
@@ -50,12 +50,12 @@ impl Direction {
         self.turned_right(2)
     }
 
-    /// Quarter turns to the right that lead from this direction to another, 0 to 3.
+    /// Number of quarter turns to the right from this direction to another, 0 to 3.
     pub const fn quarters_to(self, other: Self) -> usize {
         (other as usize + 4 - self as usize) % 4
     }
 
-    /// Cells to the right and up of one step.
+    /// Cell offset of one step: right and up.
     pub const fn step(self) -> (i32, i32) {
         match self {
             Self::North => (0, 1),
@@ -65,7 +65,7 @@ impl Direction {
         }
     }
 
-    /// The heading in radians, counter-clockwise from x.
+    /// Heading, counter-clockwise from x (rad).
     pub const fn heading(self) -> f64 {
         match self {
             Self::North => FRAC_PI_2,
@@ -75,7 +75,7 @@ impl Direction {
         }
     }
 
-    /// The direction nearest to a heading in radians.
+    /// The direction closest to a heading (rad).
     pub fn nearest(heading: f64) -> Self {
         let quarters = (crate::geometry::normalize_angle(heading) / FRAC_PI_2).round() as i32;
         Self::East.turned_right((4 - quarters).rem_euclid(4) as usize)
@@ -103,7 +103,7 @@ impl fmt::Display for Direction {
     }
 }
 
-/// A cell of a maze by its column from the left and its row from below, both from 0.
+/// A cell, by column from the left and row from below, both from 0.
 ///
 /// ```
 /// use roverlab::maze::{Cell, Direction, Maze};
@@ -115,9 +115,9 @@ impl fmt::Display for Direction {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct Cell {
-    /// The column.
+    /// Column.
     pub x: u16,
-    /// The row.
+    /// Row.
     pub y: u16,
 }
 

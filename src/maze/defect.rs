@@ -3,12 +3,12 @@ use std::fmt;
 use super::flood::distances_from_start;
 use super::{Cell, Direction, Maze, Unknown, WallState};
 
-/// Something wrong with a maze or its file, and what was made of it.
+/// A defect of a maze or its file, and how it was handled.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Defect {
-    /// The line of the file, from 1, if it is one line's.
+    /// Line of the file, from 1, if the defect belongs to one.
     pub line: Option<usize>,
-    /// What is wrong.
+    /// Description of the defect.
     pub message: String,
 }
 
@@ -31,8 +31,7 @@ impl fmt::Display for Defect {
     }
 }
 
-/// What is wrong with a maze as a task for a robot: an outer wall with gaps, walls that nobody knows, a goal that is
-/// missing or out of reach.
+/// Defects that concern a robot: gaps in the outer wall, unknown walls, a missing or unreachable goal.
 pub fn defects(maze: &Maze) -> Vec<Defect> {
     let mut list: Vec<Defect> = Direction::ALL.iter().filter_map(|&side| gaps(maze, side)).collect();
     let unknown = maze.unknown_walls();

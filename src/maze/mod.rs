@@ -1,9 +1,10 @@
-//! Mazes (chapter 9): models and files, flood fill and shortest routes.
+//! Mazes (book, chapter 9): models and files, flood fill, shortest routes and fast runs.
 //!
-//! A [`Maze`] is what a robot knows of a maze: its walls are present, absent or unknown. [`files`] reads and writes all
-//! formats that people use for them. [`FloodFill`] counts steps, [`shortest_route`] finds the way with the fewest steps
-//! or turns, [`FastPlanner`] the fastest run with smooth turns and diagonals. An [`Explorer`] says what to look at next, and a
-//! [`MazeRunner`] drives a robot there: it explores, and then races. [`mms`] speaks the protocol of a simulator for solvers.
+//! A [`Maze`] is a robot's knowledge of a maze: walls are present, absent or unknown. [`files`] reads and
+//! writes the common formats. [`FloodFill`] counts steps, [`shortest_route`] finds the route with the fewest
+//! steps or turns, [`FastPlanner`] the fastest run with smooth turns and diagonals. An [`Explorer`] decides
+//! where to look next; a [`MazeRunner`] drives a robot there, explores and races. [`mms`] implements the
+//! protocol of a maze simulator.
 //!
 //! ```
 //! use roverlab::maze::{Preference, Unknown, files, shortest_route};
@@ -36,6 +37,8 @@ mod model;
 mod route;
 mod run;
 mod scale;
+#[cfg(feature = "petgraph")]
+mod with_petgraph;
 
 pub use compass::{Cell, Direction};
 pub use defect::{Defect, defects};
@@ -55,3 +58,5 @@ pub use run::{
     TrajectoryTracker, TrajectoryTrackerParameters, mouse,
 };
 pub use scale::Scale;
+#[cfg(feature = "petgraph")]
+pub use with_petgraph::petgraph_of_maze;

@@ -3,30 +3,30 @@ use super::{Cell, Direction};
 use crate::ParameterError;
 use crate::parameter::require;
 
-/// What is known about a place where a wall may stand.
+/// State of a wall position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum WallState {
-    /// There is none.
+    /// There is no wall.
     Absent,
-    /// There is one.
+    /// There is a wall.
     Present,
-    /// Nobody has looked yet.
+    /// Not yet seen.
     Unknown,
 }
 
-/// What to take unknown walls for.
+/// How unknown walls are treated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Unknown {
-    /// For passages: what a route may cost at best.
+    /// As passages: an optimistic route.
     Open,
-    /// For walls: what is sure.
+    /// As walls: a certain route.
     Closed,
 }
 
-/// A rectangle of cells with walls between them, a start and a goal.
+/// A rectangle of cells with walls, a start and a goal.
 ///
-/// Every wall is present, absent or unknown, and so are those around the whole. One bit tells each of the two things, and
-/// rows lie in words of their own. No route leaves the rectangle, even where its outer wall is open.
+/// Every wall, including the outer ones, is present, absent or unknown, stored as two bits; each row starts
+/// at a new word. No route leaves the rectangle, even through gaps in the outer wall.
 ///
 /// ```
 /// use roverlab::maze::{Cell, Direction, Maze, WallState};
@@ -52,7 +52,7 @@ pub struct Maze {
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 struct Layer {
     present: BitGrid,
-    /// Neither present nor absent.
+    /// Set for walls that are neither present nor absent.
     unknown: BitGrid,
 }
 
@@ -71,7 +71,7 @@ impl Layer {
         }
     }
 
-    /// The first 64 walls of a row that stand, a bit each.
+    /// The first 64 walls of a row that block, one bit each.
     #[inline]
     fn closed_row(&self, row: usize, unknown: Unknown) -> u64 {
         let doubtful = if unknown == Unknown::Closed { self.unknown.row(row) } else { 0 };
@@ -85,21 +85,33 @@ impl Layer {
 }
 
 impl Maze {
-    /// The most cells in a row or a column.
+    /// Maximum number of cells per row or column.
     pub const MAX_SIDE: usize = 256;
 
-    /// A maze with walls all round in which nothing else is known, as a robot finds it. The start is the lower left cell,
-    /// facing north, and the goal is the centre.
+    /// A maze with outer walls whose inner walls are unknown, as a robot finds it. The start is the lower
+    /// left cell, facing north, and the goal is the centre.
+    ///
+    /// # Errors
+    ///
+    /// If a side is not 1 to 256 cells.
     pub fn unexplored(width: usize, height: usize) -> Result<Self, ParameterError> {
         Self::filled(width, height, WallState::Unknown)
     }
 
-    /// A maze with walls all round and none within.
+    /// A maze with outer walls only.
+    ///
+    /// # Errors
+    ///
+    /// If a side is not 1 to 256 cells.
     pub fn open(width: usize, height: usize) -> Result<Self, ParameterError> {
         Self::filled(width, height, WallState::Absent)
     }
 
-    /// A maze of walls all round, and of one state within.
+    /// A maze with outer walls, and inner walls of one state.
+    ///
+    /// # Errors
+    ///
+    /// If a side is not 1 to 256 cells.
     pub fn filled(width: usize, height: usize, within: WallState) -> Result<Self, ParameterError> {
         for (name, side) in [("width", width), ("height", height)] {
             require(name, side as f64, (1..=Self::MAX_SIDE).contains(&side), "1 to 256 cells")?;
@@ -128,13 +140,13 @@ impl Maze {
         Ok(maze)
     }
 
-    /// Cells from left to right.
+    /// Number of cells from left to right.
     #[inline]
     pub fn width(&self) -> usize {
         self.width.into()
     }
 
-    /// Cells from bottom to top.
+    /// Number of cells from bottom to top.
     #[inline]
     pub fn height(&self) -> usize {
         self.height.into()
@@ -146,18 +158,18 @@ impl Maze {
         (0..self.height).flat_map(move |y| (0..width).map(move |x| Cell::new(x, y)))
     }
 
-    /// How many cells there are.
+    /// Number of cells.
     pub fn cell_count(&self) -> usize {
         self.width() * self.height()
     }
 
-    /// A cell's place in the order of [`cells`](Self::cells).
+    /// Index of a cell in the order of [`cells`](Self::cells).
     #[inline]
     pub fn index(&self, cell: Cell) -> usize {
         usize::from(cell.y) * self.width() + usize::from(cell.x)
     }
 
-    /// The cell of a place in the order of [`cells`](Self::cells).
+    /// Cell at an index in the order of [`cells`](Self::cells).
     #[inline]
     pub fn cell_at(&self, index: usize) -> Cell {
         Cell::new((index % self.width()) as u16, (index / self.width()) as u16)
@@ -169,7 +181,7 @@ impl Maze {
         cell.x < self.width && cell.y < self.height
     }
 
-    /// The next cell in a direction, whatever is between; `None` beyond the edge.
+    /// Adjacent cell in a direction, regardless of walls; `None` beyond the edge.
     #[inline]
     pub fn neighbour(&self, cell: Cell, direction: Direction) -> Option<Cell> {
         let (dx, dy) = direction.step();
@@ -178,7 +190,7 @@ impl Maze {
         Some(Cell { x, y }).filter(|&cell| self.contains(cell))
     }
 
-    /// What is known about a wall of a cell. Outside of the maze there is nothing.
+    /// State of a wall of a cell; absent outside the maze.
     #[inline]
     pub fn wall(&self, cell: Cell, direction: Direction) -> WallState {
         if !self.contains(cell) {
@@ -188,7 +200,7 @@ impl Maze {
         layer.get(place)
     }
 
-    /// Enters what is known about a wall of a cell, which is its neighbour's wall too. Outside of the maze nothing
+    /// Sets the state of a wall of a cell, which is also its neighbour's wall. Outside the maze nothing
     /// happens.
     pub fn set_wall(&mut self, cell: Cell, direction: Direction, wall: WallState) {
         if self.contains(cell) {
@@ -208,7 +220,7 @@ impl Maze {
         }
     }
 
-    /// The neighbour that can be entered from a cell, with unknown walls taken as said.
+    /// The neighbour accessible from a cell, with `unknown` for unknown walls.
     #[inline]
     pub fn passage(&self, cell: Cell, direction: Direction, unknown: Unknown) -> Option<Cell> {
         let open = match self.wall(cell, direction) {
@@ -219,7 +231,8 @@ impl Maze {
         self.neighbour(cell, direction).filter(|_| open)
     }
 
-    /// The cells of a row that are open to the east and to the north, a bit each; of a maze that is less than 64 cells wide.
+    /// Cells of a row that are open to the east and to the north, one bit each; the maze must be less than 64
+    /// cells wide.
     #[inline]
     pub(super) fn open_row(&self, row: usize, unknown: Unknown) -> (u64, u64) {
         debug_assert!(self.width < 64);
@@ -236,36 +249,36 @@ impl Maze {
         Direction::ALL.iter().all(|&direction| self.wall(cell, direction) != WallState::Unknown)
     }
 
-    /// How many walls are unknown.
+    /// Number of unknown walls.
     pub fn unknown_walls(&self) -> usize {
         self.vertical.unknown.count() + self.horizontal.unknown.count()
     }
 
-    /// How many walls there are, a cell long each.
+    /// Number of walls, each one cell long.
     pub fn wall_count(&self) -> usize {
         self.vertical.present.count() + self.horizontal.present.count()
     }
 
-    /// The cell that a robot starts in.
+    /// Start cell.
     #[inline]
     pub fn start(&self) -> Cell {
         self.start
     }
 
-    /// The direction that a robot faces at the start.
+    /// Heading at the start.
     #[inline]
     pub fn heading(&self) -> Direction {
         self.heading
     }
 
-    /// Moves the start. Outside of the maze nothing happens.
+    /// Sets the start. Outside the maze nothing happens.
     pub fn set_start(&mut self, cell: Cell, heading: Direction) {
         if self.contains(cell) {
             (self.start, self.heading) = (cell, heading);
         }
     }
 
-    /// The cells of the goal, row by row from below.
+    /// Goal cells, row by row from below.
     pub fn goals(&self) -> impl Iterator<Item = Cell> + '_ {
         self.goals.ones().map(|(x, y)| Cell::new(x as u16, y as u16))
     }
@@ -276,7 +289,7 @@ impl Maze {
         self.contains(cell) && self.goals.get(cell.x.into(), cell.y.into())
     }
 
-    /// Makes the goal these cells and no others. Those outside of the maze are left out.
+    /// Replaces the goal cells; those outside the maze are ignored.
     pub fn set_goals(&mut self, cells: impl IntoIterator<Item = Cell>) {
         self.goals.clear();
         for cell in cells {
@@ -286,8 +299,7 @@ impl Maze {
         }
     }
 
-    /// The goal of a maze that names none: its four middle cells if both sides are even, and else the cell at the half of
-    /// either side.
+    /// Default goal: the four centre cells if both sides are even, otherwise the cell at half of each side.
     pub fn centre(&self) -> Vec<Cell> {
         let (x, y) = (self.width / 2, self.height / 2);
         if self.width.is_multiple_of(2) && self.height.is_multiple_of(2) {

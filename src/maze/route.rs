@@ -1,25 +1,25 @@
-//! Shortest paths by cells and by turns (book, section 9.7).
+//! Shortest routes by steps and by turns (book, section 9.7).
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::{Cell, Direction, Maze, Unknown};
 
-/// Which of all routes is the best.
+/// Criterion for the best route.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Preference {
-    /// The fewest steps, and of those routes one with the fewest turns.
+    /// Fewest steps, then fewest turns.
     Steps,
-    /// The fewest turns, and of those routes one with the fewest steps.
+    /// Fewest turns, then fewest steps.
     Turns,
-    /// The smallest sum of steps and turns, and of those routes one with the fewest steps.
+    /// Smallest sum of steps and turns, then fewest steps.
     StepsAndTurns,
 }
 
 impl Preference {
-    /// What a step and a turn cost. No route has as many of either as the larger weight is worth.
+    /// Costs of a step and of a turn. No route has as many of either as the larger weight.
     const fn weights(self) -> (u64, u64) {
-        /// More than a route of the largest maze has cells, so that costs of two kinds fit one number.
+        /// More than a route of the largest maze has cells, so that two costs fit one number.
         const MANY: u64 = 1 << 24;
         match self {
             Self::Steps => (MANY, 1),
@@ -29,7 +29,7 @@ impl Preference {
     }
 }
 
-/// A way from cell to cell.
+/// A path from cell to cell.
 ///
 /// ```
 /// use roverlab::maze::{Cell, Direction, Route};
@@ -45,38 +45,38 @@ pub struct Route {
 }
 
 impl Route {
-    /// The route that moves lead along, for a robot that faces `heading` at first.
+    /// The route of a sequence of moves, for a robot that initially faces `heading`.
     pub fn new(start: Cell, heading: Direction, moves: Vec<Direction>) -> Self {
         Self { start, heading, moves }
     }
 
-    /// Where it begins.
+    /// First cell.
     pub fn start(&self) -> Cell {
         self.start
     }
 
-    /// The direction that the robot faces at first.
+    /// Initial heading.
     pub fn heading(&self) -> Direction {
         self.heading
     }
 
-    /// The direction of each step.
+    /// Direction of each step.
     pub fn moves(&self) -> &[Direction] {
         &self.moves
     }
 
-    /// How many steps it has.
+    /// Number of steps.
     pub fn steps(&self) -> usize {
         self.moves.len()
     }
 
-    /// How often it changes its direction; a first step that is not straight ahead counts.
+    /// Number of changes of direction; a first step that is not straight ahead counts.
     pub fn turns(&self) -> usize {
         let before = std::iter::once(&self.heading).chain(&self.moves);
         before.zip(&self.moves).filter(|(before, now)| before != now).count()
     }
 
-    /// All cells that it visits, the first and the last included.
+    /// All cells on the route, both ends included.
     pub fn cells(&self) -> impl Iterator<Item = Cell> + '_ {
         let mut cell = self.start;
         std::iter::once(cell).chain(self.moves.iter().map(move |direction| {
@@ -86,13 +86,13 @@ impl Route {
         }))
     }
 
-    /// The last cell.
+    /// Last cell.
     pub fn end(&self) -> Cell {
         self.cells().last().unwrap_or(self.start)
     }
 }
 
-/// The best route from the start of a maze to its goal; `None` if none leads there.
+/// The best route from the start to the goal; `None` if the goal is unreachable.
 ///
 /// # Complexity
 ///
@@ -103,7 +103,8 @@ pub fn shortest_route(maze: &Maze, unknown: Unknown, preference: Preference) -> 
     })
 }
 
-/// The best route from a cell and a heading to the nearest cell that is a goal; `None` if none leads to one.
+/// The best route from a cell and heading to the nearest cell that satisfies `goal`; `None` if none is
+/// reachable.
 ///
 /// ```
 /// use roverlab::maze::{Cell, Direction, Maze, Preference, Unknown, shortest_route_between};
@@ -155,7 +156,7 @@ pub fn shortest_route_between(
     None
 }
 
-/// The route that led to a state, back from its end.
+/// Reconstructs the route to a state, backwards from its end.
 fn trace(
     maze: &Maze,
     before: &[Direction],
@@ -202,7 +203,8 @@ mod tests {
 
     #[test]
     fn preferences_differ_where_they_should() {
-        // Three ways to the goal: a staircase, one round the lower corner and past the goal, and one round the upper corner.
+        // Three routes to the goal: a staircase, one around the lower corner and past the goal, one around
+        // the upper corner.
         let mut maze = Maze::filled(7, 7, WallState::Present).unwrap();
         maze.set_goals([Cell::new(4, 4)]);
         for way in ["NENENENE", "EEEEENNNNW", "NNNNNNEEEESS"] {

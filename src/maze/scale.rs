@@ -2,36 +2,36 @@ use super::{Cell, Direction, Maze, WallState};
 use crate::geometry::{Point, Pose, Segment};
 use crate::world::{self, World};
 
-/// The measures of a maze that a robot drives in, in metres.
+/// Dimensions of a physical maze (m).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
-    /// From the middle of a cell to that of the next.
+    /// Cell size.
     pub cell: f64,
-    /// The thickness of the walls, which is also the width of the posts.
+    /// Thickness of the walls, and width of the posts.
     pub wall: f64,
-    /// The height of the walls.
+    /// Height of the walls.
     pub height: f64,
 }
 
 impl Scale {
-    /// The measures of competitions (book, section 9.1): cells of 18 cm, walls 12 mm thick and 5 cm high.
+    /// Competition standard (book, section 9.1): cells of 18 cm, walls 12 mm thick and 5 cm high.
     pub const MICROMOUSE: Self = Self { cell: 0.180, wall: 0.012, height: 0.050 };
 
-    /// The book's maze for its larger robots, twice as large; the walls are high enough for their sensors.
+    /// The book's maze for larger robots, twice as large; the walls are high enough for their sensors.
     pub const DOUBLED: Self = Self { cell: 0.360, wall: 0.024, height: 0.100 };
 
-    /// The middle of a cell. The lower left corner of the maze is the origin.
+    /// Centre of a cell (m); the origin is the lower left corner of the maze.
     pub fn centre(&self, cell: Cell) -> Point {
         Point::new((f64::from(cell.x) + 0.5) * self.cell, (f64::from(cell.y) + 0.5) * self.cell)
     }
 
-    /// The middle of a cell, facing in a direction.
+    /// Centre of a cell with a heading.
     pub fn pose(&self, cell: Cell, heading: Direction) -> Pose {
         let centre = self.centre(cell);
         Pose::new(centre.x, centre.y, heading.heading())
     }
 
-    /// The cell of a point; `None` outside of the maze.
+    /// Cell of a point; `None` outside the maze.
     pub fn cell_of(&self, maze: &Maze, point: Point) -> Option<Cell> {
         let index = |coordinate: f64| (coordinate / self.cell).floor();
         let (x, y) = (index(point.x), index(point.y));
@@ -39,7 +39,8 @@ impl Scale {
         inside.then(|| Cell::new(x as u16, y as u16))
     }
 
-    /// The world of a maze: a wall for each straight stretch, and a post at every corner. Unknown walls stand.
+    /// The world of a maze: one wall per straight stretch, and a post at every corner. Unknown walls count as
+    /// present.
     pub fn world(&self, maze: &Maze) -> World {
         let (width, height) = (maze.width(), maze.height());
         let mut world = World::empty(width as f64 * self.cell, height as f64 * self.cell);
@@ -72,7 +73,7 @@ impl Scale {
         Point::new(x as f64 * self.cell, y as f64 * self.cell)
     }
 
-    /// A wall from post to post, the posts included.
+    /// A wall from post to post, both included.
     fn stretch(&self, a: Point, b: Point) -> world::Wall {
         let along = if a.x == b.x && a.y != b.y { Point::new(0.0, 1.0) } else { Point::new(1.0, 0.0) };
         let half = along.coords * (0.5 * self.wall);
@@ -85,7 +86,7 @@ impl Scale {
     }
 }
 
-/// The maximal stretches `a..b` of `0..count` on which something holds.
+/// Maximal ranges `a..b` of `0..count` in which a condition holds.
 fn stretches(count: usize, holds: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
     let mut list = Vec::new();
     let mut first = None;
@@ -102,7 +103,7 @@ fn stretches(count: usize, holds: impl Fn(usize) -> bool) -> Vec<(usize, usize)>
     list
 }
 
-/// The corners that no wall reaches.
+/// Corners without walls.
 fn bare_posts(maze: &Maze) -> impl Iterator<Item = (usize, usize)> + '_ {
     let corners = (0..=maze.height()).flat_map(|y| (0..=maze.width()).map(move |x| (x, y)));
     corners.filter(|&(x, y)| {

@@ -3,29 +3,30 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use super::surroundings::Surroundings;
 use crate::geometry::{Point, Pose, WallSide, direction, math, normalize_angle};
 
-/// Distances that a boundary is followed at, from the robot's middle, in metres.
+/// Distances of boundary following, measured from the robot's centre (m).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct FollowDistances {
-    /// What a passage must offer on either side for the robot to enter it.
+    /// Required on either side of a passage.
     pub(super) least: f64,
-    /// What is kept where there is room.
+    /// Kept where there is room.
     pub(super) wished: f64,
-    /// How far ahead a step is looked at.
+    /// Length of a step checked ahead.
     pub(super) step: f64,
 }
 
-/// Goes along the boundary of an obstacle, in one sense, into every passage that is wide enough.
+/// Follows an obstacle's boundary in one direction, into every passage that is wide enough.
 ///
-/// Headings are tried from the obstacle outwards until a step is free. That decides *where* the boundary goes; it
-/// is the boundary of the obstacle grown by the least distance. Among the headings of that opening the robot takes
-/// the first that keeps the wished distance, or else the one with the most room: the middle of a narrow passage.
+/// Headings are tried from the obstacle outwards until a step is free. This determines *where* the boundary
+/// runs: it is the boundary of the obstacle inflated by the least distance. Within that opening the robot
+/// takes the first heading that keeps the wished distance, or else the one with the most room, along the
+/// middle of a narrow passage.
 #[derive(Debug, Clone)]
 pub(super) struct BoundaryFollower {
     side: WallSide,
     distances: FollowDistances,
-    /// The point, in the frame of the robot's pose, that bounded the way at the last step.
+    /// The point that bounded the last step, in the frame of the robot's poses.
     anchor: Point,
-    /// Steps since it was last seen.
+    /// Number of steps since it was last seen.
     unseen: u32,
 }
 
@@ -33,25 +34,25 @@ pub(super) struct BoundaryFollower {
 const HEADINGS: usize = 180;
 /// Radians between them.
 const SPACING: f64 = TAU / HEADINGS as f64;
-/// The largest jump, in metres, of the anchor between two steps. What is farther away is another part of the wall, and the
-/// anchor, such as the end of a thin wall that is seen along the wall, is there still.
+/// The largest jump, in metres, of the anchor between two steps. What is farther away is another part of the
+/// wall, and the anchor, such as the end of a thin wall that is seen along the wall, is there still.
 const ANCHOR_JUMP: f64 = 0.04;
 /// Steps for which an anchor that is out of sight is taken to be there still.
 const ANCHOR_MEMORY: u32 = 20;
 
 impl BoundaryFollower {
-    /// A follower of the obstacle at `anchor`.
+    /// Creates a follower of the obstacle at `anchor`.
     pub(super) fn new(side: WallSide, distances: FollowDistances, anchor: Point) -> Self {
         Self { side, distances, anchor, unseen: 0 }
     }
 
-    /// The same boundary the other way.
+    /// Follows the same boundary in the other direction.
     pub(super) fn turn_back(&mut self) {
         self.side = self.side.other();
     }
 
-    /// The heading to take, relative to the robot's; `None` when no step is free. An anchor that is out of sight for
-    /// a moment is added to the surroundings.
+    /// The heading to take, relative to the robot's; `None` when no step is free. Adds an anchor that is
+    /// briefly out of sight to the surroundings.
     pub(super) fn heading(&mut self, pose: &Pose, surroundings: &mut Surroundings) -> Option<f64> {
         let sense = self.side.sense();
         let anchor = self.local_anchor(pose, surroundings);
@@ -67,8 +68,8 @@ impl BoundaryFollower {
         Some(normalize_angle(at(chosen)))
     }
 
-    /// The anchor as it is seen now, in the robot's frame. A thin wall's end, seen along the wall, falls between the
-    /// beams for some steps; it is remembered meanwhile.
+    /// The anchor as seen now, in the robot's frame. The end of a thin wall seen edge-on may fall between the
+    /// beams for a few steps; it is remembered meanwhile.
     fn local_anchor(&mut self, pose: &Pose, surroundings: &mut Surroundings) -> Point {
         let expected = pose.to_local(self.anchor);
         match surroundings.nearest_to(expected) {
@@ -86,7 +87,8 @@ impl BoundaryFollower {
         }
     }
 
-    /// Within the opening that begins at `first`, the first heading with the wished room, or the one with the most.
+    /// Within the opening that starts at `first`, the first heading with the wished room, or the one with the
+    /// most.
     fn roomy(&self, first: i32, clearance: impl Fn(i32) -> f64) -> i32 {
         let mut best = (first, 0.0);
         let quarter = (FRAC_PI_2 / SPACING) as i32;
@@ -106,17 +108,17 @@ impl BoundaryFollower {
     }
 }
 
-/// The first free heading outwards from the anchor, as a count of headings.
+/// The first free heading outwards from the anchor, as an index.
 fn opening(is_free: impl Fn(i32) -> bool) -> Option<i32> {
     if !is_free(0) {
         return (1..HEADINGS as i32).find(|&k| is_free(k));
     }
-    // The obstacle has receded: turn back towards it, and beyond, until it bounds the way again.
+    // The obstacle has receded: turn back towards it until it bounds the way again.
     let back = (1..=HEADINGS as i32 / 2).find(|&k| !is_free(-k));
     Some(back.map_or(0, |k| 1 - k))
 }
 
-/// The side on which to follow an obstacle that blocks the way in a direction, so that the robot turns least.
+/// The side on which to follow an obstacle so that the robot turns least.
 pub(super) fn nearer_side(
     blocked: f64,
     anchor: Point,
@@ -143,7 +145,7 @@ mod tests {
         surroundings
     }
 
-    /// Points a centimetre apart from `a` to `b`.
+    /// Points at intervals of 1 cm from `a` to `b`.
     fn wall(a: (f64, f64), b: (f64, f64)) -> Vec<Point> {
         let (a, b) = (Point::new(a.0, a.1), Point::new(b.0, b.1));
         let count = ((b - a).norm() / 0.01).ceil() as usize;
@@ -175,7 +177,7 @@ mod tests {
 
     #[test]
     fn a_passage_of_one_and_a_half_widths_is_entered_and_a_narrower_one_is_not() {
-        // The robot stands before the middle of a gap in the wall to its right.
+        // The robot stands in front of the middle of a gap in the wall to its right.
         let before_gap = |width: f64| {
             let half = 0.5 * width;
             let walls = [wall((-0.5, -0.1), (-half, -0.1)), wall((half, -0.1), (0.5, -0.1))].concat();
@@ -185,7 +187,7 @@ mod tests {
         assert!(before_gap(0.12).abs() < 0.5, "{}", before_gap(0.12));
     }
 
-    /// A thin wall ends before a narrow passage and is seen along itself, but for a point farther off.
+    /// A thin wall seen edge-on ends before a narrow passage; of the wall only a point farther off is seen.
     #[test]
     fn the_end_of_a_thin_wall_is_gone_round_though_it_is_not_seen() {
         let seen = [vec![Point::new(-0.05, -0.17)], wall((-0.5, 0.09), (0.5, 0.09))].concat();

@@ -1,5 +1,5 @@
-//! Navigation (book, chapter 10): sensor-based navigation among unknown obstacles, the truth about which goals
-//! can be reached, and planning on maps ([`grid`]) and in graphs ([`graph`]).
+//! Navigation (book, chapter 10): sensor-based navigation among unknown obstacles, the ground truth of which
+//! goals can be reached, and planning on maps ([`grid`]) and in graphs ([`graph`]).
 
 mod boundary;
 mod bug;

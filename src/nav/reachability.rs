@@ -7,13 +7,13 @@ use std::f64::consts::SQRT_2;
 use crate::geometry::Point;
 use crate::world::{Clearance, Raster, World};
 
-/// The places that the middle of a disc-shaped robot can take in a world, and the ways between them.
+/// The possible positions of a disc-shaped robot's centre in a world, and the ways between them.
 ///
-/// The floor is divided into square cells. A cell is free if its middle is farther than the robot's radius from
-/// every wall and object, which is an exact test (see [`Clearance`]); a robot moves between free cells that share an
-/// edge, or a corner if both cells beside that corner are free. So the answers are those of the continuous world for
-/// a radius that differs by less than one cell: a gap wider than the robot by 1.5 cells connects, and a gap narrower
-/// than the robot by one cell does not.
+/// The floor is divided into square cells. A cell is free if its centre is farther than the robot's radius
+/// from every wall and object, by an exact test (see [`Clearance`]). The robot moves between free cells that
+/// share an edge, or a corner if both cells beside that corner are free. So the answers are those of the
+/// continuous world for a radius that differs by less than one cell: a gap wider than the robot by 1.5 cells
+/// connects, and a gap narrower than the robot by one cell does not.
 ///
 /// ```
 /// use roverlab::geometry::Point;
@@ -32,19 +32,19 @@ use crate::world::{Clearance, Raster, World};
 #[derive(Debug, Clone)]
 pub struct Reachability {
     raster: Raster,
-    /// For every free cell the number of its region of cells connected through edges. Steps over corners that cut
-    /// none connect no more than these.
+    /// Region of each free cell, connected through edges. Diagonal steps that cut no corner do not connect
+    /// more.
     regions: Vec<Option<u32>>,
 }
 
-/// A way between two points through the middles of free cells.
+/// A way between two points through the centres of free cells.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CellPath {
-    /// The start, the middles of the cells on the way, and the goal.
+    /// The start, the centres of the cells on the way, and the goal.
     pub points: Vec<Point>,
-    /// Metres along the points.
+    /// Length (m).
     pub length: f64,
-    /// Cells taken off the search's queue.
+    /// Number of cells taken off the search's queue.
     pub expanded: usize,
 }
 
@@ -52,50 +52,51 @@ impl Reachability {
     /// Metres along a cell's edge that suit robots of the size of an EyeBot.
     pub const DEFAULT_RESOLUTION: f64 = 0.005;
 
-    /// Divides a world into cells of `resolution` metres for a robot of `radius` metres.
+    /// Divides a world into cells of `resolution` metres for a robot of `radius` metres. Fails for parameters
+    /// out of range and a world that is too large.
     ///
-    /// Takes time and memory in proportion to the cells.
+    /// Time and memory are proportional to the number of cells.
     pub fn new(world: &World, radius: f64, resolution: f64) -> Result<Self, ParameterError> {
         require_positive("robot radius", radius)?;
         let clearance = Clearance::new(world, resolution, radius.next_up())?;
         Ok(Self::from_clearance(&clearance, radius))
     }
 
-    /// The same from distances already measured up to a limit above `radius`; with a lower limit no cell is free.
+    /// The same from measured distances with a limit above `radius`; with a lower limit no cell is free.
     pub fn from_clearance(clearance: &Clearance, radius: f64) -> Self {
         let raster = clearance.raster().clone();
         let regions = raster.regions(|cell| clearance.at(cell) > radius);
         Self { raster, regions }
     }
 
-    /// The cells.
+    /// Raster of the cells.
     pub fn raster(&self) -> &Raster {
         &self.raster
     }
 
-    /// Whether a robot whose middle is in the cell of this point touches nothing.
+    /// Whether a robot with its centre in the cell of this point touches nothing.
     pub fn is_free(&self, point: Point) -> bool {
         self.region_at(point).is_some()
     }
 
-    /// Whether both points are free and a way leads from one to the other.
+    /// Whether both points are free and a way connects them.
     pub fn connected(&self, a: Point, b: Point) -> bool {
         self.region_at(a).is_some_and(|region| Some(region) == self.region_at(b))
     }
 
-    /// The number of free cells that a robot at this point can reach, its own among them.
+    /// Number of free cells that a robot at this point can reach, including its own.
     pub fn region_size(&self, point: Point) -> usize {
         self.region_at(point)
             .map_or(0, |region| self.regions.iter().filter(|&&other| other == Some(region)).count())
     }
 
-    /// Metres along the shortest way from `a` to `b`; `None` if there is none. See [`Self::shortest_path`].
+    /// Length of the shortest way from `a` to `b` (m); `None` if none exists. See [`Self::shortest_path`].
     pub fn shortest_path_length(&self, a: Point, b: Point) -> Option<f64> {
         self.shortest_path(a, b).map(|path| path.length)
     }
 
-    /// The shortest way from `a` to `b` in steps along edges and diagonals, found by A\* with the octile distance;
-    /// `None` if there is no way. In open space such a way is at most 8.3 % longer than the straight line.
+    /// The shortest way from `a` to `b` in steps along edges and diagonals, by A\* with the octile distance;
+    /// `None` if none exists. In open space it is at most 8.3 % longer than the straight line.
     ///
     /// P. E. Hart, N. J. Nilsson, B. Raphael, *A Formal Basis for the Heuristic Determination of Minimum Cost
     /// Paths*, IEEE Trans. Systems Science and Cybernetics 4(2), 1968. O(n log n) for n cells.
@@ -111,7 +112,7 @@ impl Reachability {
 
     fn path(&self, a: Point, b: Point, cells: &[usize], expanded: usize) -> CellPath {
         let mut points = vec![a];
-        // The first and the last cell are those of the given points, which stand for their middles.
+        // The given points replace the centres of the first and the last cell.
         let inner = cells.get(1..cells.len().saturating_sub(1)).unwrap_or_default();
         points.extend(inner.iter().map(|&cell| self.raster.centre(cell)));
         points.push(b);
@@ -127,7 +128,7 @@ impl Reachability {
         self.regions[cell].is_some()
     }
 
-    /// Calls `visit` with each cell that one step leads to, and whether the step is diagonal.
+    /// Calls `visit` with each neighbouring cell, and whether the step is diagonal.
     fn steps(&self, cell: usize, mut visit: impl FnMut(usize, bool)) {
         let free = |neighbour: Option<usize>| neighbour.filter(|&next| self.is_free_cell(next));
         let [right, left, above, below] = self.raster.edge_neighbours(cell).map(free);
@@ -161,8 +162,8 @@ struct Candidate {
 impl Eq for Candidate {}
 
 impl Ord for Candidate {
-    /// Reversed, because the heap gives its greatest first. Ties go to the cell nearer to the goal, then to the
-    /// lower index, so that the path does not depend on the heap's inner order.
+    /// Reversed for a min-heap. Ties go to the cell nearer to the goal, then to the lower index, so that the
+    /// path does not depend on the heap's internal order.
     fn cmp(&self, other: &Self) -> Ordering {
         (other.estimate.total_cmp(&self.estimate))
             .then(self.cost.total_cmp(&other.cost))
@@ -225,7 +226,7 @@ impl<'a> Search<'a> {
         false
     }
 
-    /// The octile distance to the goal.
+    /// Octile distance to the goal.
     fn heuristic(&self, cell: usize) -> f64 {
         let columns = self.space.raster.columns();
         let dx = (cell % columns).abs_diff(self.goal % columns);

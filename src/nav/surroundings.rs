@@ -1,12 +1,12 @@
 use crate::geometry::{Point, Vector, cross, free_distance, math};
 
-/// What a disc-shaped robot sees around it, as points in its own frame, and where it can go.
+/// Visible points around a disc-shaped robot, in its own frame, and the free space between them.
 ///
-/// All lengths are from the robot's middle: a *clearance* of the robot's radius means touching.
+/// All lengths are measured from the robot's centre: a *clearance* equal to its radius means contact.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Surroundings {
     points: Vec<Point>,
-    /// Those near enough to matter for the next step.
+    /// Points near enough to matter for the next step.
     near: Vec<Point>,
     clearance: f64,
 }
@@ -15,7 +15,7 @@ pub(super) struct Surroundings {
 const RECEDING_SLOPE: f64 = 0.25;
 
 impl Surroundings {
-    /// Replaces what is seen. Points within `reach` of the robot count for its next step.
+    /// Replaces the visible points. Those within `reach` of the robot count for its next step.
     pub(super) fn update(&mut self, points: impl Iterator<Item = Point>, reach: f64) {
         self.points.clear();
         self.points.extend(points);
@@ -25,15 +25,16 @@ impl Surroundings {
         self.clearance = nearest.sqrt();
     }
 
-    /// All that is around the robot.
+    /// All visible points.
     pub(super) fn points(&self) -> &[Point] {
         &self.points
     }
 
-    /// How near the robot's middle comes to anything on a straight step of `length` metres in a direction.
+    /// Distance between the robot's centre and the nearest point on a straight step of `length` metres in a
+    /// direction, and that point.
     ///
-    /// What the step leaves behind, or moves away from fast enough, does not count: a robot that is too close to a
-    /// wall may still drive off it. Also returns the point that it comes nearest to.
+    /// Points that the step leaves behind, or moves away from fast enough, do not count: a robot too close to
+    /// a wall may still drive away from it.
     pub(super) fn step_clearance(&self, unit: Vector, length: f64) -> (f64, Option<Point>) {
         let mut least = (f64::INFINITY, None);
         for point in &self.near {
@@ -44,13 +45,13 @@ impl Surroundings {
         least
     }
 
-    /// Whether a step keeps a clearance: the same without looking further than the first point that it does not pass.
+    /// Whether a step keeps a clearance; stops at the first point that violates it.
     pub(super) fn is_step_free(&self, unit: Vector, length: f64, clearance: f64) -> bool {
         let keeps = |point| self.passing_distance(point, unit, length).is_none_or(|d| d >= clearance);
         self.near.iter().all(keeps)
     }
 
-    /// How near the robot's middle comes to a point on a step, if that counts.
+    /// Distance between the robot's centre and a point on a step, if the point counts.
     fn passing_distance(&self, point: &Point, unit: Vector, length: f64) -> Option<f64> {
         let along = point.coords.dot(&unit);
         if along <= 0.0 {
@@ -62,14 +63,15 @@ impl Surroundings {
         (!receding).then_some(distance)
     }
 
-    /// How far a disc of radius `radius` can move in a direction before it touches something, and what it touches.
+    /// Distance a disc of radius `radius` can move in a direction before it touches something, and the point
+    /// it touches.
     ///
-    /// A radius larger than the present clearance is cut down to it.
+    /// A radius larger than the current clearance is reduced to it.
     pub(super) fn free_distance(&self, unit: Vector, radius: f64) -> (f64, Option<Point>) {
         free_distance(&self.points, unit, radius.min(self.clearance - 1e-3))
     }
 
-    /// Adds a point that is known to be there though it is not seen at the moment.
+    /// Adds a point known to exist though it is currently hidden.
     pub(super) fn remember(&mut self, point: Point) {
         self.near.push(point);
         self.clearance = self.clearance.min(point.coords.norm());

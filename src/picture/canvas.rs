@@ -1,4 +1,4 @@
-//! Elements of SVG, with numbers in a short and fixed form.
+//! SVG elements, with numbers in a short and fixed form.
 
 use svg::node::element::{Circle, Path, Rectangle, Text};
 
@@ -10,7 +10,7 @@ use crate::world::Colour;
 /// Fonts with similar widths, the first of which is built into the PNG writer.
 pub(super) const FONTS: &str = "DejaVu Sans, Verdana, Segoe UI, Helvetica, Arial, sans-serif";
 
-/// A number with at most two decimals, which is finer than any screen, and no larger than renderers can take.
+/// A number with at most two decimals, finer than any screen, clamped to what renderers accept.
 pub(super) fn number(value: f64) -> String {
     let value = if value.is_nan() { 0.0 } else { value.clamp(-1e6, 1e6) };
     let text = format!("{value:.2}");
@@ -18,7 +18,7 @@ pub(super) fn number(value: f64) -> String {
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
-/// The data of a path along some pixels; closed, it returns to its start.
+/// Data of a path through pixels; a closed one returns to its start.
 pub(super) fn path_data(points: &[Pixel], closed: bool) -> String {
     let mut data = String::new();
     for (i, p) in points.iter().enumerate() {
@@ -33,7 +33,7 @@ pub(super) fn path_data(points: &[Pixel], closed: bool) -> String {
     data
 }
 
-/// A line, with round joins and ends.
+/// A line with round joins and caps.
 pub(super) fn line(data: String, colour: Colour, width: f64) -> Path {
     Path::new()
         .set("d", data)
@@ -69,7 +69,7 @@ pub(super) fn rectangle(bounds: Aabb, colour: Colour) -> Rectangle {
         .set("fill", colour.to_string())
 }
 
-/// A line of text that starts at `at`, on the base line.
+/// A line of text starting at `at`, on the baseline.
 pub(super) fn words(content: &str, at: Pixel, size: f64, colour: Colour) -> Text {
     Text::new(text::clean(content))
         .set("x", number(at.x))

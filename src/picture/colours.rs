@@ -1,7 +1,7 @@
 use crate::world::Colour;
 
-/// Colours that tell things of one kind apart, several robots for instance: the n-th takes the n-th, in a circle.
-/// Readers who see few colours can tell them apart too.
+/// Colours that distinguish things of one kind, such as several robots: the n-th takes the n-th colour,
+/// cyclically. They remain distinguishable with colour blindness.
 pub const SERIES: [Colour; 11] = [
     Colour::from_hex(0x1f_6f_b2),
     Colour::from_hex(0x1b_92_7a),
@@ -43,12 +43,19 @@ pub(super) const RED: Colour = Colour::from_hex(0xc8_3e_4d);
 /// Points that sensors have seen.
 pub(super) const CLOUD: Colour = Colour::from_hex(0xb8_55_8b);
 
-/// The n-th colour of [`SERIES`], which repeats.
+/// The n-th colour of [`SERIES`], cyclically.
 pub(super) fn series(n: usize) -> Colour {
     SERIES[n % SERIES.len()]
 }
 
-/// A colour for a number between 0 and 1, from deep blue over green and yellow to red. Numbers outside are clamped.
+/// Colour scale for a number between 0 and 1, from deep blue over green and yellow to red. Values outside are
+/// clamped.
+///
+/// ```
+/// use roverlab::picture::ramp;
+/// assert_ne!(ramp(0.0), ramp(1.0));
+/// assert_eq!(ramp(2.0), ramp(1.0), "what is beyond counts as the end");
+/// ```
 pub fn ramp(value: f64) -> Colour {
     /// The colours of the ramp, from the least value to the greatest.
     const STOPS: [Colour; 5] = [
@@ -63,7 +70,7 @@ pub fn ramp(value: f64) -> Colour {
     mix(STOPS[stop], STOPS[stop + 1], place - stop as f64)
 }
 
-/// The colour `share` of the way from `a` to `b`.
+/// The colour a fraction `share` of the way from `a` to `b`.
 pub(super) fn mix(a: Colour, b: Colour, share: f64) -> Colour {
     let channel = |a: u8, b: u8| (f64::from(a) + share * (f64::from(b) - f64::from(a))).round() as u8;
     Colour::new(channel(a.red, b.red), channel(a.green, b.green), channel(a.blue, b.blue))

@@ -1,4 +1,4 @@
-//! The lines above the picture, and the scale bar below it.
+//! Title and caption above the picture, scale bar below it.
 
 use svg::node::element::Group;
 
@@ -10,17 +10,19 @@ use super::items::Picture;
 use super::text;
 use crate::geometry::Vector;
 
-/// Title and caption of a page with this much room, and their height with the space below them.
+/// Title and caption within a width of `room` pixels, and their height including the space below.
 pub(super) fn heading(picture: &Picture, corner: Pixel, room: f64) -> (Group, f64) {
     let mut group = Group::new();
     let mut base = corner.y;
     if let Some(title) = &picture.title {
         base += text::LINE;
         let title = text::fit(&text::clean(title), BOLD * text::LINE, room);
-        group = group.add(words(&title, Pixel::new(corner.x, base), text::LINE, INK).set("font-weight", "bold"));
+        group =
+            group.add(words(&title, Pixel::new(corner.x, base), text::LINE, INK).set("font-weight", "bold"));
         base += 4.0;
     }
-    for row in picture.caption.iter().flat_map(|caption| text::wrapped(&text::clean(caption), text::SIZE, room))
+    for row in
+        picture.caption.iter().flat_map(|caption| text::wrapped(&text::clean(caption), text::SIZE, room))
     {
         base += text::LINE;
         group = group.add(words(&row, Pixel::new(corner.x, base), text::SIZE, PALE_INK));
@@ -32,12 +34,12 @@ pub(super) fn heading(picture: &Picture, corner: Pixel, room: f64) -> (Group, f6
 /// How much wider bold letters are.
 const BOLD: f64 = 1.12;
 
-/// The width that the title would like.
+/// Width of the title in pixels.
 pub(super) fn title_width(picture: &Picture) -> f64 {
     picture.title.as_ref().map_or(0.0, |title| text::width(title, BOLD * text::LINE))
 }
 
-/// How fast a film is, below the frame's lower right corner.
+/// Playback speed of a film, below the frame's lower right corner.
 pub(super) fn pace(frame: &Frame, film: &Film) -> Group {
     let words_for =
         if film.pace() > 1.05 { format!("{:.1} times as fast", film.pace()) } else { "real time".into() };
@@ -46,7 +48,7 @@ pub(super) fn pace(frame: &Frame, film: &Film) -> Group {
     Group::new().add(words(&words_for, left, text::SIZE, PALE_INK)).add(film.progress(&frame.pixels()))
 }
 
-/// A bar as long as one step of the grid, with its length, below the frame's lower left corner.
+/// A bar of one grid step with its length, below the frame's lower left corner.
 pub(super) fn scale_bar(frame: &Frame) -> Group {
     let bounds = frame.pixels();
     let left = Pixel::new(bounds.min.x, bounds.max.y + 19.0);
@@ -59,7 +61,7 @@ pub(super) fn scale_bar(frame: &Frame) -> Group {
     Group::new().add(line(data, PALE_INK, 1.6)).add(text)
 }
 
-/// Metres in the unit that needs the fewest digits.
+/// A length in the unit that needs the fewest digits.
 fn length_in_words(metres: f64) -> String {
     let (number, unit) = match metres {
         m if m < 0.000_999 => (m * 1e6, "µm"),

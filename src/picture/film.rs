@@ -1,4 +1,4 @@
-//! Moving pictures: SVG whose attributes change with time (SMIL), again and again.
+//! Animated pictures: SVG with attributes that change over time (SMIL), in an endless loop.
 
 use std::fmt::Write;
 
@@ -9,12 +9,12 @@ use super::colours::PALE_INK;
 use super::frame::Pixel;
 use crate::geometry::{Aabb, Vector, angle_difference, units};
 
-/// How the seconds of a run become those of a film.
+/// Maps the time of a run to that of a film.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Film {
-    /// The run's seconds.
+    /// Duration of the run (s).
     duration: f64,
-    /// The film's seconds, without those in which the end is held.
+    /// Playing time of the film (s), without the hold at the end.
     playing: f64,
 }
 
@@ -27,30 +27,30 @@ pub(super) const TOLERANCE: f64 = 0.35;
 const TURNED: f64 = 2.0;
 
 impl Film {
-    /// A film of a run; `None` if nothing moves.
+    /// The film of a run; `None` if nothing moves.
     pub(super) fn of(duration: f64) -> Option<Self> {
         (duration > 0.0).then(|| Self { duration, playing: duration.min(LONGEST) })
     }
 
-    /// How many times as fast as the run it is.
+    /// Playback speed relative to the run.
     pub(super) fn pace(&self) -> f64 {
         self.duration / self.playing
     }
 
-    /// A second of the run as a share of the film.
+    /// A time of the run as a fraction of the film.
     fn share(&self, time: f64) -> f64 {
         let share = if time.is_nan() { 0.0 } else { (time / self.duration).clamp(0.0, 1.0) };
         share * self.playing / (self.playing + HOLD)
     }
 
-    /// An attribute's values at times.
+    /// An animated attribute: its values at times of the run.
     fn change(&self, attribute: &str, values: &[(f64, String)]) -> Animate {
         let mut animate = Animate::new().set("attributeName", attribute);
         self.assign(&mut animate, values);
         animate
     }
 
-    /// The film's length, and values with their times as SMIL wants them: from 0 to 1, in order.
+    /// The film's length, and values with their times as SMIL requires: from 0 to 1, in order.
     fn assign(&self, element: &mut impl svg::Node, values: &[(f64, String)]) {
         let (mut keys, mut list, mut last) = (String::new(), String::new(), 0.0);
         let first = values.first().map(|(_, value)| (0.0, value));
@@ -69,7 +69,7 @@ impl Film {
         element.assign("values", list);
     }
 
-    /// What is seen in some seconds of the run only.
+    /// Shows a group only from one time of the run to another.
     pub(super) fn seen(&self, group: Group, from: f64, until: f64) -> Group {
         let [hidden, visible] = ["hidden", "visible"].map(str::to_owned);
         let mut values = vec![(0.0, if from > 0.0 { hidden.clone() } else { visible.clone() })];
@@ -81,15 +81,15 @@ impl Film {
         }
     }
 
-    /// A dash that grows to the whole of a line of this length: its pattern, and how it moves. `reached` has the pixels
-    /// along the line at times.
+    /// A dash that grows to the whole of a line of this length: its pattern and its animation. `reached`
+    /// lists times and pixels along the line.
     pub(super) fn growth(&self, length: f64, reached: &[(f64, f64)]) -> (String, Animate) {
         let off = |between: usize, a: usize, b: usize| {
             let share = part(reached[between].0, reached[a].0, reached[b].0);
             (reached[between].1 - reached[a].1 - share * (reached[b].1 - reached[a].1)).abs()
         };
         let kept = simplified(reached.len(), TOLERANCE, off);
-        // Round ends reach a little farther than the dash.
+        // Round caps extend slightly beyond the dash.
         let value = |index: usize| {
             let (time, along) = reached[index];
             (time, number(if along <= 0.0 { length + 20.0 } else { length - along }))
@@ -99,7 +99,7 @@ impl Film {
         (pattern, self.change("stroke-dashoffset", &values))
     }
 
-    /// A line's data as it changes.
+    /// Animation of a line's path data.
     pub(super) fn shapes(&self, shapes: &[(f64, Vec<Pixel>)]) -> Animate {
         let off = |between: usize, a: usize, b: usize| {
             let share = part(shapes[between].0, shapes[a].0, shapes[b].0);
@@ -111,7 +111,7 @@ impl Film {
         self.change("d", &values)
     }
 
-    /// Moves and turns what is drawn at the origin with heading 0.
+    /// Moves and turns a group drawn at the origin with heading 0.
     pub(super) fn drive(&self, group: Group, poses: &[(f64, Pixel, f64)]) -> Group {
         let place = |(time, at, _): &(f64, Pixel, f64)| (*time, *at);
         let places: Vec<_> = poses.iter().map(place).collect();
@@ -144,7 +144,7 @@ impl Film {
             .add(change("rotate", "sum", &turns))
     }
 
-    /// A line below the plot that grows with time.
+    /// A bar below the plot that grows with time.
     pub(super) fn progress(&self, plot: &Aabb) -> Rectangle {
         let corner = Pixel::new(plot.min.x, plot.max.y + 3.0);
         let width = number(plot.size().x);
@@ -153,7 +153,7 @@ impl Film {
     }
 }
 
-/// Degrees clockwise, as the page turns, that go on beyond a full turn, so that nothing spins back.
+/// Clockwise angles in degrees that continue beyond a full turn, so that nothing spins back.
 fn unwound(poses: &[(f64, Pixel, f64)]) -> Vec<f64> {
     let mut total = poses.first().map_or(0.0, |(_, _, heading)| *heading);
     let mut before = total;
@@ -165,7 +165,7 @@ fn unwound(poses: &[(f64, Pixel, f64)]) -> Vec<f64> {
     poses.iter().map(step).collect()
 }
 
-/// Places that have to be kept so that something between them is where it was at the time.
+/// Indices of the positions to keep so that interpolation in time stays within the tolerance.
 pub(super) fn in_time(places: &[(f64, Pixel)]) -> Vec<usize> {
     simplified(places.len(), TOLERANCE, |between, a, b| {
         let (from, to) = (places[a].1, places[b].1);
@@ -174,14 +174,14 @@ pub(super) fn in_time(places: &[(f64, Pixel)]) -> Vec<usize> {
     })
 }
 
-/// Where a time lies between two others.
+/// Fraction of the way of a time between two others.
 fn part(time: f64, from: f64, to: f64) -> f64 {
     if to > from { (time - from) / (to - from) } else { 0.0 }
 }
 
-/// The numbers of those among `count` things that have to be kept so that none is farther off what its neighbours that
-/// were kept make of it than `tolerance`: the algorithm of Ramer, Douglas and Peucker. `off` is given a number and those
-/// two.
+/// Indices of the things to keep, among `count`, so that interpolation between them deviates by at most
+/// `tolerance`: the Ramer-Douglas-Peucker algorithm. `off(i, a, b)` returns the deviation of `i` between `a`
+/// and `b`.
 pub(super) fn simplified(
     count: usize,
     tolerance: f64,
@@ -225,7 +225,7 @@ mod tests {
                 let ((from, a), (to, b)) = (places[pair[0]], places[pair[1]]);
                 for (time, place) in &places[pair[0]..=pair[1]] {
                     let shown = a + (b - a) * part(*time, from, to);
-                    // Two places at one time are both kept, or within reach of each other.
+                    // Two positions at the same time are both kept, or within the tolerance of each other.
                     prop_assert!(to == from || (place - shown).norm() <= TOLERANCE + 1e-9 || *time == to);
                 }
             }

@@ -6,14 +6,14 @@ pub(super) const GAP: f64 = 20.0;
 /// A point of the picture in pixels: x to the right, y down.
 pub(super) type Pixel = nalgebra::Point2<f64>;
 
-/// The part of the world that a picture shows, and where on the page it stands.
+/// The region of the world shown by a picture, and its position on the page.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Frame {
-    /// The part of the world, in metres.
+    /// Region of the world (m).
     pub(super) region: Aabb,
-    /// Pixels in a metre.
+    /// Pixels per metre.
     pub(super) scale: f64,
-    /// The pixel of the region's upper left corner.
+    /// Pixel of the region's upper left corner.
     pub(super) corner: Pixel,
 }
 
@@ -25,7 +25,7 @@ impl Frame {
     /// No region is drawn flatter than this share of its longer side.
     const FLATTEST: f64 = 0.06;
 
-    /// The largest frame that shows `region` in the room for the plot.
+    /// The largest frame that shows `region` within the room for the plot.
     pub(super) fn around(region: Aabb, corner: Pixel) -> Self {
         let region = presentable(region);
         let size = region.size();
@@ -33,7 +33,7 @@ impl Frame {
         Self { region, scale, corner }
     }
 
-    /// Where a point of the world appears.
+    /// Pixel of a point of the world.
     pub(super) fn at(&self, point: Point) -> Pixel {
         let (left, top) = (self.region.min.x, self.region.max.y);
         self.corner + Vector::new(point.x - left, top - point.y) * self.scale
@@ -49,8 +49,8 @@ impl Frame {
         Aabb { min: self.corner, max: self.corner + self.region.size() * self.scale }
     }
 
-    /// The distance of grid lines, which is also the length of the scale bar, in metres: a power of ten, twice or five
-    /// times that, of at least 56 pixels where the frame is that wide.
+    /// Distance of the grid lines and length of the scale bar (m): 1, 2 or 5 times a power of ten, and at
+    /// least 56 pixels where the frame is wide enough.
     pub(super) fn grid_step(&self) -> f64 {
         let least = (56.0 / self.scale).min(0.5 * self.region.size().x);
         let powers = (-9..12).map(|exponent| crate::geometry::math::pow(10.0, f64::from(exponent)));
@@ -59,7 +59,7 @@ impl Frame {
     }
 }
 
-/// A region with an extent that can be drawn: finite, not empty, not too flat.
+/// A region that can be drawn: finite, not empty, not too flat.
 fn presentable(region: Aabb) -> Aabb {
     let finite = [region.min, region.max].iter().all(|p| p.x.abs() < 1e9 && p.y.abs() < 1e9);
     if !finite {

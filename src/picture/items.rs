@@ -5,22 +5,22 @@ use super::{Mark, Style};
 use crate::geometry::{Aabb, Point, Pose};
 use crate::world::{Footprint, World};
 
-/// A picture of a world and of what is added to it, still or moving.
+/// A still or animated picture of a world and of what is added to it.
 ///
-/// Every method that adds something returns the picture, so calls can be chained. Things of one sort are drawn in
-/// the order in which they were added; areas lie below walls, walls below points and lines, lines below start and goal,
-/// these below robots, and other marks above all.
+/// Every method that adds something returns the picture, so calls can be chained. Things of one kind are
+/// drawn in the order of their addition. The layers from the bottom: areas, walls, points and lines, start
+/// and goal, robots, other marks.
 ///
-/// What has times moves. The still picture shows the last moment, [`at`](Self::at) any other one.
+/// Things with times move. The still picture shows the last moment, [`at`](Self::at) any other one.
 #[derive(Debug, Clone)]
 pub struct Picture {
     pub(super) world: World,
     pub(super) title: Option<String>,
     pub(super) caption: Option<String>,
     pub(super) items: Vec<Item>,
-    /// Whether its lengths are metres of a world.
+    /// Whether lengths are metres of a world.
     pub(super) to_scale: bool,
-    /// When what is added next is seen.
+    /// Time interval in which later additions are visible (s).
     from: f64,
     until: f64,
     coloured_robots: usize,
@@ -28,65 +28,65 @@ pub struct Picture {
     odometry_paths: usize,
 }
 
-/// A thing in a picture, for other ways of drawing than SVG: see [`Picture::items`].
+/// A thing in a picture, for renderers other than SVG: see [`Picture::items`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Item {
-    /// What it is.
+    /// What to draw.
     pub figure: Figure,
-    /// How it looks; marks and texts have looks of their own.
+    /// Its style; marks and texts have their own.
     pub style: Style,
-    /// The first second in which it is seen.
+    /// Start of its visibility (s).
     pub from: f64,
-    /// The last second in which it is seen, or infinity.
+    /// End of its visibility (s), or infinity.
     pub until: f64,
 }
 
-/// What can be drawn, in metres and seconds.
+/// Something to draw, in metres and seconds.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Figure {
     /// A disc on the floor.
     Disc {
-        /// Its middle.
+        /// Centre.
         centre: Point,
-        /// Metres from there to its edge.
+        /// Radius (m).
         radius: f64,
     },
-    /// The corners of an area on the floor.
+    /// An area on the floor, given by its corners.
     Polygon(Vec<Point>),
     /// A cloud of points.
     Points(Vec<Point>),
     /// A line.
     Line {
-        /// The points it goes through.
+        /// Points of the line.
         points: Vec<Point>,
-        /// When it reaches each of them; empty for a line that does not grow.
+        /// Times at which it reaches them (s); empty for a line that does not grow.
         times: Vec<f64>,
-        /// The speed at each of them, in metres per second; empty for a line that is not coloured by it.
+        /// Speeds at them (m/s); empty for a line not coloured by speed.
         speeds: Vec<f64>,
     },
-    /// A line that changes its shape: when it has which. All shapes have as many points as the first.
+    /// A line that changes its shape: times and shapes. All shapes have as many points as the first.
     Moving(Vec<(f64, Vec<Point>)>),
     /// A robot.
     Robot {
-        /// When it is where; a single one for a robot that stands.
+        /// Times (s) and poses; a single one for a standing robot.
         poses: Vec<(f64, Pose)>,
         /// Its outline.
         footprint: Footprint,
     },
     /// A marked point.
     Mark {
-        /// The symbol; `None` for a text alone.
+        /// Symbol; `None` for a text alone.
         mark: Option<Mark>,
-        /// Where it is.
+        /// Position.
         position: Point,
-        /// A short name beside it.
+        /// Short name beside it.
         text: Option<String>,
     },
 }
 
 impl Picture {
-    /// A picture of a world without robots. The world is copied: what moves later does not move in the picture.
+    /// A picture of a world without robots. The world is copied; later changes do not show.
     pub fn new(world: &World) -> Self {
         Self {
             world: world.clone(),
@@ -102,31 +102,32 @@ impl Picture {
         }
     }
 
-    /// The line above the picture.
+    /// Sets the title above the picture.
     pub fn title(&mut self, text: impl Into<String>) -> &mut Self {
         self.title = Some(text.into());
         self
     }
 
-    /// A smaller line below the title: the outcome of a run, say.
+    /// Sets the smaller line below the title, such as the outcome of a run.
     pub fn caption(&mut self, text: impl Into<String>) -> &mut Self {
         self.caption = Some(text.into());
         self
     }
 
-    /// Leaves out scale bar and grid: for charts, whose lengths are no metres.
+    /// Omits scale bar and grid: for charts, whose lengths are not metres.
     pub fn without_scale(&mut self) -> &mut Self {
         self.to_scale = false;
         self
     }
 
-    /// Whether its lengths are metres of a world, as they are unless it is [without a scale](Self::without_scale).
+    /// Whether lengths are metres of a world: `true` unless it is [without a scale](Self::without_scale).
     pub fn is_to_scale(&self) -> bool {
         self.to_scale
     }
 
-    /// What is added from now on is seen in these seconds of a moving picture, `2.0..3.5` or `2.0..`; a still one shows
-    /// what is seen at its end. Without a call, everything is seen all the time.
+    /// Sets the time interval in which later additions are visible in an animated picture, `2.0..3.5` or
+    /// `2.0..` (s); a still picture shows what is visible at its end. By default everything is always
+    /// visible.
     pub fn during(&mut self, seconds: impl RangeBounds<f64>) -> &mut Self {
         let number = |bound: Bound<&f64>, open: f64| match bound {
             Bound::Included(&time) | Bound::Excluded(&time) if !time.is_nan() => time,
@@ -143,35 +144,35 @@ impl Picture {
         self
     }
 
-    /// All that was added, in that order.
+    /// All additions, in order.
     pub fn items(&self) -> &[Item] {
         &self.items
     }
 
-    /// The time at which nothing changes any more, in seconds; 0 if nothing moves.
+    /// Time of the last change (s); 0 if nothing moves.
     pub fn duration(&self) -> f64 {
         self.items.iter().flat_map(Item::changes).filter(|time| time.is_finite()).fold(0.0, f64::max)
     }
 
-    /// The picture at a time: what is seen then, as it is then.
+    /// The picture at a time (s).
     #[must_use]
     pub fn at(&self, time: f64) -> Self {
         let seen = self.items.iter().filter(|item| item.from <= time && time <= item.until);
         Self { items: seen.map(|item| item.at(time)).collect(), ..self.clone() }
     }
 
-    /// A robot's outline and heading. Several robots take the colours of [`SERIES`](super::SERIES) in turn, as their
-    /// true paths do.
+    /// Adds a robot's outline and heading. Several robots take the colours of [`SERIES`](super::SERIES) in
+    /// turn, like their true paths.
     pub fn robot(&mut self, pose: Pose, footprint: &Footprint) -> &mut Self {
         self.add_robot(vec![(0.0, pose)], footprint)
     }
 
-    /// A robot in a style of its own: pale for where it started, say.
+    /// Adds a robot in its own style, such as a pale one for its start.
     pub fn robot_with(&mut self, pose: Pose, footprint: &Footprint, style: Style) -> &mut Self {
         self.add(Figure::Robot { poses: vec![(0.0, pose)], footprint: *footprint }, style)
     }
 
-    /// A robot that drives, and its true path: when it was where, in seconds.
+    /// Adds a driving robot and its true path: times (s) and poses.
     pub fn drive(&mut self, trail: &[(f64, Pose)], footprint: &Footprint) -> &mut Self {
         let style = self.next_true_path();
         self.trace(trail.iter().map(|(time, pose)| (*time, pose.position())), style);
@@ -184,7 +185,7 @@ impl Picture {
         self.add(Figure::Robot { poses, footprint: *footprint }, style)
     }
 
-    /// Where a robot really was: a solid line.
+    /// Adds a robot's true path: a solid line.
     pub fn true_path(&mut self, points: impl IntoIterator<Item = Point>) -> &mut Self {
         let style = self.next_true_path();
         self.line(points, style)
@@ -195,7 +196,7 @@ impl Picture {
         Style::true_path().colour(series(self.true_paths - 1))
     }
 
-    /// Where a robot believed to be: a dashed line.
+    /// Adds a robot's path by odometry: a dashed line.
     pub fn odometry_path(&mut self, points: impl IntoIterator<Item = Point>) -> &mut Self {
         let style = match self.odometry_paths {
             0 => Style::odometry(),
@@ -205,14 +206,14 @@ impl Picture {
         self.line(points, style)
     }
 
-    /// Where a robot really was, coloured by its speed there in metres per second. The legend shows the scale, which
-    /// ends at the highest speed of the picture; the sign of a speed is ignored, and one that is not finite counts as 0.
+    /// Adds a robot's true path, coloured by speed (m/s). The legend shows the scale, which ends at the
+    /// highest speed of the picture. The sign of a speed is ignored; one that is not finite counts as 0.
     pub fn speed_path(&mut self, points: impl IntoIterator<Item = (Point, f64)>) -> &mut Self {
         let (points, speeds) = points.into_iter().unzip();
         self.add_speeds(points, Vec::new(), speeds)
     }
 
-    /// The same for a line that grows: time, point and speed.
+    /// The same for a growing line: time (s), point and speed (m/s).
     pub fn speed_trace(&mut self, points: impl IntoIterator<Item = (f64, Point, f64)>) -> &mut Self {
         let (mut places, mut times, mut speeds) = (Vec::new(), Vec::new(), Vec::new());
         for (time, point, speed) in points {
@@ -231,20 +232,20 @@ impl Picture {
         self.add(Figure::Line { points, times, speeds }, Style::true_path().width(3.2))
     }
 
-    /// A line through some points.
+    /// Adds a line through points.
     pub fn line(&mut self, points: impl IntoIterator<Item = Point>, style: Style) -> &mut Self {
         let points = points.into_iter().collect();
         self.add(Figure::Line { points, times: Vec::new(), speeds: Vec::new() }, style)
     }
 
-    /// A line that grows: when it reaches which point, in seconds.
+    /// Adds a growing line: times (s) and points.
     pub fn trace(&mut self, points: impl IntoIterator<Item = (f64, Point)>, style: Style) -> &mut Self {
         let (times, points) = points.into_iter().unzip();
         self.add(Figure::Line { points, times, speeds: Vec::new() }, style)
     }
 
-    /// A line that changes its shape, a limb for instance: when it has which. Shapes with another number of points than
-    /// the first are left out.
+    /// Adds a line that changes its shape, such as a limb: times (s) and shapes. Shapes with a number of
+    /// points that differs from the first are omitted.
     pub fn moving_line(
         &mut self,
         shapes: impl IntoIterator<Item = (f64, Vec<Point>)>,
@@ -258,33 +259,34 @@ impl Picture {
         self.add(Figure::Moving(shapes), style)
     }
 
-    /// A cloud of points; the style's width is their diameter.
+    /// Adds a cloud of points; the style's width is their diameter.
     pub fn points(&mut self, points: impl IntoIterator<Item = Point>, style: Style) -> &mut Self {
         self.add(Figure::Points(points.into_iter().collect()), style)
     }
 
-    /// A disc on the floor, `radius` metres from its middle to its edge.
+    /// Adds a disc on the floor with a radius in metres.
     pub fn disc(&mut self, centre: Point, radius: f64, style: Style) -> &mut Self {
         self.add(Figure::Disc { centre, radius }, style)
     }
 
-    /// A polygon on the floor, given by its corners. A corner that is not finite is left out.
+    /// Adds a polygon on the floor, given by its corners. Corners that are not finite are omitted.
     pub fn polygon(&mut self, corners: impl IntoIterator<Item = Point>, style: Style) -> &mut Self {
         self.add(Figure::Polygon(corners.into_iter().filter(is_finite).collect()), style)
     }
 
-    /// A marked point. The legend explains the symbols that occur.
+    /// Adds a marked point. The legend explains its symbol.
     pub fn mark(&mut self, mark: Mark, position: Point) -> &mut Self {
         self.add_mark(Some(mark), position, None)
     }
 
-    /// A marked point with a short name beside it, such as `H1`. A name for which there is no room without touching
-    /// another one is left out.
+    /// Adds a marked point with a short name beside it, such as `H1`. The name is omitted if it would overlap
+    /// another one.
     pub fn mark_named(&mut self, mark: Mark, position: Point, name: impl Into<String>) -> &mut Self {
         self.add_mark(Some(mark), position, Some(name.into()))
     }
 
-    /// A short text beside a point, without a symbol; left out, as a mark's name, where there is no room.
+    /// Adds a short text beside a point, without a symbol; omitted where there is no room, like the name of a
+    /// mark.
     pub fn text(&mut self, position: Point, text: impl Into<String>) -> &mut Self {
         self.add_mark(None, position, Some(text.into()))
     }
@@ -293,13 +295,13 @@ impl Picture {
         self.add(Figure::Mark { mark, position, text }, Style::aid())
     }
 
-    /// The part of the world that the picture shows: the world, and what was added not too far from it.
+    /// The region to show: the world, and additions not too far from it.
     pub(super) fn region(&self) -> Aabb {
         let thickest = self.world.walls.iter().fold(0.0, |most: f64, wall| most.max(wall.thickness));
         let world = self.world.site().inflated(0.5 * thickest);
         let longest = world.size().max();
         let near = world.inflated(0.5 * longest);
-        // A world without extent limits nothing: then what was added is all there is to show.
+        // A world without extent limits nothing: the additions alone determine the region.
         let empty = longest <= 0.0;
         let added = self.items.iter().flat_map(|item| item.figure.extent());
         let added = Aabb::around(added.filter(|p| is_finite(p) && (empty || near.contains(*p))));
@@ -312,7 +314,7 @@ impl Picture {
 }
 
 impl Item {
-    /// When it changes.
+    /// Times of its changes (s).
     fn changes(&self) -> Vec<f64> {
         let mut times = match &self.figure {
             Figure::Line { times, .. } => times.clone(),
@@ -341,14 +343,14 @@ impl Item {
     }
 }
 
-/// The last of some changes that has happened by a time, or the first one.
+/// The last change up to a time, or the first one.
 fn latest<T: Clone>(changes: &[(f64, T)], time: f64) -> Vec<(f64, T)> {
     let count = changes.partition_point(|(happened, _)| *happened <= time);
     changes.get(count.saturating_sub(1)).cloned().into_iter().collect()
 }
 
 impl Figure {
-    /// Its points, and the corners of boxes around what has an extent.
+    /// Its points, and the corners of its bounding box if it has an extent.
     fn extent(&self) -> Vec<Point> {
         match self {
             Figure::Disc { centre, radius } => around(*centre, *radius).to_vec(),
@@ -362,7 +364,7 @@ impl Figure {
         }
     }
 
-    /// Whether there is anything to see of it: of a line, more than so many metres.
+    /// Whether it is visible; a line must be longer than `shortest` metres.
     pub(super) fn is_visible(&self, shortest: f64) -> bool {
         let bounds = Aabb::around(self.extent().into_iter().filter(is_finite));
         let is_line = matches!(self, Figure::Line { .. });
@@ -370,13 +372,13 @@ impl Figure {
     }
 }
 
-/// Two opposite corners of the square around a circle.
+/// Two opposite corners of the bounding square of a circle.
 fn around(centre: Point, radius: f64) -> [Point; 2] {
     let bounds = Aabb { min: centre, max: centre }.inflated(radius);
     [bounds.min, bounds.max]
 }
 
-/// Whether both coordinates are finite numbers.
+/// Whether both coordinates are finite.
 pub(super) fn is_finite(point: &Point) -> bool {
     point.x.is_finite() && point.y.is_finite()
 }

@@ -1,4 +1,4 @@
-//! Finds places for names beside their points so that no two of them touch.
+//! Places names beside their points without overlaps.
 
 use super::frame::Pixel;
 use super::text;
@@ -11,24 +11,24 @@ const DIRECTIONS: [(f64, f64); 8] =
 /// Pixels between symbol and name: near, or farther off with a line that leads there.
 const GAPS: [f64; 4] = [2.0, 14.0, 28.0, 44.0];
 
-/// What is already on the page.
+/// Occupied space of the page.
 #[derive(Debug, Clone)]
 pub(super) struct Labels {
     page: Aabb,
     symbols: Vec<Aabb>,
     names: Vec<Aabb>,
-    /// Lines from points to names that stand apart.
+    /// Lead lines from points to names that stand apart.
     leads: Vec<[Pixel; 2]>,
-    /// Lines that names keep off if there is room elsewhere.
+    /// Lines that names avoid if there is room elsewhere.
     lines: Vec<[Pixel; 2]>,
 }
 
-/// Where a name goes.
+/// Position of a name.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Placed {
-    /// The left end of its base line.
+    /// Left end of its baseline.
     pub(super) start: Pixel,
-    /// The end of a line from its point, if it stands apart.
+    /// End of the lead line from its point, if it stands apart.
     pub(super) lead: Option<Pixel>,
 }
 
@@ -42,16 +42,17 @@ impl Labels {
         self.symbols.push(bounds);
     }
 
-    /// Keeps names off a line, if there is room elsewhere.
+    /// Makes names avoid a line if there is room elsewhere.
     pub(super) fn avoid(&mut self, points: &[Pixel]) {
         self.lines.extend(points.windows(2).map(|ends| [ends[0], ends[1]]));
     }
 
-    /// The best place for a name beside a symbol that reaches `reach` pixels far; `None` if all places are taken.
+    /// The best position for a name beside a symbol with a reach in pixels; `None` if all positions are
+    /// taken.
     pub(super) fn place(&mut self, name: &str, at: Pixel, reach: f64) -> Option<Placed> {
         let extent = Vector::new(text::width(name, text::SIZE) + 2.0, text::SIZE + 1.0);
         let mut best: Option<(usize, Aabb, Option<Pixel>)> = None;
-        // A text without a symbol stands at its point if it can.
+        // A text without a symbol is centred on its point if possible.
         let centred = Aabb { min: at - extent * 0.5, max: at + extent * 0.5 };
         if reach == 0.0 && self.is_free(&centred) {
             best = Some((0, centred, None));
@@ -86,7 +87,7 @@ impl Labels {
         self.names.iter().any(|name| crosses(&lead, name))
     }
 
-    /// How many lines run through a box, up to four: more make it no worse.
+    /// Number of lines through a box, at most four: more make no difference.
     fn crossings(&self, bounds: &Aabb) -> usize {
         self.lines.iter().filter(|ends| crosses(ends, bounds)).take(4).count()
     }
@@ -99,12 +100,12 @@ fn beside(at: Pixel, (x, y): (f64, f64), distance: f64, extent: Vector) -> Aabb 
     Aabb { min: middle - extent * 0.5, max: middle + extent * 0.5 }
 }
 
-/// The point of a box that is nearest to a pixel.
+/// The point of a box nearest to a pixel.
 fn nearest(bounds: &Aabb, at: Pixel) -> Pixel {
     at.sup(&bounds.min).inf(&bounds.max)
 }
 
-/// The sign of a number, zero for zero.
+/// Sign of a number; zero for zero.
 fn side(x: f64) -> f64 {
     if x == 0.0 { 0.0 } else { x.signum() }
 }
@@ -113,7 +114,7 @@ fn overlap(a: &Aabb, b: &Aabb) -> bool {
     a.min.x < b.max.x && b.min.x < a.max.x && a.min.y < b.max.y && b.min.y < a.max.y
 }
 
-/// Whether a line between two points passes through a box: the part of it inside every pair of sides is not empty.
+/// Whether a line segment passes through a box: its parts inside each pair of sides overlap.
 fn crosses([a, b]: &[Pixel; 2], bounds: &Aabb) -> bool {
     let (mut enter, mut leave) = (0.0f64, 1.0f64);
     for axis in 0..2 {
@@ -156,7 +157,7 @@ mod tests {
             for (i, a) in labels.names.iter().enumerate() {
                 prop_assert!(page().contains(a.min) && page().contains(a.max));
                 prop_assert!(labels.names[i + 1..].iter().all(|b| !overlap(a, b)));
-                // A lead ends on the edge of its own name, and passes through no other.
+                // A lead line ends at the edge of its own name and crosses no other.
                 let crossing = labels.leads.iter().filter(|lead| crosses(lead, &a.inflated(-0.5))).count();
                 prop_assert_eq!(crossing, 0);
             }

@@ -1,4 +1,4 @@
-//! What the symbols and lines of a picture mean.
+//! The legend: meaning of symbols and lines.
 
 use std::collections::BTreeMap;
 
@@ -19,13 +19,13 @@ const MOST_KINDS: usize = 8;
 /// The name of the gradient of the speed scale.
 const GRADIENT: &str = "speed";
 
-/// The lines of a legend, in order.
+/// Entries of a legend, in order.
 #[derive(Debug)]
 pub(super) struct Legend {
     entries: Vec<(Key, String)>,
 }
 
-/// What stands before the text of a line.
+/// Symbol in front of an entry's text.
 #[derive(Debug, Clone)]
 enum Key {
     Line(Style),
@@ -40,12 +40,12 @@ enum Key {
     Nothing,
 }
 
-/// How the lines are arranged.
+/// Layout of the entries.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Arrangement {
     /// One below the other.
     Column,
-    /// Side by side in rows of at most this many pixels.
+    /// Side by side, in rows of at most this many pixels.
     Rows(f64),
 }
 
@@ -92,7 +92,7 @@ impl Legend {
         })
     }
 
-    /// The upper left corners of the lines.
+    /// Upper left corners of the entries.
     fn places(&self, arrangement: Arrangement) -> Vec<Vector> {
         let mut next = Vector::new(0.0, 0.0);
         let mut places = Vec::with_capacity(self.entries.len());
@@ -117,7 +117,7 @@ impl Legend {
         self.entries.push((key, text::fit(&text::clean(&text.into()), text::SIZE, 260.0)));
     }
 
-    /// Adds an entry, unless its text is there already.
+    /// Adds an entry unless its text already exists.
     fn add_once(&mut self, key: Key, text: &str) {
         let text = text::fit(&text::clean(text), text::SIZE, 260.0);
         if !self.entries.iter().any(|(_, other)| *other == text) {
@@ -137,7 +137,7 @@ impl Legend {
         }
     }
 
-    /// The kinds of objects in the order of their first use.
+    /// Adds the kinds of objects in the order of their first use.
     fn add_objects(&mut self, picture: &Picture) {
         let mut kinds: Vec<(&crate::world::ObjectKind, usize)> = Vec::new();
         for object in &picture.world.objects {
@@ -155,7 +155,7 @@ impl Legend {
     }
 }
 
-/// A name, with its number if there are several.
+/// A name, with its count if there are several.
 fn counted(name: &str, count: usize) -> String {
     if count > 1 { format!("{name} ×{count}") } else { name.to_owned() }
 }
@@ -165,7 +165,7 @@ fn entry_width(text: &str) -> f64 {
 }
 
 impl Key {
-    /// What stands for an item that a label explains.
+    /// Symbol of a labelled item.
     fn of(item: &Item) -> Option<Self> {
         let style = item.style.clone();
         Some(match &item.figure {
@@ -179,7 +179,7 @@ impl Key {
         })
     }
 
-    /// The symbol, whose left end and middle height is `at`.
+    /// The symbol, with the middle of its left edge at `at`.
     fn symbol(&self, at: Pixel) -> Group {
         let middle = at + Vector::new(12.0, 0.0);
         let bar = Aabb { min: at + Vector::new(0.0, -4.0), max: at + Vector::new(24.0, 4.0) };

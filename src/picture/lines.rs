@@ -1,4 +1,4 @@
-//! Areas, clouds of points and lines.
+//! Areas, point clouds and lines.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -44,7 +44,7 @@ fn dash<T: svg::Node>(mut element: T, style: &Style) -> T {
     element
 }
 
-/// A rectangle that shows the style of an area in the legend.
+/// A rectangle in the style of an area, for the legend.
 pub(super) fn swatch(bounds: Aabb, style: &Style) -> Group {
     let (min, max) = (bounds.min, bounds.max);
     let corners = [min, Pixel::new(max.x, min.y), max, Pixel::new(min.x, max.y)];
@@ -57,21 +57,21 @@ pub(super) fn cloud(points: &[Point], style: &Style, frame: &Frame) -> Group {
     dots(&pixels, style)
 }
 
-/// Dots, one for every place where there are any.
+/// Dots, at most one per position.
 pub(super) fn dots(pixels: &[Pixel], style: &Style) -> Group {
-    // Places on a grid of half a pixel, row by row: more dots would only darken each other.
-    // Far beyond any picture, 32 bits are where places end, so that differences of two always fit.
+    // Positions on a grid of half a pixel, row by row: more dots would only darken each other. They are
+    // limited to 32 bits, far beyond any picture, so that differences always fit.
     let half_pixels = |value: f64| i64::from((2.0 * value).round() as i32);
     let places: BTreeSet<(i64, i64)> = pixels.iter().map(|p| (half_pixels(p.y), half_pixels(p.x))).collect();
     let places: Vec<_> = places.into_iter().collect();
     let half = |twice: i64| number(twice as f64 / 2.0);
     let apart = (2.0 * style.width).max(1.0) as i64;
-    // Dots that touch are a line.
+    // Dots that touch form a line.
     let runs = places.chunk_by(|a, b| a.0 == b.0 && b.1 - a.1 <= apart);
     let (mut data, mut at) = (String::new(), (0, 0));
     for run in runs {
         let ((y, x), (_, last)) = (run[0], run[run.len() - 1]);
-        // From the end of the run before: short numbers.
+        // Relative to the end of the previous run: short numbers.
         let _ = write!(data, "m{} {}h{}", half(x - at.1), half(y - at.0), half(last - x));
         at = (y, last);
     }
@@ -85,7 +85,7 @@ pub(super) fn stroke(pixels: &[Pixel], style: &Style) -> Group {
     Group::new().add(dash(shape, style))
 }
 
-/// A line that changes its shape, or as it is in the end.
+/// A line that changes its shape; its last shape in a still picture.
 pub(super) fn moving(shapes: &[(f64, Vec<Pixel>)], style: &Style, film: Option<&Film>) -> Group {
     let Some((_, last)) = shapes.last() else { return Group::new() };
     let still =
@@ -97,7 +97,7 @@ pub(super) fn moving(shapes: &[(f64, Vec<Pixel>)], style: &Style, film: Option<&
     })
 }
 
-/// A path: its points, when it reaches them, and how fast; both may be empty.
+/// A path: points, times and speeds; times and speeds may be empty.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Path<'a> {
     pub(super) points: &'a [Point],
@@ -107,7 +107,7 @@ pub(super) struct Path<'a> {
 }
 
 impl Path<'_> {
-    /// The whole path, in one colour or coloured by speed, up to the picture's highest one.
+    /// The whole path, in one colour or coloured by speed relative to `top_speed`.
     pub(super) fn draw(&self, frame: &Frame, top_speed: f64) -> Group {
         if self.speeds.len() < self.points.len() {
             let data = self.data(0..self.points.len(), frame);
@@ -121,7 +121,7 @@ impl Path<'_> {
         for end in 1..=self.points.len() {
             let last = end == self.points.len();
             if last || shade(self.speeds[end]) != shade(self.speeds[start]) {
-                // Pieces share the point where they meet.
+                // Adjacent pieces share a point.
                 let data = self.data(start..(end + 1).min(self.points.len()), frame);
                 group = group.add(line(data, ramp(shade(self.speeds[start]) / SHADES), self.style.width));
                 start = end;
@@ -130,7 +130,7 @@ impl Path<'_> {
         group
     }
 
-    /// The path as it grows in a film. `name` is that of a mask, one for each path of a document.
+    /// The path as it grows in a film. `name` is the name of its mask, unique in the document.
     pub(super) fn grow(&self, frame: &Frame, top_speed: f64, film: &Film, name: &str) -> Group {
         let plain = self.speeds.is_empty() && !self.style.dashed;
         let (colour, width) = if plain { (self.style.colour, self.style.width) } else { (PAGE, 8.0) };
@@ -169,7 +169,7 @@ impl Path<'_> {
         Group::new().add(mask).add(whole)
     }
 
-    /// The data of a piece, without points that make no difference.
+    /// Path data of a piece, simplified.
     fn data(&self, piece: Range<usize>, frame: &Frame) -> String {
         runs(&self.points[piece.clone()])
             .into_iter()
@@ -193,14 +193,14 @@ pub(super) fn runs(points: &[Point]) -> Vec<Range<usize>> {
     runs
 }
 
-/// A path in pixels, without points that make no difference.
+/// A simplified path in pixels.
 pub(super) fn thinned(points: &[Point], frame: &Frame) -> Vec<Pixel> {
     let pixels: Vec<Pixel> = points.iter().map(|p| frame.at(*p)).collect();
     let off = |between: usize, a: usize, b: usize| distance(pixels[between], pixels[a], pixels[b]);
     simplified(pixels.len(), TOLERANCE, off).into_iter().map(|i| pixels[i]).collect()
 }
 
-/// Pixels from a point to the line between two others.
+/// Distance in pixels from a point to the segment between two others.
 fn distance(point: Pixel, a: Pixel, b: Pixel) -> f64 {
     let along = b - a;
     let length = along.norm_squared();

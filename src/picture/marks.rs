@@ -6,21 +6,21 @@ use super::frame::Pixel;
 use crate::geometry::{Aabb, Vector};
 use crate::world::Colour;
 
-/// A point worth a symbol.
+/// A marked point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum Mark {
-    /// Where a robot started.
+    /// Start of a robot.
     Start,
-    /// Where it was to go.
+    /// Goal of a robot.
     Goal,
-    /// Where a bug algorithm met an obstacle.
+    /// Hit point of a bug algorithm, where it meets an obstacle.
     HitPoint,
-    /// Where a bug algorithm left an obstacle.
+    /// Leave point of a bug algorithm, where it leaves an obstacle.
     LeavePoint,
-    /// A point on the way.
+    /// A waypoint.
     Waypoint,
-    /// Where a robot touched something.
+    /// Contact of a robot with something.
     Contact,
 }
 
@@ -33,12 +33,12 @@ impl Mark {
         matches!(self, Mark::Start | Mark::Goal)
     }
 
-    /// The box around the symbol at a pixel.
+    /// Bounding box of the symbol at a pixel.
     pub(super) fn extent(at: Pixel) -> Aabb {
         Aabb { min: at, max: at }.inflated(Self::REACH)
     }
 
-    /// What the legend calls it.
+    /// Name in the legend.
     pub(super) const fn name(self) -> &'static str {
         match self {
             Mark::Start => "start",
@@ -50,7 +50,8 @@ impl Mark {
         }
     }
 
-    /// The symbol at a pixel. Those on the floor are rings around what stands there, of at least `around` pixels.
+    /// The symbol at a pixel. Marks on the floor are rings with a radius of at least `around` pixels around
+    /// what stands there.
     pub(super) fn symbol(self, at: Pixel, around: f64) -> Group {
         let corner = |x: f64, y: f64| at + Vector::new(x, y);
         match self {
@@ -73,7 +74,7 @@ impl Mark {
 
 /// A ring with a light edge on both sides.
 fn ring(at: Pixel, radius: f64, colour: Colour) -> Group {
-    // A ring around a robot hides nothing of its way.
+    // A ring around a robot must not hide its path.
     let fill = if radius > Mark::REACH { "0" } else { "0.5" };
     let circle = |colour: Colour, width: &str| {
         disc(at, radius, PAGE)

@@ -1,8 +1,8 @@
-//! Pictures of worlds and of what robots did in them, as SVG or PNG files.
+//! Pictures of worlds and of robots' runs, as SVG or PNG files.
 //!
-//! A [`Picture`] shows a world from above: floor, walls and objects to scale, and whatever is added to it, such as
-//! robots, paths, marked points and point clouds. Title, scale bar and legend stand outside the floor. The same calls
-//! make the same bytes.
+//! A [`Picture`] shows a world from above: floor, walls and objects to scale, and additions such as robots,
+//! paths, marked points and point clouds. Title, scale bar and legend stand outside the floor. Equal calls
+//! produce equal bytes.
 //!
 //! ```
 //! use roverlab::geometry::{Point, Pose};
@@ -19,8 +19,8 @@
 //! assert!(picture.to_svg().starts_with("<svg"));
 //! ```
 //!
-//! Coordinates that are not finite numbers are left out: a lidar beam without a return draws nothing, and a path
-//! has a gap. What lies far outside the world is cut off at the frame.
+//! Coordinates that are not finite are omitted: a lidar beam without a return draws nothing, and a path has a
+//! gap. Content far outside the world is clipped at the frame.
 
 mod canvas;
 mod colours;

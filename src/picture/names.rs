@@ -1,4 +1,4 @@
-//! The names beside marked points.
+//! Names of marked points.
 
 use svg::node::element::Group;
 

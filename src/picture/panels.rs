@@ -7,8 +7,8 @@ use crate::world::World;
 const GAP: f64 = 0.14;
 
 impl Picture {
-    /// Several pictures as one, in rows of `columns` from the upper left, each with its title below it. They share one
-    /// scale, one legend and one time. Water, hills and captions are left out.
+    /// Combines several pictures into one, in rows of `columns` from the upper left, each with its title
+    /// below it. They share scale, legend and time. Water, hills and captions are omitted.
     pub fn panels(panels: &[Self], columns: usize) -> Self {
         let columns = columns.clamp(1, panels.len().max(1));
         let rows = panels.len().div_ceil(columns);
@@ -28,7 +28,7 @@ impl Picture {
         all
     }
 
-    /// Takes over what another picture shows, moved by a distance, with its title so far below it.
+    /// Adds the content of another picture, shifted by `shift`, with its title `below` metres below it.
     fn take(&mut self, panel: &Self, shift: Vector, below: f64) {
         let bounds = panel.region();
         let (min, max) = (bounds.min + shift, bounds.max + shift);

@@ -1,11 +1,11 @@
-//! SVG to pixels.
+//! Renders SVG to pixels.
 
 use resvg::{tiny_skia, usvg};
 
 /// Pixels for each of the document's.
 const FINENESS: f32 = 2.0;
 
-/// The bytes of a PNG file that shows an SVG document, or why there are none.
+/// The bytes of a PNG file of an SVG document, or the reason for failure.
 pub(super) fn png(document: &str) -> Result<Vec<u8>, String> {
     let mut options = usvg::Options { font_family: "DejaVu Sans".into(), ..usvg::Options::default() };
     let fonts = options.fontdb_mut();

@@ -1,4 +1,4 @@
-//! Puts the parts of a picture on a page.
+//! Assembles the parts of a picture on a page.
 
 use svg::Document;
 use svg::node::element::{ClipPath, Definitions, Group};
@@ -25,8 +25,8 @@ impl Picture {
         page(&self.at(self.duration()), None)
     }
 
-    /// The picture as an SVG document that moves, again and again: at the run's pace if that takes no longer than some
-    /// seconds, and faster otherwise. Where nothing moves, it is the still one.
+    /// The picture as an animated SVG document in an endless loop: at the run's pace for up to 14 seconds,
+    /// faster otherwise. Still if nothing moves.
     pub fn to_moving_svg(&self) -> String {
         match Film::of(self.duration()) {
             Some(film) => page(self, Some(&film)),
@@ -34,7 +34,7 @@ impl Picture {
         }
     }
 
-    /// The highest speed along the paths that are coloured by it, in metres per second.
+    /// Highest speed along the paths coloured by speed (m/s).
     pub(super) fn top_speed(&self) -> f64 {
         let speeds = self.items.iter().filter_map(|item| match &item.figure {
             Figure::Line { speeds, .. } => Some(speeds),
@@ -92,7 +92,7 @@ fn clip(plot: &Aabb) -> Definitions {
     Definitions::new().add(ClipPath::new().set("id", CLIP).add(outline))
 }
 
-/// What lies above what.
+/// Drawing order from the bottom.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Layer {
     Areas,
@@ -116,7 +116,7 @@ impl Layer {
     }
 }
 
-/// Everything that is drawn to scale, from the floor up.
+/// Everything drawn to scale, from the floor up.
 fn plotted(picture: &Picture, frame: &Frame, film: Option<&Film>) -> Group {
     let top = picture.top_speed();
     let layer = |layer: Layer| {
@@ -135,7 +135,7 @@ fn plotted(picture: &Picture, frame: &Frame, film: Option<&Film>) -> Group {
     above.into_iter().fold(group, |group, above| group.add(layer(above)))
 }
 
-/// One item; the highest speed of all, and the item's number, which names what belongs to it.
+/// One item. `top` is the highest speed of the picture; the item's number names its mask.
 fn draw(
     picture: &Picture,
     item: &Item,
@@ -170,10 +170,10 @@ fn draw(
     }
 }
 
-/// The radius of a ring around a robot that ends near a place, in pixels; 0 if there is none.
+/// Radius in pixels of a ring around a robot that ends near a place; 0 without one.
 fn around(picture: &Picture, place: Point, frame: &Frame) -> f64 {
     let near = picture.items.iter().filter_map(|item| match &item.figure {
-        // Pale ones show where a robot was, or will be.
+        // Pale robots show former or future poses.
         Figure::Robot { poses, footprint } if item.style.opacity >= 1.0 => {
             let (_, pose) = poses.last()?;
             let (off, reach) = (pose.distance_to(place), footprint.bounding_radius());

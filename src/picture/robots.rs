@@ -1,17 +1,17 @@
-//! Robots as seen from above.
+//! Robots seen from above.
 
 use svg::node::element::Group;
 
-use super::{Mark, Style};
 use super::canvas::{area, disc, line, number, path_data};
 use super::colours::PAGE;
 use super::film::Film;
 use super::frame::{Frame, Pixel};
 use super::scenery::turned;
+use super::{Mark, Style};
 use crate::geometry::{Aabb, Pose, Vector};
 use crate::world::{Colour, Footprint};
 
-/// A robot where it stands, or as it drives.
+/// A robot, standing or driving.
 pub(super) fn robot(
     poses: &[(f64, Pose)],
     footprint: &Footprint,
@@ -55,7 +55,7 @@ pub(super) fn outline(at: Pixel, heading: f64, footprint: &Footprint, style: &St
     }
 }
 
-/// The outline's box on the page, for names that keep off it; `None` for a robot that is nowhere.
+/// Bounding box of the outline on the page, which names avoid; `None` for a pose that is not finite.
 pub(super) fn extent(pose: &Pose, footprint: &Footprint, frame: &Frame) -> Option<Aabb> {
     let at = frame.at(pose.position());
     let radius = frame.length(footprint.bounding_radius()).max(Mark::REACH);
@@ -76,7 +76,7 @@ fn box_body(at: Pixel, heading: f64, bounds: &Aabb, scale: f64, colour: Colour) 
     line(path_data(&pixels, true), colour, 2.2).set("fill", PAGE.to_string()).set("fill-opacity", "0.88")
 }
 
-/// An arrowhead of a length from its middle to its tip.
+/// An arrowhead with `reach` pixels from its centre to its tip.
 fn arrowhead(at: Pixel, heading: f64, reach: f64, colour: Colour) -> svg::node::element::Path {
     let corners = [(1.0, 0.0), (-0.7, 0.62), (-0.36, 0.0), (-0.7, -0.62)]
         .map(|(x, y)| at + turned(Vector::new(x, y) * reach, heading));

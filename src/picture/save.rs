@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::Picture;
 use crate::parameter::debug_as_sentence;
 
-/// The files that a picture can be written to.
+/// File formats of pictures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum FileType {
@@ -15,42 +15,42 @@ pub enum FileType {
     Png,
 }
 
-/// Why a picture could not be saved.
+/// Reason why a picture could not be saved.
 #[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum SaveError {
-    /// The name does not say which type of file is wanted.
-    #[error("{}: a picture of this name; expected a name that ends in .svg or .png", path.display())]
+    /// The name's extension is not that of a picture format.
+    #[error("{}: unknown picture format; expected a name that ends in .svg or .png", path.display())]
     Extension {
-        /// The name.
+        /// Name of the file.
         path: PathBuf,
     },
-    /// This build writes no PNG.
-    #[error("{}: a PNG picture, which needs the feature `png`; expected a name that ends in .svg", path.display())]
+    /// This build cannot write PNG.
+    #[error("{}: PNG pictures need the feature `png`; expected a name that ends in .svg", path.display())]
     NoPng {
-        /// The name.
+        /// Name of the file.
         path: PathBuf,
     },
-    /// PNG files do not move.
-    #[error("{}: a PNG picture, which does not move; expected a name that ends in .svg", path.display())]
+    /// PNG files cannot be animated.
+    #[error("{}: PNG pictures cannot be animated; expected a name that ends in .svg", path.display())]
     Still {
-        /// The name.
+        /// Name of the file.
         path: PathBuf,
     },
-    /// The picture could not be turned into pixels.
-    #[error("{}: the picture cannot be drawn: {reason}", path.display())]
+    /// Rendering failed.
+    #[error("{}: cannot render the picture: {reason}", path.display())]
     Draw {
-        /// The name.
+        /// Name of the file.
         path: PathBuf,
-        /// What the renderer said.
+        /// Message of the renderer.
         reason: String,
     },
-    /// The file could not be written. An older file of the name is still there, unchanged.
-    #[error("{}: the picture cannot be written: {source}", path.display())]
+    /// The file could not be written. An older file of that name is unchanged.
+    #[error("{}: cannot write the picture: {source}", path.display())]
     Write {
-        /// The name.
+        /// Name of the file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         source: io::Error,
     },
 }
@@ -58,8 +58,8 @@ pub enum SaveError {
 debug_as_sentence!(SaveError);
 
 impl FileType {
-    /// The type that a file's name asks for, without regard to case. Fails if no picture can be saved under it, which
-    /// programs can ask before a long run.
+    /// The format given by a file name's extension, ignoring case. Fails if no picture can be saved under the
+    /// name; check this before a long run.
     ///
     /// ```
     /// use roverlab::picture::FileType;
@@ -79,9 +79,10 @@ impl FileType {
 }
 
 impl Picture {
-    /// Saves the picture under a name that ends in `.svg` or, with the feature `png`, in `.png`.
+    /// Saves the picture to a file ending in `.svg` or, with the feature `png`, in `.png`.
     ///
-    /// The file appears whole or not at all. The folder is made if it is missing.
+    /// The file is written completely or not at all. Missing folders are created. Fails for other names and
+    /// if rendering or writing fails.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
         let path = path.as_ref();
         let bytes = match FileType::of(path)? {
@@ -93,7 +94,7 @@ impl Picture {
 }
 
 impl Picture {
-    /// Saves the picture as it [moves](Self::to_moving_svg), under a name that ends in `.svg`, in the same way.
+    /// Saves the [animated](Self::to_moving_svg) picture to a file ending in `.svg`, in the same way.
     pub fn save_moving(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
         let path = path.as_ref();
         match FileType::of(path)? {
@@ -115,7 +116,7 @@ fn png(_: &Picture, path: &Path) -> Result<Vec<u8>, SaveError> {
     Err(SaveError::NoPng { path: path.to_owned() })
 }
 
-/// Writes a file beside the one wanted and moves it there once it is complete.
+/// Writes a temporary file beside the target and renames it once it is complete.
 fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let unfinished = path.with_file_name(format!(".{name}.{}.part", std::process::id()));
@@ -128,7 +129,7 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
         fs::rename(&unfinished, path)
     };
     write().inspect_err(|_| {
-        // What is half written is of no use; the error that counts is the one being returned.
+        // An incomplete file is useless; the error to report is the one being returned.
         let _ = fs::remove_file(&unfinished);
     })
 }

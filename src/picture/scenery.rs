@@ -15,7 +15,7 @@ pub(super) const SMALLEST: f64 = 2.5;
 /// The name of the pattern that fills hills.
 const HATCH: &str = "hills";
 
-/// Floor, water, a grid if it is to scale, hills, places and marks.
+/// Floor, water, grid (if to scale), hills, places and marks.
 pub(super) fn floor(world: &World, frame: &Frame, to_scale: bool) -> Group {
     let colour = if world.water_level.is_some_and(|level| level > 0.0) { WATER } else { FLOOR };
     let bounds = on_page(world.floor, frame);
@@ -44,7 +44,7 @@ pub(super) fn solids(world: &World, frame: &Frame) -> Group {
     Group::new().add(objects).add(walls)
 }
 
-/// The symbol of a kind of object in the legend.
+/// Symbol of a kind of object in the legend.
 pub(super) fn object_symbol(shape: &Shape, colour: Colour, at: Pixel) -> Group {
     match shape {
         Shape::Box { .. } => solid_box(at, 11.0, 11.0, 0.0, colour),
@@ -53,7 +53,7 @@ pub(super) fn object_symbol(shape: &Shape, colour: Colour, at: Pixel) -> Group {
     }
 }
 
-/// The symbol of hills in the legend.
+/// Symbol of hills in the legend.
 pub(super) fn hills_symbol(at: Pixel) -> Group {
     let bounds = Aabb { min: at, max: at }.inflated(6.0);
     Group::new().add(hatched(bounds))
@@ -106,7 +106,7 @@ fn letter(letter: char, at: Pixel) -> svg::node::element::Text {
     words(&name, left, 15.0, LETTER)
 }
 
-/// All walls: neighbours in the list that look alike are one path, and those that meet are joined.
+/// All walls: adjacent list entries of equal style form one path, and those that meet are joined.
 fn walls(walls: &[Wall], frame: &Frame) -> Group {
     let mut group = Group::new();
     for alike in walls.chunk_by(|a, b| a.colour == b.colour && a.thickness == b.thickness) {
@@ -115,7 +115,7 @@ fn walls(walls: &[Wall], frame: &Frame) -> Group {
         let data = chains.map(|chain| chain_data(chain, frame)).collect();
         let mut path = line(data, wall_colour(alike[0].colour), width);
         if width > 5.0 {
-            // Thin walls look best with round ends; the square ends of thick ones are part of their shape.
+            // Thin walls look best with round caps; the square ends of thick walls are part of their shape.
             path = path.set("stroke-linecap", "butt").set("stroke-linejoin", "miter");
         }
         group = group.add(path);
@@ -123,7 +123,7 @@ fn walls(walls: &[Wall], frame: &Frame) -> Group {
     group
 }
 
-/// The path along walls each of which begins where the one before ends.
+/// Path along a chain of walls, each of which starts where the previous one ends.
 fn chain_data(chain: &[Wall], frame: &Frame) -> String {
     let (first, last) = (chain[0].line.a, chain[chain.len() - 1].line.b);
     let mut points: Vec<Pixel> = chain.iter().map(|wall| frame.at(wall.line.a)).collect();
@@ -134,7 +134,8 @@ fn chain_data(chain: &[Wall], frame: &Frame) -> String {
     path_data(&points, closed)
 }
 
-/// White walls, as most are, would vanish on a light floor; the others keep their colour, a little darker.
+/// White walls, the default, would vanish on a light floor and are drawn dark; others keep their colour,
+/// slightly darkened.
 fn wall_colour(colour: Colour) -> Colour {
     if colour == Wall::DEFAULT_COLOUR { WALL } else { mix(colour, INK, 0.25) }
 }
@@ -151,12 +152,12 @@ fn object(object: &Object, frame: &Frame) -> Group {
     }
 }
 
-/// A colour for the outline of something that is filled with `colour`.
+/// Colour for the outline of an area filled with `colour`.
 fn edge_of(colour: Colour) -> Colour {
     mix(colour, INK, 0.55)
 }
 
-/// Strong colours, softened to fit the rest of the picture.
+/// Strong colours softened to match the picture.
 fn soft(colour: Colour) -> Colour {
     mix(colour, FLOOR, 0.22)
 }
@@ -184,7 +185,7 @@ fn solid_box(at: Pixel, length: f64, width: f64, heading: f64, colour: Colour) -
     Group::new().add(outline)
 }
 
-/// A vector of something that is turned by `heading`, x forward and y left, on the page, where y points down.
+/// A vector of something turned by `heading` (x forward, y left) on the page (y down).
 pub(super) fn turned(local: Vector, heading: f64) -> Vector {
     let forward = direction(heading);
     let x = forward.x * local.x - forward.y * local.y;

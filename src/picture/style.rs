@@ -1,7 +1,7 @@
 use super::colours::{CLOUD, GREEN, ODOMETRY, PALE_INK, SERIES};
 use crate::world::Colour;
 
-/// How a line, an area or a cloud of points looks, and what the legend calls it.
+/// Style of a line, an area or a cloud of points, and its label in the legend.
 ///
 /// ```
 /// use roverlab::picture::{SERIES, Style};
@@ -11,89 +11,89 @@ use crate::world::Colour;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Style {
-    /// The colour of lines, points and insides.
+    /// Colour of lines, points and areas.
     pub colour: Colour,
-    /// The width of a line or of a point, in pixels.
+    /// Width of a line, or diameter of a point, in pixels.
     pub width: f64,
-    /// 0 is invisible, 1 opaque.
+    /// Opacity: 0 is invisible, 1 opaque.
     pub opacity: f64,
-    /// How far the inside of an area is filled: 0 is empty, 1 opaque.
+    /// Opacity of an area's inside: 0 is empty, 1 opaque.
     pub fill: f64,
     /// Whether lines are dashed.
     pub dashed: bool,
-    /// What the legend calls it.
+    /// Label in the legend.
     pub label: Option<String>,
 }
 
 impl Style {
-    /// A solid line of middle width, or solid dots, without a label.
+    /// A solid line of medium width, or solid dots, without a label.
     pub const fn new(colour: Colour) -> Self {
         Self { colour, width: 2.0, opacity: 1.0, fill: 0.0, dashed: false, label: None }
     }
 
-    /// Where a robot really was.
+    /// Style of a true path.
     pub fn true_path() -> Self {
         Self::new(SERIES[0]).width(2.6).labelled("true path")
     }
 
-    /// Where a robot believed to be.
+    /// Style of a path by odometry.
     pub fn odometry() -> Self {
         Self::new(ODOMETRY).width(2.0).dashed().labelled("odometry")
     }
 
-    /// Where a robot means to go.
+    /// Style of a planned path.
     pub fn plan() -> Self {
         Self::new(GREEN).width(1.6).dashed().labelled("plan")
     }
 
-    /// Where lidar beams ended.
+    /// Style of lidar points.
     pub fn lidar() -> Self {
         Self::new(CLOUD).width(3.0).opacity(0.6).labelled("lidar hits")
     }
 
-    /// A thin gray line that helps to read the picture.
+    /// A thin gray auxiliary line.
     pub fn aid() -> Self {
         Self::new(PALE_INK).width(1.0).opacity(0.7)
     }
 
-    /// The same in another colour.
+    /// Sets the colour.
     #[must_use]
     pub fn colour(self, colour: Colour) -> Self {
         Self { colour, ..self }
     }
 
-    /// The same with another width of the line or of a point, in pixels of the picture, 0.2 to 40.
+    /// Sets the width of a line, or the diameter of a point, in pixels: 0.2 to 40.
     #[must_use]
     pub fn width(self, pixels: f64) -> Self {
         Self { width: within(pixels, 0.2, 40.0), ..self }
     }
 
-    /// The same, more or less transparent: 0 is invisible, 1 opaque.
+    /// Sets the opacity: 0 is invisible, 1 opaque.
     #[must_use]
     pub fn opacity(self, opacity: f64) -> Self {
         Self { opacity: within(opacity, 0.0, 1.0), ..self }
     }
 
-    /// The same with the inside filled, for areas: 0 leaves it empty, 1 hides what is below.
+    /// Fills areas with this opacity: 0 leaves them empty, 1 hides what is below.
     #[must_use]
     pub fn filled(self, opacity: f64) -> Self {
         Self { fill: within(opacity, 0.0, 1.0), ..self }
     }
 
-    /// The same with dashed lines.
+    /// Makes lines dashed.
     #[must_use]
     pub fn dashed(self) -> Self {
         Self { dashed: true, ..self }
     }
 
-    /// The same with a line in the legend. Equal labels share one line, which shows the first style.
+    /// Sets the label in the legend. Equal labels share one entry, which shows the first style.
     #[must_use]
     pub fn labelled(self, label: impl Into<String>) -> Self {
         Self { label: Some(label.into()), ..self }
     }
 }
 
-/// The nearest number between two limits; the lower one for what is not a number.
+/// Clamps a number; NaN gives the lower limit.
 fn within(value: f64, low: f64, high: f64) -> f64 {
     if value.is_nan() { low } else { value.clamp(low, high) }
 }

@@ -1,16 +1,16 @@
-//! How much room a text takes, without asking a font.
+//! Estimates the size of a text without a font.
 
 /// Pixels of the letters of all texts but titles.
 pub(super) const SIZE: f64 = 12.0;
 /// Pixels from one line of a text to the next; the letters of a title are as high.
 pub(super) const LINE: f64 = 17.0;
 
-/// The width of a text in pixels at a font size: that of a wide typeface, a little rounded up.
+/// Width of a text in pixels at a font size, as for a wide typeface.
 pub(super) fn width(text: &str, size: f64) -> f64 {
     text.chars().map(relative_width).sum::<f64>() * size
 }
 
-/// The text, or its beginning and an ellipsis if it is wider than `room` pixels.
+/// The text, or its beginning with an ellipsis if it is wider than `room` pixels.
 pub(super) fn fit(text: &str, size: f64, room: f64) -> String {
     if width(text, size) <= room {
         return text.to_owned();
@@ -29,7 +29,7 @@ pub(super) fn fit(text: &str, size: f64, room: f64) -> String {
     short
 }
 
-/// The text in lines of at most `room` pixels, broken between words; a word that is wider is cut.
+/// The text in lines of at most `room` pixels, broken between words; a word that is too wide is cut.
 pub(super) fn wrapped(text: &str, size: f64, room: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -44,7 +44,7 @@ pub(super) fn wrapped(text: &str, size: f64, room: f64) -> Vec<String> {
     lines
 }
 
-/// One line without characters that XML forbids or that would break the line.
+/// One line, without line breaks and characters that XML forbids.
 pub(super) fn clean(text: &str) -> String {
     let forbidden = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
     text.chars().map(|c| if forbidden(c) { ' ' } else { c }).collect::<String>().trim().to_owned()

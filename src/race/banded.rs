@@ -1,6 +1,6 @@
-//! Symmetric matrices with two bands beside the diagonal, which go around the corners.
+//! Symmetric cyclic band matrices with two bands on either side of the diagonal.
 
-/// A symmetric matrix whose entries lie at most two places from the diagonal, counted around the corner.
+/// A symmetric matrix whose entries lie at most two places from the diagonal, counted cyclically.
 #[derive(Debug, Clone, Default)]
 pub(super) struct CyclicBand {
     /// `bands[k][i]` is the entry at row `i`, column `i + k`, modulo the size.
@@ -8,7 +8,7 @@ pub(super) struct CyclicBand {
 }
 
 impl CyclicBand {
-    /// The zero matrix. Four rows at least.
+    /// The zero matrix; at least four rows.
     pub(super) fn zeros(n: usize) -> Self {
         debug_assert!(n >= 4);
         Self { bands: std::array::from_fn(|_| vec![0.0; n]) }
@@ -18,7 +18,7 @@ impl CyclicBand {
         self.bands[0].len()
     }
 
-    /// Adds to the entries `(i, j)` and `(j, i)`, which lie at most two places apart around the corner.
+    /// Adds to the entries `(i, j)` and `(j, i)`, which are at most two places apart, counted cyclically.
     pub(super) fn add(&mut self, i: usize, j: usize, value: f64) {
         let n = self.size();
         let ahead = (j + n - i) % n;
@@ -43,7 +43,7 @@ impl CyclicBand {
         }
     }
 
-    /// The factors of this matrix, which has to be positive definite.
+    /// Factorises this matrix, which must be positive definite.
     pub(super) fn factor(&self) -> Factors {
         let mut factors = Factors::default();
         factors.refactor(self, None);
@@ -51,22 +51,22 @@ impl CyclicBand {
     }
 }
 
-/// The decomposition of a cyclic band: all rows but the last two are a plain band, and these two are its border.
+/// Factorisation of a cyclic band matrix: a plain band, bordered by the last two rows.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Factors {
-    /// The unit lower triangle's two bands and the inverse of the diagonal.
+    /// The two bands of the unit lower triangle, and the inverse of the diagonal.
     one: Vec<f64>,
     two: Vec<f64>,
     inverse: Vec<f64>,
-    /// The border's columns, solved by the band, and the border itself.
+    /// Columns of the border, solved by the band; `raw` holds them unsolved.
     border: [Vec<f64>; 2],
     raw: [Vec<f64>; 2],
-    /// The inverse of what is left of the corner: its entries (0,0), (0,1) and (1,1).
+    /// Inverse of the Schur complement of the corner: entries (0,0), (0,1) and (1,1).
     corner: [f64; 3],
 }
 
 impl Factors {
-    /// Decomposes a matrix, to whose diagonal some more may be added. O(n).
+    /// Factorises a matrix, with optional additions to its diagonal. O(n).
     pub(super) fn refactor(&mut self, matrix: &CyclicBand, more: Option<&[f64]>) {
         let diagonal = |i: usize| matrix.bands[0][i] + more.map_or(0.0, |more| more[i]);
         self.factor_band(matrix, diagonal);
@@ -74,7 +74,7 @@ impl Factors {
         self.factor_corner(matrix, diagonal);
     }
 
-    /// Decomposes the plain band.
+    /// Factorises the plain band.
     fn factor_band(&mut self, matrix: &CyclicBand, diagonal: impl Fn(usize) -> f64) {
         let m = matrix.size() - 2;
         let [_, first, second] = &matrix.bands;
@@ -100,7 +100,7 @@ impl Factors {
         }
     }
 
-    /// Takes the border's columns out of a matrix, and solves them by the band.
+    /// Extracts the columns of the border, and solves them by the band.
     fn solve_border(&mut self, matrix: &CyclicBand) {
         let n = matrix.size();
         let m = n - 2;
@@ -110,7 +110,7 @@ impl Factors {
             raw.resize(m, 0.0);
             let row = m + k;
             for (band, list) in [(1, first), (2, second)] {
-                // Entries above the row, and those that go around the corner.
+                // Entries above the row, and those that wrap around.
                 if let Some(above) = row.checked_sub(band)
                     && above < m
                 {
@@ -131,7 +131,7 @@ impl Factors {
         }
     }
 
-    /// Inverts what band and border leave of the corner.
+    /// Inverts the Schur complement of the corner.
     fn factor_corner(&mut self, matrix: &CyclicBand, diagonal: impl Fn(usize) -> f64) {
         let m = matrix.size() - 2;
         let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
@@ -142,7 +142,7 @@ impl Factors {
         self.corner = [c / determinant, -b / determinant, a / determinant];
     }
 
-    /// Solves for a right side.
+    /// Solves for a right-hand side.
     pub(super) fn solve(&self, right: &[f64]) -> Vec<f64> {
         let mut x = right.to_vec();
         self.solve_in_place(&mut x);

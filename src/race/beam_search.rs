@@ -1,4 +1,4 @@
-//! A beam search from triangle to triangle between cones.
+//! Beam search over the triangles between cones.
 
 use super::cone::Cone;
 use super::mesh::{Mesh, triangle};
@@ -20,87 +20,87 @@ const GOOD_METRE: f64 = 0.4;
 /// Triangles back to which a way may not return.
 const MEMORY: usize = 16;
 
-/// Goes from triangle to triangle between some cones.
+/// A beam search over the triangles between cones.
 pub(super) struct BeamSearch<'c> {
     pub(super) cones: &'c [Cone],
     pub(super) parameters: &'c CentreLineParameters,
-    /// The triangulation of these cones.
+    /// Triangulation of the cones.
     pub(super) mesh: &'c Mesh,
-    /// On which side of the way that was driven before each cone is, 1 for left; empty without one.
+    /// Side of each cone relative to the path driven before, 1 for left; empty without one.
     pub(super) sides: &'c [i8],
 }
 
-/// A pair that a way passes, and the place of the one before.
+/// A pair of cones passed by a path, and the index of the preceding pair.
 #[derive(Debug, Clone, Copy)]
 struct Link {
     pair: Pair,
     before: Option<usize>,
 }
 
-/// Where a way that is being followed has come to.
+/// End of a path that is being extended.
 #[derive(Debug, Clone, Copy)]
 struct Head {
-    /// The place of its last pair.
+    /// Index of its last pair.
     link: usize,
-    /// The half-edge by which it enters a triangle, and that by which it entered the first one.
+    /// The half-edge by which it enters a triangle; `root` is that of its first triangle.
     edge: usize,
     root: usize,
-    /// The directions of the last legs on both sides.
+    /// Directions of the last legs on both sides.
     legs: [Option<Vector>; 2],
     cost: f64,
     length: f64,
-    /// Steps from cone to cone as on a track.
+    /// Number of steps from cone to cone that look like a track.
     good: u32,
-    /// The last triangles, as a ring: that of a step is at its number modulo the length.
+    /// The last triangles, as a ring buffer indexed by the step modulo its length.
     trail: [usize; MEMORY],
 }
 
-/// How a way may go on.
+/// A possible extension of a path.
 #[derive(Debug, Clone, Copy)]
 struct Step {
-    /// The place of the way among those that are followed.
+    /// Index of the path among those being extended.
     head: usize,
-    /// The half-edge by which it leaves its triangle, and that by which it enters the next one.
+    /// The half-edge by which it leaves its triangle; `entry` is that into the next one.
     exit: usize,
     entry: usize,
-    /// What the way costs with this step, and its good steps.
+    /// Cost of the path with this step; `good` counts its good steps.
     cost: f64,
     good: u32,
 }
 
-/// The best way so far: how bad it is, and the place of its last pair.
+/// The best path so far: its cost, and the index of its last pair.
 type Best = Option<(f64, usize)>;
 
-/// Takes in a way, if it is better than the best one.
+/// Keeps a path if it is better than the best one.
 fn keep(best: &mut Best, badness: f64, last: impl FnOnce() -> usize) {
     if best.is_none_or(|(least, _)| badness < least) {
         *best = Some((badness, last()));
     }
 }
 
-/// Notes a pair that a way passes; its place.
+/// Records a pair and returns its index.
 fn link(links: &mut Vec<Link>, pair: Pair, before: Option<usize>) -> usize {
     links.push(Link { pair, before });
     links.len() - 1
 }
 
-/// Ways that are being followed.
+/// State of the search.
 #[derive(Default)]
 struct Search {
-    /// The pairs of all ways.
+    /// Pairs of all paths.
     links: Vec<Link>,
-    /// The ways that are followed now, all as many steps long.
+    /// Paths being extended, all of the same number of steps.
     heads: Vec<Head>,
-    /// Those that were followed one step before.
+    /// Paths of the previous step.
     earlier: Vec<Head>,
     depth: usize,
-    /// The best ways so far that closed, and that ended.
+    /// The best path so far that closed; `ended` is the best that ended.
     closed: Best,
     ended: Best,
 }
 
 impl Search {
-    /// The pairs of the best way, and whether it is closed.
+    /// Pairs of the best path, and whether it is closed.
     fn best(&self) -> Option<(Vec<Pair>, bool)> {
         let (_, last) = self.closed.or(self.ended)?;
         let mut pairs = Vec::new();
@@ -119,16 +119,17 @@ impl BeamSearch<'_> {
         self.cones[cone].position
     }
 
-    /// What a pair costs by itself, for being too near or too far from each other.
+    /// Cost of a pair for being too close or too far apart.
     fn gap_cost(&self, width: f64) -> f64 {
         let [low, high] = self.parameters.width;
         let short = ((low - width) / 0.4).max(0.0);
         let long = ((width - high) / 2.0).max(0.0);
-        // A pair is far apart wherever one side has lost its cones, which alone must not drive the way off the other side.
+        // Where one side has lost its cones, pairs are far apart; this alone must not drive the path off the
+        // other side.
         (short * short).min(8.0) + (long * long).min(1.0)
     }
 
-    /// What a cone costs on a side, 0 for left.
+    /// Cost of a cone on a side, 0 for left.
     fn colour_cost(&self, cone: usize, side: usize) -> f64 {
         let wanted = if side == 0 { 1 } else { -1 };
         let colour = if self.cones[cone].colour.side() == -wanted { self.parameters.colour } else { 0.0 };
@@ -136,14 +137,15 @@ impl BeamSearch<'_> {
         colour + driven
     }
 
-    /// The best way from a car on. `None` if there is none.
+    /// The best path ahead of a car; `None` if there is none.
     pub(super) fn run(&self, car: Pose) -> Option<Way> {
         let mut search = self.search(car);
         let mut steps: Vec<Step> = Vec::new();
         for left in (0..self.cones.len() + self.cones.len() / 4 + 8).rev() {
             steps.clear();
             self.look_on(&mut search, &mut steps);
-            // Nothing takes costs back, so a way is left that cannot become a better loop than the best one, were all its steps good.
+            // Costs only grow. Drop paths that cannot become a better loop than the best one, even if all
+            // further steps are good.
             let bound = search.closed.map_or(f64::INFINITY, |(badness, _)| badness);
             let best = |step: &Step| step.cost - GOOD_STEP * (f64::from(step.good) + left as f64);
             steps.retain(|step| step.cost.is_finite() && best(step) < bound);
@@ -159,7 +161,7 @@ impl BeamSearch<'_> {
         (pairs.len() >= 2).then_some(Way { pairs, closed })
     }
 
-    /// Ways that begin at the edges across the car's way, nearly where it is.
+    /// Starts paths at the edges across the car's direction, close to the car.
     fn search(&self, car: Pose) -> Search {
         let mut search = Search::default();
         for (cost, edge) in self.starts(car) {
@@ -171,7 +173,7 @@ impl BeamSearch<'_> {
         search
     }
 
-    /// What the edges cost at which a way may begin, the best first.
+    /// Edges at which a path may start, with their costs, the best first.
     fn starts(&self, car: Pose) -> Vec<(f64, usize)> {
         let (at, forward) = (car.position(), car.forward());
         let local = |point: Point| (forward.dot(&(point - at)), cross(forward, point - at));
@@ -185,7 +187,7 @@ impl BeamSearch<'_> {
             let pair = self.mesh.pair(edge);
             let away = (ahead - 1.0).abs() * 0.15 + left.abs() * 0.4;
             let colours = self.colour_cost(pair[0], 0) + self.colour_cost(pair[1], 1);
-            // The car passes between them and not beside both.
+            // The car passes between the two cones, not beside both.
             let sides = pair.map(|cone| local(self.position(cone)).1);
             let beside = if sides[0] > 0.0 && sides[1] < 0.0 { 0.0 } else { 4.0 };
             Some((away + 4.0 * turn + colours + beside + self.gap_cost(gap.width), edge))
@@ -197,11 +199,11 @@ impl BeamSearch<'_> {
         found
     }
 
-    /// How the ways that are followed may go on. Those that close or end are taken in.
+    /// Collects the possible extensions of all paths; paths that close or end are recorded.
     fn look_on(&self, search: &mut Search, steps: &mut Vec<Step>) {
         let Search { links, heads, closed, ended, .. } = search;
         for (place, head) in heads.iter().enumerate() {
-            // A way that ends is better the farther it leads.
+            // An ending path is better the farther it leads.
             keep(ended, self.badness_of_end(head.cost, head.length), || head.link);
             for exit in Mesh::exits(head.edge) {
                 let Some(entry) = self.mesh.behind(exit) else {
@@ -210,7 +212,7 @@ impl BeamSearch<'_> {
                 };
                 if triangle(entry) == triangle(head.root) && head.length > self.parameters.shortest_loop {
                     let aslant = if entry == head.root { 0.0 } else { 0.5 };
-                    // Of two loops, that with more of what a track looks like: not the shorter one.
+                    // Of two loops, prefer the one that looks more like a track, not the shorter one.
                     keep(closed, head.cost + aslant - GOOD_STEP * f64::from(head.good), || head.link);
                 } else if !head.trail.contains(&triangle(entry)) {
                     let added = self.step_cost(head, exit);
@@ -221,7 +223,7 @@ impl BeamSearch<'_> {
         }
     }
 
-    /// A way over the border of the triangulation ends there.
+    /// Ends a path that leaves the triangulation.
     fn leave(&self, links: &mut Vec<Link>, ended: &mut Best, head: &Head, exit: usize) {
         let length = head.length + 0.5 * self.mesh.leg(head.edge, exit).length;
         let cost = head.cost + self.step_cost(head, exit);
@@ -233,23 +235,23 @@ impl BeamSearch<'_> {
         cost - GOOD_METRE * length.min(self.parameters.horizon)
     }
 
-    /// What it costs a way to leave its triangle by a half-edge.
+    /// Cost of leaving a triangle by a half-edge.
     fn step_cost(&self, head: &Head, exit: usize) -> f64 {
         let forward = self.mesh.gaps()[head.edge].forward;
         let gap = &self.mesh.gaps()[exit];
         let leg = self.mesh.leg(head.edge, exit);
         let far = ((leg.length - self.parameters.spacing) / 2.0).max(0.0);
         let mut cost = self.gap_cost(gap.width) + (far * far).min(5.0) + self.colour_cost(leg.to, leg.side);
-        // An edge goes on ahead: neither back nor around a sharp corner.
+        // An edge of the track leads ahead, neither back nor around a sharp corner.
         cost += 2.5 * (0.3 - leg.along.dot(&forward)).max(0.0);
         if let Some(last) = head.legs[leg.side] {
             cost += 2.5 * (0.2 - last.dot(&leg.along)).max(0.0);
         }
-        // The gap looks into the triangle, the way out of it.
+        // The gap faces into the triangle, the path out of it.
         cost + 2.0 * (0.5 + gap.forward.dot(&forward)).max(0.0)
     }
 
-    /// Follows the best ones of some steps, one at each edge.
+    /// Keeps the best extensions, one per edge.
     fn follow(&self, search: &mut Search, steps: &mut [Step]) {
         steps.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         search.depth += 1;
@@ -265,7 +267,7 @@ impl BeamSearch<'_> {
         }
     }
 
-    /// Lets one of the ways take a step.
+    /// Extends one path by a step.
     fn take(&self, search: &mut Search, step: &Step) {
         let Search { links, heads, earlier, depth, .. } = search;
         let head = &earlier[step.head];
@@ -275,7 +277,7 @@ impl BeamSearch<'_> {
             edge: step.entry,
             cost: step.cost,
             good: step.good,
-            // From the middle of a side of a triangle to that of another one it is half as far as along the third.
+            // The distance between the midpoints of two sides of a triangle is half the third side.
             length: head.length + 0.5 * leg.length,
             ..*head
         };
@@ -284,7 +286,7 @@ impl BeamSearch<'_> {
         heads.push(next);
     }
 
-    /// Cuts an open way at the horizon.
+    /// Cuts an open path at the horizon.
     fn cut(&self, pairs: &mut Vec<Pair>) {
         let mut length = 0.0;
         for k in 1..pairs.len() {

@@ -1,8 +1,8 @@
-//! Quadratic programs with a banded matrix and a lower and an upper bound for each variable.
+//! Quadratic programs with a banded matrix and box constraints.
 
 use super::banded::{CyclicBand, Factors};
 
-/// Memory that is kept from one program to the next.
+/// Buffers reused between programs.
 #[derive(Debug, Clone, Default)]
 pub(super) struct BoxSolver {
     factors: Factors,
@@ -17,9 +17,9 @@ pub(super) struct BoxSolver {
 const ITERATIONS: usize = 40;
 
 impl BoxSolver {
-    /// The `x` between `low` and `high` with the least `½ xᵀHx + gᵀx`, by a primal-dual interior point method
-    /// (S. Mehrotra, "On the implementation of a primal-dual interior point method", 1992). O(n) for each of about ten
-    /// to twenty iterations. `low[i] < high[i]` throughout, and `H` is positive definite.
+    /// Minimises `½ xᵀHx + gᵀx` for `x` between `low` and `high`, by a primal-dual interior point method (S.
+    /// Mehrotra, "On the implementation of a primal-dual interior point method", 1992). O(n) per iteration,
+    /// typically ten to twenty iterations. Requires `low[i] < high[i]` and a positive definite `H`.
     pub(super) fn solve(&mut self, h: &CyclicBand, g: &[f64], low: &[f64], high: &[f64], x: &mut [f64]) {
         let n = x.len();
         let scale = g.iter().fold(1e-12_f64, |most, g| most.max(g.abs()));
@@ -57,7 +57,7 @@ impl BoxSolver {
             self.factors.refactor(h, Some(&self.diagonal));
             self.factors.solve_in_place(&mut self.step);
             let longest = self.advance(low, high, x, target);
-            // A step that was cut short asks for more of a detour through the middle.
+            // After a shortened step, centre more.
             centring = if longest > 0.9 {
                 0.05
             } else if longest > 0.5 {
@@ -68,7 +68,7 @@ impl BoxSolver {
         }
     }
 
-    /// Goes as far along the step as keeps everything positive. How far that is, 0 to 1.
+    /// Moves along the step as far as everything stays positive. Returns the step length, 0 to 1.
     fn advance(&mut self, low: &[f64], high: &[f64], x: &mut [f64], target: f64) -> f64 {
         /// The share of the step to the border that is gone, so that everything stays positive.
         const NEARLY: f64 = 0.995;
@@ -110,7 +110,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(crate::testing::cases(256))]
-        /// The conditions of Karush, Kuhn and Tucker: inside, the gradient is zero; at a bound, it points out.
+        /// Karush-Kuhn-Tucker conditions: the gradient is zero inside, and points outwards at a bound.
         #[test]
         fn nothing_better_is_near(
             rows in prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64, -2.0..2.0f64, 0.05..3.0f64), 5..60),

@@ -5,34 +5,50 @@ use super::sight::ConeSighting;
 use crate::geometry::{Point, math};
 use crate::vision::{Components, GrayView, Hsi, rgb_to_hsi};
 
-/// Where a camera is on a car, and how it looks.
+/// Pose and field of view of a camera on a car.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CameraMount {
-    /// Metres from the car's origin.
+    /// Distance ahead of the car's origin (m).
     pub forward: f64,
-    /// Metres above the ground.
+    /// Height above the ground (m).
     pub height: f64,
-    /// Radians by which it looks down.
+    /// Downward pitch (rad).
     pub pitch: f64,
-    /// Radians from the left to the right edge of an image.
+    /// Horizontal field of view (rad).
     pub field_of_view: f64,
 }
 
 impl Default for CameraMount {
-    /// That of the simulated racing car.
+    /// The camera of the simulated racing car.
     fn default() -> Self {
         Self { forward: 0.6, height: 1.1, pitch: 0.16, field_of_view: 1.75 }
     }
 }
 
-/// Finds cones in images by their colours: hue, saturation and intensity tell blue, yellow and orange from the ground, connected
-/// pixels are a cone, and its lowest row says how far off it is on flat ground.
+/// Detects cones in images by colour. Hue, saturation and intensity separate blue, yellow and orange from the
+/// ground; connected pixels form a cone; its lowest row gives the distance on flat ground.
+///
+/// ```
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::io::{Camera, Resolution};
+/// use roverlab::race::{CameraMount, CameraSight, Cone, ConeColour, ConeTrack};
+/// let cone = Cone::new(Point::new(6.0, 1.5), ConeColour::Blue);
+/// let track = ConeTrack { cones: vec![cone], ..ConeTrack::default() };
+/// let simulation = Simulation::new(&track.scene(&[Pose::default()]), SimOptions::ideal())?;
+/// let mut car = simulation.robot(0)?;
+/// car.set_resolution(Resolution::Vga)?;
+/// let seen = CameraSight::new(CameraMount::default()).find(&car.image()?);
+/// assert_eq!((seen.len(), seen[0].colour), (1, ConeColour::Blue));
+/// assert!((seen[0].position - cone.position).norm() < 0.5, "6 m ahead, to half a metre");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Default)]
 pub struct CameraSight {
     mount: CameraMount,
     components: Components,
     mask: Vec<u8>,
-    /// Width and height of the last image.
+    /// Width and height of the last image (pixels).
     size: [f64; 2],
 }
 
@@ -57,9 +73,9 @@ const CONE: [f64; 2] = [0.12, 0.3];
 /// Pixels at the border of an image within which a cone may be cut off, in shares of its width and height.
 const BORDER: f64 = 0.05;
 
-/// The colour of a pixel, if it is that of a cone.
+/// Index of the cone colour of a pixel, if it has one.
 fn class(pixel: [u8; 3]) -> Option<usize> {
-    // Most of an image is gray: told without the root that a hue takes.
+    // Most pixels are gray: reject them before the costly hue.
     let (most, least) = (*pixel.iter().max()?, *pixel.iter().min()?);
     if most - least < 50 {
         return None;
@@ -71,15 +87,15 @@ fn class(pixel: [u8; 3]) -> Option<usize> {
     HUES.iter().position(|(_, from, to)| (*from..=*to).contains(&hue))
 }
 
-/// How colourful a pixel is; noise that the ground has is none.
+/// Colourfulness of a pixel, above the noise of the ground.
 fn chroma(image: &RgbImage, column: usize, row: usize) -> f64 {
     let [red, green, blue] = image.get_pixel(column as u32, row as u32).0;
     let (most, least) = (red.max(green).max(blue), red.min(green).min(blue));
     f64::from((most - least).saturating_sub(GROUND_CHROMA))
 }
 
-/// The row at which a cone ends, between whole rows: what is colourful below the cone's inside, as much as
-/// that, is the cone's as well. It is the same for dark and for bright cones, and for a camera that blurs.
+/// Lower end of a cone, with sub-pixel resolution: pixels below its inside count by their relative
+/// colourfulness. The result is independent of brightness and blur.
 fn foot(image: &RgbImage, top: usize, [column, last]: [usize; 2]) -> f64 {
     let inside = last.saturating_sub(2).max(top);
     let whole = chroma(image, column, inside).max(1.0);
@@ -89,12 +105,12 @@ fn foot(image: &RgbImage, top: usize, [column, last]: [usize; 2]) -> f64 {
 }
 
 impl CameraSight {
-    /// A finder for a camera.
+    /// A detector for a camera.
     pub fn new(mount: CameraMount) -> Self {
         Self { mount, ..Self::default() }
     }
 
-    /// The cones in an image, in the car's frame.
+    /// Cones in an image, in the car frame.
     pub fn find(&mut self, image: &RgbImage) -> Vec<ConeSighting> {
         let (width, height) = (image.width() as usize, image.height() as usize);
         let mut found = Vec::new();
@@ -108,7 +124,7 @@ impl CameraSight {
             self.mask.extend(classes.iter().map(|class| u8::from(*class == Some(index)) * 255));
             let Ok(view) = GrayView::new(&self.mask, width, height) else { continue };
             for blob in self.components.find(view, LEAST_PIXELS) {
-                // What is cut off below has no foot to measure.
+                // A cone cut off at the bottom has no measurable foot.
                 if blob.max.1 + 2 >= height {
                     continue;
                 }
@@ -125,11 +141,12 @@ impl CameraSight {
         found
     }
 
-    /// What a lidar and the camera see together: places by the lidar, colours by what was [found](Self::find) in the last image in the
-    /// same direction.
+    /// Fuses lidar and camera: positions from the lidar, colours from the [detections](Self::find) in the
+    /// last image in the same direction.
     ///
-    /// What would be large in the image and has no cone's colour there gets a confidence of 0: most likely it is no cone. Only
-    /// where the image shows the colours of as many others, as a camera that is blind, or late, shows none.
+    /// A lidar detection that should be large in the image but has no cone colour there gets a confidence of
+    /// 0: it is most likely not a cone. This applies only if the image shows colours for at least as many
+    /// others; a blind or late camera shows none.
     pub fn fuse(&self, lidar: &[ConeSighting], found: &[ConeSighting]) -> Vec<ConeSighting> {
         let colour = |seen: &ConeSighting| ConeSighting { colour: colour_of(seen, found), ..*seen };
         let mut fused: Vec<ConeSighting> = lidar.iter().map(colour).collect();
@@ -142,8 +159,8 @@ impl CameraSight {
         fused
     }
 
-    /// Whether a cone at a place in the car's frame would be large enough in the last image, and wholly within it, for its colour to
-    /// be found for certain.
+    /// Whether a cone at a position in the car frame would be large enough, and completely inside the last
+    /// image, for its colour to be detected reliably.
     fn would_show(&self, place: Point) -> bool {
         let [width, height] = self.size;
         let Some([column, row, depth]) = self.mount.project(place, self.size) else { return false };
@@ -158,7 +175,7 @@ impl CameraSight {
     }
 }
 
-/// The colour of what a camera found where a lidar sees something.
+/// Colour of the camera detection that matches a lidar detection.
 fn colour_of(seen: &ConeSighting, found: &[ConeSighting]) -> ConeColour {
     let bearing = |sighting: &ConeSighting| math::atan2(sighting.position.y, sighting.position.x);
     let away = |other: &ConeSighting| (seen.position - other.position).norm();
@@ -169,18 +186,17 @@ fn colour_of(seen: &ConeSighting, found: &[ConeSighting]) -> ConeColour {
 }
 
 impl CameraMount {
-    /// Pixels for a tangent of one.
+    /// Focal length (pixels).
     fn focal(&self, width: f64) -> f64 {
         0.5 * width / math::tan(0.5 * self.field_of_view)
     }
 
-    /// Metres within which a row of an image is few enough metres of the ground.
+    /// Distance up to which an image row covers a sufficiently short stretch of ground (m).
     fn farthest(&self, width: f64) -> f64 {
         (COARSEST * self.height * self.focal(width)).sqrt()
     }
 
-    /// The column and the row of an image that show a place on the ground, and how far it lies in front of the image's plane, in
-    /// metres. `None` behind that.
+    /// Column, row and depth (m) of a ground position in an image; `None` behind the image plane.
     fn project(&self, place: Point, [width, height]: [f64; 2]) -> Option<[f64; 3]> {
         let (sin, cos) = math::sin_cos(self.pitch);
         let (ahead, left) = (place.x - self.forward, place.y);
@@ -189,8 +205,8 @@ impl CameraMount {
         (depth > 1e-3).then_some([0.5 * width - left * scale, 0.5 * height + below * scale, depth])
     }
 
-    /// The middle of the cone whose foot begins at a pixel, its distance from the camera, and how far a pixel
-    /// more is.
+    /// Centre of the cone whose foot begins at a pixel, its distance from the camera, and the change of
+    /// distance per pixel (m).
     fn place(&self, column: f64, row: f64, width: f64, height: f64) -> Option<(Point, f64, f64)> {
         let focal = self.focal(width);
         let (sin, cos) = math::sin_cos(self.pitch);
@@ -225,12 +241,12 @@ mod tests {
     use crate::io::{Camera, Resolution};
     use crate::race::{Cone, ConeTrack};
 
-    /// One that has seen an image.
+    /// A detector that has seen an image.
     fn sight() -> CameraSight {
         CameraSight { size: [640.0, 480.0], ..CameraSight::default() }
     }
 
-    /// A car before cones.
+    /// A car in front of cones.
     fn car_before(cones: &[Cone], noise: f64) -> SimRobot {
         let track = ConeTrack { cones: cones.to_vec(), ..ConeTrack::default() };
         let scene = track.scene(&[Pose::default()]);
@@ -294,11 +310,11 @@ mod tests {
         assert!(
             confidence(&sight(), 5.0, 1.0, &[blue]) < 1e-9 && confidence(&sight(), 9.0, -6.0, &[blue]) < 1e-9
         );
-        // Too far off, beside the image, and below it.
+        // Too far away, beside the image, and below it.
         for (x, y) in [(13.0, 1.0), (3.0, 4.0), (1.4, 0.0)] {
             assert!(confidence(&sight(), x, y, &[blue]) > 0.6, "{x} {y}");
         }
-        // A small image, and one that shows nothing at all.
+        // A small image, and one that shows nothing.
         let small = CameraSight { size: [160.0, 120.0], ..sight() };
         assert!(confidence(&small, 8.0, 1.0, &[blue]) > 0.6 && confidence(&small, 3.5, 0.5, &[blue]) < 1e-9);
         assert!(confidence(&sight(), 5.0, 1.0, &[]) > 0.6);
@@ -308,7 +324,7 @@ mod tests {
     fn a_place_is_where_its_pixel_is() {
         let mount = CameraMount::default();
         for (x, y) in [(4.0, 1.0), (9.0, -3.0), (6.0, 0.0)] {
-            // The near edge of the foot, as the camera sees it.
+            // The near edge of the foot, as seen by the camera.
             let eye = Point::new(mount.forward, 0.0);
             let foot = ConeColour::Unknown.radius() * std::f64::consts::FRAC_2_SQRT_PI;
             let middle = eye + (Point::new(x, y) - eye) * (1.0 + foot / (Point::new(x, y) - eye).norm());

@@ -12,27 +12,25 @@ use crate::geometry::{Point, Pose, Segment, Vector, cross, math};
 #[cfg(test)]
 mod tests;
 
-/// The way between cones: both edges, and the corridor between them.
+/// A track between cones: both edges, and the corridor between them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CentreLine {
-    /// The left edge, from cone to cone. Where cones are missing, points stand for them that are one width from the other
-    /// edge.
+    /// Left edge, from cone to cone. Missing cones are replaced by points one width from the other edge.
     pub left: Vec<Point>,
-    /// The right edge.
+    /// Right edge.
     pub right: Vec<Point>,
-    /// The middle with the widths.
+    /// Centre line with widths.
     pub corridor: Corridor,
 }
 
 impl CentreLine {
-    /// The way from a car on between cones, by a Delaunay triangulation: wherever the car passes between a left and a right
-    /// cone, it crosses an edge of the triangulation, and behind it there is a triangle, whose third cone is the next one on the
-    /// left or on the right. Which one, a beam search decides by widths, distances, turns and, if known, colours.
+    /// Finds the track ahead of a car between cones, from their Delaunay triangulation. Where the car passes
+    /// between a left and a right cone, it crosses an edge of the triangulation; the third cone of the
+    /// triangle behind it is the next one on the left or on the right. A beam search decides which, by
+    /// widths, distances, turns and, if known, colours.
     ///
-    /// The way is closed if it comes back to where it began, else it ends where the cones end or at the horizon. Takes O(n log
-    /// n) for n cones.
-    ///
-    /// Fails where no way leads on, where it leads over 50 m without cones, and where it is longer than 50 km.
+    /// The track is closed if it returns to its start; otherwise it ends with the cones or at the horizon.
+    /// O(n log n) for n cones.
     ///
     /// ```
     /// use roverlab::race::{CentreLine, CentreLineParameters, Cone};
@@ -44,6 +42,10 @@ impl CentreLine {
     /// assert!(line.corridor.stations().iter().all(|s| (s.position.y - 1.5).abs() < 0.01));
     /// # Ok::<(), roverlab::race::LineError>(())
     /// ```
+    ///
+    /// # Errors
+    ///
+    /// If no track leads on from the car, it leads over 50 m without cones, or it is longer than 50 km.
     pub fn from_cones(
         cones: &[Cone],
         car: Pose,
@@ -52,8 +54,12 @@ impl CentreLine {
         Self::along(cones, car, &[], parameters)
     }
 
-    /// The same where the way was driven before: what leads away from that costs more. `driven` are its points, one about every
-    /// two metres.
+    /// The same, with a known path: `driven` has its points, about one every two metres. Deviations from it
+    /// cost more.
+    ///
+    /// # Errors
+    ///
+    /// As for [`from_cones`](Self::from_cones).
     pub fn along(
         cones: &[Cone],
         car: Pose,
@@ -65,12 +71,13 @@ impl CentreLine {
         let (mut mesh, mut beside) = (Mesh::new(cones)?, sides(cones, driven));
         let mut way = walk(cones, &mesh, &beside, car, parameters).ok_or(LineError::NoWay)?;
         for round in 0..ROUNDS {
-            // Cones that stick out of an edge are left out, and the way is looked for again.
+            // Leave out cones that stick out of an edge, and search again.
             let strays = strays(&kept, &way.pairs, way.closed, parameters);
             if strays.is_empty() && (round > 0 || !way.closed) {
                 break;
             }
-            // A loop is looked for from where it is most like a track: what stands around the car was taken on trust.
+            // Search a loop from where it looks most like a track: the cones around the car were taken on
+            // trust.
             let from = if way.closed { best_place(&kept, &way.pairs, parameters) } else { car };
             let mut fewer = kept.clone();
             if !strays.is_empty() {
@@ -130,7 +137,7 @@ fn walk(
 /// Metres from pair to pair beyond which cones belong to no track.
 const FARTHEST: f64 = 50.0;
 
-/// Fails where pairs are too far from each other to be those of one track.
+/// Rejects pairs that are too far apart for one track.
 fn check_gaps(pairs: &[Opposite], closed: bool) -> Result<(), LineError> {
     let n = pairs.len();
     let middle = |k: usize| nalgebra::center(&pairs[k % n].points[0], &pairs[k % n].points[1]);
@@ -150,7 +157,7 @@ fn check_gaps(pairs: &[Opposite], closed: bool) -> Result<(), LineError> {
     Ok(())
 }
 
-/// Takes what is at some places out of a list.
+/// Removes the items at some indices.
 fn leave_out<T>(list: &mut Vec<T>, places: &[usize]) {
     let mut index = 0;
     list.retain(|_| {
@@ -164,14 +171,14 @@ const ROUNDS: usize = 3;
 /// Pairs to both sides in which the other edge is looked for.
 const WINDOW: usize = 5;
 
-/// A pair of points on both edges, and their places in the chains.
+/// A pair of points on both edges, and their indices in the chains.
 #[derive(Debug, Clone, Copy)]
 struct Opposite {
     points: [Point; 2],
     indices: [usize; 2],
 }
 
-/// The pairs as points, with points for missing cones, and the chains of both edges.
+/// Pairs of points, with points for missing cones, and the chains of both edges.
 fn complete(
     cones: &[Cone],
     pairs: &[Pair],
@@ -198,7 +205,7 @@ fn complete(
         }
         result.push(Opposite { points, indices });
     }
-    // The last cone of a loop may be the first one again.
+    // The last cone of a loop may equal the first one.
     for (side, chain) in chains.iter_mut().enumerate() {
         if closed && chain.len() > 3 && chain.first() == chain.last() {
             chain.pop();
@@ -213,10 +220,10 @@ fn complete(
     (result, chains)
 }
 
-/// The median distance between the edges, of the pairs that are as far apart as is expected.
+/// Median track width, over pairs within the expected range.
 fn usual_width(pairs: &[[Point; 2]], parameters: &CentreLineParameters) -> f64 {
     let [low, high] = parameters.width;
-    // A cone's distance from the chord of the other side: a pair may stand aslant.
+    // Distance of a cone from the chord of the other side, because a pair may be skewed.
     let widths = pairs.windows(2).filter_map(|two| {
         let side = usize::from(two[0][0] == two[1][0]);
         let chord = Segment::new(two[0][side], two[1][side]);
@@ -232,7 +239,7 @@ fn usual_width(pairs: &[[Point; 2]], parameters: &CentreLineParameters) -> f64 {
     *widths.select_nth_unstable_by(half, f64::total_cmp).1
 }
 
-/// The cones of a side in order, each once, with the pair where it first stands.
+/// Cones of a side in order, each once, with the index of its first pair.
 fn chain_of(pairs: &[Pair], side: usize) -> Vec<(usize, usize)> {
     let mut chain: Vec<(usize, usize)> = Vec::new();
     for (at, pair) in pairs.iter().enumerate() {
@@ -243,7 +250,7 @@ fn chain_of(pairs: &[Pair], side: usize) -> Vec<(usize, usize)> {
     chain
 }
 
-/// The pose in the middle of the pair that is most as a pair should be: as wide as usual, with neighbours as near as usual.
+/// Pose in the middle of the most regular pair: usual width, neighbours at the usual distance.
 fn best_place(cones: &[Cone], pairs: &[Pair], parameters: &CentreLineParameters) -> Pose {
     let n = pairs.len();
     let middle =
@@ -262,7 +269,7 @@ fn best_place(cones: &[Cone], pairs: &[Pair], parameters: &CentreLineParameters)
     let best = (0..n).min_by(|&a, &b| badness(a).total_cmp(&badness(b))).unwrap_or(0);
     let across = opposites[best][0] - opposites[best][1];
     let at = middle(best);
-    // The edge itself lies a metre ahead, where a start is looked for.
+    // The edge itself lies a metre ahead, where a start is expected.
     let ahead = Vector::new(across.y, -across.x) / across.norm().max(1e-9);
     let from = at - ahead;
     Pose::new(from.x, from.y, math::atan2(ahead.y, ahead.x))
@@ -277,8 +284,8 @@ fn nearest_ahead(cones: &[Cone], pairs: &[Pair], car: Pose) -> usize {
     (0..pairs.len()).min_by(|&a, &b| away(&pairs[a]).total_cmp(&away(&pairs[b]))).unwrap_or(0)
 }
 
-/// Cones that are too far from the other edge, and from the line between their neighbours to the outside: they stand beside
-/// the track. In order.
+/// Indices, in order, of cones beside the track: too far from the other edge, and outside the line between
+/// their neighbours.
 fn strays(cones: &[Cone], pairs: &[Pair], closed: bool, parameters: &CentreLineParameters) -> Vec<usize> {
     let opposites: Vec<[Point; 2]> = pairs.iter().map(|pair| pair.map(|i| cones[i].position)).collect();
     let width = usual_width(&opposites, parameters);
@@ -314,7 +321,7 @@ fn strays(cones: &[Cone], pairs: &[Pair], closed: bool, parameters: &CentreLineP
     found
 }
 
-/// For each pair the longer one of the legs before and behind the cone of a side.
+/// For each pair, the longer one of the legs before and behind the cone of a side.
 fn legs(pairs: &[[Point; 2]], side: usize, closed: bool) -> Vec<f64> {
     let n = pairs.len();
     let mut legs = vec![0.0; n];
@@ -334,8 +341,8 @@ fn legs(pairs: &[[Point; 2]], side: usize, closed: bool) -> Vec<f64> {
     legs
 }
 
-/// Where cones of a side are missing, or lie far off the track, while the other side goes on, puts points beside the other
-/// side, one usual width from it.
+/// Where cones of a side are missing or far off the track, inserts points one usual width from the other
+/// side.
 fn bridge(
     pairs: &mut [[Point; 2]],
     side: usize,
@@ -380,7 +387,7 @@ fn bridge(
     }
 }
 
-/// The middle at even steps, smoothed: positions, unit normals to the left, and the pair nearest before.
+/// Centre line at equal steps, smoothed: positions, unit normals to the left, and the preceding pair.
 fn middle(pairs: &[Opposite], closed: bool, step: f64) -> Vec<(Point, Vector, usize)> {
     let n = pairs.len();
     let at = |i: usize| nalgebra::center(&pairs[i % n].points[0], &pairs[i % n].points[1]);
@@ -403,7 +410,7 @@ fn middle(pairs: &[Opposite], closed: bool, step: f64) -> Vec<(Point, Vector, us
         points.push(at(piece) + (at(piece + 1) - at(piece)) * share);
         owners.push(piece);
     }
-    // Midpoints go to and fro where the cones of both sides alternate: a few metres of smoothing even that out.
+    // Midpoints zigzag where cones alternate between the sides; smoothing over a few metres removes that.
     let passes = ((3.0 / step) * (3.0 / step)).ceil().clamp(2.0, 24.0) as usize;
     for _ in 0..passes {
         let old = points.clone();
@@ -428,7 +435,8 @@ fn middle(pairs: &[Opposite], closed: bool, step: f64) -> Vec<(Point, Vector, us
         .collect()
 }
 
-/// Metres from a point along a direction to a chain, near one of its points; `otherwise` where it is not met.
+/// Distance from a point along a direction to a chain, near one of its points; `otherwise` if the ray misses
+/// it.
 fn reach(chain: &[Point], near: usize, closed: bool, from: Point, along: Vector, otherwise: f64) -> f64 {
     /// Points of a chain to both sides of one that are looked at.
     const AROUND: usize = 4;
@@ -455,7 +463,7 @@ fn reach(chain: &[Point], near: usize, closed: bool, from: Point, along: Vector,
             least = least.min(distance);
         }
     }
-    // Beyond the ends of an open chain, its last point is as good.
+    // Beyond the ends of an open chain, use its last point.
     if least.is_infinite() {
         let nearest =
             chain.iter().map(|p| (p - from).dot(&along)).filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min);

@@ -3,7 +3,7 @@ use std::sync::Arc;
 use crate::geometry::{Aabb, Point, Pose};
 use crate::world::{Colour, Object, ObjectKind, RobotPlacement, RobotSpec, Scene, Shape, World};
 
-/// The colour of a cone: blue stands on the left of the track, yellow on the right.
+/// Colour of a cone: blue marks the left edge of the track, yellow the right one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub enum ConeColour {
     /// Left edge.
@@ -12,24 +12,24 @@ pub enum ConeColour {
     Yellow,
     /// Entries, exits and braking zones.
     Orange,
-    /// The large ones beside the start line.
+    /// Large cones beside the start line.
     BigOrange,
-    /// Not known, as by a lidar.
+    /// Unknown, as from a lidar.
     #[default]
     Unknown,
 }
 
 impl ConeColour {
-    /// All of them.
+    /// All colours.
     pub const ALL: [Self; 5] = [Self::Blue, Self::Yellow, Self::Orange, Self::BigOrange, Self::Unknown];
 
-    /// Metres from the axis to the edge of the foot: that of the circle with the area of the square foot, 228 mm or, for the
-    /// large ones, 285 mm wide.
+    /// Effective radius of the foot (m): that of a circle with the area of the square foot, which is 228 mm
+    /// wide, or 285 mm for large cones.
     pub const fn radius(self) -> f64 {
         if matches!(self, Self::BigOrange) { 0.161 } else { 0.129 }
     }
 
-    /// Metres from the ground to the tip.
+    /// Height (m).
     pub const fn height(self) -> f64 {
         if matches!(self, Self::BigOrange) { 0.505 } else { 0.325 }
     }
@@ -49,7 +49,7 @@ impl ConeColour {
         }
     }
 
-    /// The cone as an object of a world. It falls when a car touches it.
+    /// The cone as a world object. It falls when a car touches it.
     pub fn kind(self) -> ObjectKind {
         let (radius, height) = (self.radius(), self.height());
         let shape = Shape::Cone { radius, top: TIP * radius, height };
@@ -57,7 +57,7 @@ impl ConeColour {
         ObjectKind { mass: MASS, falls: true, ..ObjectKind::new(name, shape, self.paint()) }
     }
 
-    /// On which side of the track it belongs: 1 for the left, -1 for the right, 0 for either.
+    /// Side of the track: 1 for left, -1 for right, 0 for either.
     pub const fn side(self) -> i8 {
         match self {
             Self::Blue => 1,
@@ -79,56 +79,64 @@ const MASS: f64 = 0.45;
 const MARGIN: f64 = 5.0;
 
 /// A cone on the ground.
+///
+/// ```
+/// use roverlab::geometry::Point;
+/// use roverlab::race::{Cone, ConeColour};
+/// let cone = Cone::new(Point::new(3.0, 1.5), ConeColour::Blue);
+/// assert_eq!(cone.colour.side(), -ConeColour::Yellow.side(), "blue and yellow stand on opposite edges");
+/// assert_eq!(Cone::unknown(cone.position).colour, ConeColour::Unknown);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cone {
-    /// Where its axis meets the ground.
+    /// Position of its axis (m).
     pub position: Point,
     /// Its colour.
     pub colour: ConeColour,
 }
 
 impl Cone {
-    /// A cone of a colour at a place.
+    /// A cone of a colour at a position.
     pub const fn new(position: Point, colour: ConeColour) -> Self {
         Self { position, colour }
     }
 
-    /// A cone whose colour is not known.
+    /// A cone of unknown colour.
     pub const fn unknown(position: Point) -> Self {
         Self::new(position, ConeColour::Unknown)
     }
 }
 
-/// What is driven on a track of cones.
+/// Event that is driven on a track of cones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Event {
     /// Laps of a closed course.
     #[default]
     Laps,
-    /// Straight on for 75 m.
+    /// Acceleration over 75 m, straight.
     Acceleration,
-    /// Two circles to the right, then two to the left.
+    /// Skidpad: two circles to the right, then two to the left.
     Skidpad,
 }
 
-/// Cones, and where the car starts between them.
+/// Cones, and the start pose of the car.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ConeTrack {
-    /// The cones, in any order.
+    /// Cones, in any order.
     pub cones: Vec<Cone>,
-    /// Where the car stands at first, if that is given.
+    /// Start pose of the car, if given.
     pub start: Option<Pose>,
-    /// The ends of the lines where time is taken, if they are given.
+    /// Ends of the timing lines, if given.
     pub gates: Vec<[Point; 2]>,
 }
 
 impl ConeTrack {
-    /// The cones of a colour.
+    /// Positions of the cones of a colour.
     pub fn of(&self, colour: ConeColour) -> impl Iterator<Item = Point> + Clone + '_ {
         self.cones.iter().filter(move |cone| cone.colour == colour).map(|cone| cone.position)
     }
 
-    /// The ground with the cones, and racing cars at some poses of the middle of their rear axles.
+    /// Scene with the cones, and racing cars with their rear axles at the given poses.
     pub fn scene(&self, cars: &[Pose]) -> Scene {
         let mut world = World::empty(1.0, 1.0);
         let around = Aabb::around(self.cones.iter().map(|cone| cone.position));
@@ -147,20 +155,20 @@ impl ConeTrack {
         Scene { robots: cars.iter().map(placed).collect(), ..Scene::new(world) }
     }
 
-    /// The event that the cones stand for, by the book of rules: an acceleration strip ends in a box of orange cones, and a
-    /// skidpad's blue and yellow cones stand on two circles of the same centres.
+    /// The event that the cones represent, by the rules: an acceleration strip ends in a box of orange cones;
+    /// the blue and yellow cones of a skidpad are on concentric circles.
     pub fn event(&self) -> Event {
         let orange = self.of(ConeColour::Orange).count();
         if orange == 0 {
             return Event::Laps;
         }
-        // The strip is straight: what is blue lies on a line, within the width of the track.
+        // The strip is straight: its blue cones lie on a line, within the width of the track.
         let fitted = crate::geometry::FittedLine::through(self.of(ConeColour::Blue));
         if fitted.is_some_and(|line| line.rms < 1.0) { Event::Acceleration } else { Event::Skidpad }
     }
 
-    /// Where the car starts: what is given, or halfway between a blue cone and the yellow one opposite, looking so that blue
-    /// is left. `None` without these.
+    /// Start pose: the given one, or midway between a blue cone and the nearest yellow one, with blue on the
+    /// left. `None` without these.
     pub fn start_pose(&self) -> Option<Pose> {
         if self.start.is_some() {
             return self.start;

@@ -2,27 +2,38 @@ use super::error::LineError;
 use crate::geometry::{Point, Segment, Vector};
 use crate::parameter::{require_not_negative, require_positive};
 
-/// A place on the centre line, and how far the track reaches to both sides of it.
+/// A station of the centre line, with the widths to both edges.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CrossSection {
-    /// Where it is.
+    /// Position (m).
     pub position: Point,
-    /// The unit vector to the left.
+    /// Unit vector to the left.
     pub normal: Vector,
-    /// Metres to the left edge.
+    /// Distance to the left edge (m).
     pub left: f64,
-    /// Metres to the right edge.
+    /// Distance to the right edge (m).
     pub right: f64,
 }
 
 impl CrossSection {
-    /// The point so many metres to the left of the centre line.
+    /// The point `offset` metres to the left of the centre line.
     pub fn aside(&self, offset: f64) -> Point {
         self.position + self.normal * offset
     }
 }
 
-/// A track as a centre line with widths, closed to a loop or open.
+/// A track as a centre line with widths, closed or open.
+///
+/// ```
+/// use roverlab::geometry::{Point, direction};
+/// use roverlab::race::Corridor;
+/// let angle = |k: u8| (4.0 * f64::from(k)).to_radians();
+/// let place = |k| (Point::origin() + direction(angle(k)) * 20.0, 2.0, 3.0);
+/// let ring = Corridor::closed(&(0..90).map(place).collect::<Vec<_>>())?;
+/// assert!((ring.length() - 125.6).abs() < 0.1, "2 pi 20 m");
+/// assert!(ring.edge(true).iter().all(|point| (point.coords.norm() - 18.0).abs() < 0.01), "to the left");
+/// # Ok::<(), roverlab::race::LineError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Corridor {
     stations: Vec<CrossSection>,
@@ -30,12 +41,20 @@ pub struct Corridor {
 }
 
 impl Corridor {
-    /// A loop from points in the order in which they are driven, each with the metres to the left and to the right edge.
+    /// A loop from points in driving order, each with the distances to the left and the right edge (m).
+    ///
+    /// # Errors
+    ///
+    /// If there are fewer than five points, neighbours coincide, or a number is out of range.
     pub fn closed(points: &[(Point, f64, f64)]) -> Result<Self, LineError> {
         Self::new(points, true)
     }
 
-    /// The same for a track with two ends.
+    /// An open track from points in driving order.
+    ///
+    /// # Errors
+    ///
+    /// As for [`closed`](Self::closed), but from two points on.
     pub fn open(points: &[(Point, f64, f64)]) -> Result<Self, LineError> {
         Self::new(points, false)
     }
@@ -68,12 +87,12 @@ impl Corridor {
         Ok(Self { stations, closed })
     }
 
-    /// The stations in the order of driving.
+    /// Stations in driving order.
     pub fn stations(&self) -> &[CrossSection] {
         &self.stations
     }
 
-    /// The same loop with the station nearest to a place as its first one. A corridor with two ends stays as it is.
+    /// Rotates a loop such that the station nearest to a point is the first. An open corridor stays as it is.
     #[must_use]
     pub fn beginning_near(mut self, place: Point) -> Self {
         if self.closed {
@@ -89,7 +108,7 @@ impl Corridor {
         self.closed
     }
 
-    /// Metres along the centre line, by its chords.
+    /// Length of the centre line, by its chords (m).
     pub fn length(&self) -> f64 {
         self.pairs().map(|(a, b)| (b.position - a.position).norm()).sum()
     }
@@ -99,16 +118,19 @@ impl Corridor {
         self.stations.iter().map(|s| if left { s.aside(s.left) } else { s.aside(-s.right) }).collect()
     }
 
-    /// Stations with their next ones.
+    /// Consecutive stations.
     fn pairs(&self) -> impl Iterator<Item = (&CrossSection, &CrossSection)> {
         let n = self.stations.len();
         let count = if self.closed { n } else { n - 1 };
         (0..count).map(move |i| (&self.stations[i], &self.stations[(i + 1) % n]))
     }
 
-    /// For each station the offsets to the left, from least to most, at which a line keeps `margin` metres from both edges.
+    /// For each station, the range of offsets to the left at which a line keeps `margin` metres from both
+    /// edges. O(n), unless stations are much closer together than the margin.
     ///
-    /// Fails where nothing is left between them. O(n) as long as stations are not much closer than the margin.
+    /// # Errors
+    ///
+    /// If the margin is negative, or nothing is left between the edges.
     pub fn free(&self, margin: f64) -> Result<Vec<[f64; 2]>, LineError> {
         require_not_negative("margin", margin)?;
         let margins = vec![[margin; 2]; self.stations.len()];
@@ -121,8 +143,8 @@ impl Corridor {
         })
     }
 
-    /// The same for margins of their own at each station, to the right and to the left. Where nothing is left between them, the
-    /// offset at which as much is missing on both sides.
+    /// The same with individual margins per station, right and left. Where nothing is left, the offset that
+    /// misses both margins equally.
     pub(super) fn room(&self, margins: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let mut ranges = self.ranges(margins);
         for range in ranges.iter_mut().filter(|[low, high]| high <= low) {
@@ -139,7 +161,8 @@ impl Corridor {
             let (side, sign) = if left { (1, 1.0) } else { (0, -1.0) };
             let margin = margins[index][side];
             let mut offset = if left { station.left } else { station.right } - margin;
-            // Towards the middle by what is missing, until nothing is: where the edge is oblique, or bends in.
+            // Move towards the middle by the missing distance until none is missing: edges may be oblique or
+            // bend inwards.
             for _ in 0..12 {
                 let place = station.aside(sign * offset);
                 let missing = margin - self.distance_to_edge(&edges[side], index, place, margin);
@@ -153,13 +176,13 @@ impl Corridor {
         (0..self.stations.len()).map(|index| [limit(index, false), limit(index, true)]).collect()
     }
 
-    /// The distance of a point from an edge near a station, as far as it may be below `reach`.
+    /// Distance of a point from an edge near a station, exact below `reach`.
     fn distance_to_edge(&self, edge: &[Point], index: usize, point: Point, reach: f64) -> f64 {
         let n = edge.len();
         let mut least = f64::INFINITY;
         for forward in [true, false] {
             let (mut passed, mut at) = (0.0, index);
-            // The edge may be much shorter than the centre line inside a bend, so both are counted.
+            // Inside a bend, the edge may be much shorter than the centre line, so both lengths are tracked.
             for _ in 0..n / 2 {
                 let at_end = if forward { at + 1 == n } else { at == 0 };
                 if at_end && !self.closed {
@@ -178,8 +201,12 @@ impl Corridor {
         least
     }
 
-    /// The same corridor with stations about every `step` metres: on a spline through the present ones where it is a loop, on
-    /// its chords where it is open.
+    /// Resamples the corridor at about `step` metres: a loop by a spline through its stations, an open one by
+    /// its chords.
+    ///
+    /// # Errors
+    ///
+    /// If `step` is not positive.
     pub fn resampled(&self, step: f64) -> Result<Self, LineError> {
         require_positive("step", step)?;
         let n = self.stations.len();

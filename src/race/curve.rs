@@ -1,4 +1,4 @@
-//! The middle of a lane as a curve: where it begins, and its curvature from knot to knot.
+//! The centre line of a lane as a curve: a start pose, and curvatures at knots.
 
 use nalgebra::SVector;
 
@@ -27,29 +27,30 @@ const AROUND_KNOT: usize = STEPS_TO_KNOT / 2;
 /// Steps of a whole curve.
 pub(super) const STEPS: usize = STEPS_TO_KNOT * (KNOTS - 1);
 
-/// A number for each unknown.
+/// One number per unknown.
 pub(super) type Unknowns = SVector<f64, UNKNOWNS>;
 
-/// A lane, by its unknowns.
+/// A lane, given by its unknowns.
 #[derive(Debug, Clone)]
 pub(super) struct Curve {
-    /// Where its way begins, and the unit vector along it there.
+    /// Reference start pose; `begins` is the unit vector along it.
     begin: Pose,
     begins: Vector,
-    /// Metres from step to step.
+    /// Step length (m).
     pub(super) step: f64,
     /// The step beside the car.
     pub(super) car: usize,
     pub(super) unknowns: Unknowns,
-    /// Where its middle is at each step, and the unit vectors along it.
+    /// Position at each step; `ahead` holds the unit tangents.
     pub(super) places: [Point; STEPS + 1],
     pub(super) ahead: [Vector; STEPS + 1],
-    /// How much it turns by the curvature at each knot; and by that at the knots before and behind each step, up to there.
+    /// Turning by the curvature at each knot; `begun` holds that of the knots before and after each step, up
+    /// to there.
     bends: [Bend; KNOTS],
     begun: [[Bend; 2]; STEPS + 1],
 }
 
-/// How much a curvature turns a lane: the metres on which it does, and the sum of their places.
+/// Effect of a curvature: the length over which it acts, and the integral of position over that length.
 #[derive(Debug, Clone, Copy, Default)]
 struct Bend {
     metres: f64,
@@ -62,7 +63,7 @@ impl Bend {
         self.places += place.coords * metres;
     }
 
-    /// How far a place beyond it moves to the left of some way, for each 1/m.
+    /// Displacement to the left, per 1/m, of a point beyond it.
     fn moves(&self, place: Point, ahead: Vector) -> f64 {
         (place.coords * self.metres - self.places).dot(&ahead)
     }
@@ -72,16 +73,16 @@ impl Bend {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Beside {
     pub(super) cone: usize,
-    /// The step that is next to it.
+    /// The nearest step.
     pub(super) step: usize,
-    /// Metres to the left of the middle.
+    /// Lateral offset from the centre line, positive to the left (m).
     pub(super) left: f64,
-    /// Metres along the middle, from the car.
+    /// Distance along the centre line from the car (m).
     pub(super) along: f64,
 }
 
 impl Curve {
-    /// The curve about along a way, of which one station is beside the car. `None` for one of no length.
+    /// The curve along a path, with the index of the station beside the car; `None` if the path is too short.
     pub(super) fn along(stations: &[Pose], car: usize, half_width: f64) -> Option<Self> {
         let begin = *stations.first()?;
         let way = Headings::of(stations);
@@ -114,13 +115,13 @@ impl Curve {
         Some(curve)
     }
 
-    /// Changes the unknowns.
+    /// Replaces the unknowns.
     pub(super) fn set(&mut self, unknowns: Unknowns) {
         self.unknowns = unknowns;
         self.follow();
     }
 
-    /// Goes along it, from its unknowns.
+    /// Integrates the curve from its unknowns.
     fn follow(&mut self) {
         let left = Vector::new(-self.begins.y, self.begins.x);
         let mut at = self.begin.position() + left * self.unknowns[ASIDE];
@@ -135,7 +136,7 @@ impl Curve {
             let half = 0.5 * self.step * (from * (1.0 - share) + to * share);
             let middle = turned(ahead, half);
             let next = at + middle * self.step;
-            // A bend there turns all that comes after the middle of its step.
+            // A bend turns everything beyond the middle of its step.
             let turns_at = nalgebra::center(&at, &next);
             self.bends[knot].add(self.step * (1.0 - share), turns_at);
             self.bends[knot + 1].add(self.step * share, turns_at);
@@ -144,17 +145,17 @@ impl Curve {
         }
     }
 
-    /// Half the width of the lane at a step.
+    /// Half the lane width at a step (m).
     pub(super) fn half_width(&self, step: usize) -> f64 {
         self.unknowns[WIDTH] + self.unknowns[WIDENS] * self.past_car(step)
     }
 
-    /// Metres along it from the car to a step.
+    /// Distance along the curve from the car to a step (m).
     pub(super) fn past_car(&self, step: usize) -> f64 {
         (step as f64 - self.car as f64) * self.step
     }
 
-    /// The cones within some metres of the middle, but for those before its beginning and beyond its end.
+    /// Cones within a distance of the centre line, except before its start and beyond its end.
     pub(super) fn beside(&self, cones: &[Cone], within: f64) -> Vec<Beside> {
         let beside = |(cone, Cone { position, .. }): (usize, &Cone)| {
             let step = self.nearest(*position, within)?;
@@ -166,12 +167,12 @@ impl Curve {
         cones.iter().enumerate().filter_map(beside).collect()
     }
 
-    /// The step next to a place, if that is within some metres; one that is a little farther off may be told as well.
+    /// The step nearest to a point, if within a distance; slightly farther ones may be returned as well.
     fn nearest(&self, place: Point, within: f64) -> Option<usize> {
         let squared = |step: usize| (self.places[step] - place).norm_squared();
         let from_knots: [f64; KNOTS] = std::array::from_fn(|knot| squared(knot * STEPS_TO_KNOT));
         let least = from_knots.into_iter().fold(f64::INFINITY, f64::min).sqrt();
-        // No step is farther than this from one of the knots beside it.
+        // No step is farther than this from the nearest knot.
         let between = AROUND_KNOT as f64 * self.step;
         if least > within + between {
             return None;
@@ -188,7 +189,7 @@ impl Curve {
         Some(steps.fold((0, f64::INFINITY), nearer).0)
     }
 
-    /// How far the middle moves to the left at a step, with each unknown.
+    /// Displacement of the centre line to the left at a step, per unknown.
     pub(super) fn moves(&self, step: usize) -> Unknowns {
         let (place, ahead) = (self.places[step], self.ahead[step]);
         let mut moves = Unknowns::zeros();
@@ -202,13 +203,13 @@ impl Curve {
     }
 }
 
-/// The knot before a step, or at it, and the share of the one behind it.
+/// The knot at or before a step, and the interpolation weight of the next one.
 fn before(step: usize) -> (usize, f64) {
     let knot = (step / STEPS_TO_KNOT).min(KNOTS - 2);
     (knot, step as f64 / STEPS_TO_KNOT as f64 - knot as f64)
 }
 
-/// A unit vector turned by a small angle, to a millionth of a radian: many are turned, and sines take long.
+/// Rotates a unit vector by a small angle, accurate to 1e-6 rad, faster than by sine and cosine.
 fn turned(v: Vector, angle: f64) -> Vector {
     let tangent = 0.5 * angle * (1.0 + angle * angle / 12.0);
     let scale = 1.0 / (1.0 + tangent * tangent);
@@ -216,11 +217,11 @@ fn turned(v: Vector, angle: f64) -> Vector {
     Vector::new(v.x * cos - v.y * sin, v.x * sin + v.y * cos)
 }
 
-/// The headings along a way.
+/// Headings along a path.
 struct Headings {
-    /// Metres from its beginning to each station.
+    /// Distance of each station from the start (m).
     metres: Vec<f64>,
-    /// The heading there, without leaps by a full turn.
+    /// Heading at each station, without jumps by full turns (rad).
     headings: Vec<f64>,
 }
 
@@ -240,7 +241,7 @@ impl Headings {
         self.metres[self.metres.len() - 1]
     }
 
-    /// The heading so many metres from the beginning.
+    /// Heading at a distance from the start (rad).
     fn at(&self, metres: f64) -> f64 {
         let next = self.metres.partition_point(|way| *way < metres).clamp(1, self.metres.len() - 1);
         let ([from, to], [start, end]) =
@@ -255,7 +256,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// A way on a circle.
+    /// A path on a circle.
     fn circle(curvature: f64, metres: u32) -> Vec<Pose> {
         let mut poses = vec![Pose::new(3.0, -2.0, 0.4)];
         for _ in 0..metres {

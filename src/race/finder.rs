@@ -5,9 +5,20 @@ use super::map::STRIDE;
 use crate::ParameterError;
 use crate::geometry::Pose;
 
-/// Finds the lane ahead from moment to moment, by the cones that a car knows there, whoever has found them.
+/// Finds the lane ahead, step by step, from the known cones.
 ///
-/// It keeps what one moment tells the next: where the car was, and where the lane was found before.
+/// It remembers previous poses of the car and the previous lane.
+///
+/// ```
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::race::{Cone, LaneFinder, LaneParameters};
+/// let edge = |y: f64| (0..6).map(move |k| Cone::unknown(Point::new(3.0 * f64::from(k), y)));
+/// let cones: Vec<Cone> = edge(1.5).chain(edge(-1.5)).collect();
+/// let mut finder = LaneFinder::new(LaneParameters::default())?;
+/// let lane = finder.step(Pose::default(), &cones).expect("a lane between two rows");
+/// assert!(lane.points.iter().all(|point| point.y.abs() < 0.01), "in the middle between them");
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct LaneFinder {
     parameters: LaneParameters,
@@ -19,14 +30,18 @@ pub struct LaneFinder {
 const PLACES: usize = 4;
 
 impl LaneFinder {
-    /// One that knows nothing yet. Fails with the name of the parameter that is out of range.
+    /// A finder without any knowledge.
+    ///
+    /// # Errors
+    ///
+    /// If a parameter is out of range.
     pub fn new(parameters: LaneParameters) -> Result<Self, ParameterError> {
         parameters.validate()?;
         Ok(Self { parameters, trail: Vec::new(), lane: Lane::unknown(parameters.usual) })
     }
 
-    /// The lane ahead of a car, whose pose is that of the point of it that is to be in the middle; see [`lane`]. The cones of
-    /// the edges are those of the list. `None` without a cone at an edge.
+    /// Finds the lane ahead of a car; see [`lane`]. `car` is the pose of the point that is to stay in the
+    /// middle. The lane's edges refer to indices in `cones`. `None` if no cone is at an edge.
     pub fn step(&mut self, car: Pose, cones: &[Cone]) -> Option<&Lane> {
         let behind: Vec<Pose> =
             self.trail.iter().copied().filter(|pose| car.to_local(pose.position()).x < -0.5).collect();

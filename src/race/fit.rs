@@ -1,10 +1,11 @@
-//! The lane that cones near a way are most likely the edges of.
+//! Maximum-likelihood estimate of the lane among cones.
 //!
-//! Cones of an edge stand near it, others anywhere beyond it, and hardly any in between; where an edge has none for long, that
-//! speaks against it. So each cone says how much more likely it is with a lane than without one. From a rough way, the most likely
-//! lane is found by expectation and maximisation: each cone counts by how likely it is one of an edge, and least squares move the
-//! edges there. At first cones count that are some way off, in the end those alone that are next to an edge. What is expected of any
-//! lane counts as well: that its width is about what it was, and that bends begin slowly.
+//! Cones of an edge stand close to it, others anywhere beyond it, and hardly any in between; an edge without
+//! cones for long is unlikely. Each cone thus has a likelihood ratio with and without a lane. From a rough
+//! path, expectation-maximisation finds the most likely lane: each cone is weighted by the probability that
+//! it belongs to an edge, and least squares move the edges. The first rounds include cones some distance off;
+//! the last ones only those next to an edge. Priors of any lane are included as well: its width is about the
+//! previous one, and its curvature changes slowly.
 
 use nalgebra::SMatrix;
 
@@ -32,53 +33,53 @@ const HEADS: f64 = 0.2;
 /// Steps from place to place at which that is looked at.
 const STRIDE: usize = 4;
 
-/// A lane through cones.
+/// A lane fitted to cones.
 #[derive(Debug, Clone)]
 pub(super) struct LaneFit {
-    /// Its middle as far as there are cones at its edges.
+    /// Its centre line, as far as there are cones at its edges.
     pub(super) middle: Vec<Point>,
-    /// Half its width beside the car.
+    /// Half its width beside the car (m).
     pub(super) half_width: f64,
-    /// The cones of the left and of the right edge, in their order along it.
+    /// Cones of the left and the right edge, in order along it.
     pub(super) edges: [Vec<usize>; 2],
-    /// How much more likely the cones are with it than without any lane: a logarithm.
+    /// Log-likelihood ratio of the cones with the lane and without any lane.
     pub(super) worth: f64,
 }
 
-/// What lanes are fitted to.
+/// Data that lanes are fitted to.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fitter<'f> {
     pub(super) cones: &'f [Cone],
     pub(super) way: &'f Way<'f>,
     pub(super) earlier: &'f [Passage],
-    /// The lane that was found before.
+    /// The previous lane.
     pub(super) before: &'f Lane,
     pub(super) parameters: &'f LaneParameters,
 }
 
-/// A sum of unknowns, each in deviations, and how far it is off what is expected.
+/// A prior: a linear combination of unknowns, in standard deviations, and its residual.
 #[derive(Debug, Clone, Copy)]
 struct Expectation {
     sum: [(usize, f64); 2],
     off: f64,
-    /// Whether what is far off is hardly more likely than what is farther off, as by Student; else as by Gauss.
+    /// Whether the residual has a heavy-tailed (Student) rather than a Gaussian distribution.
     heavy: bool,
 }
 
 impl Expectation {
-    /// How unlikely it is: the logarithm of how much more likely it is to be as expected.
+    /// Negative log-likelihood.
     fn cost(&self) -> f64 {
         let squared = self.off * self.off;
         if self.heavy { math::ln(1.0 + squared) } else { 0.5 * squared }
     }
 
-    /// What it weighs among squares.
+    /// Weight in least squares.
     fn weight(&self) -> f64 {
         if self.heavy { 2.0 / (1.0 + self.off * self.off) } else { 1.0 }
     }
 }
 
-/// A cone of an edge: metres along it from the car, and what it is worth.
+/// A cone of an edge: its position along it from the car (m), and its log-likelihood ratio.
 #[derive(Debug, Clone, Copy)]
 struct EdgeCone {
     cone: usize,
@@ -87,7 +88,8 @@ struct EdgeCone {
 }
 
 impl Fitter<'_> {
-    /// The most likely lane near some stations, of which one is beside the car. `None` without a way.
+    /// The most likely lane near some stations, with the index of the one beside the car; `None` without a
+    /// path.
     pub(super) fn fit(&self, stations: &[Pose], car: usize) -> Option<LaneFit> {
         let mut curve = Curve::along(stations, car, self.before.half_width)?;
         for round in ROUNDS {
@@ -96,26 +98,26 @@ impl Fitter<'_> {
         Some(self.told(&curve))
     }
 
-    /// Metres from the middle within which cones say something.
+    /// Distance from the centre line within which cones are relevant (m).
     fn reach(&self) -> f64 {
         self.parameters.half_width[1] + self.parameters.loose + 2.0
     }
 
-    /// The odds that a cone beside a curve is one of its left and of its right edge.
+    /// Odds that a cone beside a curve belongs to its left and to its right edge.
     fn odds(&self, curve: &Curve, beside: &Beside, round: f64) -> [f64; 2] {
         let half_width = curve.half_width(beside.step);
         let known = self.cones[beside.cone].colour.side();
         let scale = OFF * self.parameters.loose * round;
         [1, -1].map(|side: i8| {
             let far = (f64::from(side) * beside.left - half_width) / scale;
-            // Student's distribution of three degrees of freedom: some cones stand farther off.
+            // Student's t-distribution with three degrees of freedom: some cones are farther off.
             let tail = 1.0 + far * far / 3.0;
             let mistaken = if known * side < 0 { math::exp(-UNUSUAL) } else { 1.0 };
             mistaken * math::exp(UNUSUAL) / (round * tail * tail)
         })
     }
 
-    /// Moves a curve to where it is most likely, as far as can be told from where it is: a step of Gauss and Newton.
+    /// A Gauss-Newton step of a curve towards the most likely one.
     fn improve(&self, curve: &mut Curve, round: f64) {
         let (mut information, mut slope) = self.expected(curve, round);
         let scale = OFF * self.parameters.loose * round;
@@ -140,7 +142,7 @@ impl Fitter<'_> {
         curve.set(unknowns);
     }
 
-    /// What is expected of any lane, as information on the unknowns, and the slope of how unlikely a curve is by it.
+    /// Information matrix and gradient of the priors.
     fn expected(&self, curve: &Curve, round: f64) -> (Information, Unknowns) {
         let (mut information, mut slope) = (Information::zeros(), Unknowns::zeros());
         for expectation in self.expectations(curve, round) {
@@ -178,7 +180,7 @@ impl Fitter<'_> {
         begin.into_iter().chain(bends).chain(changes)
     }
 
-    /// What a curve is worth, and which cones are at its edges.
+    /// Likelihood of a curve, and the cones at its edges.
     fn told(&self, curve: &Curve) -> LaneFit {
         let mut edges: [Vec<EdgeCone>; 2] = [Vec::new(), Vec::new()];
         let mut worth = 0.0;
@@ -208,7 +210,7 @@ impl Fitter<'_> {
         }
     }
 
-    /// What it costs that something stands in the lane.
+    /// Cost of a cone inside the lane.
     fn inside(&self, curve: &Curve, beside: &Beside) -> f64 {
         // It costs all of that as far within as a cone may be loose, and nothing up to half of it.
         let grows = 0.5 * self.parameters.loose;
@@ -218,7 +220,8 @@ impl Fitter<'_> {
         UNUSUAL * (within.clamp(0.0, 1.0) + touched.clamp(0.0, 1.0))
     }
 
-    /// What it costs that an edge ahead of the car has no cones for long. What it had none for behind is so whatever lies ahead.
+    /// Cost of long stretches without cones on an edge ahead of the car. Gaps behind the car are subtracted,
+    /// because they exist whatever lies ahead.
     fn holes(&self, curve: &Curve, edge: &[EdgeCone]) -> f64 {
         let usual = 0.5 * self.parameters.spacing;
         let hole = |metres: f64| UNUSUAL * (1.0 - math::exp(-(metres / usual - 1.0).max(0.0)));
@@ -234,20 +237,20 @@ impl Fitter<'_> {
         cost
     }
 
-    /// Metres along a curve within which all cones are known.
+    /// Distance along a curve within which all cones are known (m).
     fn known(&self, curve: &Curve) -> f64 {
         let (car, most) = (self.way.car.position(), self.parameters.ahead);
         let is_far = |step: &usize| (curve.places[*step] - car).norm() > most;
         curve.past_car((curve.car..STEPS).find(is_far).unwrap_or(STEPS))
     }
 
-    /// What it costs that what is no cone stands in the lane.
+    /// Cost of obstacles inside the lane that are not cones.
     fn obstacles(&self, curve: &Curve) -> f64 {
         let others: Vec<Cone> = self.way.others.iter().map(|place| Cone::unknown(*place)).collect();
         curve.beside(&others, self.reach()).iter().map(|beside| self.inside(curve, beside)).sum()
     }
 
-    /// What it costs that a curve leads back by where the car came from.
+    /// Cost of a curve that leads back to where the car came from.
     fn back(&self, curve: &Curve) -> f64 {
         let leads = |step: &usize| {
             let passage = Passage { place: curve.places[*step], ahead: curve.ahead[*step] };
@@ -256,7 +259,7 @@ impl Fitter<'_> {
         UNUSUAL * (curve.car..=STEPS).step_by(STRIDE).filter(leads).count() as f64
     }
 
-    /// What it costs that a curve passes between cones that are known to be of one edge.
+    /// Cost of a curve that passes between cones known to belong to one edge.
     fn through(&self, curve: &Curve) -> f64 {
         let usual = 0.5 * self.parameters.spacing;
         let places: Vec<Point> = curve.places[curve.car..].iter().step_by(STRIDE).copied().collect();
@@ -272,7 +275,7 @@ impl Fitter<'_> {
         UNUSUAL * crossed as f64
     }
 
-    /// What it costs to be another lane than before.
+    /// Cost of differing from the previous lane.
     fn changed(&self, curve: &Curve) -> f64 {
         let ahead = curve.places[curve.car..].iter().step_by(STRIDE);
         let count = ahead.len() as f64;
@@ -294,14 +297,14 @@ mod tests {
     use crate::geometry::direction;
     use proptest::prelude::*;
 
-    /// The pose on a bend that begins at the car, so many metres from it along the lane.
+    /// Pose on a bend that begins at the car, at a distance along the lane.
     fn on_bend(curvature: f64, along: f64) -> Pose {
         let turn = curvature * along.max(0.0);
         let way = direction(0.5 * turn) * along;
         Pose::new(way.x, way.y, turn)
     }
 
-    /// Cones at both edges of a lane 3.6 m wide, the right one first.
+    /// Cones at both edges of a lane 3.6 m wide, right edge first.
     fn edges(curvature: f64) -> Vec<Cone> {
         let edge = |side: f64| {
             (-2..6).map(move |k| on_bend(curvature, 3.0 * f64::from(k)).to_world(Point::new(0.0, 1.8 * side)))
@@ -319,7 +322,7 @@ mod tests {
         fitter.fit(&stations, behind.len()).unwrap()
     }
 
-    /// A way along a bend, so much more aside for each metre.
+    /// A path along a bend, with a lateral error per metre.
     fn rough(curvature: f64, aside: f64) -> Vec<Pose> {
         (1..=17)
             .map(|k| on_bend(curvature, f64::from(k)).compose(&Pose::new(0.0, aside * f64::from(k), 0.0)))
@@ -350,7 +353,8 @@ mod tests {
             cones.remove(missing);
             let right = fitted(&cones, &rough(curvature, 0.0));
             let wrong = fitted(&cones, &rough(curvature, 0.2));
-            // Both may end in the same lane, but for what a few rounds leave: much less than the 3.3 that a cone is worth.
+            // Both may end in the same lane, except for convergence error: much less than the 3.3 that a cone
+            // is worth.
             prop_assert!(right.worth > wrong.worth - 1.0, "{} {}", right.worth, wrong.worth);
             prop_assert!(right.worth > 20.0);
         }

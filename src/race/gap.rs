@@ -6,36 +6,40 @@ use crate::io::control::{Behaviour, Command, Decision, Halt, Senses};
 use crate::io::{Lidar, LidarScan, Motors, Result, Servos};
 use crate::parameter::require;
 
-/// The book's cone track driver (section 14.5): it steers for the middle between the two cones nearest to the middle of the
-/// scan, left and right of it.
+/// The book's driver for cone tracks (section 14.5): it steers for the midpoint of the two cones nearest to
+/// the middle of the scan, one on each side.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GapDriver {
-    /// The share of the motor's full speed that it drives at.
+    /// Motor speed (fraction of full speed).
     speed: f64,
-    /// Beyond this range nothing is a cone, in metres.
+    /// Range beyond which nothing counts as a cone (m).
     farthest: f64,
-    /// Beams at each end of the scan that are not looked at, as a share of all.
+    /// Fraction of the beams ignored at each end of the scan.
     edge: f64,
-    /// The beam in the middle of the last gap, counted from the left.
+    /// Beam in the middle of the last gap, counted from the left.
     middle: Option<usize>,
 }
 
 impl Default for GapDriver {
-    /// The book's 9 m and 20 of 180 beams, at a tenth of the full speed.
+    /// The book's values: 9 m, 20 of 180 beams, a tenth of full speed.
     fn default() -> Self {
         Self { speed: 0.1, farthest: 9.0, edge: 20.0 / 180.0, middle: None }
     }
 }
 
 impl GapDriver {
-    /// The book's driver at a share of the full speed, 1 at most.
+    /// The book's driver at a fraction of full speed.
+    ///
+    /// # Errors
+    ///
+    /// If `speed` is not between 0 (exclusive) and 1.
     pub fn with_speed(speed: f64) -> std::result::Result<Self, ParameterError> {
         require("speed", speed, speed > 0.0 && speed <= 1.0, "more than 0 and at most 1")?;
         Ok(Self { speed, ..Self::default() })
     }
 
-    /// The position of the steering servo, -1 for full left to 1 for full right, from a scan of 180 degrees. `None` without a
-    /// cone on each side: the steering stays.
+    /// Position of the steering servo, -1 (full left) to 1 (full right), for a scan of 180 degrees. `None`
+    /// without a cone on each side: the steering stays.
     ///
     /// ```
     /// use roverlab::race::GapDriver;
@@ -58,18 +62,18 @@ impl GapDriver {
         let right = (middle + 1..n.saturating_sub(edge)).find(near)?;
         let middle = usize::midpoint(left, right);
         self.middle = Some(middle);
-        // A servo goes by 128 steps to each side, and moves by one for each of 180 beams.
+        // The servo has 128 steps on each side, and moves by one step per beam of 180.
         let turned = units::to_deg(scan.angle_increment) * (middle as f64 - 0.5 * n as f64);
         Some((turned / 128.0).clamp(-1.0, 1.0))
     }
 }
 
-/// What a [`GapDriver`] tells motor 1 and servo 1.
+/// Command of a [`GapDriver`] for motor 1 and servo 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GapCommand {
-    /// A share of the motor's full speed.
+    /// Motor speed (fraction of full speed).
     pub motor: f64,
-    /// The position of the steering servo, if it is to change.
+    /// Position of the steering servo, if it changes.
     pub servo: Option<f64>,
 }
 
@@ -91,7 +95,7 @@ impl Behaviour for GapDriver {
     type Command = GapCommand;
     type Outcome = Halt;
 
-    /// Ten decisions a second.
+    /// Ten decisions per second.
     fn period(&self) -> f64 {
         0.1
     }
@@ -134,7 +138,7 @@ mod tests {
         assert!(driver.step(&scan(&[100, 130])).is_none(), "the gap lies beside the middle");
         let mut driver = GapDriver::default();
         assert!((driver.step(&scan(&[86, 120])).unwrap() - 13.0 / 128.0).abs() < 1e-9);
-        // The middle is that of the last gap now, so the same cones stay left and right.
+        // The middle is now that of the last gap, so the same cones stay left and right.
         assert!(driver.step(&scan(&[95, 125])).unwrap() > 0.0);
     }
 

@@ -13,20 +13,21 @@ use crate::random::Stream;
 #[cfg(test)]
 mod tests;
 
-/// What a generated track looks like. The defaults are within the rules of Formula Student: laps of 200 to 500 m, at least
-/// 3 m wide, straights of at most 80 m, hairpins of at least 9 m outside diameter, at most 5 m from cone to cone.
+/// Options of generated tracks. The defaults follow the rules of Formula Student: laps of 200 to 500 m, at
+/// least 3 m wide, straights of at most 80 m, hairpins with an outside diameter of at least 9 m, cones at
+/// most 5 m apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrackOptions {
-    /// Metres of a lap along the middle, from least to most.
+    /// Minimum and maximum lap length along the centre line (m).
     pub length: [f64; 2],
-    /// Metres from edge to edge, from least to most.
+    /// Minimum and maximum track width (m).
     pub width: [f64; 2],
-    /// Metres from cone to cone along an edge: in the tightest bends, and on the straight. Cones stand a few centimetres beside
-    /// their places.
+    /// Distance between the cones of an edge: in the tightest bends, and on straights (m). Cones deviate from
+    /// their places by a few centimetres.
     pub spacing: [f64; 2],
-    /// Tight turns that are tried to be built in, at most 20.
+    /// Number of hairpins to attempt, at most 20.
     pub hairpins: usize,
-    /// The least radius of the middle in metres.
+    /// Minimum radius of the centre line (m).
     pub radius: f64,
 }
 
@@ -37,7 +38,7 @@ impl Default for TrackOptions {
 }
 
 impl TrackOptions {
-    /// Options drawn from a seed: all that the rules allow.
+    /// Random options within the rules.
     pub fn drawn(seed: u64) -> Self {
         let mut random = Stream::new(seed).child("track options", 0);
         let narrow = random.between(3.0, 3.8);
@@ -51,7 +52,11 @@ impl TrackOptions {
         }
     }
 
-    /// Fails with the name of the option that is out of range.
+    /// Checks the options.
+    ///
+    /// # Errors
+    ///
+    /// If one is out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         let range = |name, [low, high]: [f64; 2], least: f64, most: f64, expected: &'static str| {
             let wrong = if (least..=most).contains(&low) { high } else { low };
@@ -74,21 +79,19 @@ impl TrackOptions {
 /// Tight turns that are tried at most: more than there are corners to bend in.
 const MOST_HAIRPINS: usize = 20;
 
-/// A track of cones, and the corridor that they stand around.
+/// A track of cones, with its corridor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GeneratedTrack {
-    /// The cones and the start.
+    /// Cones and start.
     pub track: ConeTrack,
-    /// The middle, about every metre, with the widths; it begins at the start line.
+    /// Centre line with widths, about one station per metre; it begins at the start line.
     pub corridor: Corridor,
 }
 
 /// Metres between the edges of two parts of a track that pass each other.
 const APART: f64 = 2.5;
 
-/// A closed track of cones. The same seed and options give the same track, to the bit.
-///
-/// Fails where the options contradict each other, so that no track is found.
+/// Generates a closed track of cones. The same seed and options give the same track, to the bit.
 ///
 /// ```
 /// use roverlab::race::{TrackOptions, generate};
@@ -96,11 +99,15 @@ const APART: f64 = 2.5;
 /// assert!((200.0..500.0).contains(&generated.corridor.length()));
 /// # Ok::<(), roverlab::race::LineError>(())
 /// ```
+///
+/// # Errors
+///
+/// If an option is out of range, or the options contradict each other.
 pub fn generate(seed: u64, options: &TrackOptions) -> Result<GeneratedTrack, LineError> {
     options.validate()?;
     for attempt in 0..400 {
         let mut random = Stream::new(seed).child("track", attempt);
-        // What does not work out is tried with fewer hairpins.
+        // After failures, try with fewer hairpins.
         let hairpins = options.hairpins.saturating_sub(attempt as usize / 12);
         if let Some(track) = attempt_track(&mut random, options, hairpins) {
             return Ok(track);
@@ -109,11 +116,9 @@ pub fn generate(seed: u64, options: &TrackOptions) -> Result<GeneratedTrack, Lin
     Err(ParameterError::new("radius", options.radius, "options that a track can meet").into())
 }
 
-/// Puts cones along both edges of a closed corridor, at most so many metres apart; none where one part of the course crosses
-/// another. The corridor of the result has stations about every metre.
-///
-/// Fails for a corridor with two ends, for one shorter than 30 m or longer than 50 km, and for a spacing that is not of 0.5 to
-/// 20 m. Takes O(n²) for n metres.
+/// Places cones along both edges of a closed corridor, at most `spacing` metres apart, and none where one
+/// part of the course crosses another. The resulting corridor has about one station per metre. O(n²) for n
+/// metres.
 ///
 /// ```
 /// use roverlab::race::{Corridor, lined};
@@ -127,6 +132,10 @@ pub fn generate(seed: u64, options: &TrackOptions) -> Result<GeneratedTrack, Lin
 /// assert!(error.ends_with("expected a closed corridor of 30 to 50000 m"), "{error}");
 /// # Ok::<(), roverlab::race::LineError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the corridor is open, shorter than 30 m or longer than 50 km, or the spacing is not 0.5 to 20 m.
 pub fn lined(corridor: &Corridor, spacing: f64) -> Result<GeneratedTrack, LineError> {
     let length = corridor.length();
     if !(corridor.is_closed() && (SHORTEST..=LONGEST).contains(&length)) {
@@ -151,7 +160,7 @@ pub(super) const LONGEST: f64 = 50_000.0;
 /// Metres within an edge at which a place is on the track for certain.
 const WITHIN: f64 = 0.5;
 
-/// Whether a place is between the edges anywhere, as those of one part of a course that crosses itself are for the other.
+/// Whether a point lies between the edges anywhere, as the edges of a self-crossing course do.
 fn is_on_track(place: Point, corridor: &Corridor) -> bool {
     corridor.stations().iter().any(|station| {
         let away = place - station.position;
@@ -184,7 +193,7 @@ fn attempt_track(random: &mut Stream, options: &TrackOptions, hairpins: usize) -
     Some(GeneratedTrack { track, corridor })
 }
 
-/// Corners of a rough shape around the origin; a hairpin is a narrow bay in it.
+/// Corners of a rough shape around the origin; a hairpin is a narrow bay.
 fn outline(random: &mut Stream, hairpins: usize) -> Vec<Point> {
     let count = 7 + random.below(5);
     let bays: Vec<usize> = (0..hairpins).map(|_| random.below(count)).collect();
@@ -208,7 +217,7 @@ fn outline(random: &mut Stream, hairpins: usize) -> Vec<Point> {
     corners
 }
 
-/// Rounds what bends more tightly than a radius.
+/// Rounds bends that are tighter than a radius.
 fn relax(points: &mut [Point], radius: f64) {
     let n = points.len();
     let most = 0.93 / radius;
@@ -229,7 +238,7 @@ fn relax(points: &mut [Point], radius: f64) {
     }
 }
 
-/// Where the start line lies: in the middle of the straightest piece.
+/// Index of the start line: the middle of the straightest part.
 fn straightest(points: &[Point]) -> usize {
     let n = points.len();
     let bends: Vec<f64> =
@@ -238,7 +247,7 @@ fn straightest(points: &[Point]) -> usize {
     (0..n).min_by(|&a, &b| sum(a).total_cmp(&sum(b))).unwrap_or(0)
 }
 
-/// Widths that change slowly, and none so wide that an inner edge would fold.
+/// Slowly varying widths, limited so that inner edges do not fold.
 fn widths(random: &mut Stream, points: &[Point], options: &TrackOptions) -> Vec<f64> {
     let n = points.len();
     let [low, high] = options.width;
@@ -262,7 +271,7 @@ fn is_legal(points: &[Point], options: &TrackOptions) -> bool {
     if (0..n).any(|i| bend(i).abs() > 1.0 / options.radius) {
         return false;
     }
-    // A straight is what turns by less than a degree in 2 m.
+    // A straight turns by less than a degree in 2 m.
     let mut straight = 0;
     for i in 0..2 * n {
         straight = if bend(i % n).abs() < 0.008 { straight + 1 } else { 0 };
@@ -271,7 +280,7 @@ fn is_legal(points: &[Point], options: &TrackOptions) -> bool {
         }
     }
     let apart = options.width[1] + APART;
-    // Points nearer along the track than the arc of a hairpin may be near each other.
+    // Points closer along the track than the arc of a hairpin may be close to each other.
     let along = (2.0 * apart + 4.0) as usize;
     for i in 0..n {
         for j in i + 1..n {
@@ -284,7 +293,7 @@ fn is_legal(points: &[Point], options: &TrackOptions) -> bool {
     turns_once(points)
 }
 
-/// Whether the loop does not cross itself: its headings turn by one full turn.
+/// Whether the loop does not cross itself: its heading turns by exactly one full turn.
 fn turns_once(points: &[Point]) -> bool {
     let n = points.len();
     let leg = |i: usize| points[(i + 1) % n] - points[i % n];
@@ -326,10 +335,10 @@ const FIRST: f64 = 3.0;
 /// Metres from the last small cone before the line to it, at least.
 const LAST: f64 = 2.0;
 
-/// A closed edge along which cones are put.
+/// A closed edge along which cones are placed.
 struct Edge {
     points: Vec<Point>,
-    /// Metres around.
+    /// Length (m).
     total: f64,
 }
 
@@ -344,12 +353,12 @@ impl Edge {
         self.points[i % self.points.len()]
     }
 
-    /// The direction at the line.
+    /// Direction at the start line.
     fn along(&self) -> Vector {
         (self.tip(1) - self.tip(0)).normalize()
     }
 
-    /// Where small cones stand, and metres from the line to there: in bends nearer to each other.
+    /// Positions of the small cones, with their distances from the line (m); closer together in bends.
     fn places(&self, random: &mut Stream, [tight, wide]: [f64; 2]) -> Vec<(f64, Point)> {
         let n = self.points.len();
         let mut found = Vec::new();
@@ -370,7 +379,7 @@ impl Edge {
         found
     }
 
-    /// Where cones stand between the last one of some and the large one before the line, if these are too far from each other.
+    /// Additional cones between the last one and the large cone before the line, if these are too far apart.
     fn closing(&self, places: &[(f64, Point)], gate: [Point; 2], most: f64) -> Vec<Point> {
         let (from, last) = places.last().copied().unwrap_or((GATE, gate[1]));
         let parts = ((gate[0] - last).norm() / most).ceil().max(1.0);
@@ -378,7 +387,7 @@ impl Edge {
         (1..parts as usize).map(|k| self.at(from + gap * k as f64)).collect()
     }
 
-    /// The place so many metres behind the line.
+    /// The point at a distance behind the line.
     fn at(&self, way: f64) -> Point {
         let mut passed = 0.0;
         for i in 0..self.points.len() {

@@ -2,19 +2,19 @@ use super::tyres::Tyres;
 use crate::ParameterError;
 use crate::parameter::{require, require_positive};
 
-/// What the tyres of a car give at most.
+/// Grip limit of a car's tyres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum GripLimit {
-    /// A friction ellipse, whatever the car.
+    /// A friction ellipse, independent of the car.
     Ellipse {
-        /// The greatest acceleration across, straight on, in m/s².
+        /// Maximum lateral acceleration on a straight (m/s²).
         across: f64,
-        /// The share of it that is lost for a curvature of 1/m: wheels that are turned push backwards as well.
+        /// Fraction of it lost per 1/m of curvature: turned wheels also push backwards.
         turned: f64,
-        /// The greatest acceleration along the way, in m/s².
+        /// Maximum longitudinal acceleration (m/s²).
         along: f64,
     },
-    /// That of the bicycle model in balance.
+    /// The bicycle model in steady state.
     Balance(Tyres),
 }
 
@@ -30,11 +30,12 @@ impl GripLimit {
         }
     }
 
-    /// The greatest acceleration across at a curvature, in m/s², at which a car with such motors keeps its speed.
+    /// Maximum lateral acceleration at a curvature (m/s²) at which a car with motors of acceleration `drive`
+    /// keeps its speed.
     pub fn across(&self, curvature: f64, drive: f64) -> f64 {
         let curvature = curvature.abs();
         match *self {
-            // Never less than a fifth: so tightly no car turns.
+            // At least a fifth: no car turns more tightly.
             Self::Ellipse { across, turned, .. } => across * (1.0 - turned * curvature).max(0.2),
             Self::Balance(tyres) => {
                 let keeps = |across| {
@@ -46,13 +47,14 @@ impl GripLimit {
                     let middle = 0.5 * (least + most);
                     if keeps(middle) { least = middle } else { most = middle }
                 }
-                // Where the wheels do not turn far enough, a car crawls at best.
+                // Where the wheels do not turn far enough, the car only crawls.
                 least.max(CRAWLS * tyres.grip)
             }
         }
     }
 
-    /// The greatest acceleration along the way, in m/s², at a curvature and an acceleration across, by motors that give so much.
+    /// Maximum longitudinal acceleration (m/s²) at a curvature and a lateral acceleration, limited by the
+    /// motors.
     pub fn forwards(&self, curvature: f64, across: f64, drive: f64) -> f64 {
         match self {
             Self::Ellipse { .. } => self.left_along(curvature, across).min(drive),
@@ -62,7 +64,7 @@ impl GripLimit {
         }
     }
 
-    /// The greatest deceleration, by brakes that give so much.
+    /// Maximum deceleration (m/s²), limited by the brakes.
     pub fn backwards(&self, curvature: f64, across: f64, brake: f64) -> f64 {
         match self {
             Self::Ellipse { .. } => self.left_along(curvature, across).min(brake),

@@ -1,4 +1,4 @@
-//! A cone of a map, and what was seen of it.
+//! A cone of a map, with its observations.
 
 use super::cone::ConeColour;
 use super::sight::ConeSighting;
@@ -21,20 +21,20 @@ pub(super) struct Landmark {
     pub(super) position: Point,
     pub(super) seen: u32,
     pub(super) missed: u32,
-    /// Times that it was seen blue, yellow and orange.
+    /// Number of detections in blue, yellow and orange.
     colours: [u16; 3],
-    /// Times that a camera showed no colour there.
+    /// Number of times that a camera showed no colour there.
     pale: u16,
-    /// Times that it was taken for one of the left edge, less those for the right one.
+    /// Votes for the left edge minus votes for the right edge.
     side: i16,
-    /// Metres that the car had gone when it was seen first, last, and in the mean.
+    /// Distance driven at the first, last and mean detection (m).
     pub(super) first: f64,
     pub(super) last: f64,
     pub(super) mean: f64,
 }
 
 impl Landmark {
-    /// The colour that it was seen in most often, or else that of the edge for which it was taken, once that is more than chance.
+    /// Its most frequent colour, or else that of its edge, if the votes are conclusive.
     pub(super) fn colour(&self) -> ConeColour {
         match self.painted() {
             ConeColour::Unknown if self.side >= SURE => ConeColour::Blue,
@@ -57,7 +57,7 @@ impl Landmark {
         }
     }
 
-    /// Whether a camera shows that it has no cone's colour.
+    /// Whether a camera shows that it is not a coloured cone.
     pub(super) fn is_pale(&self) -> bool {
         self.painted() == ConeColour::Unknown
             && self.pale >= PALE
@@ -74,14 +74,14 @@ impl Landmark {
                 return;
             }
         };
-        // Halved before it overflows, so that late votes count as well.
+        // Halve before overflow, so that late votes count as well.
         if self.colours[index] >= MOST_COLOURS {
             self.colours = self.colours.map(|count| count / 2);
         }
         self.colours[index] += 1;
     }
 
-    /// A cone that is seen for the first time.
+    /// A newly detected cone.
     pub(super) fn new(position: Point, sighting: &ConeSighting, way: f64) -> Self {
         let mut new = Self {
             position,
@@ -98,7 +98,7 @@ impl Landmark {
         new
     }
 
-    /// Takes in that it was seen again.
+    /// Records a further detection.
     pub(super) fn see(&mut self, place: Point, sighting: &ConeSighting, way: f64) {
         self.seen = (self.seen + 1).min(MEMORY);
         self.missed = 0;
@@ -109,7 +109,7 @@ impl Landmark {
         self.last = way;
     }
 
-    /// Takes in what was held to be another cone.
+    /// Merges an entry that was taken for another cone.
     pub(super) fn join(&mut self, other: &Self) {
         let share = f64::from(other.seen) / f64::from(self.seen + other.seen);
         self.position += (other.position - self.position) * share;
@@ -123,7 +123,7 @@ impl Landmark {
         self.last = self.last.max(other.last);
     }
 
-    /// Takes in that it was taken for a cone of an edge: 1 for the left one, -1 for the right one.
+    /// Votes for an edge: 1 for the left one, -1 for the right one.
     pub(super) fn vote_side(&mut self, side: i16) {
         self.side = (self.side + side).clamp(-MOST_VOTES, MOST_VOTES);
     }

@@ -1,5 +1,5 @@
-//! The lane ahead of a car that knows only some of its cones: where one side is missing, where gaps are wide, and where others
-//! stand about.
+//! The lane ahead of a car that knows only some of its cones: one side may be missing, gaps may be wide, and
+//! false cones may stand around.
 
 use super::cone::Cone;
 use super::fit::Fitter;
@@ -11,17 +11,18 @@ use crate::geometry::{Point, Pose, Vector};
 #[cfg(test)]
 mod tests;
 
-/// The lane that the cones are most likely the edges of, some of which may be missing and some false: a curve with edges at half its
-/// width to both sides, whose bends begin slowly, and which keeps clear of all cones. Colours count, if they are known.
+/// Finds the most likely lane among cones, some of which may be missing or false. A lane is a curve with
+/// edges at half its width on both sides, whose curvature changes slowly, and which keeps clear of all cones.
+/// Known colours are used.
 ///
-/// The cones are read as rows first, in up to four ways; beside each row, along the lane found before, and straight on, the lane is
-/// found that fits the cones there best, by least squares in which cones count by how likely they are at an edge; the most likely one
-/// of these is told.
+/// First, the cones are read as rows, in up to four ways. Then a lane is fitted beside each row, along the
+/// previous lane and straight on, by least squares with cones weighted by the probability that they belong to
+/// an edge. The most likely result is returned.
 ///
-/// `behind` is where the car was, oldest first, `car` where it is, at the point of it that is to be in the middle, and `before` the
-/// lane as it was found before. What is found begins up to [`LaneParameters::spacing`] behind the car, where `behind` does, and ends
-/// just beyond the last cone of its edges. `None` without a cone at an edge, and with parameters out of their ranges. Takes O(n²) for
-/// n cones.
+/// `behind` are previous poses, oldest first; `car` is the pose of the point that is to stay in the middle;
+/// `before` is the previous lane. The lane begins up to [`LaneParameters::spacing`] behind the car, where
+/// `behind` does, and ends just beyond the last cone of its edges. `None` without a cone at an edge, or if a
+/// parameter is out of range. O(n²) for n cones.
 ///
 /// ```
 /// use roverlab::race::{Cone, Lane, LaneParameters, lane};
@@ -43,7 +44,7 @@ pub fn lane(
     lane_where(cones, &Way { behind, car, earlier: &[], others: &[] }, before, parameters)
 }
 
-/// The same for a car of which it is known where else it has been.
+/// The same for a car whose earlier path is known.
 pub(super) fn lane_where(
     cones: &[Cone],
     way: &Way,
@@ -65,9 +66,9 @@ pub(super) fn lane_where(
     Some(found)
 }
 
-/// The same between cones that are all near.
+/// The same among nearby cones only.
 fn lane_between(cones: &[Cone], way: &Way, before: &Lane, parameters: &LaneParameters) -> Option<Lane> {
-    // What is far behind says nothing of the lane here, and a curve from there would bend too slowly.
+    // Poses far behind do not constrain the lane here, and a curve from there would bend too slowly.
     let is_far = |pose: &Pose| (pose.position() - way.car.position()).norm() > parameters.spacing;
     let first = way.behind.iter().rposition(is_far).map_or(0, |far| far + 1);
     let stations: Vec<Pose> = way.behind[first..].iter().copied().chain([way.car]).collect();
@@ -85,7 +86,7 @@ fn lane_between(cones: &[Cone], way: &Way, before: &Lane, parameters: &LaneParam
     found.edges.iter().any(|edge| !edge.is_empty()).then_some(found)
 }
 
-/// Ways ahead near which the lane may lie: beside the rows of each reading, along the lane found before, and straight on.
+/// Candidate paths ahead: beside the rows of each reading, along the previous lane, and straight on.
 fn ways(
     cones: &[Cone],
     stations: &[Pose],
@@ -109,7 +110,7 @@ fn ways(
     distinct(ways)
 }
 
-/// Points at even steps of about a metre along a chain, smoothed.
+/// Points at equal steps of about a metre along a chain, smoothed.
 fn even(chain: &[Point]) -> Vec<Point> {
     let mut points: Vec<Point> = Vec::new();
     let mut left = 0.0;
@@ -126,7 +127,8 @@ fn even(chain: &[Point]) -> Vec<Point> {
     points
 }
 
-/// Moves points towards the middle of their neighbours, and then as much outwards again, as bends would shrink.
+/// Moves points towards the midpoints of their neighbours, and then outwards by as much, to preserve the size
+/// of bends.
 fn smooth(points: &mut [Point]) {
     for share in [0.5, -0.52] {
         let old = points.to_vec();
@@ -139,7 +141,7 @@ fn smooth(points: &mut [Point]) {
 /// Rounds in which points are moved away from cones.
 const PUSHES: usize = 8;
 
-/// Moves points away from cones, or other places, that are nearer than some metres, where those of the other edge let them.
+/// Moves points away from obstacles closer than `room`, as far as those on the other side permit.
 fn keep_clear(points: &mut [Point], places: &[Point], room: f64) {
     for _ in 0..PUSHES {
         for point in points.iter_mut() {

@@ -2,24 +2,24 @@ use crate::ParameterError;
 use crate::geometry::{Point, Pose};
 use crate::parameter::{require, require_up_to};
 
-/// What a lane is looked for with. All numbers are greater than 0, and at most 1000.
+/// Parameters of the lane search, all positive and at most 1000.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LaneParameters {
-    /// Metres ahead of the car.
+    /// Look-ahead distance (m).
     pub ahead: f64,
-    /// The greatest curvature, in 1/m.
+    /// Maximum curvature (1/m).
     pub curvature: f64,
-    /// Metres to a cone at which a car would touch it.
+    /// Distance to a cone at which the car touches it (m).
     pub clearance: f64,
-    /// Metres from the middle to an edge, from least to most.
+    /// Minimum and maximum distance from the centre line to an edge (m).
     pub half_width: [f64; 2],
-    /// The same before cones say more.
+    /// Initial estimate of that distance (m).
     pub usual: f64,
-    /// Metres by which a cone of an edge may stand off it.
+    /// Maximum distance of a cone from its edge (m).
     pub loose: f64,
-    /// Metres from cone to cone of an edge at most, where one or two are missing.
+    /// Maximum distance between cones of an edge, with one or two missing (m).
     pub spacing: f64,
-    /// Radians by which an edge turns at most at one cone.
+    /// Maximum turn of an edge at one cone (rad).
     pub sharpest: f64,
 }
 
@@ -42,7 +42,11 @@ impl Default for LaneParameters {
 pub(super) const FARTHEST: f64 = 1000.0;
 
 impl LaneParameters {
-    /// Fails with the name of the parameter that is out of range.
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    ///
+    /// If one is out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         let [least, most] = self.half_width;
         for (name, value) in [
@@ -62,37 +66,36 @@ impl LaneParameters {
     }
 }
 
-/// The middle of a lane.
+/// A lane.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lane {
-    /// Points along it, about a metre apart.
+    /// Points of its centre line, about one metre apart.
     pub points: Vec<Point>,
-    /// The cones of its left and of its right edge, by their indices, in their order along it.
+    /// Indices of the cones of its left and its right edge, in order.
     pub edges: [Vec<usize>; 2],
-    /// Metres from the middle to an edge, as its cones say.
+    /// Distance from the centre line to an edge, estimated from its cones (m).
     pub half_width: f64,
 }
 
-/// Where a car was, is, and has been earlier.
+/// Present and previous poses of a car.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Way<'w> {
-    /// Where it was just now, oldest first.
+    /// Recent poses, oldest first.
     pub(super) behind: &'w [Pose],
     pub(super) car: Pose,
-    /// The way by which it came: it does not lead back there. Where a circuit crosses itself, it goes
-    /// straight on.
+    /// Earlier path: the lane does not lead back there. Where a circuit crosses itself, it goes straight on.
     pub(super) earlier: &'w [Pose],
-    /// What is no cone and not to be touched.
+    /// Obstacles that are not cones.
     pub(super) others: &'w [Point],
 }
 
 impl Lane {
-    /// A lane of which nothing is known but half its width.
+    /// A lane of which only the width is known.
     pub(super) fn unknown(half_width: f64) -> Self {
         Self { points: Vec::new(), edges: [Vec::new(), Vec::new()], half_width }
     }
 
-    /// How far a place is from the lane, 0 to 1; 0 beyond its end.
+    /// Distance of a point from the lane, clipped to 0..1; 0 beyond its end.
     pub(super) fn away(&self, place: Point) -> f64 {
         let mut nearest = (0, f64::INFINITY);
         for (i, point) in self.points.iter().enumerate() {

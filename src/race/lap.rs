@@ -1,4 +1,4 @@
-//! The corridor of a lap that was driven without one.
+//! The corridor of a driven lap.
 
 use super::corridor::Corridor;
 use super::error::LineError;
@@ -9,7 +9,7 @@ use crate::geometry::{Point, Pose, math};
 /// Stations of a lap to both sides within which the width of a track is about the same.
 const ALIKE: usize = 10;
 
-/// The corridor around a lap that was driven in the middle, between the cones beside it.
+/// The corridor around a lap driven along the centre line, between the cones beside it.
 pub(super) fn around_lap(cones: &[Point], lap: &[Point], p: &LaneParameters) -> Result<Corridor, LineError> {
     let stations: Vec<Pose> = ClosedSpline::through(lap)?
         .resample(1.0)

@@ -1,15 +1,15 @@
-//! The legs of which a row of cones may be made, from cone to cone.
+//! Legs of candidate rows, from cone to cone.
 
 use super::cone::{APART, Cone};
 use crate::geometry::{Point, Vector, math};
 
-/// From a cone, or from where a row begins without one, to a cone that may come next.
+/// From a cone, or from the start of a row without one, to a possible next cone.
 #[derive(Debug)]
 pub(super) struct Leg {
-    /// The cone to which it leads.
+    /// Index of the cone at its end.
     pub(super) to: usize,
     pub(super) ends: [Point; 2],
-    /// The unit vector along it, its heading, and how long it is.
+    /// Unit vector along it, heading (rad) and length (m).
     pub(super) along: Vector,
     pub(super) heading: f64,
     pub(super) length: f64,
@@ -24,7 +24,7 @@ impl Leg {
     }
 }
 
-/// The legs from a place to so many cones within reach at most, the nearest ones first.
+/// Legs from a point to at most `most` cones within reach, nearest first.
 pub(super) fn legs_from(from: Point, cones: &[Cone], reach: f64, most: usize) -> Vec<Leg> {
     let mut near: Vec<(f64, usize)> = Vec::new();
     for (index, cone) in cones.iter().enumerate() {

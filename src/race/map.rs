@@ -8,18 +8,18 @@ use crate::ParameterError;
 use crate::geometry::{Point, Pose, Vector, cross, math, normalize_angle};
 use crate::parameter::{require_finite, require_not_negative, require_positive};
 
-/// How a map of cones is made.
+/// Parameters of [`ConeMap`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConeMapParameters {
-    /// Metres from a cone of the map within which a sighting is that cone.
+    /// Maximum distance between a detection and its cone in the map (m).
     pub gate: f64,
-    /// Metres from the scanner beyond which nothing is added.
+    /// Distance from the scanner beyond which no cone is added (m).
     pub farthest: f64,
-    /// Times that a cone has to be seen before it counts.
+    /// Number of detections that confirm a cone.
     pub confirmed: u32,
-    /// Metres from the car's origin to the sensor, ahead.
+    /// Distance of the sensor ahead of the car's origin (m).
     pub sensor: f64,
-    /// How far odometry may be wrong after a step of one metre: metres, and radians.
+    /// Error of odometry per metre (m, rad).
     pub drift: [f64; 2],
 }
 
@@ -30,7 +30,11 @@ impl Default for ConeMapParameters {
 }
 
 impl ConeMapParameters {
-    /// Fails with the name of the parameter that is out of range.
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    ///
+    /// If one is out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         require_positive("gate", self.gate)?;
         require_positive("farthest", self.farthest)?;
@@ -41,27 +45,47 @@ impl ConeMapParameters {
     }
 }
 
-/// A map of cones and the car's pose in it, from odometry and sightings (simultaneous localisation and mapping).
+/// A map of cones and the car's pose in it, from odometry and detections (simultaneous localisation and
+/// mapping).
 ///
-/// The pose is predicted by odometry; sightings are matched to the nearest cone of the map; the pose that fits both best, by
-/// least squares, is the new one; then the cones move to the mean of where they were seen. The frame is that of the start.
+/// In each update, odometry predicts the pose, detections are matched to the nearest cones of the map, least
+/// squares correct the pose, and the cones move to the mean of their detections. The frame is that of the
+/// start.
 ///
-/// In the first lap errors add up with the way, so a cone is matched only while it was seen lately. [`close`](Self::close) ends
-/// that: back at the start, it finds the first cones again and takes what has added up out of the whole lap.
+/// In the first lap, errors accumulate with the distance, so only recently seen cones are matched.
+/// [`close`](Self::close) ends that: back at the start, it recognises the first cones and distributes the
+/// accumulated error over the lap.
+///
+/// ```
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::race::{ConeColour, ConeMap, ConeMapParameters, ConeSighting};
+/// let mut map = ConeMap::new(ConeMapParameters::default())?;
+/// for step in 0..20 {
+///     // A cone at (8, 1), which the car drives towards.
+///     let car = Pose::new(0.2 * f64::from(step), 0.0, 0.0);
+///     let position = car.to_local(Point::new(8.0, 1.0));
+///     let range = position.coords.norm();
+///     let colour = ConeColour::Unknown;
+///     map.update(car, &[ConeSighting { position, size: 0.2, confidence: 1.0, range, error: 0.05, colour }]);
+/// }
+/// let cones: Vec<Point> = map.cones().map(|cone| cone.position).collect();
+/// assert!(cones.len() == 1 && (cones[0] - Point::new(8.0, 1.0)).norm() < 0.1);
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct ConeMap {
     parameters: ConeMapParameters,
     landmarks: Vec<Landmark>,
     pose: Pose,
     odometry: Option<Pose>,
-    /// Metres that the car has gone.
+    /// Distance driven (m).
     way: f64,
-    /// Where it was in the lap that the map is of, the first one if that is closed, and how far it had gone; and how far where that
-    /// lap begins.
+    /// Poses of the mapped lap (the first one, once that is closed), each with the distance driven; `begun`
+    /// is the distance at which that lap begins (m).
     trail: Vec<(Pose, f64)>,
     begun: f64,
     closed: bool,
-    /// Metres that the car had gone when it was closed.
+    /// Distance driven when the map was closed (m).
     known: f64,
     fits: Option<bool>,
 }
@@ -89,7 +113,11 @@ const ATHWART: f64 = 0.5;
 const WRONG: (f64, f64, f64) = (4.0, 0.02, 0.4);
 
 impl ConeMap {
-    /// An empty map; the car is at its origin.
+    /// An empty map, with the car at its origin.
+    ///
+    /// # Errors
+    ///
+    /// If a parameter is out of range.
     pub fn new(parameters: ConeMapParameters) -> Result<Self, ParameterError> {
         parameters.validate()?;
         Ok(Self {
@@ -106,34 +134,34 @@ impl ConeMap {
         })
     }
 
-    /// The car's pose in the map.
+    /// Pose of the car in the map.
     pub fn pose(&self) -> Pose {
         self.pose
     }
 
-    /// The cones that were seen often enough. Where a camera shows the colours of most of them, those that it shows to have none are
-    /// left out: they are [others](Self::fresh_others).
+    /// Confirmed cones. If a camera shows the colours of most of them, those without a colour are excluded:
+    /// they are [others](Self::fresh_others).
     pub fn cones(&self) -> impl Iterator<Item = Cone> + '_ {
         self.real().map(|landmark| Cone::new(landmark.position, landmark.colour()))
     }
 
-    /// Those of them that fit where the car is now: all of them once the map is closed, and those that were seen lately before
-    /// that.
+    /// Confirmed cones that are consistent with the present pose: all once the map is closed, otherwise the
+    /// recently seen ones.
     pub fn fresh_cones(&self) -> impl Iterator<Item = Cone> + '_ {
         let fresh = self.real().filter(|landmark| self.is_fresh(landmark));
         fresh.map(|landmark| Cone::new(landmark.position, self.colour_of(landmark)))
     }
 
-    /// Where something stands that is as small as a cone and has no cone's colour, as fresh as those: no edge of a track, but nothing
-    /// to drive into.
+    /// Positions of objects of a cone's size without a cone's colour, as recent as the fresh cones: they are
+    /// no edge of the track, but obstacles.
     pub fn fresh_others(&self) -> impl Iterator<Item = Point> + '_ {
         let painted = self.is_painted();
         let others = self.confirmed().filter(move |landmark| painted && landmark.is_pale());
         others.filter(|landmark| self.is_fresh(landmark)).map(|landmark| landmark.position)
     }
 
-    /// The colour of a cone, or that of one near it that was passed earlier in the first lap: between crossings, a circuit has all
-    /// cones on its inside on one hand wherever it goes by them. Where it goes by athwart, it crosses itself, which changes hands.
+    /// Colour of a cone, or else that of a nearby one passed earlier in the first lap. Between crossings, a
+    /// circuit has all cones of its inside on one hand; at a crossing, the hands swap.
     fn colour_of(&self, landmark: &Landmark) -> ConeColour {
         let own = landmark.colour();
         if own != ConeColour::Unknown {
@@ -152,24 +180,24 @@ impl ConeMap {
         nearest.map_or(ConeColour::Unknown, Landmark::colour)
     }
 
-    /// Whether the first lap is closed to a loop.
+    /// Whether the first lap is closed.
     pub fn is_closed(&self) -> bool {
         self.closed
     }
 
-    /// Where the car was in the first lap, about every two metres.
+    /// Poses of the first lap, about one every two metres.
     pub fn trail(&self) -> impl Iterator<Item = Pose> + '_ {
         self.trail.iter().map(|(pose, _)| *pose)
     }
 
-    /// The way by which the car came in the first lap, but for the last metres, as far as that is within some metres of it now.
+    /// Poses of the first lap within `near` metres of the car, except the most recent ones.
     pub(super) fn earlier(&self, near: f64) -> impl Iterator<Item = Pose> + '_ {
         let place = self.pose.position();
         let old = self.trail.iter().filter(|(_, way)| self.way - way > BEHIND).map(|(pose, _)| *pose);
         old.filter(move |pose| (pose.position() - place).norm_squared() < near * near)
     }
 
-    /// Metres by which the pose may be wrong that is compared with that of the start.
+    /// Possible error of the pose relative to that at the start (m).
     pub fn tolerance(&self) -> f64 {
         if self.closed { WRONG.0 } else { wrong_after(self.way) }
     }
@@ -178,7 +206,7 @@ impl ConeMap {
         self.landmarks.iter().filter(|landmark| landmark.seen >= self.parameters.confirmed)
     }
 
-    /// Those of them that have a cone's colour, or may have one.
+    /// Confirmed cones that have, or may have, a cone's colour.
     fn real(&self) -> impl Iterator<Item = &Landmark> + '_ {
         let painted = self.is_painted();
         self.confirmed().filter(move |landmark| !(painted && landmark.is_pale()))
@@ -195,7 +223,7 @@ impl ConeMap {
         self.closed || self.way - landmark.last < FRESH
     }
 
-    /// Takes in where odometry is and what a scan showed there.
+    /// Takes a pose by odometry and the detections made there.
     pub fn update(&mut self, odometry: Pose, sightings: &[ConeSighting]) {
         let step =
             self.odometry.replace(odometry).map_or(Pose::default(), |last| last.inverse().compose(&odometry));
@@ -203,7 +231,7 @@ impl ConeMap {
         let way = step.position().coords.norm();
         self.way += way;
         let seen: Vec<&ConeSighting> = sightings.iter().filter(|s| s.is_cone()).collect();
-        // Matched again after the first correction, which brings what was just outside of the gate into it.
+        // Match again after the first correction, which brings further detections into the gate.
         for _ in 0..2 {
             let matches = self.matches(&seen);
             if matches.iter().any(Option::is_some) {
@@ -220,13 +248,14 @@ impl ConeMap {
         }
     }
 
-    /// Whether what was seen near the car at last is what a closed map has there. `None` before it is closed, and where neither
-    /// shows anything.
+    /// Whether the latest detections near the car agree with a closed map; `None` before it is closed, and if
+    /// neither shows anything.
     pub(super) fn fits(&self) -> Option<bool> {
         self.fits
     }
 
-    /// Compares sightings with the cones that the map had when it was closed: later ones may be there for a wrong pose's sake.
+    /// Compares detections with the cones known when the map was closed; later ones may result from a wrong
+    /// pose.
     fn compare(&self, seen: &[&ConeSighting], matches: &[Option<usize>]) -> Option<bool> {
         if !self.closed {
             return None;
@@ -243,11 +272,11 @@ impl ConeMap {
         }
         let eye = self.pose.compose(&Pose::new(self.parameters.sensor, 0.0, 0.0));
         let expected = self.confirmed().filter(|cone| in_view(eye.to_local(cone.position).coords)).count();
-        // One cone alone may have been knocked over.
+        // A single cone may have been knocked over.
         (expected >= 2).then_some(false)
     }
 
-    /// Takes in that cones at some places are those of an edge: 1 for the left one, -1 for the right one.
+    /// Records that cones belong to an edge: 1 for the left one, -1 for the right one.
     pub(super) fn vote_side(&mut self, places: impl Iterator<Item = Point>, side: i16) {
         for place in places {
             if let Some(landmark) = self.landmarks.iter_mut().find(|landmark| landmark.position == place) {
@@ -256,14 +285,14 @@ impl ConeMap {
         }
     }
 
-    /// Closes the first lap to a loop, if the first cones are among those that are seen now: what pose and map are wrong by is
-    /// spread over the lap, and cones that are there twice become one. Whether it is closed.
+    /// Closes the first lap if the first cones are among those seen now: the accumulated error is distributed
+    /// over the lap, and duplicate cones are merged. Returns whether the map is closed.
     pub fn close(&mut self) -> bool {
         if self.closed {
             return true;
         }
         if self.confirmed().all(|landmark| self.is_fresh(landmark)) {
-            // A short lap has led back to cones that it went by just now: pose and map are good without.
+            // A short lap has led back to recently passed cones: pose and map are consistent already.
             (self.closed, self.known) = (true, self.way);
             self.drop_earlier_laps();
             return true;
@@ -283,8 +312,9 @@ impl ConeMap {
         true
     }
 
-    /// Takes the last so many metres of the way for the first lap, where that could not be closed: on a straight, rows of cones may
-    /// look alike at many places, and plain farther on. Does nothing for less than twice the metres within which cones are fresh.
+    /// Takes only the last `metres` as the first lap, if it could not be closed: rows of cones on a straight
+    /// may look alike in many places, and be distinctive farther on. Does nothing below twice the distance
+    /// within which cones are fresh.
     pub(super) fn begin_later(&mut self, metres: f64) {
         let begun = self.way - metres;
         if self.closed || begun <= self.begun || metres < 2.0 * FRESH {
@@ -295,7 +325,8 @@ impl ConeMap {
         self.trail.retain(|(_, way)| *way >= begun);
     }
 
-    /// Moves the end of the lap by a motion, its beginning not at all, and what is between in proportion to the way.
+    /// Moves the end of the lap by a motion, its start not at all, and the rest in proportion to the
+    /// distance.
     fn bend(&mut self, motion: Pose) {
         self.trail.push((self.pose, self.way));
         let beginning = self.beginning();
@@ -312,7 +343,7 @@ impl ConeMap {
             *pose = *new;
         }
         self.pose = after[after.len() - 1];
-        // The lap ends where it began, not where that was noticed.
+        // The lap ends where it began, not where the closure was noticed.
         let (begin, _) = self.trail[0];
         let is_beyond = |(pose, _): &(Pose, f64)| begin.to_local(pose.position()).x > -STRIDE;
         while self.trail.len() > 2 && self.trail.last().is_some_and(is_beyond) {
@@ -320,14 +351,15 @@ impl ConeMap {
         }
     }
 
-    /// Leaves one lap of the trail, the last one: a short lap is driven more than once before the line is crossed again.
+    /// Keeps only the last lap of the trail: a short lap may be driven more than once before the line is
+    /// crossed again.
     fn drop_earlier_laps(&mut self) {
         let (pose, way) = (self.pose, self.way);
         let away = |at: &Pose| (at.position() - pose.position()).norm();
         let around = self.trail.iter().enumerate().filter(|(_, (at, then))| {
             way - then > SHORTEST_LAP && away(at) < AROUND && at.forward().dot(&pose.forward()) > ATHWART
         });
-        // Of all times that it came by here, the last one; there, the place that is nearest.
+        // Of all passes, take the last one, and there the nearest pose.
         let Some((last, _)) = around.clone().next_back() else { return };
         let once = around.filter(|(_, (_, then))| self.trail[last].1 - then < 2.0 * AROUND);
         let nearest = once.min_by(|(_, (a, _)), (_, (b, _))| away(a).total_cmp(&away(b)));
@@ -337,12 +369,12 @@ impl ConeMap {
         }
     }
 
-    /// Metres of the way in which the first cones were seen.
+    /// Distance driven up to which cones count as the first ones (m).
     fn beginning(&self) -> f64 {
         self.begun + FRESH.min(0.5 * (self.way - self.begun))
     }
 
-    /// Makes one cone of those that are too near each other to be two.
+    /// Merges cones that are too close together to be two.
     fn merge(&mut self) {
         let mut kept: Vec<Landmark> = Vec::with_capacity(self.landmarks.len());
         for landmark in &self.landmarks {
@@ -355,7 +387,7 @@ impl ConeMap {
         self.landmarks = kept;
     }
 
-    /// The cone of the map that each sighting is, no cone twice: the nearest ones first.
+    /// Matches each detection to a cone of the map, each cone at most once, nearest first.
     fn matches(&self, seen: &[&ConeSighting]) -> Vec<Option<usize>> {
         let gate = self.parameters.gate * self.parameters.gate;
         let mut near: Vec<(f64, usize, usize)> = Vec::new();
@@ -380,7 +412,7 @@ impl ConeMap {
         found
     }
 
-    /// Moves the pose to where sightings and odometry agree best.
+    /// Corrects the pose by least squares of detections and odometry.
     fn correct(&mut self, seen: &[&ConeSighting], matches: &[Option<usize>], way: f64) {
         let p = &self.parameters;
         let prior = [0.004 + p.drift[0] * way, 0.001 + p.drift[1] * way].map(|error| 1.0 / (error * error));
@@ -396,10 +428,10 @@ impl ConeMap {
             let unsure = sighting.error
                 * sighting.error
                 * (1.0 + 4.0 / f64::from(landmark.seen) + 0.004 * sighting.range * sighting.range);
-            // What is far off counts less: it may be another cone.
+            // Distant matches weigh less: they may be other cones.
             let weight = 1.0 / (unsure * (1.0 + missing.norm_squared() / 0.09));
             let arm = place - self.pose.position();
-            // The place moves by (dx - arm.y da, dy + arm.x da).
+            // The position changes by (dx - arm.y da, dy + arm.x da).
             for (row, wanted) in
                 [(Vector3::new(1.0, 0.0, -arm.y), missing.x), (Vector3::new(0.0, 1.0, arm.x), missing.y)]
             {
@@ -414,7 +446,7 @@ impl ConeMap {
         self.pose.heading = normalize_angle(self.pose.heading + change.z);
     }
 
-    /// Moves and adds cones.
+    /// Updates and adds cones.
     fn learn(&mut self, seen: &[&ConeSighting], matches: &[Option<usize>]) {
         for (at, (sighting, landmark)) in seen.iter().zip(matches).enumerate() {
             if sighting.range > self.parameters.farthest {
@@ -431,7 +463,8 @@ impl ConeMap {
         }
     }
 
-    /// Forgets what should have been seen and was not, of so many cones that were known before. What is new stands at the end.
+    /// Removes cones that should have been seen but were not, among the first `known`; new ones are at the
+    /// end.
     fn forget(&mut self, known: usize, matches: &[Option<usize>], sightings: &[ConeSighting]) {
         let mut matched = vec![false; self.landmarks.len()];
         matches.iter().flatten().for_each(|&landmark| matched[landmark] = true);
@@ -447,30 +480,30 @@ impl ConeMap {
                 return true;
             }
             landmark.missed += 1;
-            // A phantom is seen once; a cone now and then not.
+            // Phantoms are seen once; real cones are missed occasionally.
             landmark.missed <= if landmark.seen < confirmed { 3 + landmark.seen } else { 8 }
         });
     }
 }
 
-/// Whether something new that was seen is a part of another one: no two cones stand so near each other.
+/// Whether a new detection is a part of another one: no two cones stand so close together.
 fn is_part(new: &ConeSighting, other: &ConeSighting) -> bool {
     let away = (new.position - other.position).norm();
     away > 0.0 && away < APART
 }
 
-/// Metres by which a pose may be wrong after so many metres of the way.
+/// Possible error of a pose after a distance (m).
 fn wrong_after(way: f64) -> f64 {
     WRONG.0 + WRONG.1 * way
 }
 
-/// Whether a cone at a place, from the sensor, would be seen.
+/// Whether a cone at a position relative to the sensor would be seen.
 fn in_view(place: Vector) -> bool {
     let distance = place.norm();
     distance < VIEW.0 && distance > 1.0 && math::atan2(place.y, place.x).abs() < VIEW.1
 }
 
-/// Whether a thing stands before a place, both seen by a sensor, the thing in the frame of the car.
+/// Whether an object hides a position; `place` is relative to the sensor, `thing` in the car frame.
 fn hides(thing: &ConeSighting, sensor: f64, place: Vector) -> bool {
     let beside = APART + if thing.is_cone() { 0.0 } else { 0.5 * thing.size };
     let thing = thing.position.coords - Vector::new(sensor, 0.0);

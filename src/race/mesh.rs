@@ -1,17 +1,17 @@
-//! The triangles between cones.
+//! Triangulation of cones.
 
 use super::cone::Cone;
 use super::error::LineError;
 use super::pair::Pair;
 use crate::geometry::{Point, Vector, cross};
 
-/// The triangulation of some cones. A triangle has three half-edges, each of which stands for the gap between its two cones, as
-/// seen by whoever enters the triangle by it.
+/// A triangulation. Each of the three half-edges of a triangle represents the gap between its two cones, as
+/// seen when entering the triangle by it.
 pub(super) struct Mesh {
-    /// The cone at which each half-edge begins.
+    /// The cone at the start of each half-edge.
     cones: Vec<usize>,
     twins: Vec<usize>,
-    /// Whether the triangles turn counter-clockwise.
+    /// Whether triangles are counter-clockwise.
     counter_clockwise: bool,
     gaps: Vec<Gap>,
 }
@@ -20,7 +20,7 @@ pub(super) struct Mesh {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Gap {
     pub(super) middle: Point,
-    /// The unit vector through it.
+    /// Unit vector through it.
     pub(super) forward: Vector,
     pub(super) width: f64,
 }
@@ -33,19 +33,19 @@ impl Gap {
         Self { middle: nalgebra::center(&left, &right), forward, width }
     }
 
-    /// The unit vector from the right cone to the left one.
+    /// Unit vector from the right cone to the left one.
     fn across(&self) -> Vector {
         Vector::new(-self.forward.y, self.forward.x)
     }
 }
 
-/// The way from the cone of a side to the next one.
+/// The leg from one cone to the next on a side.
 pub(super) struct Leg {
-    /// The cone to which it leads.
+    /// Index of the cone at its end.
     pub(super) to: usize,
-    /// 0 for left.
+    /// Side, 0 for left.
     pub(super) side: usize,
-    /// The unit vector along it.
+    /// Unit vector along it.
     pub(super) along: Vector,
     pub(super) length: f64,
 }
@@ -77,35 +77,35 @@ impl Mesh {
         Ok(Self { gaps, cones: triangles, twins: triangulation.halfedges, counter_clockwise })
     }
 
-    /// The gaps of all half-edges.
+    /// Gaps of all half-edges.
     pub(super) fn gaps(&self) -> &[Gap] {
         &self.gaps
     }
 
-    /// The left and the right cone for whoever enters a triangle by a half-edge.
+    /// Left and right cone when entering a triangle by a half-edge.
     pub(super) fn pair(&self, edge: usize) -> Pair {
         let (a, b) = (self.cones[edge], self.cones[following(edge)]);
         if self.counter_clockwise { [a, b] } else { [b, a] }
     }
 
-    /// The same for whoever leaves a triangle by it.
+    /// Left and right cone when leaving a triangle by a half-edge.
     pub(super) fn pair_behind(&self, exit: usize) -> Pair {
         let [left, right] = self.pair(exit);
         [right, left]
     }
 
-    /// The two half-edges by which whoever enters a triangle by a half-edge may leave it.
+    /// The two half-edges by which a triangle can be left.
     pub(super) fn exits(edge: usize) -> [usize; 2] {
         [following(edge), preceding(edge)]
     }
 
-    /// The half-edge of the triangle behind a half-edge; `None` at the border.
+    /// The half-edge of the adjacent triangle; `None` at the border.
     pub(super) fn behind(&self, exit: usize) -> Option<usize> {
         let twin = self.twins[exit];
         (twin != delaunator::EMPTY).then_some(twin)
     }
 
-    /// The leg along which whoever enters a triangle by a half-edge passes to leave it by another one.
+    /// The leg passed when a triangle is entered by one half-edge and left by another.
     pub(super) fn leg(&self, edge: usize, exit: usize) -> Leg {
         let [left, right] = self.pair_behind(exit);
         let gap = &self.gaps[third(edge, exit)];
@@ -118,12 +118,12 @@ impl Mesh {
     }
 }
 
-/// The triangle of a half-edge.
+/// Triangle of a half-edge.
 pub(super) fn triangle(edge: usize) -> usize {
     edge / 3
 }
 
-/// The half-edge of a triangle that is neither of two.
+/// The third half-edge of a triangle.
 fn third(a: usize, b: usize) -> usize {
     9 * triangle(a) + 3 - a - b
 }

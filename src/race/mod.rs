@@ -1,17 +1,17 @@
 //! Racing between cones (book, section 14.5).
 //!
-//! - [`parse_track`]: reads tracks of FSSIM, EUFS and the TUM race track database; [`write_fssim`], [`write_eufs`] and
-//!   [`write_tum`] write them; [`parse_cone_log`] reads what a car knew of its cones from moment to moment, for which a
-//!   [`LaneFinder`] finds the lane;
-//! - [`generate`]: legal tracks by the rules of Formula Student, from a seed;
-//! - [`CentreLine`]: the way between cones, by a triangulation, with or without colours;
+//! - [`parse_track`]: reads tracks of FSSIM, EUFS and the TUM racetrack database; [`write_fssim`],
+//!   [`write_eufs`] and [`write_tum`] write them; [`parse_cone_log`] reads logs of a car's known cones, in
+//!   which a [`LaneFinder`] finds the lane;
+//! - [`generate`]: tracks by the rules of Formula Student, from a seed;
+//! - [`CentreLine`]: the track between cones, by a triangulation, with or without colours;
 //! - [`GapDriver`]: the book's driver, which steers for the nearest gap in one scan;
-//! - [`Racer`]: finds cones in scans ([`sightings`]), makes a map of them in the first lap ([`ConeMap`]), then races; a
-//!   [`LineTracker`] keeps the car on its line; a [`Referee`] takes the time and counts penalties;
-//! - [`EventRacer`]: drives an acceleration or a skidpad, whose layouts are known, by the cones that it sees; an
-//!   [`EventReferee`] takes their times;
-//! - [`minimum_curvature`]: the racing line within a [`Corridor`], and [`SpeedProfile`]: how fast a car goes along it,
-//!   within what its tyres [`GripLimit`].
+//! - [`Racer`]: detects cones in scans ([`sightings`]), maps them in the first lap ([`ConeMap`]), then races;
+//!   a [`LineTracker`] keeps the car on its line; a [`Referee`] takes times and counts penalties;
+//! - [`EventRacer`]: drives an acceleration or a skidpad, whose layouts are known; an [`EventReferee`] takes
+//!   the times;
+//! - [`minimum_curvature`]: the racing line within a [`Corridor`]; [`SpeedProfile`]: the speeds along it,
+//!   within the [`GripLimit`].
 
 mod banded;
 mod beam_search;
@@ -81,7 +81,7 @@ pub use profile::{CarLimits, SpeedProfile};
 pub use racer::{RacePhase, Racer, RacerParameters};
 pub use racing_line::{CarOutline, LineSolver, RacingLine, RacingLineParameters, minimum_curvature};
 pub use referee::{RaceScore, Referee};
-pub use run::RaceOutcome;
+pub use run::{RaceObservation, RaceOutcome};
 pub use sight::{ConeSighting, sightings};
 pub use spline::{ClosedSpline, SplinePoint};
 pub use tracker::{LineTracker, LineTrackerParameters};

@@ -2,21 +2,21 @@ use super::generate::LONGEST;
 use crate::ParameterError;
 use crate::parameter::{require, require_up_to};
 
-/// What the way between cones is expected to look like.
+/// Expectations about the track between cones.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CentreLineParameters {
-    /// Metres from edge to edge, from least to most.
+    /// Minimum and maximum track width (m).
     pub width: [f64; 2],
-    /// Metres from cone to cone along an edge at most, where none is missing.
+    /// Maximum distance between adjacent cones of an edge (m).
     pub spacing: f64,
-    /// Metres between stations of the corridor.
+    /// Distance between stations of the corridor (m).
     pub step: f64,
-    /// What a cone of the wrong colour costs; 0 to be colour-blind. Infinity where colours are certain: no
-    /// cone is passed on the wrong side, and none whose colour is known is taken for a false one.
+    /// Cost of a cone of the wrong colour; 0 for colour-blind planning. Infinity if colours are certain: no
+    /// cone is passed on the wrong side, and none of known colour is taken for a false one.
     pub colour: f64,
-    /// Metres of the shortest loop; infinity where a way must not close.
+    /// Minimum length of a loop (m); infinity for tracks that must not close.
     pub shortest_loop: f64,
-    /// Metres that the way is followed at most where it does not close.
+    /// Maximum length of an open track (m).
     pub horizon: f64,
 }
 
@@ -27,7 +27,11 @@ impl Default for CentreLineParameters {
 }
 
 impl CentreLineParameters {
-    /// Fails with the name of the parameter that is out of range.
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    ///
+    /// If one is out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         let [least, most] = self.width;
         require_up_to("width", least, LONGEST)?;
@@ -42,10 +46,10 @@ impl CentreLineParameters {
     }
 }
 
-/// Indices of a left and a right cone with the way between them.
+/// Indices of a left and a right cone of the track.
 pub(super) type Pair = [usize; 2];
 
-/// A way between cones.
+/// A track between cones.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Way {
     pub(super) pairs: Vec<Pair>,

@@ -7,29 +7,30 @@ use crate::geometry::{Point, units};
 use crate::parameter::{require, require_positive};
 use crate::world::{DriveSpec, RobotSpec};
 
-/// What a car's tyres and motors do.
+/// Limits of a car's tyres and motors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CarLimits {
-    /// What its tyres give at most.
+    /// Grip limit of the tyres.
     pub grip: GripLimit,
-    /// The greatest acceleration of the motors, in m/s².
+    /// Maximum acceleration of the motors (m/s²).
     pub drive: f64,
-    /// The greatest deceleration of the brakes, in m/s².
+    /// Maximum deceleration of the brakes (m/s²).
     pub brake: f64,
-    /// Metres per second that are never exceeded.
+    /// Maximum speed (m/s).
     pub top_speed: f64,
-    /// How fast the curvature of its way changes at most, in 1/m each second: as fast as the steering turns. Infinity for no limit.
+    /// Maximum rate of change of the curvature, given by the steering (1/m per second); infinity for no
+    /// limit.
     pub turning: f64,
 }
 
 impl CarLimits {
-    /// A car whose tyres grip as well in all directions: those of a friction circle.
+    /// A car with a friction circle: equal grip in all directions (m/s²).
     pub const fn circle(grip: f64, drive: f64, brake: f64, top_speed: f64) -> Self {
         let grip = GripLimit::Ellipse { across: grip, turned: 0.0, along: grip };
         Self { grip, drive, brake, top_speed, turning: f64::INFINITY }
     }
 
-    /// What a car with [`CarDynamics`](crate::world::CarDynamics) can do in balance; `None` without them.
+    /// Steady-state limits of a car with [`CarDynamics`](crate::world::CarDynamics); `None` without them.
     ///
     /// ```
     /// use roverlab::{race::CarLimits, world::RobotSpec};
@@ -56,7 +57,11 @@ impl CarLimits {
         })
     }
 
-    /// Fails with the name of the limit that is out of range.
+    /// Checks the limits.
+    ///
+    /// # Errors
+    ///
+    /// If one is out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         self.grip.validate()?;
         require("turning", self.turning, self.turning > 0.0, "a positive number")?;
@@ -66,23 +71,22 @@ impl CarLimits {
     }
 }
 
-/// How fast each point of a closed line is passed.
+/// Speeds along a line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpeedProfile {
-    /// Metres per second at each point.
+    /// Speed at each point (m/s).
     pub speeds: Vec<f64>,
-    /// The curvature at each point, in 1/m, positive to the left.
+    /// Curvature at each point, positive to the left (1/m).
     pub curvatures: Vec<f64>,
-    /// Metres from each point to the next.
+    /// Distance from each point to the next (m).
     pub lengths: Vec<f64>,
-    /// Seconds for one lap.
+    /// Time for the whole line (s).
     pub lap_time: f64,
 }
 
 impl SpeedProfile {
-    /// The fastest way around a closed line within the friction ellipse, for a point mass in balance at each moment (the
-    /// quasi-steady optimum): the speed of each bend, limited forwards by what the motors give and backwards by what the
-    /// brakes take. O(n).
+    /// Quasi-steady-state optimum on a closed line: a point mass within the grip limit at each moment. The
+    /// speeds of bends are limited forwards by the motors and backwards by the brakes. O(n).
     ///
     /// ```
     /// use roverlab::race::{CarLimits, SpeedProfile};
@@ -94,6 +98,10 @@ impl SpeedProfile {
     /// assert!((profile.speeds[50] - 90.0_f64.sqrt()).abs() < 0.01);
     /// # Ok::<(), roverlab::race::LineError>(())
     /// ```
+    ///
+    /// # Errors
+    ///
+    /// If there are fewer than four points, points coincide, or a limit is out of range.
     pub fn closed(points: &[Point], limits: &CarLimits) -> Result<Self, LineError> {
         let n = points.len();
         if n < 4 {
@@ -104,7 +112,11 @@ impl SpeedProfile {
         Self::of(points, curvatures, limits, true)
     }
 
-    /// The same for a line with two ends, from a speed at the first point to at most another one at the last.
+    /// The same for an open line, from a speed at the first point to at most another one at the last (m/s).
+    ///
+    /// # Errors
+    ///
+    /// As for [`closed`](Self::closed), but from three points on.
     pub fn open(points: &[Point], limits: &CarLimits, first: f64, last: f64) -> Result<Self, LineError> {
         let n = points.len();
         if n < 3 {
@@ -158,7 +170,7 @@ impl SpeedProfile {
         let n = self.speeds.len();
         let forwards = |bend, across| limits.grip.forwards(bend, across, limits.drive);
         let backwards = |bend, across| limits.grip.backwards(bend, across, limits.brake);
-        // Twice around, so that the beginning knows of the end.
+        // Twice around, so that the start is consistent with the end.
         let steps = if closed { 2 * n } else { n - 1 };
         for k in 0..steps {
             let i = k % n;
@@ -174,14 +186,14 @@ impl SpeedProfile {
             .sum();
     }
 
-    /// The acceleration along the way from a point to the next one.
+    /// Longitudinal acceleration from a point to the next one (m/s²).
     pub(super) fn along(&self, from: usize, to: usize) -> f64 {
         let (before, after) = (self.speeds[from], self.speeds[to]);
         (after * after - before * before) / (2.0 * self.lengths[from].max(1e-9))
     }
 
-    /// Limits the speed at `to` by an acceleration from `from` over a length, with Heun's rule: what there is at most for a curvature
-    /// and an acceleration across.
+    /// Limits the speed at `to` by the maximum acceleration from `from`, by Heun's method; `most` gives the
+    /// acceleration for a curvature and a lateral acceleration.
     fn pass(&mut self, most: impl Fn(f64, f64) -> f64, from: usize, to: usize, length: usize) {
         let length = self.lengths[length];
         let bends = [from, to].map(|i| self.curvatures[i].abs());
@@ -246,7 +258,7 @@ mod tests {
         let strip: Vec<Point> = (0..=150).map(|i| Point::new(0.5 * f64::from(i), 0.0)).collect();
         let limits = CarLimits { top_speed: 100.0, ..LIMITS };
         let profile = SpeedProfile::open(&strip, &limits, 0.0, 0.0).unwrap();
-        // Up with 6, down with 11 m/s²: v² (1/12 + 1/22) = 75.
+        // Acceleration 6, deceleration 11 m/s²: v² (1/12 + 1/22) = 75.
         let top = (75.0_f64 / (1.0 / 12.0 + 1.0 / 22.0)).sqrt();
         let reached = profile.speeds.iter().copied().fold(0.0, f64::max);
         assert!((reached - top).abs() < 0.2 && profile.speeds[0] == 0.0 && profile.speeds[150] == 0.0);
@@ -260,13 +272,13 @@ mod tests {
         let speeds = [5.0, 9.0, 20.0, 40.0]
             .map(|radius| SpeedProfile::closed(&ellipse(120, radius, radius), &limits).unwrap().speeds[60]);
         assert!(speeds.windows(2).all(|pair| pair[0] < pair[1]), "{speeds:?}");
-        // Less than tyres without an axle that gives up first would.
+        // Less than with tyres without an axle that saturates first.
         assert!(speeds[1] < 0.96 * (12.0 * 9.0_f64).sqrt() && speeds[1] > 0.85 * (12.0 * 9.0_f64).sqrt());
     }
 
     #[test]
     fn the_steering_keeps_up_with_the_bends() {
-        // A straight way that becomes a circle at once.
+        // A straight that abruptly becomes a circle.
         let mut points: Vec<Point> = (0..40).map(|i| Point::new(0.5 * f64::from(i), 0.0)).collect();
         let circle = (0..30).map(|i| direction(0.05 * f64::from(i) - TAU / 4.0) * 10.0);
         points.extend(circle.map(|arm| Point::new(20.0, 10.0) + arm));

@@ -24,26 +24,26 @@ use crate::parameter::require_positive;
 #[cfg(test)]
 mod tests;
 
-/// How a track is raced.
+/// Parameters of [`Racer`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RacerParameters {
-    /// Laps; the first one is for the map.
+    /// Number of laps; the first one is for mapping.
     pub laps: usize,
-    /// What is asked of the tyres and motors at most.
+    /// Limits of tyres and motors.
     pub limits: CarLimits,
-    /// The same while the track is not known; its top speed is that of the first lap.
+    /// Limits while the track is unknown; the top speed is that of the first lap.
     pub first_lap: CarLimits,
-    /// The car's outline, by which the racing line keeps clear of cones.
+    /// Outline of the car, for the clearance from cones.
     pub outline: CarOutline,
-    /// How the way between cones is found.
+    /// Parameters of the centre line.
     pub centre_line: CentreLineParameters,
-    /// How the map is made.
+    /// Parameters of the map.
     pub map: ConeMapParameters,
-    /// How the lane ahead is found in the first lap.
+    /// Parameters of the lane search in the first lap.
     pub lane: LaneParameters,
-    /// How lines are followed.
+    /// Parameters of the line tracker.
     pub tracker: LineTrackerParameters,
-    /// Seconds from decision to decision.
+    /// Control period (s).
     pub period: f64,
 }
 
@@ -52,14 +52,14 @@ impl Default for RacerParameters {
         Self {
             laps: 10,
             limits: CarLimits {
-                // A thirtieth of the grip and a fifteenth of the steering are left for what the controller is wrong by.
+                // A thirtieth of the grip and a fifteenth of the steering are reserved for control errors.
                 grip: GripLimit::Balance(Tyres { grip: 11.6, lock: 0.58, ..Tyres::default() }),
                 drive: 8.0,
                 brake: 9.5,
                 top_speed: 30.0,
                 turning: 1.2,
             },
-            // What is seen late is driven slowly: tight bends, in which a car answers late as well.
+            // Slow in tight bends, which are seen late and where the car also responds late.
             first_lap: CarLimits {
                 grip: GripLimit::Ellipse { across: 5.0, turned: 1.0, along: 5.0 },
                 ..CarLimits::circle(5.0, 3.0, 5.0, 6.0)
@@ -75,7 +75,11 @@ impl Default for RacerParameters {
 }
 
 impl RacerParameters {
-    /// Fails with the name of the parameter that is out of range.
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    ///
+    /// If one is out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         self.limits.validate().map_err(|error| error.of("limits"))?;
         self.first_lap.validate().map_err(|error| error.of("first lap"))?;
@@ -87,60 +91,75 @@ impl RacerParameters {
         require_positive("control period", self.period)
     }
 
-    /// For a car whose tyres do not slip.
+    /// Parameters for a car whose tyres do not slip.
     pub fn rolling() -> Self {
         Self { tracker: LineTrackerParameters::rolling(), ..Self::default() }
     }
 }
 
-/// What a racer does.
+/// Phase of a race.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum RacePhase {
-    /// Drives between the cones that it sees, and makes the map.
+    /// Drives between the visible cones, and maps them.
     Mapping,
     /// Drives the racing line.
     Racing,
-    /// All laps are driven: it stands, or brakes.
+    /// All laps are driven: it brakes or stands.
     Finished,
-    /// It found no lane for ten metres of the first lap, or what it sees has not been what its map shows for a while: it stands,
-    /// or brakes.
+    /// It found no lane for ten metres of the first lap, or its detections have contradicted the map for a
+    /// while: it brakes or stands.
     Lost,
 }
 
-/// Races on a track that it does not know: between the cones that it sees in the first lap, on the racing line in all others.
+/// Races on an unknown track: between the visible cones in the first lap, on the racing line in all others.
+///
+/// ```
+/// use roverlab::io::control::run;
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::race::{RaceOutcome, RacePhase, Racer, RacerParameters, TrackOptions, generate};
+/// let track = generate(1, &TrackOptions { length: [120.0, 180.0], ..TrackOptions::default() })?.track;
+/// let scene = track.scene(&[track.start_pose().expect("a start")]);
+/// let simulation = Simulation::new(&scene, SimOptions::default())?;
+/// let mut racer = Racer::new(RacerParameters::default())?;
+/// // Only the first ten seconds: it drives between the cones that its lidar sees, and maps them.
+/// let outcome = run(&mut simulation.robot(0)?, &mut racer, 10.0, |_, _, _| {})?;
+/// assert_eq!((outcome, racer.phase()), (RaceOutcome::TimedOut, RacePhase::Mapping));
+/// assert!(racer.map().cones().count() > 10 && simulation.truth().robot(0)?.contacts == 0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Racer {
     pub(super) parameters: RacerParameters,
     map: ConeMap,
     phase: RacePhase,
     laps: usize,
-    /// Metres by odometry since a lap was counted, or since the start.
+    /// Distance by odometry since the last counted lap, or since the start (m).
     since_line: f64,
-    /// Where the line is: the car's pose as it crossed it for the first time.
+    /// Pose of the line: that of the car at its first crossing.
     line: Option<Pose>,
-    /// Whether it was in front of the line since it counted a lap.
+    /// Whether it was in front of the line since the last counted lap.
     in_front: bool,
     reckoning: Reckoning,
     tracker: Option<LineTracker>,
     solver: LineSolver,
-    /// Decisions since the way was planned.
+    /// Number of decisions since the path was planned.
     stale: u32,
-    /// Whether a lap was ended since the racing line was planned.
+    /// Whether a lap has ended since the racing line was planned.
     plan_again: bool,
-    /// Decisions until the whole track is tried to be planned again, or a map to be closed.
+    /// Number of decisions until the next attempt to plan the whole track, or to close the map.
     patience: u32,
-    /// Metres of a lap after which the map was not closed.
+    /// Length of a lap after which the map was not closed (m).
     open_lap: Option<f64>,
     /// The lane ahead in the first lap.
     lane: Lane,
-    /// Decisions until it drives off: before that, it looks about and turns its wheels.
+    /// Number of decisions until it starts; before, it looks around and turns its wheels.
     looks: u32,
-    /// Metres per second that are left of its speed after the last lap, or where it is lost.
+    /// Commanded speed while stopping, after the last lap or when lost (m/s).
     stopping: Option<f64>,
-    /// Metres by odometry, and how many they were when it last had a line to follow.
+    /// Distance by odometry (m); `led` is that at which it last had a line to follow.
     driven: f64,
     led: f64,
-    /// Seconds by which what it sees fitted its map less often than not.
+    /// Accumulated time by which its detections contradicted the map rather than agreed (s).
     doubt: f64,
 }
 
@@ -167,7 +186,11 @@ const DOUBT: f64 = 0.7;
 pub(super) const STILL: f64 = 0.05;
 
 impl Racer {
-    /// A racer at the start. Fails with the name of the parameter that is out of range.
+    /// A racer at the start.
+    ///
+    /// # Errors
+    ///
+    /// If a parameter is out of range.
     pub fn new(parameters: RacerParameters) -> Result<Self, ParameterError> {
         parameters.validate()?;
         Ok(Self {
@@ -194,32 +217,33 @@ impl Racer {
         })
     }
 
-    /// What it does now.
+    /// Present phase.
     pub fn phase(&self) -> RacePhase {
         self.phase
     }
 
-    /// Laps that it counted.
+    /// Number of counted laps.
     pub fn laps(&self) -> usize {
         self.laps
     }
 
-    /// The map that it has made, in the frame of the start.
+    /// Its map, in the frame of the start.
     pub fn map(&self) -> &ConeMap {
         &self.map
     }
 
-    /// The line that it follows now.
+    /// The line that it follows.
     pub fn line(&self) -> Option<&LineTracker> {
         self.tracker.as_ref()
     }
 
-    /// The command for the speed and the pose that odometry measures and a scan.
+    /// Command for a pose and a velocity by odometry and a scan.
     pub fn step(&mut self, odometry: Pose, speed: Twist, scan: &LidarScan) -> Twist {
         self.decide(odometry, speed, &sightings(scan))
     }
 
-    /// The same for what was found already. Where odometry is no number, the car brakes, and goes on from where it was.
+    /// The same for given detections. If odometry is not finite, the car brakes, and then continues from its
+    /// last pose.
     pub fn decide(&mut self, odometry: Pose, speed: Twist, seen: &[ConeSighting]) -> Twist {
         if !(odometry.is_finite() && speed.is_finite()) {
             return Twist::STOP;
@@ -237,7 +261,8 @@ impl Racer {
         self.behind_others(command, seen)
     }
 
-    /// A command that leaves room for what is too large for a cone, another car, on the way ahead.
+    /// Limits a command to keep a distance from objects ahead that are too large for cones, such as other
+    /// cars.
     fn behind_others(&self, command: Twist, seen: &[ConeSighting]) -> Twist {
         let Some(line) = &self.tracker else { return command };
         let others = seen.iter().filter(|sighting| !sighting.is_cone());
@@ -263,7 +288,7 @@ impl Racer {
                 if std::mem::take(&mut self.plan_again)
                     && let Ok(tracker) = self.whole_track()
                 {
-                    // Every lap makes the map better.
+                    // Every lap improves the map.
                     self.tracker = Some(tracker);
                 }
                 self.follow(speed)
@@ -280,7 +305,7 @@ impl Racer {
         }
     }
 
-    /// Whether it is not where its map says: for some time, most of what it sees near it has not been in the map.
+    /// Whether most detections near the car have contradicted the map for some time.
     fn is_elsewhere(&mut self) -> bool {
         let period = self.parameters.period;
         match self.map.fits() {
@@ -291,8 +316,8 @@ impl Racer {
         self.doubt > DOUBT
     }
 
-    /// Straight on would lead off the track: it brakes along the line. Its own speed tells it nothing of how far it has come with
-    /// that: what is measured is some percent of it wrong.
+    /// Brakes along the line, because going straight on would leave the track. The commanded speed falls by
+    /// time, not by the measured speed: the relative measurement error is a few percent.
     fn brake(&mut self, speed: Twist) -> Twist {
         if self.tracker.as_ref().is_some_and(|tracker| !tracker.is_closed()) {
             self.look_ahead();
@@ -305,7 +330,7 @@ impl Racer {
         Twist::new(slower, if speed.linear > 0.1 { slower * curvature_of(command) } else { 0.0 })
     }
 
-    /// Whether it stands and drives no more.
+    /// Whether it has finished driving and stands.
     pub fn is_done(&self, speed: Twist) -> bool {
         matches!(self.phase, RacePhase::Finished | RacePhase::Lost) && speed.linear.abs() < STILL
     }
@@ -320,14 +345,14 @@ impl Racer {
             self.line = (self.since_line >= RUN_UP).then_some(pose);
             return;
         };
-        // A line that was crossed lately is not crossed again.
+        // A line that was crossed recently is not crossed again.
         let ahead = pose.forward().dot(&line.forward());
         self.in_front |= line.to_local(pose.position()).x < -STRIDE || ahead < 0.0;
         if !self.in_front || self.since_line < SHORTEST_LAP || !self.is_behind(line) {
             return;
         }
         if !self.map.is_closed() {
-            // What closes the map moves it: the lane lies elsewhere then.
+            // Closing moves the map, so the previous lane no longer applies.
             self.lane.points.clear();
         }
         // Without a loop, it has driven around once all the same.
@@ -349,12 +374,12 @@ impl Racer {
         }
     }
 
-    /// Whether the car has crossed the line some metres ago.
+    /// Whether the car crossed the line within the last metres.
     fn is_behind(&self, line: Pose) -> bool {
         let (pose, wrong) = (self.map.pose(), self.map.tolerance());
         let place = line.to_local(pose.position());
         let ahead = pose.forward().dot(&line.forward());
-        // A wide track is raced far beside the middle, where the line was crossed first.
+        // On a wide track, the racing line may be far from where the line was first crossed.
         let aside = wrong.max(self.parameters.lane.half_width[1] + 1.0);
         (0.0..FRESH + wrong).contains(&place.x) && place.y.abs() < aside && ahead > 0.3
     }
@@ -367,7 +392,7 @@ impl Racer {
         twist
     }
 
-    /// Plans with what is known: the whole track if it closes, else as far as it is seen.
+    /// Plans with the known cones: the whole track if it closes, otherwise the visible part.
     fn explore(&mut self) {
         if self.map.is_closed() && self.laps > 0 && self.patience == 0 {
             self.patience = 20;
@@ -392,7 +417,7 @@ impl Racer {
         self.look_ahead();
     }
 
-    /// Plans as far as is seen.
+    /// Plans the visible part.
     fn look_ahead(&mut self) {
         let pose = self.map.pose();
         let near: Vec<Cone> = self
@@ -414,7 +439,7 @@ impl Racer {
         }
     }
 
-    /// The middle of the lane ahead.
+    /// The centre line of the lane ahead.
     fn lane_ahead(&mut self, near: &[Cone], pose: Pose) -> Result<LineTracker, LineError> {
         let middle = Pose::new(self.parameters.tracker.ahead, 0.0, 0.0);
         let trail: Vec<Pose> = self.map.trail().collect();
@@ -447,7 +472,7 @@ impl Racer {
         let corridor = if let Some(corridor) = corridor {
             corridor
         } else {
-            // Where too many cones are missing or false, by the way of the first lap.
+            // If too many cones are missing or false, use the path of the first lap.
             let places: Vec<Point> = cones.iter().map(|cone| cone.position).collect();
             around_lap(&places, &driven, &self.parameters.lane)?
         };
@@ -457,7 +482,7 @@ impl Racer {
         let mut points: Vec<Point> = spline.resample(0.5).iter().map(|place| place.position).collect();
         without_kinks(&mut points);
         let profile = SpeedProfile::closed(&points, &p.limits)?;
-        // What the steering cannot follow comes of cones on the wrong side.
+        // A curvature beyond the steering results from cones on the wrong side.
         if profile.curvatures.iter().any(|bend| bend.abs() > p.tracker.curvature) {
             return Err(LineError::NoWay);
         }
@@ -465,7 +490,7 @@ impl Racer {
     }
 }
 
-/// Whether a corridor is a loop around a lap that was driven: the lap is near its middle everywhere, and it is nowhere else.
+/// Whether a corridor is a loop that follows a driven lap everywhere, and nothing else.
 fn holds(corridor: &Corridor, lap: &[Point]) -> bool {
     let stations = corridor.stations();
     let near = |a: Point, b: Point, most: f64| (a - b).norm_squared() < most * most;
@@ -478,10 +503,10 @@ fn holds(corridor: &Corridor, lap: &[Point]) -> bool {
         && stations.iter().all(driven)
 }
 
-/// Takes kinks out of a loop, where narrow places bend it at a point: no car turns its wheels so fast, and centimetres are enough.
+/// Removes kinks of a loop, caused by narrow places: no car steers so fast, and centimetres suffice.
 fn without_kinks(points: &mut [Point]) {
     let n = points.len();
-    // Towards the middle of the neighbours, and then as much outwards again, as bends would shrink.
+    // Towards the midpoints of the neighbours, and then outwards by as much, to preserve the size of bends.
     for share in [0.5, -0.51].repeat(ROUNDS) {
         let old = points.to_vec();
         for (i, point) in points.iter_mut().enumerate() {

@@ -5,15 +5,15 @@ use crate::io::sim::{SimOptions, Simulation, TICK};
 use crate::io::{Clock, Drive, Lidar, LidarScan, Odometry};
 use crate::random::Stream;
 
-/// What came of a race on a generated track.
+/// Result of a race on a generated track.
 #[derive(Debug)]
 struct Raced {
     verdict: RaceScore,
     phase: RacePhase,
     laps: usize,
-    /// Cones hit in the first lap.
+    /// Number of cones hit in the first lap.
     first: usize,
-    /// The greatest distance of a cone of the map from the nearest true one.
+    /// Maximum distance of a mapped cone from the nearest true one (m).
     error: f64,
 }
 
@@ -107,7 +107,7 @@ fn races_are_clean() {
     }
 }
 
-/// Takes a share of the cones away, and puts as many as another share beside the track, on both sides of it.
+/// Removes a fraction of the cones, and adds another fraction beside the track, on both sides.
 fn spoil(track: &mut ConeTrack, corridor: &Corridor, seed: u64, [missing, added]: [f64; 2]) {
     let mut random = Stream::new(seed).child("change", 0);
     let before = track.cones.len() as f64;
@@ -124,7 +124,7 @@ fn spoil(track: &mut ConeTrack, corridor: &Corridor, seed: u64, [missing, added]
     }
 }
 
-/// The seeds whose races of two laps are not clean.
+/// Seeds whose races of two laps are not clean.
 fn dirty(seeds: std::ops::Range<u64>, shares: [f64; 2]) -> Vec<(u64, Raced)> {
     let raced = |seed| {
         let GeneratedTrack { mut track, corridor } = generate(seed, &TrackOptions::drawn(seed)).unwrap();
@@ -156,7 +156,7 @@ fn missing_and_false_cones_are_borne() {
     assert!(dirty.len() <= 1, "{dirty:?}");
 }
 
-/// A car before a straight lane of so many pairs of cones, four metres from pair to pair.
+/// A car in front of a straight lane of cone pairs, four metres apart.
 fn on_a_strip(pairs: u32) -> (RaceOutcome, f64, f64) {
     let strip = |x: f64| [1.6, -1.6].map(|y| Cone::unknown(Point::new(x, y)));
     let cones = (0..pairs).map(|k| 4.0 * f64::from(k)).flat_map(strip).collect();
@@ -184,7 +184,7 @@ fn a_car_that_is_not_where_its_map_says_stops() {
     let metres = || world.truth().robot(0).unwrap().path_length;
     let mut racer = Racer::new(RacerParameters::default()).unwrap();
     let mut scan = LidarScan::default();
-    // Where the car believes to be leaps by some metres in the third lap, as after a bad correction of its odometry.
+    // The estimated pose leaps by some metres in the third lap, as after a wrong correction.
     let leap = |racer: &Racer| if racer.laps() < 2 { Pose::default() } else { Pose::new(4.0, 3.0, 0.4) };
     let (mut before, mut fast) = (0.0, 0.0);
     while car.now().unwrap() < 400.0 {
@@ -201,7 +201,7 @@ fn a_car_that_is_not_where_its_map_says_stops() {
         }
     }
     let gone = metres() - before;
-    // A second until it knows, then it brakes by 4 m/s²: it goes no farther than both take at its speed, and a tenth more for lags.
+    // It notices within a second and then brakes at 4 m/s²; a tenth is added for lags.
     let most = 1.1 * (fast + fast * fast / 8.0);
     assert!(racer.phase() == RacePhase::Lost && gone < most, "{:?} after {gone} of {most} m", racer.phase());
     assert!(corridor.length() > 2.0 * gone);

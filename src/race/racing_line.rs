@@ -6,14 +6,14 @@ use crate::ParameterError;
 use crate::geometry::{Point, cross};
 use crate::parameter::{require_finite, require_not_negative, require_positive};
 
-/// How a racing line is found.
+/// Parameters of the racing line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RacingLineParameters {
-    /// Metres that the line keeps from both edges: half the car's width, and what its controller needs.
+    /// Distance from both edges (m): half the car's width, plus a reserve for control errors.
     pub margin: f64,
-    /// Quadratic programs that are solved at most.
+    /// Maximum number of quadratic programs.
     pub iterations: usize,
-    /// The search ends when no point moves farther than so many metres.
+    /// Displacement of all points below which the search ends (m).
     pub tolerance: f64,
 }
 
@@ -24,7 +24,11 @@ impl Default for RacingLineParameters {
 }
 
 impl RacingLineParameters {
-    /// Fails with the name of the parameter that is out of range.
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    ///
+    /// If one is out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         require_not_negative("margin", self.margin)?;
         require_positive("tolerance", self.tolerance)
@@ -34,37 +38,39 @@ impl RacingLineParameters {
 /// A closed line within a corridor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RacingLine {
-    /// One point for each station.
+    /// One point per station.
     pub points: Vec<Point>,
-    /// Metres from the centre line to the point, positive to the left.
+    /// Offset of each point from the centre line, positive to the left (m).
     pub offsets: Vec<f64>,
-    /// The sum of squared curvature times length, in 1/m.
+    /// Bending energy: integral of the squared curvature (1/m).
     pub bending_energy: f64,
-    /// Quadratic programs that were solved.
+    /// Number of quadratic programs solved.
     pub iterations: usize,
 }
 
-/// The line of least curvature within a closed corridor: that with the least integral of the squared curvature over its
-/// length.
+/// Minimum-curvature line within a closed corridor: the one with the least integral of the squared curvature.
 ///
-/// The offsets from the centre line are the variables. The curvature at each point, that of the circle through it and its
-/// neighbours, is made linear around the present line; what results is a quadratic program with bounds, which is solved
-/// with O(n) work; its answer is the next line, or as much of the way to it as makes the line better (the method is that
-/// of F. Braghin et al., "Race driver model", 2008, and A. Heilmeier et al., "Minimum curvature trajectory planning and
-/// control for an autonomous race car", 2020, with the exact curvature in the place of that of a spline).
-///
-/// Fails where the corridor is narrower than two margins.
+/// The variables are the offsets from the centre line. The curvature at each point, that of the circle
+/// through it and its neighbours, is linearised about the present line; the resulting quadratic program with
+/// bounds takes O(n). Its solution is the next line, or as much of the step as improves the line. The method
+/// follows F. Braghin et al., "Race driver model", 2008, and A. Heilmeier et al., "Minimum curvature
+/// trajectory planning and control for an autonomous race car", 2020, with the exact curvature instead of
+/// that of a spline.
 ///
 /// ```
 /// use roverlab::race::{Corridor, RacingLineParameters, minimum_curvature};
 /// use roverlab::geometry::{Point, direction};
-/// // On a ring the best line is its outer edge.
+/// // On a ring, the best line is its outer edge.
 /// let ring: Vec<_> =
 ///     (0..90).map(|i| (Point::origin() + direction(f64::from(i) * 0.0698) * 20.0, 2.0, 3.0)).collect();
 /// let line = minimum_curvature(&Corridor::closed(&ring)?, &RacingLineParameters::default())?;
 /// assert!(line.offsets.iter().all(|offset| (offset + 2.0).abs() < 0.05));
 /// # Ok::<(), roverlab::race::LineError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the corridor is open, has fewer than five stations, or is narrower than two margins.
 pub fn minimum_curvature(
     corridor: &Corridor,
     parameters: &RacingLineParameters,
@@ -72,14 +78,18 @@ pub fn minimum_curvature(
     LineSolver::default().solve(corridor, parameters)
 }
 
-/// Solves for one racing line after the other with the same memory.
+/// Computes racing lines one after another, reusing its buffers.
 #[derive(Debug, Clone, Default)]
 pub struct LineSolver {
     qp: BoxSolver,
 }
 
 impl LineSolver {
-    /// What [`minimum_curvature`] answers.
+    /// As [`minimum_curvature`].
+    ///
+    /// # Errors
+    ///
+    /// As for [`minimum_curvature`].
     pub fn solve(
         &mut self,
         corridor: &Corridor,
@@ -90,8 +100,8 @@ impl LineSolver {
         Ok(self.solve_within(corridor, &corridor.free(parameters.margin)?, parameters))
     }
 
-    /// The line for a car of some outline: in a bend, its nose needs more room outside, and its tail inside. Where a track is too
-    /// narrow, the car goes through in the middle.
+    /// The line for a car with an outline: in a bend, its nose needs more room outside, its tail inside.
+    /// Where the track is too narrow, the car takes the middle.
     pub(super) fn solve_for(
         &mut self,
         corridor: &Corridor,
@@ -136,7 +146,7 @@ impl LineSolver {
         RacingLine { points, offsets, bending_energy: energy, iterations }
     }
 
-    /// The change of the offsets that is best for the linear model.
+    /// Solves the linearised problem for the change of the offsets.
     fn linear_step(
         &mut self,
         stations: &[CrossSection],
@@ -166,7 +176,7 @@ impl LineSolver {
                 }
             }
         }
-        // The energy is in 1/m and the entries are near 1/m³: so little that it decides only where nothing else does.
+        // A tiny regularisation that matters only where nothing else decides.
         for i in 0..n {
             matrix.add(i, i, 1e-9);
         }
@@ -185,7 +195,7 @@ fn check(corridor: &Corridor) -> Result<(), LineError> {
     if n < 5 { Err(LineError::TooFew { found: n, needed: 5 }) } else { Ok(()) }
 }
 
-/// The curvature at each point of a loop, in the mean with its neighbours.
+/// Curvature at each point of a loop, averaged with its neighbours.
 fn bends(points: &[Point]) -> Vec<f64> {
     let n = points.len();
     let own: Vec<f64> =
@@ -193,22 +203,25 @@ fn bends(points: &[Point]) -> Vec<f64> {
     (0..n).map(|i| (own[(i + n - 1) % n] + own[i] + own[(i + 1) % n]) / 3.0).collect()
 }
 
-/// The outline of a car around the point of it that is kept on a line.
+/// Outline of a car relative to the point that is kept on the line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CarOutline {
-    /// Half its width, in metres.
+    /// Half its width (m).
     pub half_width: f64,
-    /// Metres from the rear axle to its nose.
+    /// Distance from the rear axle to the nose (m).
     pub nose: f64,
-    /// Metres from the rear axle to the point on the line.
+    /// Distance from the rear axle to the point on the line (m).
     pub ahead: f64,
-    /// Metres to the middle of cones that are left over beside it: half the foot of a cone, and what controller and map are wrong
-    /// by.
+    /// Lateral clearance to the centre of cones (m): half the foot of a cone, plus errors of control and map.
     pub room: f64,
 }
 
 impl CarOutline {
-    /// Fails with the name of the number that is out of range.
+    /// Checks the outline.
+    ///
+    /// # Errors
+    ///
+    /// If a number is out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         require_positive("half width", self.half_width)?;
         require_finite("nose", self.nose)?;
@@ -216,9 +229,9 @@ impl CarOutline {
         require_not_negative("room", self.room)
     }
 
-    /// Metres that it needs to the right and to the left of its line, for a curvature of that.
+    /// Room required to the right and to the left of the line at a curvature (m).
     ///
-    /// Its rear axle rolls on a smaller circle than the point ahead of it, its nose on a larger one.
+    /// The rear axle runs on a smaller circle than the point ahead of it, the nose on a larger one.
     fn sides(&self, curvature: f64) -> [f64; 2] {
         let bend = curvature.abs();
         let straight = self.half_width + self.room;
@@ -233,7 +246,8 @@ impl CarOutline {
     }
 }
 
-/// Goes along a step as far as the energy falls: all the way, or a half, a quarter, ... The share; `None` if nowhere.
+/// Backtracking line search: applies the step, or a half, a quarter, ... of it. Returns the fraction; `None`
+/// if none improves the energy.
 fn improve(
     stations: &[CrossSection],
     free: &[[f64; 2]],
@@ -258,13 +272,13 @@ fn improve(
     None
 }
 
-/// The curvature of the circle through three points, positive to the left.
+/// Curvature of the circle through three points, positive to the left (1/m).
 pub(super) fn curvature([a, b, c]: [Point; 3]) -> f64 {
     let (p, q, r) = (b - a, c - b, c - a);
     2.0 * cross(p, q) / (p.norm_squared() * q.norm_squared() * r.norm_squared()).sqrt()
 }
 
-/// The curvature times the root of the length that it stands for.
+/// Curvature times the square root of its length element.
 fn residual(points: [Point; 3]) -> f64 {
     let [a, b, c] = points;
     let length = 0.5 * ((b - a).norm() + (c - b).norm());

@@ -1,10 +1,10 @@
-//! Where a car is by its odometry and by how its tyres slip.
+//! Dead reckoning with tyre slip.
 
 use super::tyres::Tyres;
 use crate::geometry::{Pose, Twist, math};
 use crate::world::CarDynamics;
 
-/// Adds up odometry, and what odometry does not know of: that the rear axle slides in bends.
+/// Accumulates odometry, and adds the sideslip of the rear axle in bends, which odometry does not measure.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Reckoning {
     last: Option<Pose>,
@@ -12,12 +12,12 @@ pub(super) struct Reckoning {
 }
 
 impl Reckoning {
-    /// Where the car is.
+    /// Estimated pose.
     pub(super) fn pose(&self) -> Pose {
         self.pose
     }
 
-    /// Takes in what odometry says now. Returns the metres that the car went by it.
+    /// Takes a pose by odometry. Returns the distance driven (m).
     pub(super) fn step(&mut self, odometry: Pose, speed: Twist, tyres: &Tyres) -> f64 {
         let step =
             self.last.replace(odometry).map_or(Pose::default(), |last| last.inverse().compose(&odometry));

@@ -1,14 +1,14 @@
 use super::corridor::Corridor;
 use crate::geometry::{Point, Pose};
 
-/// The times of a race, by the rules of Formula Student: two seconds more for every cone, ten for leaving the course.
+/// Result of a race, by the rules of Formula Student: a penalty of 2 s per cone and 10 s per excursion.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RaceScore {
-    /// Seconds of each lap that was completed.
+    /// Time of each completed lap (s).
     pub lap_times: Vec<f64>,
-    /// Times that the car left the course: all four wheels were outside.
+    /// Number of excursions: all four wheels outside the course.
     pub off_course: usize,
-    /// Cones that were knocked over.
+    /// Number of cones knocked over.
     pub cones_hit: usize,
 }
 
@@ -16,14 +16,33 @@ impl RaceScore {
     /// Seconds for a cone, and for leaving the course.
     pub const PENALTIES: [f64; 2] = [2.0, 10.0];
 
-    /// The sum of the lap times with what is added for cones and for leaving the course.
+    /// Sum of lap times and penalties (s).
     pub fn total(&self) -> f64 {
         let [cone, course] = Self::PENALTIES;
         self.lap_times.iter().sum::<f64>() + cone * self.cones_hit as f64 + course * self.off_course as f64
     }
 }
 
-/// Takes the time and looks whether a car stays on its track.
+/// Takes lap times, and checks whether a car stays on its track.
+///
+/// ```
+/// use roverlab::geometry::{Point, Pose, direction};
+/// use roverlab::race::{Corridor, Referee};
+/// let place = |degrees: u32| Point::origin() + direction(f64::from(degrees).to_radians()) * 20.0;
+/// let ring = Corridor::closed(&(0..90).map(|k| (place(4 * k), 1.5, 1.5)).collect::<Vec<_>>())?;
+/// let wheels = [(0.0, 0.6), (0.0, -0.6), (1.55, 0.6), (1.55, -0.6)].map(|(x, y)| Point::new(x, y));
+/// let mut referee = Referee::new(ring, wheels);
+/// // Twice around at 36 deg/s, timed from line crossing to line crossing; one cone falls.
+/// for step in 0..730 {
+///     let at = place(step);
+///     let heading = f64::from(step).to_radians() + 0.5 * std::f64::consts::PI;
+///     referee.see(f64::from(step) / 36.0, Pose::new(at.x, at.y, heading), usize::from(step > 500));
+/// }
+/// let score = referee.verdict();
+/// assert!((score.lap_times[0] - 10.0).abs() < 0.2 && score.off_course == 0);
+/// assert!((score.total() - score.lap_times.iter().sum::<f64>() - 2.0).abs() < 1e-9, "2 s for the cone");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Referee {
     corridor: Corridor,
@@ -31,33 +50,33 @@ pub struct Referee {
     verdict: RaceScore,
     nearest: Option<usize>,
     outside: bool,
-    /// When the line was crossed last.
+    /// Time of the last line crossing (s).
     started: Option<f64>,
-    /// Stations passed since.
+    /// Number of stations passed since.
     passed: i64,
     last: f64,
 }
 
 impl Referee {
-    /// A referee for a closed track whose line is at the first station, and for a car with wheels at these places of its
-    /// frame.
+    /// A referee for a closed track whose line is at the first station, and for a car with wheels at the
+    /// given positions in its frame.
     pub fn new(corridor: Corridor, wheels: [Point; 4]) -> Self {
         let verdict = RaceScore::default();
         Self { corridor, wheels, verdict, nearest: None, outside: false, started: None, passed: 0, last: 0.0 }
     }
 
-    /// What was seen so far.
+    /// Result so far.
     pub fn verdict(&self) -> &RaceScore {
         &self.verdict
     }
 
-    /// Where a car is at a time, and how many cones it has knocked over up to then.
+    /// Takes the pose of the car at a time, and the number of cones knocked over so far.
     pub fn see(&mut self, time: f64, pose: Pose, cones_hit: usize) {
         let n = self.corridor.stations().len();
         let middle = nalgebra::center(&self.wheels[0], &self.wheels[3]);
         let place = pose.to_world(middle);
         let before = self.nearest.unwrap_or_else(|| self.search(place, 0, n));
-        // A car does not leave a window of some metres between two looks.
+        // Between two calls, a car stays within a window of some metres.
         let now = self.search(place, before + n - WINDOW.min(n / 3), 2 * WINDOW.min(n / 3) + 1);
         self.nearest = Some(now);
         let step = (now + n + n / 2 - before) % n;
@@ -79,7 +98,7 @@ impl Referee {
         self.verdict.cones_hit = cones_hit;
     }
 
-    /// The station nearest to a place among some.
+    /// The station nearest to a point, among some.
     fn search(&self, place: Point, from: usize, count: usize) -> usize {
         let stations = self.corridor.stations();
         let n = stations.len();

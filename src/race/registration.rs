@@ -1,13 +1,13 @@
-//! Where cones that are seen at the end of a lap were seen at its beginning.
+//! Recognition of cones at the end of a lap that were seen at its beginning.
 
 use crate::geometry::{Point, Pose, Vector, cross, math, normalize_angle};
 
-/// What is known before some cones are found among others.
+/// Prior knowledge of a registration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Expected {
-    /// Where the car believes to be.
+    /// Estimated position of the car (m).
     pub(super) place: Point,
-    /// Metres, and radians, by which it may be wrong.
+    /// Possible error (m, rad).
     pub(super) wrong: (f64, f64),
 }
 
@@ -24,7 +24,7 @@ const LIKELY: f64 = 0.4;
 /// Metres between two cones that tell a direction.
 const ARM: std::ops::Range<f64> = 4.0..20.0;
 
-/// The motion that brings most of some points onto others, if it is plain which one. Takes O(n² m²) for n points onto m.
+/// The motion that maps most of some points onto others, if it is unambiguous. O(n² m²) for n points onto m.
 pub(super) fn register(points: &[Point], onto: &[Point], expected: Expected) -> Option<Pose> {
     let mut found: Vec<(f64, Pose)> =
         hypotheses(points, onto, expected).map(|motion| (score(points, onto, motion), motion)).collect();
@@ -34,7 +34,7 @@ pub(super) fn register(points: &[Point], onto: &[Point], expected: Expected) -> 
         |motion: &Pose| (motion.to_world(expected.place) - best.to_world(expected.place)).norm() > 2.0 * GATE;
     let rivals = || found.iter().filter(|(_, motion)| apart(motion));
     let rival = rivals().next().map_or(0.0, |(score, _)| *score);
-    // Of two that fit alike, the one by which the car is as good as where it believes to be.
+    // Of two equally good motions, prefer the one closer to the estimated position.
     let far = rivals().map(|(score, motion)| score * expected.likely(motion)).fold(0.0, f64::max);
     let again = pairs(points, onto, best).count();
     let enough = again >= FEWEST && again as f64 >= SHARE * points.len() as f64;
@@ -44,14 +44,14 @@ pub(super) fn register(points: &[Point], onto: &[Point], expected: Expected) -> 
 }
 
 impl Expected {
-    /// How likely a motion is before anything is seen, as a share of that of none.
+    /// Prior likelihood of a motion, relative to that of no motion.
     fn likely(&self, motion: &Pose) -> f64 {
         let way = (motion.to_world(self.place) - self.place).norm() / (LIKELY * self.wrong.0);
         math::exp(-0.5 * way * way)
     }
 }
 
-/// Motions that bring two points onto two others which are as far apart.
+/// Motions that map two points onto two others with the same distance.
 fn hypotheses(points: &[Point], onto: &[Point], expected: Expected) -> impl Iterator<Item = Pose> {
     let arms = |points: &[Point]| -> Vec<(Point, Vector)> {
         let all = points.iter().flat_map(|a| points.iter().map(move |b| (*a, b - a)));
@@ -69,14 +69,14 @@ fn hypotheses(points: &[Point], onto: &[Point], expected: Expected) -> impl Iter
     })
 }
 
-/// The motion that brings a point and the direction of an arm onto others.
+/// The motion that maps a point and the direction of an arm onto others.
 fn bringing(point: Point, arm: Vector, onto: Point, wanted: Vector) -> Pose {
     let turn = math::atan2(cross(arm, wanted), arm.dot(&wanted));
     let turned = Pose::new(0.0, 0.0, turn).to_world(point);
     Pose::new(onto.x - turned.x, onto.y - turned.y, turn)
 }
 
-/// Points with those that they come to lie on.
+/// Points with their counterparts.
 fn pairs<'p>(
     points: &'p [Point],
     onto: &'p [Point],
@@ -90,7 +90,7 @@ fn pairs<'p>(
     })
 }
 
-/// How many points come to lie on others, the nearer the better.
+/// Number of points with counterparts, weighted by proximity.
 fn score(points: &[Point], onto: &[Point], motion: Pose) -> f64 {
     let near = |(point, other): (Point, Point)| {
         1.0 - (motion.to_world(point) - other).norm_squared() / (GATE * GATE)
@@ -98,7 +98,7 @@ fn score(points: &[Point], onto: &[Point], motion: Pose) -> f64 {
     pairs(points, onto, motion).map(near).sum()
 }
 
-/// The motion with the least sum of squares for its pairs, a few times, as the pairs change with it.
+/// Least-squares motion of the pairs, iterated, because the pairs change with it.
 fn refined(points: &[Point], onto: &[Point], mut motion: Pose) -> Pose {
     for _ in 0..4 {
         let pairs: Vec<(Point, Point)> = pairs(points, onto, motion).collect();
@@ -110,7 +110,7 @@ fn refined(points: &[Point], onto: &[Point], mut motion: Pose) -> Pose {
     motion
 }
 
-/// The motion that brings the first points of pairs onto the second ones, by least squares.
+/// Least-squares motion that maps the first points of pairs onto the second.
 fn fitted(pairs: &[(Point, Point)]) -> Pose {
     let count = pairs.len() as f64;
     let sum =
@@ -127,8 +127,8 @@ fn fitted(pairs: &[(Point, Point)]) -> Pose {
     Pose::new(to.x - turned.x, to.y - turned.y, turn)
 }
 
-/// Takes a motion that is known at the end of a way out of all of it: headings change in proportion to `shares`, 0 to 1 from the
-/// first pose to the last, and what that leaves at the end is spread in the same way.
+/// Distributes a motion, known at the end of a path, over the whole path: headings change in proportion to
+/// `shares` (0 to 1 from the first pose to the last), and the remaining displacement is distributed likewise.
 pub(super) fn spread(way: &[Pose], shares: &[f64], motion: Pose) -> Vec<Pose> {
     let turn = normalize_angle(motion.heading);
     let mut turned: Vec<Pose> = Vec::with_capacity(way.len());
@@ -162,7 +162,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(crate::testing::cases(24))]
-        /// The cones around the start, shifted, a few of them missing: they are found, or nothing is.
+        /// The cones around the start, shifted, some missing: they are recognised correctly or not at all.
         #[test]
         fn a_start_is_found_again(seed in 0..500_u64, x in -4.0..4.0f64, y in -2.0..2.0f64, turn in -0.2..0.2f64) {
             let track = generate(seed, &TrackOptions::drawn(seed)).unwrap().track;
@@ -193,7 +193,7 @@ mod tests {
 
     #[test]
     fn even_rows_are_not_found() {
-        // Which cone is which, nothing tells, for a car that believes to be half way between.
+        // For a car that believes to be halfway between, the cones are ambiguous.
         let row: Vec<Point> =
             (0..20).map(|k| Point::new(3.0 * f64::from(k / 2), 3.0 * f64::from(k % 2))).collect();
         let shifted = |aside: f64| row[4..14].iter().map(|p| p + Vector::new(aside, 0.0)).collect::<Vec<_>>();
@@ -212,7 +212,7 @@ mod tests {
         let shifted = |aside: f64| row[4..14].iter().map(|p| p + Vector::new(aside, 0.0)).collect::<Vec<_>>();
         let found = register(&shifted(0.2), &row, LOST).unwrap();
         assert!((found.x + 0.2).abs() < 1e-6 && found.y.abs() < 1e-6, "{found:?}");
-        // Three metres off, cones that fit as well are as near.
+        // Three metres off, another assignment fits as well and is as near.
         assert_eq!(register(&shifted(3.0), &row, LOST), None);
     }
 }

@@ -20,13 +20,15 @@ const GAP_IN_BEND: (f64, f64) = (2.5, 0.6);
 const TURNING_BACK: (f64, f64) = (4.0, 2.4);
 
 impl CentreLine {
-    /// The loop round a track whose cones have colours, as those of a file: what a referee may judge by.
+    /// The closed track of coloured cones, such as those of a file: ground truth for a referee.
     ///
-    /// A loop that leads round a part of the track alone would be found as well where cones are missing. So it has to pass nearly all
-    /// coloured cones, blue ones on the left and yellow ones on the right, and must not cross itself. Where colours alone lead
-    /// to none that does, missing cones are bridged as a racer does it.
+    /// Where cones are missing, a search could also find a loop around a part of the track. Therefore the
+    /// loop must pass nearly all coloured cones, blue ones on its left and yellow ones on its right, and must
+    /// not cross itself. If colours alone lead to no such loop, missing cones are bridged as in a race.
     ///
-    /// Fails with what is wrong with the loop where there is none. Takes O(n log n) for n cones.
+    /// # Errors
+    ///
+    /// If there is no such loop: what is wrong with it. O(n log n) for n cones.
     pub fn round_track(cones: &[Cone], start: Pose) -> Result<Self, LineError> {
         let by_colour = |colour: f64| {
             let line =
@@ -41,7 +43,7 @@ impl CentreLine {
     }
 }
 
-/// Fails for a corridor that is not that of a track.
+/// Rejects a corridor that is not that of a track.
 fn check(corridor: &Corridor, cones: &[Cone]) -> Result<(), LineError> {
     if !corridor.is_closed() {
         return Err(LineError::Open { length: corridor.length().round() });
@@ -70,7 +72,7 @@ fn check(corridor: &Corridor, cones: &[Cone]) -> Result<(), LineError> {
     near.crossing().map_or(Ok(()), |at| Err(LineError::Crosses { x: at.x.round(), y: at.y.round() }))
 }
 
-/// Fails for an edge that has a gap in a bend: where the track goes there, nothing tells.
+/// Rejects an edge with a gap in a bend, where the course of the track is unknown.
 fn check_bends(edge: &[Point]) -> Result<(), LineError> {
     let n = edge.len();
     let leg = |k: usize| edge[(k + 1) % n] - edge[k % n];
@@ -91,7 +93,7 @@ fn check_bends(edge: &[Point]) -> Result<(), LineError> {
     })
 }
 
-/// Where a loop turns back.
+/// Point at which a loop turns back.
 fn turning_back(corridor: &Corridor) -> Option<Point> {
     let (metres, radians) = TURNING_BACK;
     let stations = corridor.stations();
@@ -104,7 +106,7 @@ fn turning_back(corridor: &Corridor) -> Option<Point> {
     (0..n).find(turns_back).map(|k| stations[k].position)
 }
 
-/// The stations of a loop by the places where they are.
+/// Stations of a loop, indexed by position.
 struct Near<'a> {
     stations: &'a [CrossSection],
     cells: BTreeMap<(i64, i64), Vec<usize>>,
@@ -128,7 +130,7 @@ impl<'a> Near<'a> {
         cells.filter_map(|cell| self.cells.get(&cell)).flatten().copied()
     }
 
-    /// The station nearest to a place, and metres from it to the place, positive to the left.
+    /// The station nearest to a point, and the signed distance, positive to the left (m).
     fn nearest(&self, place: Point) -> Option<(&CrossSection, f64)> {
         let away = |index: &usize| (self.stations[*index].position - place).norm_squared();
         let index = self.around(place).min_by(|a, b| away(a).total_cmp(&away(b)))?;
@@ -137,7 +139,7 @@ impl<'a> Near<'a> {
         Some((station, offset.norm().copysign(station.normal.dot(&offset))))
     }
 
-    /// Where the loop crosses itself.
+    /// Point at which the loop crosses itself.
     fn crossing(&self) -> Option<Point> {
         let n = self.stations.len();
         let piece = |index: usize| {
@@ -166,7 +168,7 @@ mod tests {
     use crate::race::{ConeColour, GeneratedTrack, TrackOptions, generate};
     use crate::random::Stream;
 
-    /// A generated track as a file with cones missing and with others added: what is read of it, and the truth.
+    /// Reads a generated track with cones missing and added. Returns the length found and the true one.
     fn spoiled(seed: u64, missing: f64, added: f64) -> (Result<f64, LineError>, f64) {
         let GeneratedTrack { track, corridor } = generate(seed, &TrackOptions::drawn(seed)).unwrap();
         let start = track.start_pose().unwrap();
@@ -183,7 +185,7 @@ mod tests {
         (CentreLine::round_track(&cones, start).map(|line| line.corridor.length()), corridor.length())
     }
 
-    /// The loops that are read of spoiled tracks, of how many, and those that are wrong.
+    /// Number of loops read from spoiled tracks, number of tracks, and descriptions of wrong loops.
     fn read(seeds: std::ops::Range<u64>) -> (usize, usize, Vec<String>) {
         let (mut read, mut all, mut wrong) = (0, 0, Vec::new());
         let mut refusals = BTreeMap::<String, usize>::new();
@@ -192,7 +194,7 @@ mod tests {
             {
                 let (found, truth) = spoiled(seed, missing, added);
                 all += 1;
-                // A middle that is smoothed through tight bends is a little shorter than the one that was generated.
+                // A smoothed centre line is slightly shorter in tight bends than the generated one.
                 let truth =
                     spoiled(seed, 0.0, 0.0).0.map_or(truth, |whole| whole.clamp(0.95 * truth, 1.05 * truth));
                 match found {

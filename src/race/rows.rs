@@ -1,9 +1,9 @@
-//! The rows of cones that a lane lies between, followed from cone to cone from where the car is: a way that passes through one of
-//! them leaves the track.
+//! The rows of cones on both sides of a lane, followed from cone to cone, starting at the car. A path that
+//! passes through a row leaves the track.
 //!
-//! Both are followed together, as it takes both to know either one: from a pair of a left and a right cone to the next pair, of
-//! which one cone is new. So a row can turn sharply around one cone where the other one goes around it, and goes over to the other
-//! edge nowhere.
+//! Both rows are followed together, because each supports the other: from a pair of a left and a right cone
+//! to the next pair, which has one new cone. A row may thus turn sharply around one cone while the other goes
+//! around it, and never changes over to the other edge.
 
 use super::cone::Cone;
 use super::legs::{Leg, legs_from};
@@ -13,18 +13,18 @@ use crate::geometry::{Point, Pose, Vector, angle_difference, cross, math};
 #[cfg(test)]
 mod tests;
 
-/// How rows are followed.
+/// Parameters of the rows.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RowParameters {
-    /// Metres from cone to cone at most, where one is missing.
+    /// Maximum distance between cones, with one missing (m).
     pub(super) reach: f64,
-    /// Metres from the middle of the lane to its edge, about.
+    /// Approximate distance from the centre line to an edge (m).
     pub(super) half_width: f64,
-    /// The least that this may be.
+    /// Minimum of that distance (m).
     pub(super) narrowest: f64,
-    /// Metres by which a cone of an edge may stand off it.
+    /// Maximum distance of a cone from its edge (m).
     pub(super) loose: f64,
-    /// Radians by which a row turns at most at one cone.
+    /// Maximum turn of a row at one cone (rad).
     pub(super) sharpest: f64,
 }
 
@@ -54,18 +54,18 @@ const DEAREST: f64 = 2.4;
 /// Rows that are told of at most, where cones may be those of one edge or of the other.
 const READINGS: usize = 4;
 
-/// The end of a row.
+/// End of a row.
 #[derive(Debug, Clone, Copy)]
 struct End {
-    /// `None` where a row begins without a cone.
+    /// `None` if a row begins without a cone.
     cone: Option<usize>,
     place: Point,
     heading: f64,
-    /// What the next cone is worth.
+    /// Weight of the next cone.
     share: f64,
 }
 
-/// A place by which a car came, and the unit vector along its way.
+/// A point of the car's earlier path, and the unit tangent.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Passage {
     pub(super) place: Point,
@@ -78,7 +78,7 @@ impl From<Pose> for Passage {
     }
 }
 
-/// A left and a right row, by their ends, and how they got there.
+/// A left and a right row, given by their ends, with the predecessor.
 #[derive(Debug, Clone, Copy)]
 struct Pair {
     ends: [End; 2],
@@ -86,17 +86,17 @@ struct Pair {
     parent: Option<usize>,
 }
 
-/// The rows of a lane.
+/// Rows of a lane.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Rows {
-    /// The left and the right one: their cones, by their indices, in their order along the lane.
+    /// Indices of the cones of the left and the right row, in order along the lane.
     pub(super) edges: [Vec<usize>; 2],
-    /// How much they look like the edges of a lane, about a cone's worth for each of theirs.
+    /// Score as edges of a lane, about one per cone.
     pub(super) worth: f64,
 }
 
 impl Rows {
-    /// On which side of the lane each of so many cones is, 1 for left, 0 for those of no row.
+    /// Side of each cone, 1 for left, -1 for right, 0 for cones of no row.
     pub(super) fn sides(&self, cones: usize) -> Vec<i8> {
         let mut sides = vec![0; cones];
         for (edge, side) in self.edges.iter().zip([1, -1]) {
@@ -108,11 +108,11 @@ impl Rows {
     }
 }
 
-/// The rows on the left and on the right of a lane, in up to four ways in which cones can be read, the best first: each two of them
-/// have some cone at different edges.
+/// The rows left and right of a lane, in up to four readings, best first; any two readings assign some cone
+/// to different edges.
 ///
-/// `places` is where the car was and is, oldest first, and `earlier` the way by which it came. A row ends where no cone goes on with
-/// it. Takes O(n²) for n cones.
+/// `places` are the previous poses of the car and the present one, oldest first; `earlier` is its earlier
+/// path. A row ends where no cone continues it. O(n²) for n cones.
 pub(super) fn rows(cones: &[Cone], places: &[Pose], earlier: &[Passage], p: &RowParameters) -> Vec<Rows> {
     let Some(car) = places.last() else { return vec![Rows::default()] };
     let mut search = Search::new(cones, *car, earlier, p);
@@ -130,23 +130,23 @@ impl Pair {
     }
 }
 
-/// A leg by which one of the rows of a pair may go on.
+/// A leg that may extend one row of a pair.
 #[derive(Debug, Clone, Copy)]
 struct Step {
-    /// The pair, as one of those that are followed.
+    /// Index of the pair in the beam.
     from: usize,
     side: usize,
     leg: usize,
-    /// What it costs along its row, and what the pair with it is worth at most.
+    /// Cost along its row; `most` is an upper bound of the new pair's score.
     cost: f64,
     most: f64,
 }
 
 struct Search<'c> {
     cones: &'c [Cone],
-    /// From each cone to those that may come next.
+    /// Legs from each cone to possible next ones.
     legs: Vec<Vec<Leg>>,
-    /// From where the left and the right row begin without a cone to their first ones.
+    /// Legs to the first cones of the left and the right row, if these begin without a cone.
     first: [Vec<Leg>; 2],
     earlier: &'c [Passage],
     p: &'c RowParameters,
@@ -160,7 +160,7 @@ impl<'c> Search<'c> {
         Self { cones, legs, first, earlier, p, pairs: Vec::new() }
     }
 
-    /// The pairs beside the car, or beside where it was.
+    /// Starts with pairs beside the car, or beside its previous poses.
     fn begin(&mut self, places: &[Pose], car: Pose) {
         let [left, right] = SIDES.map(|side| self.seeds(places, car, side));
         for (left, worth) in &left {
@@ -173,7 +173,7 @@ impl<'c> Search<'c> {
         }
     }
 
-    /// Cones beside the car, or beside where it was, with which a row may begin, those farthest back; or none.
+    /// Cones with which a row may begin, beside the car or its previous poses, farthest back first; or none.
     fn seeds(&self, places: &[Pose], car: Pose, side: f64) -> Vec<(End, f64)> {
         let p = self.p;
         let mut found: Vec<(usize, End, f64)> = Vec::new();
@@ -196,15 +196,16 @@ impl<'c> Search<'c> {
         found.into_iter().take(SEEDS).map(|(_, end, worth)| (end, worth)).chain([(none, -1.0)]).collect()
     }
 
-    /// The best pairs that may come after some, no two of the same cones; their places.
+    /// Indices of the best successors of some pairs, no two with the same cones.
     ///
-    /// Most of what a leg costs takes long to find out, and is found out of those alone that may be among the best.
+    /// Most costs are expensive to compute, so they are computed only for candidates that may be among the
+    /// best.
     fn onward(&mut self, beam: &[usize]) -> Vec<usize> {
         let rows: Vec<[Row; 2]> = beam.iter().map(|&pair| [0, 1].map(|side| self.row(pair, side))).collect();
         let mut steps = (0..beam.len()).flat_map(|from| self.steps(beam, from)).collect::<Vec<Step>>();
         steps.sort_by(|a, b| b.most.total_cmp(&a.most));
         let mut steps = steps.into_iter().peekable();
-        // The best one last.
+        // The best one is last.
         let mut found: Vec<Pair> = Vec::new();
         let mut kept: Vec<[Option<usize>; 2]> = Vec::with_capacity(BEAM);
         while kept.len() < BEAM {
@@ -227,7 +228,7 @@ impl<'c> Search<'c> {
         (self.pairs.len() - kept.len()..self.pairs.len()).collect()
     }
 
-    /// The legs by which a pair may go on.
+    /// Legs that may extend a pair.
     fn steps<'s>(&'s self, beam: &[usize], from: usize) -> impl Iterator<Item = Step> + 's {
         let pair = &self.pairs[beam[from]];
         (0..2).flat_map(move |side| {
@@ -245,7 +246,7 @@ impl<'c> Search<'c> {
         })
     }
 
-    /// The cones of a pair that has gone on by a leg.
+    /// Cones of a pair after a leg.
     fn cones_after(&self, parent: usize, step: &Step) -> [Option<usize>; 2] {
         let pair = &self.pairs[parent];
         let leg = &self.legs_of(&pair.ends[step.side], step.side)[step.leg];
@@ -254,12 +255,12 @@ impl<'c> Search<'c> {
         cones
     }
 
-    /// The legs that begin where a row ends.
+    /// Legs that begin at the end of a row.
     fn legs_of(&self, end: &End, side: usize) -> &[Leg] {
         end.cone.map_or(&self.first[side], |cone| &self.legs[cone])
     }
 
-    /// A pair with its cone of one side replaced by that at the end of a leg. `None` where that cannot be.
+    /// A pair after a leg; `None` if the leg is impossible.
     fn with(&self, parent: usize, rows: &[Row; 2], step: &Step) -> Option<Pair> {
         let (pair, side) = (&self.pairs[parent], step.side);
         let own = &pair.ends[side];
@@ -286,11 +287,11 @@ impl<'c> Search<'c> {
         Some(Pair { ends, worth, parent: Some(parent) })
     }
 
-    /// What it costs that a row goes on along a leg.
+    /// Cost of a leg along its own row.
     fn cost_along(&self, pair: &Pair, side: usize, leg: &Leg) -> f64 {
         let own = &pair.ends[side];
         let turn = angle_difference(leg.heading, own.heading);
-        // Where there is a pair, a row may turn sharply to where the other one goes already.
+        // In a pair, a row may turn sharply towards the direction of the other one.
         let slant = if self.is_paired(pair) {
             turn.abs().min(angle_difference(leg.heading, pair.ends[1 - side].heading).abs())
         } else {
@@ -299,7 +300,7 @@ impl<'c> Search<'c> {
         leg_cost(slant, leg.length)
     }
 
-    /// What it costs that the other row is where it is beside a leg. `None` where that is too near.
+    /// Cost of a leg relative to the other row; `None` if that is too close.
     fn cost_beside(&self, pair: &Pair, other: &Row, side: usize, leg: &Leg) -> Option<f64> {
         let (narrowest, place) = (self.p.narrowest, leg.ends[1]);
         let width = other.distance_to(place);
@@ -313,7 +314,7 @@ impl<'c> Search<'c> {
         Some(taken + 16.0 * narrow * narrow + self.cost_apart(pair, side, leg))
     }
 
-    /// The part of that for how far apart the ends of both rows are.
+    /// The part of that cost due to the distance between the ends of both rows.
     fn cost_apart(&self, pair: &Pair, side: usize, leg: &Leg) -> f64 {
         let apart = (leg.ends[1] - pair.ends[1 - side].place).norm();
         if apart >= self.widest() {
@@ -323,26 +324,25 @@ impl<'c> Search<'c> {
         wide * wide
     }
 
-    /// Metres between the cones of a pair at most: where they are farther apart, a second lane is between them, and one row is
-    /// missing.
+    /// Maximum distance between the cones of a pair (m).
     fn widest(&self) -> f64 {
         2.0 * OVERLAPS * self.p.half_width
     }
 
-    /// Whether the cones of a pair stand opposite each other: else one row is missing.
+    /// Whether the cones of a pair are opposite each other; otherwise one row is missing.
     fn is_paired(&self, pair: &Pair) -> bool {
         (pair.ends[0].place - pair.ends[1].place).norm() < self.widest()
     }
 
-    /// Whether the lane beside a leg is the way by which the car came, the wrong way round.
+    /// Whether the lane beside a leg is the car's earlier path in the opposite direction.
     fn leads_back(&self, side: usize, leg: &Leg) -> bool {
-        // The middle of the lane is to the right of its left row.
+        // The centre line is to the right of the left row.
         let inwards = Vector::new(leg.along.y, -leg.along.x) * (SIDES[side] * self.p.half_width);
         let place = nalgebra::center(&leg.ends[0], &leg.ends[1]) + inwards;
         leads_back(Passage { place, ahead: leg.along }, self.earlier, self.p.half_width)
     }
 
-    /// A pair and those before it.
+    /// A pair and its predecessors.
     fn back(&self, pair: usize) -> impl Iterator<Item = &Pair> {
         std::iter::successors(Some(&self.pairs[pair]), |pair| pair.parent.map(|parent| &self.pairs[parent]))
     }
@@ -359,7 +359,7 @@ impl<'c> Search<'c> {
         Row { ends }
     }
 
-    /// The rows that are worth most, and those that read some of their cones otherwise.
+    /// The rows with the highest score, and those that assign some cones differently.
     fn readings(&self) -> Vec<Rows> {
         let mut order: Vec<usize> = (0..self.pairs.len()).collect();
         order.sort_by(|&a, &b| self.pairs[b].worth.total_cmp(&self.pairs[a].worth));
@@ -391,13 +391,13 @@ impl<'c> Search<'c> {
     }
 }
 
-/// A row, the last cone first.
+/// A row, last cone first.
 struct Row {
     ends: Vec<End>,
 }
 
 impl Row {
-    /// Whether it has a cone already.
+    /// Whether it contains a cone.
     fn holds(&self, cone: usize) -> bool {
         self.ends.iter().any(|end| end.cone == Some(cone))
     }
@@ -407,24 +407,24 @@ impl Row {
         self.ends.windows(2).map(|ends| [ends[1].place, ends[0].place])
     }
 
-    /// Metres from a point.
+    /// Distance to a point (m).
     fn distance_to(&self, point: Point) -> f64 {
         let end = (self.ends[0].place - point).norm();
         let away = |[a, b]: [Point; 2]| crate::geometry::Segment::new(a, b).distance_to(point);
         self.legs().map(away).fold(end, f64::min)
     }
 
-    /// Whether a leg passes through it.
+    /// Whether a leg crosses it.
     fn is_crossed_by(&self, leg: [Point; 2]) -> bool {
         self.legs().any(|other| passes(leg, other))
     }
 
-    /// How far a cone, to which a leg would cost so much, goes on better with this row, 0 to 1.
+    /// How much better a cone would continue this row than by a leg of cost `own`, 0 to 1.
     fn takes(&self, cone: Point, own: f64, reach: f64) -> f64 {
         let mut better = BETTER[0];
         for end in &self.ends {
             let length = (cone - end.place).norm();
-            // Most legs are too long to be better however straight on they lead.
+            // Most legs are too long to be better, however straight.
             if own - FAR * length > better
                 && let Some(cost) = end.cost_to(cone, reach)
             {
@@ -436,7 +436,7 @@ impl Row {
 }
 
 impl End {
-    /// What a leg from here to a cone costs. `None` where nothing is known of how the row goes here, and beyond reach.
+    /// Cost of a leg to a cone; `None` beyond reach, or if the direction of the row is not yet known.
     fn cost_to(&self, cone: Point, reach: f64) -> Option<f64> {
         let leg = cone - self.place;
         let known = self.cone.is_some() && self.share < 1.0 && leg.norm() < reach;
@@ -444,17 +444,17 @@ impl End {
     }
 }
 
-/// What it costs that a leg turns by some radians, and that it is so long.
+/// Cost of a leg's turn and length.
 fn leg_cost(turn: f64, length: f64) -> f64 {
     SLANT * turn * turn + FAR * length
 }
 
-/// Where a row begins without a cone beside a car, on its left or on its right.
+/// Start of a row without a cone, beside the car.
 fn beside(car: Pose, side: f64, p: &RowParameters) -> Point {
     car.to_world(Point::new(0.0, side * p.half_width))
 }
 
-/// Whether the way from one point to another passes through a leg.
+/// Whether the segment from one point to another crosses a leg.
 pub(super) fn passes([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
     let side = |from: Point, to: Point, point: Point| cross(to - from, point - from) > 0.0;
     side(a, b, c) != side(a, b, d) && side(c, d, a) != side(c, d, b)
@@ -466,7 +466,8 @@ const BACK: f64 = -0.8;
 /// Half widths between the middles of a lane and of what is no lane, as it is partly the same: less than two lie between two lanes.
 const OVERLAPS: f64 = 1.8;
 
-/// Whether a lane with its middle at a place is the one by which the car came there earlier, or overlaps it, the wrong way round.
+/// Whether a lane with its centre at a point coincides with, or overlaps, the car's earlier path in the
+/// opposite direction.
 pub(super) fn leads_back(middle: Passage, earlier: &[Passage], half_width: f64) -> bool {
     let overlap = OVERLAPS * half_width;
     let near = |other: &&Passage| (other.place - middle.place).norm_squared() < overlap * overlap;

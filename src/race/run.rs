@@ -2,11 +2,25 @@ use std::ops::ControlFlow;
 
 use super::event::{EventPhase, EventRacer};
 use super::racer::{RacePhase, Racer};
-use crate::geometry::Twist;
-use crate::io::control::{Behaviour, Decision, LidarObservation, Senses, halts};
-use crate::io::{Lidar, Odometry, Result};
+use super::sight::{ConeSighting, sightings};
+use crate::geometry::{Pose, Twist};
+use crate::io::control::{Behaviour, Decision, Senses, halts};
+use crate::io::{Lidar, LidarScan, Odometry, Result};
 
-/// How a race, or an event, ended.
+/// Observation of a racer.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RaceObservation {
+    /// Odometry pose.
+    pub odometry: Pose,
+    /// Odometry speed.
+    pub speed: Twist,
+    /// Cones detected by lidar or camera.
+    pub cones: Vec<ConeSighting>,
+    /// Scan with the cones; unused with a camera.
+    pub scan: LidarScan,
+}
+
+/// How a race or an event ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum RaceOutcome {
@@ -14,19 +28,19 @@ pub enum RaceOutcome {
     Finished,
     /// It was lost, and stands.
     Lost,
-    /// The time was over first.
+    /// The time limit was exceeded.
     TimedOut,
-    /// Who watched had seen enough.
+    /// The observer stopped it.
     Stopped,
 }
 
 halts!(RaceOutcome { Finished: "the race is finished", Lost: "the car is lost" });
 
-/// Makes a racer with phases a behaviour of cars with a lidar.
+/// Implements the behaviour traits for a racer with phases.
 macro_rules! races {
     ($racer:ident, $phase:ident) => {
         impl Behaviour for $racer {
-            type Observation = LidarObservation;
+            type Observation = RaceObservation;
             type Command = Twist;
             type Outcome = RaceOutcome;
 
@@ -34,8 +48,8 @@ macro_rules! races {
                 self.parameters.period
             }
 
-            fn step(&mut self, _time: f64, seen: &LidarObservation) -> Decision<Self> {
-                let command = $racer::step(self, seen.odometry, seen.speed, &seen.scan);
+            fn step(&mut self, _time: f64, seen: &RaceObservation) -> Decision<Self> {
+                let command = self.decide(seen.odometry, seen.speed, &seen.cones);
                 Ok(match self.phase() {
                     _ if !self.is_done(seen.speed) => ControlFlow::Continue(command),
                     $phase::Lost => ControlFlow::Break(RaceOutcome::Lost),
@@ -45,8 +59,11 @@ macro_rules! races {
         }
 
         impl<R: Odometry + Lidar + ?Sized> Senses<R> for $racer {
-            fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut LidarObservation) -> Result<()> {
-                seen.read(robot)
+            fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut RaceObservation) -> Result<()> {
+                robot.scan_into(&mut seen.scan)?;
+                seen.cones = sightings(&seen.scan);
+                (seen.odometry, seen.speed) = (robot.pose()?, robot.speed()?);
+                Ok(())
             }
         }
     };

@@ -1,4 +1,4 @@
-//! On which side of a way that was driven cones stand.
+//! Sides of a driven path on which cones stand.
 
 use super::cone::Cone;
 use crate::geometry::{Point, Vector, cross};
@@ -6,8 +6,8 @@ use crate::geometry::{Point, Vector, cross};
 /// Legs of a way that are looked at together.
 const STRETCH: usize = 12;
 
-/// On which side of a way that was driven before each cone is, 1 for left: by the leg that is nearest to it. Ways whose ends are
-/// near each other are closed. Nothing for a way of less than two points.
+/// Side of each cone relative to a driven path, 1 for left, by the nearest leg of the path. Paths whose ends
+/// are close together are treated as closed. Empty for paths of fewer than two points.
 pub(super) fn sides(cones: &[Cone], way: &[Point]) -> Vec<i8> {
     let [first, .., last] = way else { return Vec::new() };
     let n = way.len();
@@ -17,7 +17,7 @@ pub(super) fn sides(cones: &[Cone], way: &[Point]) -> Vec<i8> {
     cones.iter().map(|cone| side_of(&stretches, cone.position)).collect()
 }
 
-/// A leg of a way, and the square of its length upside down.
+/// A leg of a path, and the inverse of its squared length.
 #[derive(Debug, Clone, Copy)]
 struct Leg {
     from: Point,
@@ -32,7 +32,7 @@ impl Leg {
     }
 }
 
-/// Some legs, and a disc in which they all are.
+/// Several legs, and a disc that contains them.
 struct Stretch<'l> {
     legs: &'l [Leg],
     middle: Point,
@@ -48,10 +48,10 @@ impl<'l> Stretch<'l> {
     }
 }
 
-/// The leg of a way that is nearest to a point.
+/// The leg of a path nearest to a point.
 struct Nearest {
     squared: f64,
-    /// Along the leg, and from where it begins to the point.
+    /// The leg; `away` leads from its start to the point.
     along: Vector,
     away: Vector,
 }
@@ -71,7 +71,7 @@ impl Nearest {
 
 fn side_of(stretches: &[Stretch], point: Point) -> i8 {
     let mut nearest = Nearest { squared: f64::INFINITY, along: Vector::zeros(), away: Vector::zeros() };
-    // What is farther than the whole of a disc is needs no look. What is no number is not farther.
+    // Skip stretches whose disc is farther away; NaN is not farther.
     let farthest = |stretch: &Stretch| (point - stretch.middle).norm() + stretch.radius;
     let bound = stretches.iter().map(farthest).fold(f64::INFINITY, f64::min);
     for stretch in stretches {

@@ -4,21 +4,21 @@ use super::cone::ConeColour;
 use crate::geometry::{Point, direction, math};
 use crate::io::LidarScan;
 
-/// Something that a scan shows.
+/// A detection in a scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConeSighting {
-    /// Its middle in the robot's frame.
+    /// Centre, in the robot frame (m).
     pub position: Point,
-    /// Metres from its first point to its last.
+    /// Distance from its first to its last point (m).
     pub size: f64,
-    /// How many of the beams that a cone would stop it has stopped, 0 to 1; 0 of what [most likely is
-    /// none](super::CameraSight::fuse) by its colour.
+    /// Fraction of the expected beams that hit it, 0 to 1; 0 if its colour shows that it is [most likely no
+    /// cone](super::CameraSight::fuse).
     pub confidence: f64,
-    /// Metres from the sensor.
+    /// Distance from the sensor (m).
     pub range: f64,
-    /// How far its place may be wrong, in metres.
+    /// Possible error of its position (m).
     pub error: f64,
-    /// Its colour, where that is seen.
+    /// Its colour, if visible.
     pub colour: ConeColour,
 }
 
@@ -26,7 +26,7 @@ impl ConeSighting {
     /// Metres that no cone is wide.
     pub const WIDEST_CONE: f64 = 0.45;
 
-    /// Whether it is as small as a cone.
+    /// Whether it is small enough for a cone.
     pub fn is_cone(&self) -> bool {
         self.size < Self::WIDEST_CONE
     }
@@ -39,10 +39,10 @@ const BLIND: f64 = 0.05;
 /// Metres from point to point within one thing.
 const STEP: f64 = 0.3;
 
-/// The things in a scan: runs of beams whose ends are near each other. One beam in between may miss. O(n).
+/// Objects in a scan: runs of beams with adjacent ends, where single beams may miss. O(n).
 ///
-/// What is small because something nearer hides the rest of it is left out: that may be a part of anything, such as of the side of
-/// a car, and looks like a cone.
+/// Objects that appear small because something nearer hides a part of them are omitted: they may be a part of
+/// anything, such as the side of a car, but look like cones.
 ///
 /// ```
 /// use roverlab::race::sightings;
@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn the_side_of_a_car_is_no_row_of_cones() {
-        // From the corner at (6, 0.7) on, beams meet the side ever farther from each other.
+        // From the corner at (6, 0.7) on, hits on the side are increasingly far apart.
         let step = 0.01;
         let wall = |beam: i32| {
             let ray = direction(step * f64::from(beam));
@@ -173,7 +173,7 @@ mod tests {
     fn neighbours_are_told_apart() {
         let found = sightings(&scan_of(&[Point::new(5.0, 0.0), Point::new(5.0, 0.4), Point::new(9.0, 0.3)]));
         assert_eq!(found.len(), 3);
-        // The third one stands in the shadow of the first.
+        // The third one is in the shadow of the first.
         let found = sightings(&scan_of(&[Point::new(5.0, 0.0), Point::new(5.0, 0.4), Point::new(9.0, 0.1)]));
         assert_eq!(found.len(), 2);
         assert!(sightings(&LidarScan::default()).is_empty());

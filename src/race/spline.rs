@@ -2,7 +2,7 @@ use super::banded::CyclicBand;
 use super::error::LineError;
 use crate::geometry::{Point, Vector, cross};
 
-/// A cubic spline through points, closed to a loop, over the lengths of the chords between them: curvature is continuous.
+/// A closed cubic spline through points, parametrised by chord length, with continuous curvature.
 ///
 /// ```
 /// use roverlab::race::ClosedSpline;
@@ -16,23 +16,27 @@ pub struct ClosedSpline {
     points: Vec<Point>,
     /// Second derivatives at the points.
     second: Vec<Vector>,
-    /// Lengths of the chords, from each point to the next.
+    /// Chord lengths, from each point to the next (m).
     chords: Vec<f64>,
 }
 
-/// A place on a spline.
+/// A point on a spline.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SplinePoint {
-    /// Where it is.
+    /// Position (m).
     pub position: Point,
-    /// The first derivative; its length is near 1.
+    /// First derivative; its length is close to 1.
     pub tangent: Vector,
-    /// The curvature in 1/m, positive to the left.
+    /// Curvature, positive to the left (1/m).
     pub curvature: f64,
 }
 
 impl ClosedSpline {
-    /// The spline through at least 4 points; the last one is joined to the first. O(n).
+    /// The spline through at least four points; the last one is joined to the first. O(n).
+    ///
+    /// # Errors
+    ///
+    /// If there are fewer than four points, or adjacent ones coincide.
     pub fn through(points: &[Point]) -> Result<Self, LineError> {
         let n = points.len();
         if n < 4 {
@@ -59,12 +63,12 @@ impl ClosedSpline {
         Ok(Self { points: points.to_vec(), second, chords })
     }
 
-    /// The pieces between points.
+    /// Number of pieces between points.
     pub fn pieces(&self) -> usize {
         self.points.len()
     }
 
-    /// The place at a share of 0 to 1 of a piece.
+    /// The point at a fraction (0 to 1) of a piece.
     pub fn at(&self, piece: usize, share: f64) -> SplinePoint {
         let n = self.points.len();
         let (i, j) = (piece % n, (piece + 1) % n);
@@ -79,13 +83,13 @@ impl ClosedSpline {
         SplinePoint { position, tangent, curvature: cross(tangent, bend) / (speed * speed * speed) }
     }
 
-    /// Places at even distances of about `step` metres along the whole loop. Each has the same length of the curve up to the
-    /// next one, up to the error of Simpson's rule.
+    /// Points at equal distances of about `step` metres along the whole loop, equal up to the error of
+    /// Simpson's rule.
     pub fn resample(&self, step: f64) -> Vec<SplinePoint> {
         self.even(step).map(|(piece, share)| self.at(piece, share)).collect()
     }
 
-    /// The same as pieces, shares of them, and places.
+    /// The same, as pieces, fractions and positions.
     pub(super) fn resample_with_pieces(&self, step: f64) -> Vec<(usize, f64, Point)> {
         self.even(step).map(|(piece, share)| (piece, share, self.at(piece, share).position)).collect()
     }
@@ -106,12 +110,13 @@ impl ClosedSpline {
         })
     }
 
-    /// The length of the loop in metres.
+    /// Length of the loop (m).
     pub fn length(&self) -> f64 {
         (0..self.pieces()).map(|piece| self.length_to(piece, 1.0)).sum()
     }
 
-    /// The integral of the squared curvature over the length, in 1/m, by Simpson's rule with eight places to a piece.
+    /// Bending energy: integral of the squared curvature (1/m), by Simpson's rule with eight intervals per
+    /// piece.
     pub fn bending_energy(&self) -> f64 {
         const PARTS: usize = 8;
         let integrand = |piece, share| {
@@ -132,7 +137,7 @@ impl ClosedSpline {
             .sum()
     }
 
-    /// Metres from the beginning of a piece to a share of it.
+    /// Arc length from the start of a piece to a fraction of it (m).
     fn length_to(&self, piece: usize, share: f64) -> f64 {
         const PARTS: usize = 4;
         let speed = |k: usize| self.at(piece, share * k as f64 / PARTS as f64).tangent.norm();
@@ -140,7 +145,7 @@ impl ClosedSpline {
         sum * self.chords[piece] * share / (3.0 * PARTS as f64)
     }
 
-    /// The share of a piece that is so long.
+    /// The fraction of a piece at an arc length.
     fn share_at(&self, piece: usize, length: f64) -> f64 {
         let mut share = length / self.chords[piece];
         for _ in 0..4 {

@@ -1,4 +1,4 @@
-//! Files of the wild, and whole plans.
+//! Published files, and complete plans.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use super::*;
 use crate::geometry::{Point, Pose, Segment};
 
-/// The published tracks of a kind, in the order of their names.
+/// Published tracks of a kind, sorted by name.
 fn files(folder: &str, ending: &str) -> Vec<PathBuf> {
     let data = std::env::var_os("ROVERLAB_DATA").expect("ROVERLAB_DATA names the folder of published data");
     let mut names: Vec<PathBuf> = std::fs::read_dir(PathBuf::from(data).join("tracks").join(folder))
@@ -53,7 +53,7 @@ fn published_cone_maps_have_a_way_between_their_cones() {
 #[test]
 #[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
 fn published_circuits_bend_no_more_than_the_published_lines() {
-    // That of the racing car, 1.4 m wide.
+    // That of the racing car, which is 1.4 m wide.
     const HALF_WIDTH: f64 = 0.7;
     let mut table = String::new();
     let mut worst = (0.0_f64, f64::INFINITY);
@@ -80,7 +80,7 @@ fn published_circuits_bend_no_more_than_the_published_lines() {
             })
             .sum();
         let rms = (squares / spline.resample(1.0).len() as f64).sqrt();
-        // The spline itself, between its points as well, keeps the car within both edges.
+        // The spline itself, also between its points, keeps the car between both edges.
         let stations = fine.stations();
         let least = (0..stations.len())
             .flat_map(|i| (0..4).map(move |k| (i, 0.25 * f64::from(k))))
@@ -116,7 +116,7 @@ fn what_is_written_is_read_again() {
         for colour in ConeColour::ALL {
             assert!(track.of(colour).eq(again.of(colour)));
         }
-        // The file has the place of the front wing.
+        // The file contains the position of the front wing.
         let (start, before) = (again.start.unwrap(), track.start.unwrap());
         assert!((start.position() - before.position()).norm() < 1e-9 && start.heading == before.heading);
         assert_eq!(again.gates, track.gates);
@@ -205,7 +205,7 @@ fn broken_files_are_told_where() {
         let error = parse_track(text, file).unwrap_err().to_string();
         assert!(error.starts_with(&format!("{found}{csv}")), "{error}");
     }
-    // What a file holds says more than its name.
+    // The content of a file counts more than its name.
     assert!(parse_track("cones_left: [[1, 2]]\n", "a.csv").is_ok());
     assert!(parse_track("cones_left: [[[[[[\n", "t").is_err());
     assert!(parse_track("a: &a [1]\nb: *a\n", "t").is_err());
@@ -253,7 +253,7 @@ fn broken_logs_are_told_where() {
     ] {
         assert_eq!(parse_track(&text, "t").unwrap_err().to_string(), message);
     }
-    // Cut off anywhere, it is no log.
+    // A truncated log is rejected.
     let whole = frame("[1, 0]", "[1, 0]", cones);
     for end in 1..whole.len() {
         assert!(parse_track(&whole[..end], "t").is_err(), "{}", &whole[..end]);
@@ -277,7 +277,7 @@ fn a_lane_is_found_in_each_frame_of_a_real_drive() {
             };
             wrong += usize::from(sides.map(amiss).sum::<usize>() > 0);
         }
-        // Far ahead an edge takes in a cone of the other one now and then, until it is seen from nearer.
+        // Far ahead, an edge sometimes includes a cone of the other one, until it is seen from closer.
         assert!(wrong * 20 < frames.len(), "{wrong} of {}", frames.len());
     }
 }

@@ -6,31 +6,32 @@ use crate::geometry::{Point, Pose, Twist, angle_difference, cross, math, units};
 use crate::parameter::{require, require_positive, require_up_to};
 use crate::world::CarDynamics;
 
-/// How a car is kept on a line.
+/// Parameters of [`LineTracker`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LineTrackerParameters {
-    /// Metres from the rear axle to the point of the car that is kept on the line.
+    /// Distance from the rear axle to the point of the car that is kept on the line (m).
     pub ahead: f64,
-    /// Metres in which an error dies out, standing.
+    /// Distance over which an error decays at standstill (m).
     pub length: f64,
-    /// Metres more for each m/s.
+    /// Increase of that distance with the speed (s).
     pub length_by_speed: f64,
-    /// Seconds by which the steering lags behind.
+    /// Lag of the steering (s).
     pub steering_lag: f64,
-    /// Seconds by which the speed lags behind.
+    /// Lag of the speed (s).
     pub speed_lag: f64,
-    /// Seconds of the acceleration that the tyres have left by which more speed is asked for than there is. The inverse of the gain of
-    /// the car's own controller is what spins no wheel; with twice of that, a car that only slides a little is not slowed down.
+    /// Speed demand per remaining longitudinal acceleration of the tyres (s). The inverse gain of the car's
+    /// own controller never spins a wheel; with twice that, a car that slides only slightly is not slowed
+    /// down.
     pub speed_time: f64,
-    /// Seconds of the deceleration by tyres that push across by which more speed is asked for: the inverse of that gain.
+    /// Speed demand that compensates the drag of cornering tyres (s): the inverse of that gain.
     pub drag_time: f64,
-    /// How the car answers to its steering when it is fast.
+    /// Tyre model for the response to steering at speed.
     pub tyres: Tyres,
-    /// How much more it is steered for a rate of turn that it does not have yet: curvature for curvature.
+    /// Gain of the yaw rate error: curvature per curvature.
     pub yaw: f64,
-    /// The share of the turn by which tyres that begin to slip let the nose point into a bend that is steered before it shows.
+    /// Fraction of the predicted sideslip rotation that is steered in advance.
     pub swing: f64,
-    /// The greatest curvature that is asked for, in 1/m.
+    /// Maximum commanded curvature (1/m).
     pub curvature: f64,
 }
 
@@ -53,7 +54,7 @@ impl Default for LineTrackerParameters {
 }
 
 impl LineTrackerParameters {
-    /// For a car whose tyres do not slip.
+    /// Parameters for a car whose tyres do not slip.
     pub fn rolling() -> Self {
         Self {
             length: 2.0,
@@ -71,7 +72,11 @@ impl LineTrackerParameters {
 }
 
 impl LineTrackerParameters {
-    /// Fails with the name of the parameter that is out of range.
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    ///
+    /// If one is out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         require("ahead", self.ahead, self.ahead.abs() <= FARTHEST, "-1000 to 1000 m")?;
         require_up_to("length", self.length, FARTHEST)?;
@@ -91,7 +96,19 @@ impl LineTrackerParameters {
     }
 }
 
-/// A line with its speeds, and how far along it the car is.
+/// A line with its speed profile, and the car's position along it.
+///
+/// ```
+/// use roverlab::geometry::{Point, Pose, Twist};
+/// use roverlab::race::{CarLimits, LineTracker, LineTrackerParameters, SpeedProfile};
+/// let line: Vec<Point> = (0..100).map(|k| Point::new(f64::from(k), 0.0)).collect();
+/// let profile = SpeedProfile::open(&line, &CarLimits::circle(10.0, 5.0, 8.0, 30.0), 5.0, 5.0)?;
+/// let mut tracker = LineTracker::new(line, profile, false, LineTrackerParameters::rolling())?;
+/// let car = Pose::new(10.0, 0.5, 0.0);
+/// let (twist, aside) = tracker.step(car, Twist::new(8.0, 0.0)).expect("the line goes on");
+/// assert!((aside - 0.5).abs() < 1e-9 && twist.angular < 0.0, "half a metre to the left, so steer right");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct LineTracker {
     parameters: LineTrackerParameters,
@@ -100,7 +117,7 @@ pub struct LineTracker {
     closed: bool,
     nearest: usize,
     started: bool,
-    /// Whether the car has come to it. Without an end, a line may begin beside the car.
+    /// Whether the car has reached the line. An open line may begin beside the car.
     reached: bool,
 }
 
@@ -117,7 +134,11 @@ const BACK: f64 = 0.6;
 const SWINGS: f64 = 1.0;
 
 impl LineTracker {
-    /// A line from points, and a profile for the same ones.
+    /// A line from points, with the profile of the same points.
+    ///
+    /// # Errors
+    ///
+    /// If a parameter is out of range.
     pub fn new(
         points: Vec<Point>,
         profile: SpeedProfile,
@@ -128,13 +149,14 @@ impl LineTracker {
         Ok(Self { parameters, points, profile, closed, nearest: 0, started: false, reached: !closed })
     }
 
-    /// Takes another line of as many points, which is a little beside the first one, and goes on at the same point of it.
+    /// Replaces the line by another one with as many points, slightly displaced, and continues at the same
+    /// point.
     pub(super) fn shift(&mut self, points: Vec<Point>, profile: SpeedProfile) {
-        debug_assert_eq!(points.len(), self.points.len(), "a line of as many points");
+        debug_assert_eq!(points.len(), self.points.len(), "the number of points must not change");
         (self.points, self.profile) = (points, profile);
     }
 
-    /// The number of the point before the car.
+    /// Index of the point before the car.
     pub(super) fn passed(&self) -> usize {
         self.nearest
     }
@@ -144,12 +166,12 @@ impl LineTracker {
         self.closed
     }
 
-    /// The points of the line.
+    /// Points of the line.
     pub fn points(&self) -> &[Point] {
         &self.points
     }
 
-    /// The speeds and curvatures at the points.
+    /// Speeds and curvatures at the points.
     pub fn profile(&self) -> &SpeedProfile {
         &self.profile
     }
@@ -159,11 +181,12 @@ impl LineTracker {
         if self.closed { (i + 1) % n } else { (i + 1).min(n - 1) }
     }
 
-    /// Speed and rate of turn that keep a car on the line, for what both are now: the curvature ahead, and what brings errors of
-    /// place and heading to nothing within some metres, both as the tyres slip. Also the distance from the line, positive to its
-    /// left.
+    /// Velocity command that keeps a car on the line: the curvature ahead, plus feedback that reduces errors
+    /// of position and heading within some metres, corrected for tyre slip. Also returns the lateral offset
+    /// from the line, positive to its left (m).
     ///
-    /// `None` beyond the end of an open line, and for what is no number or no car's, as of odometry that has failed.
+    /// `None` beyond the end of an open line, and if the inputs are not finite or implausibly large, as from
+    /// failed odometry.
     pub fn step(&mut self, rear: Pose, moving: Twist) -> Option<(Twist, f64)> {
         let is_car = |value: f64| value.abs() < units::FARTHEST;
         if ![rear.x, rear.y, rear.heading, moving.linear, moving.angular].into_iter().all(is_car) {
@@ -182,12 +205,13 @@ impl LineTracker {
         let share = ((place - self.points[i]).dot(&along) / chord.norm().max(1e-9)).clamp(0.0, 1.0);
         let aside = cross(along, place - self.points[i]);
         let curvature_here = self.at(&self.profile.curvatures, i, share, 0.0);
-        // The rear axle bends as the point ahead of it has bent some time ago.
+        // The rear axle curves as the point ahead of it did some time ago.
         let bent = self.at(&self.profile.curvatures, i, share, -p.ahead);
-        // The chord's heading is that of its middle; the point of the car that is followed does not move along the car.
+        // The chord's heading is that of its midpoint; the tracked point of the car does not move along the
+        // car's axis.
         let heading = math::atan2(along.y, along.x) + curvature_here * (share - 0.5) * chord.norm();
         let slip = math::asin((p.ahead * bent).clamp(-0.9, 0.9));
-        // Tyres that slip let the nose point into the bend.
+        // With slip, the nose points into the bend.
         let push = self.profile.along(i, j);
         let inwards = p.tyres.slips(speed * speed * bent, push)[1];
         let turned = angle_difference(rear.heading, heading - slip + inwards);
@@ -196,15 +220,15 @@ impl LineTracker {
         let length = p.length + p.length_by_speed * speed.abs();
         let swing =
             if speed > CarDynamics::SLIPS { p.swing * self.swing(i, share, beyond, push) } else { 0.0 };
-        // Without a bound, a line that begins far beside the car would be driven at athwart.
+        // Without a bound, the car would drive straight across to a line far to the side.
         let most = (SLANTED * length).min(BACK * p.tyres.grip * length * length / (speed * speed));
         let back = aside.clamp(-most, most);
         let wanted = curvature + swing - back / (length * length) - 1.6 * math::sin(turned) / length;
         // The rear axle drives a tighter bend than the point ahead of it.
         let inside = (1.0 - (p.ahead * wanted) * (p.ahead * wanted)).max(0.5).sqrt();
-        // Near the limit, tyres answer the less the more is asked, to what brings the car back as well.
+        // Near the limit, tyres respond less to additional steering, also to that of the feedback.
         let tyres = p.tyres.steering(wanted, speed * speed * wanted, push) - wanted;
-        // They answer late as well: a car that does not turn yet is steered more.
+        // They also respond late: a car that does not turn yet is steered more.
         let late = if speed > CarDynamics::SLIPS { p.yaw * (wanted - moving.angular / speed) } else { 0.0 };
         let curvature = (wanted / inside + tyres + late).clamp(-p.curvature, p.curvature);
         let planned = self.at(&self.profile.speeds, i, share, (speed.max(0.0) + 0.5) * p.speed_lag);
@@ -217,8 +241,9 @@ impl LineTracker {
         Some((Twist::new(speed, speed * curvature), aside))
     }
 
-    /// What the tyres have left along the way beside what the car gives across and what it should: motors take no more, so that a car
-    /// that has to come back to its line can. Brakes do, as there is no other way to be slower.
+    /// Longitudinal acceleration left by the tyres, besides the present and the desired lateral acceleration
+    /// (m/s²). Motors take no more, so that a car can return to its line. Brakes may, because there is no
+    /// other way to slow down.
     fn left_along(&self, wanted: f64, moving: Twist) -> f64 {
         let (tyres, speed) = (&self.parameters.tyres, moving.linear);
         if speed <= CarDynamics::SLIPS {
@@ -228,8 +253,7 @@ impl LineTracker {
         tyres.left_along(wanted, across)
     }
 
-    /// How much faster than the line the car turns on it, in 1/m: the more its tyres have to slip, the more its nose points into the
-    /// bend.
+    /// Additional yaw rotation along the line (1/m): with increasing slip, the nose turns into the bend.
     fn swing(&self, piece: usize, share: f64, beyond: f64, push: f64) -> f64 {
         let inwards = |beyond: f64| {
             let [bend, speed] = [&self.profile.curvatures, &self.profile.speeds]
@@ -239,8 +263,8 @@ impl LineTracker {
         (inwards(beyond + SWINGS) - inwards(beyond - SWINGS)) / (2.0 * SWINGS)
     }
 
-    /// Metres along the line, from where the car is, to a thing that stands on it or nearer to it than `aside`. `None` where it does
-    /// not, or is farther off than some metres.
+    /// Distance along the line from the car to an object within `aside` metres of the line; `None` if there
+    /// is none within `farthest` metres.
     pub fn distance_to(&self, thing: Point, aside: f64, farthest: f64) -> Option<f64> {
         let (mut i, mut passed) = (self.nearest, 0.0);
         while passed < farthest {
@@ -257,7 +281,7 @@ impl LineTracker {
         None
     }
 
-    /// The point of the line before the place, near the last one.
+    /// Advances to the point of the line before the car, near the previous one.
     fn locate(&mut self, place: Point) {
         let n = self.points.len();
         let squared = |i: usize| (self.points[i] - place).norm_squared();
@@ -280,7 +304,7 @@ impl LineTracker {
         if self.closed { (i + n - 1) % n } else { i.saturating_sub(1) }
     }
 
-    /// A value along the line, some metres beyond a share of a piece, or before it.
+    /// A value along the line, at a distance (m, may be negative) from a fraction of a piece.
     fn at(&self, values: &[f64], piece: usize, share: f64, beyond: f64) -> f64 {
         let (mut i, mut left) = (piece, beyond + share * self.profile.lengths[piece]);
         while left < 0.0 {

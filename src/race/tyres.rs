@@ -4,22 +4,22 @@ use crate::ParameterError;
 use crate::geometry::math;
 use crate::parameter::{require, require_positive};
 
-/// How the tyres of a car slip: the bicycle model in balance, whose axles carry what the levers give them and drive in proportion.
+/// Tyre model: a steady-state bicycle model, whose axles share the load by the lever rule and drive in
+/// proportion.
 ///
-/// An axle pushes across in proportion to its slip angle as long as that is small, and near the rim of the friction circle, of
-/// which driving and braking take their share, it needs ever more of it:
-/// force = stiffness · slip / √(1 + (stiffness · slip / limit)²).
+/// The lateral force of an axle is proportional to small slip angles and saturates at the friction circle,
+/// which is reduced by driving and braking: force = stiffness · slip / √(1 + (stiffness · slip / limit)²).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tyres {
-    /// The radius of the friction circle, in m/s².
+    /// Radius of the friction circle (m/s²).
     pub grip: f64,
-    /// Acceleration across for a small slip angle, in m/s² for a radian.
+    /// Lateral acceleration per small slip angle (m/s² per rad).
     pub stiffness: f64,
-    /// Grip and stiffness of the front tyres as a share of that of the rear ones.
+    /// Grip and stiffness of the front tyres, relative to the rear ones.
     pub front: f64,
-    /// Metres between the axles.
+    /// Distance between the axles (m).
     pub wheelbase: f64,
-    /// The largest steering angle, in radians.
+    /// Maximum steering angle (rad).
     pub lock: f64,
 }
 
@@ -30,7 +30,11 @@ impl Default for Tyres {
 }
 
 impl Tyres {
-    /// Fails with the name of the number that is out of range. Tyres that roll have an infinite stiffness.
+    /// Checks the parameters; the stiffness may be infinite.
+    ///
+    /// # Errors
+    ///
+    /// If one is out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         require_positive("grip", self.grip)?;
         require("stiffness", self.stiffness, self.stiffness > 0.0, "a positive number")?;
@@ -49,8 +53,8 @@ impl Tyres {
 const MOST: f64 = 0.97;
 
 impl Tyres {
-    /// The angles by which the front and the rear axle slip for an acceleration across, while the car gains speed at `along`, both
-    /// in m/s². They are the larger the nearer the tyres are to their limit, and no larger than a little below that.
+    /// Slip angles of the front and the rear axle (rad) for a lateral acceleration, while the car accelerates
+    /// at `along` (both m/s²). They grow towards the limit of the tyres, and are bounded slightly below it.
     ///
     /// ```
     /// use roverlab::race::Tyres;
@@ -62,51 +66,51 @@ impl Tyres {
         [self.slip(self.front, across, along), self.slip(1.0, across, along)]
     }
 
-    /// That of an axle whose tyres have a share of grip and stiffness.
+    /// Slip angle of an axle with a fraction of grip and stiffness.
     fn slip(&self, share: f64, across: f64, along: f64) -> f64 {
         let circle = self.circle(along);
-        // The axle that gives up first is the bound of both.
+        // The axle that saturates first bounds both.
         let most = MOST * self.front.min(1.0) / share;
         let strained = (across / (share * circle)).clamp(-most, most);
         strained * circle / (self.stiffness * (1.0 - strained * strained).sqrt())
     }
 
-    /// What is left across beside an acceleration along the way, in m/s²: never less than 1, so that what is
-    /// divided by it stays finite.
+    /// Lateral grip left by a longitudinal acceleration (m/s²); at least 1, so that divisions by it stay
+    /// finite.
     fn circle(&self, along: f64) -> f64 {
         (self.grip * self.grip - along * along).max(1.0).sqrt()
     }
 
-    /// What motors may push at a curvature beside an acceleration across, both in m/s²: at least a tenth of the grip, so that a car
-    /// that slides is not left without motors.
+    /// Maximum push of the motors at a curvature and a lateral acceleration (m/s²); at least a tenth of the
+    /// grip, so that a sliding car keeps some power.
     pub fn left_along(&self, curvature: f64, across: f64) -> f64 {
         let most = self.most(curvature.abs(), across.abs(), Push::On);
         most.unwrap_or(0.0).max(0.1 * self.grip)
     }
 
-    /// The curvature for which wheels that only roll would be steered as these are for that one at that acceleration.
+    /// Curvature at which a car without slip would have the steering angle that this one needs.
     pub fn steering(&self, curvature: f64, across: f64, along: f64) -> f64 {
         math::tan(self.steered(curvature, across, along).clamp(-1.2, 1.2)) / self.wheelbase
     }
 
-    /// The steering angle for that.
+    /// Steering angle for a curvature and accelerations (rad).
     fn steered(&self, curvature: f64, across: f64, along: f64) -> f64 {
         let rolling = self.rolling(curvature, across, along);
         let mut steering = rolling;
         for _ in 0..TURNS {
-            // What turned wheels push, they push less across the car.
+            // The push of turned wheels is not fully lateral.
             steering = rolling + self.slip(self.front, across / math::cos(steering), along);
         }
         steering
     }
 
-    /// The steering angle for front wheels that do not slip.
+    /// Steering angle for front wheels without slip (rad).
     fn rolling(&self, curvature: f64, across: f64, along: f64) -> f64 {
         math::atan(self.wheelbase * curvature - math::tan(self.slip(1.0, across, along)))
     }
 }
 
-/// Brakes or motors.
+/// Direction of a longitudinal force.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Push {
     Back,
@@ -114,33 +118,35 @@ enum Push {
 }
 
 impl Tyres {
-    /// The greatest acceleration along the way at a curvature and an acceleration across, by motors that give so much; negative
-    /// where the front tyres need more than that to be pulled around the bend. `None` where no push lets the car turn so.
+    /// Maximum longitudinal acceleration at a curvature and a lateral acceleration, limited by the motors;
+    /// negative if the front tyres need more than that to be pulled around the bend. `None` if no push lets
+    /// the car turn so.
     pub(super) fn forwards(&self, curvature: f64, across: f64, drive: f64) -> Option<f64> {
         let push = self.most(curvature, across, Push::On)?.min(drive);
         Some(self.along(curvature, across, push))
     }
 
-    /// Whether the front wheels turn far enough for an acceleration across, at a steady speed.
+    /// Whether the front wheels turn far enough for a lateral acceleration at a steady speed.
     pub(super) fn turns(&self, curvature: f64, across: f64) -> bool {
         self.steered(curvature.abs(), across, 0.0) <= self.lock
     }
 
-    /// The greatest deceleration, by brakes that give so much.
+    /// Maximum deceleration, limited by the brakes.
     pub(super) fn backwards(&self, curvature: f64, across: f64, brake: f64) -> Option<f64> {
         let push = self.most(curvature, across, Push::Back)?.max(-brake);
         Some(-self.along(curvature, across, push))
     }
 
-    /// The deceleration of a car that rolls around a bend: what its tyres push across is not all across the way.
+    /// Deceleration of a car that rolls around a bend, because the lateral tyre forces are slanted.
     pub(super) fn drag(&self, curvature: f64, across: f64) -> f64 {
         -self.along(curvature.abs(), across.abs(), 0.0)
     }
 
-    /// The greatest push of brakes or motors beside which both axles give an acceleration across, in m/s².
+    /// Maximum push of brakes or motors at which both axles still provide a lateral acceleration (m/s²).
     ///
-    /// Turned front wheels push across as well, so what is asked of them is (across - push · sin) / cos of the steering angle, and
-    /// there is share · √(grip² - push²): a quadratic equation for the push, once that angle is known.
+    /// Turned front wheels also push sideways, so their required lateral force is (across - push · sin) / cos
+    /// of the steering angle, and share · √(grip² - push²) is available: a quadratic equation for the push,
+    /// given that angle.
     fn most(&self, curvature: f64, across: f64, push: Push) -> Option<f64> {
         let sign = if push == Push::On { 1.0 } else { -1.0 };
         let rear = self.grip * self.grip - (across / MOST) * (across / MOST);
@@ -163,12 +169,12 @@ impl Tyres {
         Some(found.clamp(-rear.sqrt(), rear.sqrt()))
     }
 
-    /// The acceleration along the way that is left of a push: what is across the wheels is not all across the way.
+    /// Longitudinal acceleration left of a push, because the lateral tyre forces are slanted.
     fn along(&self, curvature: f64, across: f64, push: f64) -> f64 {
         let steering = self.steered(curvature, across, push);
         let (sin, cos) = math::sin_cos(steering);
         let aside = (across - push * sin) / cos;
-        // Along the car, each axle with half its weight; the middle of the car moves aslant to it.
+        // Along the car, each axle with half its weight; the centre moves at a sideslip angle.
         let along = 0.5 * (push * (1.0 + cos) - aside * sin);
         let aslant = math::atan(0.5 * self.wheelbase * curvature - math::tan(self.slip(1.0, across, push)));
         along + across * math::sin(aslant)
@@ -188,8 +194,8 @@ mod tests {
     use crate::race::ConeTrack;
     use proptest::prelude::*;
 
-    /// A car that is steered for a circle at a speed, for some seconds: speed and rate of turn as they are, and how far it slides to
-    /// the left at its rear axle.
+    /// Steers a car for a circle at a speed for some seconds. Returns its speed and yaw rate, and the lateral
+    /// velocity of its rear axle.
     fn driven(curvature: f64, speed: f64, tyres: Option<Tyres>) -> (Twist, f64) {
         let scene = ConeTrack::default().scene(&[Pose::default()]);
         let race = Simulation::new(&scene, SimOptions::ideal()).unwrap();
@@ -234,7 +240,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(crate::testing::cases(256))]
-        // With less across, what turned wheels push is more than they need.
+        // With less lateral force, turned wheels push more than needed.
         #[test]
         fn no_more_is_left_than_the_friction_circle(across in 6.0..14.0f64, curvature in -0.3..0.3f64) {
             let tyres = Tyres::default();
@@ -253,10 +259,10 @@ mod tests {
         ) {
             let (tyres, across) = (Tyres::default(), across.copysign(curvature));
             let steered = tyres.steered(curvature, across, along);
-            // Beyond what the front tyres can give, no steering is right.
+            // Beyond the limit of the front tyres, no steering is right.
             let most = MOST * tyres.front * tyres.circle(along);
             prop_assume!(across.abs() / math::cos(steered) < 0.95 * most);
-            // Back from the angle to the curvature: what rolls beside the slip of both axles.
+            // Back from the angle to the curvature, by the slip of both axles.
             let front = tyres.slip(tyres.front, across / math::cos(steered), along);
             let rear = math::tan(tyres.slip(1.0, across, along));
             let back = (math::tan(steered - front) + rear) / tyres.wheelbase;
@@ -270,7 +276,7 @@ mod tests {
         }
     }
 
-    /// Pushes and brakes as much as possible beside an acceleration across.
+    /// Pushes and brakes as much as possible at a lateral acceleration.
     fn both_axles_give(curvature: f64, across: f64) -> Result<(), TestCaseError> {
         let tyres = Tyres::default();
         for push in [Push::On, Push::Back] {
@@ -278,7 +284,7 @@ mod tests {
             let (sin, cos) = math::sin_cos(tyres.steered(curvature, across, most));
             prop_assert!(across <= MOST * (tyres.grip * tyres.grip - most * most).sqrt() + 1e-9);
             let (front, circle) = ((across - most * sin) / cos, tyres.circle(most));
-            // The steering angle is found in so few turns that it is out by some per mille.
+            // The steering angle is iterated only a few times, and off by some per mille.
             prop_assert!(front <= 1.02 * MOST * tyres.front * circle + 1e-9, "{front} of {circle}");
         }
         Ok(())
@@ -286,7 +292,7 @@ mod tests {
 
     #[test]
     fn nearly_all_grip_is_pushed_along_a_straight() {
-        // Less is left across by the friction circle alone than the model keeps at least.
+        // The friction circle alone leaves less lateral grip than the minimum of the model.
         for across in [0.724_529_029_955_289_8, 0.766_706_480_633_079_4] {
             both_axles_give(0.0, across).unwrap();
         }

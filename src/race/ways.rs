@@ -1,4 +1,4 @@
-//! Rough ways ahead of a car, near which its lane may lie.
+//! Rough paths ahead of a car, near which its lane may lie.
 
 use super::lane_model::Lane;
 use crate::geometry::{Point, Pose, direction, math};
@@ -11,8 +11,8 @@ const AWAY: f64 = 4.0;
 /// Points of a lane that are enough to go on along it.
 const ENOUGH: usize = 3;
 
-/// The way some metres to the right of a row of cones, which is given in its order along the lane; on the left where they are
-/// negative. `None` without two cones one after the other of which the later one is ahead of the car or well away from it.
+/// A path some metres to the right (or left, if negative) of a row of cones in order along the lane. `None`
+/// without two consecutive cones, the later one ahead of the car or well away from it.
 pub(super) fn beside_row(row: &[Point], right: f64, car: Pose, reach: f64) -> Option<Vec<Pose>> {
     let beside = |pair: &[Point]| {
         let leg = pair[1] - pair[0];
@@ -22,7 +22,7 @@ pub(super) fn beside_row(row: &[Point], right: f64, car: Pose, reach: f64) -> Op
     };
     let poses: Vec<Pose> = row.windows(2).map(beside).collect();
     let begin = nearest(poses.iter().map(Pose::position), car.position())?;
-    // What is beside the car, or just behind it, would turn the way about.
+    // Points beside or just behind the car would turn the path around.
     let is_ahead = |pose: &Pose| {
         let local = car.to_local(pose.position());
         local.x > STEP || local.coords.norm() > AWAY
@@ -31,7 +31,7 @@ pub(super) fn beside_row(row: &[Point], right: f64, car: Pose, reach: f64) -> Op
     prolonged(ahead, car, reach)
 }
 
-/// The way along a lane that was found before. `None` where that ends beside the car.
+/// The path along the previous lane; `None` if that ends beside the car.
 pub(super) fn along_lane(lane: &Lane, car: Pose, reach: f64) -> Option<Vec<Pose>> {
     let begin = nearest(lane.points.iter().copied(), car.position())? + 1;
     let ahead = lane.points.get(begin..).filter(|ahead| ahead.len() >= ENOUGH)?;
@@ -42,12 +42,12 @@ pub(super) fn along_lane(lane: &Lane, car: Pose, reach: f64) -> Option<Vec<Pose>
     prolonged(ahead.windows(2).map(pose).collect(), car, reach)
 }
 
-/// The way straight on.
+/// The path straight on.
 pub(super) fn straight_on(car: Pose, reach: f64) -> Option<Vec<Pose>> {
     prolonged(vec![car.compose(&Pose::new(STEP, 0.0, 0.0))], car, reach)
 }
 
-/// A way that ends so many metres from a car along it: cut off there, or straight on from its end until there.
+/// Cuts or extends a path to a length, measured from the car (m).
 fn prolonged(way: Vec<Pose>, car: Pose, reach: f64) -> Option<Vec<Pose>> {
     let last = *way.last()?;
     let (mut from, mut length) = (car.position(), 0.0);
@@ -77,7 +77,7 @@ fn nearest(places: impl Iterator<Item = Point>, place: Point) -> Option<usize> {
     squared.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map(|(index, _)| index)
 }
 
-/// Takes out ways that lead by the places of an earlier one.
+/// Removes paths that coincide with an earlier one.
 pub(super) fn distinct(ways: Vec<Vec<Pose>>) -> Vec<Vec<Pose>> {
     let mut kept: Vec<Vec<Pose>> = Vec::with_capacity(ways.len());
     for way in ways {
@@ -88,7 +88,7 @@ pub(super) fn distinct(ways: Vec<Vec<Pose>>) -> Vec<Vec<Pose>> {
     kept
 }
 
-/// Whether a way is next to another one all along.
+/// Whether a path coincides with another one.
 fn leads_along(way: &[Pose], other: &[Pose]) -> bool {
     let is_beside =
         |place: &Pose| other.iter().any(|pose| (pose.position() - place.position()).norm() < STEP);
@@ -99,7 +99,7 @@ fn leads_along(way: &[Pose], other: &[Pose]) -> bool {
 mod tests {
     use super::*;
 
-    /// Metres from the car along a way.
+    /// Length of a path from the car (m).
     fn length(way: &[Pose], car: Pose) -> f64 {
         let stations: Vec<Pose> = [&[car], way].concat();
         stations.windows(2).map(|pair| (pair[1].position() - pair[0].position()).norm()).sum()

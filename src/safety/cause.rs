@@ -1,76 +1,84 @@
 // This file compiles without the standard library.
 
-/// A set of reasons against driving by itself.
+/// A set of causes that forbid automatic driving.
+///
+/// ```
+/// use roverlab::safety::Causes;
+/// let causes = Causes::NONE.with(Causes::SENSOR).with_if(true, Causes::HEARTBEAT_LOST);
+/// assert!(causes.has(Causes::SENSOR) && !causes.has(Causes::WATCHDOG));
+/// assert_eq!(causes.names().count(), 2);
+/// assert_eq!(Causes::from_bits(causes.bits()), causes);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Causes(u16);
 
 impl Causes {
     /// Nothing is wrong.
     pub const NONE: Self = Self(0);
-    /// The button on board that takes the power away. Hard.
+    /// Emergency button on board, which cuts the power. Hard.
     pub const EMERGENCY_BUTTON: Self = Self(1);
     /// A stop button of the base station. Hard.
     pub const REMOTE_STOP: Self = Self(1 << 1);
     /// The base station's heartbeat is missing. Soft.
     pub const HEARTBEAT_LOST: Self = Self(1 << 2);
-    /// The vehicle is outside its fence. One that does not know where it is has a sensor that is not to be trusted. Soft.
+    /// The vehicle is outside its fence. Soft. A vehicle with an unknown position reports
+    /// [`SENSOR`](Self::SENSOR) instead.
     pub const OUTSIDE_FENCE: Self = Self(1 << 3);
-    /// The driving program is silent, or only reads while its last command keeps the vehicle going. Soft.
+    /// The driving program is silent, or only reads while its last command keeps the vehicle moving. Soft.
     pub const WATCHDOG: Self = Self(1 << 4);
-    /// A sensor is frozen, lost, late or reads no numbers, or odometry jumps; or one was, and nobody has vouched for it since.
-    /// Soft.
+    /// A sensor is frozen, lost, late or reads NaN, or odometry jumped. Soft. The cause stays until somebody
+    /// confirms the sensors.
     pub const SENSOR: Self = Self(1 << 5);
-    /// The clock stands or goes back. Soft.
+    /// The clock stands still or runs backwards. Soft.
     pub const CLOCK: Self = Self(1 << 6);
-    /// The vehicle does not answer. Soft.
+    /// The vehicle does not respond. Soft.
     pub const LINK: Self = Self(1 << 7);
-    /// The driver presses a pedal, holds the wheel, or presses the button that disengages: not a fault.
+    /// The driver uses a pedal, the steering wheel or the disengage button. Not a fault.
     pub const DRIVER: Self = Self(1 << 8);
 
-    /// Those that take the power away at once.
+    /// Causes of an emergency stop.
     const HARD: Self = Self::EMERGENCY_BUTTON.with(Self::REMOTE_STOP);
 
-    /// These and others.
+    /// Union of two sets.
     #[must_use]
     pub const fn with(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// These, and others if they are there.
+    /// Union with `other` if `condition` holds.
     #[must_use]
     pub const fn with_if(self, condition: bool, other: Self) -> Self {
         if condition { self.with(other) } else { self }
     }
 
-    /// These without others.
+    /// The set without the causes in `other`.
     #[must_use]
     pub const fn without(self, other: Self) -> Self {
         Self(self.0 & !other.0)
     }
 
-    /// Whether any of the others is among these.
+    /// Whether the two sets have a cause in common.
     pub const fn has(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }
 
-    /// Whether there are none.
+    /// Whether the set is empty.
     pub const fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// Whether there is a reason to brake as hard as possible.
+    /// Whether the set contains a hard cause: brake as hard as possible.
     pub const fn is_hard(self) -> bool {
         self.has(Self::HARD)
     }
 
-    /// Whether there is a reason to stop, other than a hard one. The driver is none.
+    /// Whether the set contains a soft cause. [`DRIVER`](Self::DRIVER) is neither soft nor hard.
     pub const fn is_soft(self) -> bool {
         !self.without(Self::HARD).without(Self::DRIVER).is_empty()
     }
 
-    /// What the causes are called, in the order of their bits.
+    /// Names of the causes, in bit order.
     pub fn names(self) -> impl Iterator<Item = &'static str> {
-        /// The causes' names, in the order of their bits.
         const NAMES: [&str; 9] = [
             "emergency button",
             "remote stop",
@@ -85,7 +93,7 @@ impl Causes {
         NAMES.into_iter().enumerate().filter(move |(bit, _)| self.0 >> bit & 1 == 1).map(|(_, name)| name)
     }
 
-    /// The set that these bits stand for; bits without a meaning are left out.
+    /// The set with these bits; unknown bits are ignored.
     pub const fn from_bits(bits: u16) -> Self {
         Self(bits & 0x1ff)
     }
@@ -96,13 +104,13 @@ impl Causes {
     }
 }
 
-/// What people ask for. Each is a level; what counts is when it rises.
+/// Requests of the operator. Each is a level; only its rising edge counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Requests {
-    /// Make ready to drive by itself.
+    /// Get ready for automatic driving.
     pub arm: bool,
-    /// Drive by itself.
+    /// Start automatic driving.
     pub start: bool,
-    /// Be driven by a person again.
+    /// Return to manual driving.
     pub disarm: bool,
 }

@@ -1,4 +1,5 @@
-//! What the documentation of `Supervised` claims: how soon it answers what, whom it trusts, and how far it goes.
+//! Tests of what the documentation of `Supervised` claims: reaction times, trust in sensors, stopping
+//! distances.
 
 use super::supervised_tests::{drive, mock, station, stationed};
 use super::*;
@@ -10,10 +11,11 @@ use crate::io::{
 };
 use crate::world::{DriveSpec, RobotSpec, Scene, World};
 
-/// A mock under the safety system that goes wrong in the way of a text.
+/// A supervised mock robot with an injected fault.
 type FaultyMock<S> = Supervised<Faulty<MockRobot>, S>;
 
-/// Drives with 0.5 m/s, with a command every 5 ms, until the wheels are told something slower. When that was, in seconds, and where.
+/// Drives at 0.5 m/s, commanded every 5 ms, until the safety system first commands a lower speed. Returns the
+/// time of that command (s) and the pose.
 fn brakes<S: Station>(car: &mut FaultyMock<S>) -> Option<(f64, Pose)> {
     let seen = |car: &FaultyMock<S>| (car.inner().inner().time(), car.inner().inner().ideal_pose().unwrap());
     let mut drove = false;
@@ -35,7 +37,7 @@ fn faulty(fault: &str) -> Faulty<MockRobot> {
     Faulty::new(mock(), vec![fault.parse::<Fault>().unwrap()])
 }
 
-/// What goes wrong is answered within one control period of when it can be noticed, by what the wheels are told.
+/// The safety system brakes within one control period of the moment at which a fault is noticeable.
 #[test]
 fn wheels_are_told_within_a_period_of_what_can_be_noticed() {
     type Change = fn(f64, &mut Panel);
@@ -77,7 +79,7 @@ fn wheels_are_told_within_a_period_of_what_can_be_noticed() {
         ("lost:odometry@1", 0.0, Causes::SENSOR),
         ("nan:odometry@1", 0.0, Causes::SENSOR),
         ("jump=400,200,40@1", 0.0, Causes::SENSOR),
-        // What is read first is from so long ago that it is a jump.
+        // The first late reading is old enough to count as a jump.
         ("late:odometry=0.3@1", 0.0, Causes::SENSOR),
         ("stuck:odometry@1", frozen, Causes::SENSOR),
         ("clock@1", period, Causes::CLOCK),
@@ -90,7 +92,7 @@ fn wheels_are_told_within_a_period_of_what_can_be_noticed() {
     }
 }
 
-/// The fence is no place for a moment, and no more than its debounce is waited for.
+/// A single position outside the fence does not count; the reaction comes right after the debounce count.
 #[test]
 fn wheels_are_told_within_a_period_of_the_debounced_fence() {
     let fence = [(-1.0, -1.0), (0.7, -1.0), (0.7, 1.0), (-1.0, 1.0)].map(|(x, y)| Point::new(x, y)).to_vec();
@@ -103,7 +105,8 @@ fn wheels_are_told_within_a_period_of_the_debounced_fence() {
     assert!(beyond > noticed - 1e-6 && beyond <= noticed + parameters.period + 1e-6, "{beyond}");
 }
 
-/// The car of the link that is gone is told nothing more: it knows so within a period, and its own watchdog stops it.
+/// After the link is lost, no command reaches the car. The safety system notices within one control period;
+/// the car's own watchdog stops it.
 #[test]
 fn a_link_that_is_gone_is_noticed_within_a_period() {
     let mut car =
@@ -115,7 +118,7 @@ fn a_link_that_is_gone_is_noticed_within_a_period() {
 
 type Exchange = Box<dyn FnMut(f64, Heartbeat) -> Panel>;
 
-/// Seconds at which a program is stopped that begins to drive and then only reads its sensors.
+/// Time at which a program that starts moving and then only reads sensors is stopped (s).
 fn stopped_reading(begin: impl FnOnce(&mut Supervised<MockRobot, Exchange>)) -> Option<f64> {
     let other_end: Exchange = Box::new(station(|_, _| {}));
     let robot = mock().with_distance(Psd::FRONT, Script::function(|time| Ok(2.0 - 0.1 * time)));
@@ -131,7 +134,7 @@ fn stopped_reading(begin: impl FnOnce(&mut Supervised<MockRobot, Exchange>)) -> 
     })
 }
 
-/// That a program reads shows no more that it drives, unless what it began has an end, or nothing moves.
+/// Sensor reads alone do not keep a program alive, unless its last command has an end or nothing moves.
 #[test]
 fn a_program_that_only_reads_is_stopped_while_it_drives() {
     let speed = stopped_reading(|car| car.set_speed(Twist::new(0.3, 0.0)).unwrap()).unwrap();
@@ -159,7 +162,8 @@ fn a_program_that_only_reads_is_stopped_while_it_drives() {
     );
 }
 
-/// Drives for a second, while the station looks ten times by its own clock, which shows 100 s more. Whether it orders a stop in the end.
+/// Drives for one second while the station polls ten times on its own clock, offset by 100 s. Returns whether
+/// the station orders a stop.
 fn drive_looked_at(car: &mut Supervised<MockRobot, BaseStation>) -> bool {
     for _ in 0..10 {
         drive(car, 0.1);
@@ -172,13 +176,13 @@ fn drive_looked_at(car: &mut Supervised<MockRobot, BaseStation>) -> bool {
 
 #[test]
 fn each_direction_of_the_heartbeat_is_missed_by_its_listener() {
-    // The vehicle hears nothing: it stops by itself, and the station knows nothing of that.
+    // The vehicle receives nothing: it stops by itself, and the station does not notice.
     let mut car = stationed();
     assert!(!drive_looked_at(&mut car));
     car.station_mut().connect_each(true, false);
     assert!(!drive_looked_at(&mut car));
     assert!(car.state() == SafetyState::SafeStop && car.causes() == Causes::HEARTBEAT_LOST);
-    // The station hears nothing: it orders a stop, which comes through.
+    // The station receives nothing: it orders a stop, which reaches the vehicle.
     let mut car = stationed();
     assert!(!drive_looked_at(&mut car));
     car.station_mut().connect_each(false, true);
@@ -186,7 +190,7 @@ fn each_direction_of_the_heartbeat_is_missed_by_its_listener() {
     assert!(car.state() == SafetyState::EmergencyStop && car.causes() == Causes::REMOTE_STOP);
 }
 
-/// A vehicle that hangs asks nothing, so that its station has to know by itself.
+/// A vehicle that hangs does not call its station, so the station notices by its own clock.
 #[test]
 fn a_vehicle_that_hangs_is_missed() {
     let mut car = stationed();
@@ -198,8 +202,8 @@ fn a_vehicle_that_hangs_is_missed() {
     assert_eq!(car.state(), SafetyState::EmergencyStop, "and learns it as soon as it is back");
 }
 
-/// Metres that a car with some brake goes from where it is stopped with 10 m/s by a hard cause, or a soft one, and those of its
-/// bound for the brake that it should have.
+/// Stopping distance (m) of a car with the given brake, from 10 m/s, after a hard or a soft cause; and the
+/// bound computed for the nominal brake.
 fn stopping_way(hard: bool, brake: f64) -> (f64, f64) {
     let mut spec = RobotSpec::race_car();
     if let DriveSpec::Ackermann { dynamics: Some(dynamics), .. } = &mut spec.drive {
@@ -232,7 +236,7 @@ fn stopping_way(hard: bool, brake: f64) -> (f64, f64) {
     (metres - from, model.distance(fast))
 }
 
-/// Each kind of stop has a bound of its own, which is no wider than it has to be: worse brakes do not keep it.
+/// Each kind of stop has its own bound. The bounds are tight: a car with weaker brakes exceeds them.
 #[test]
 fn safe_and_emergency_stops_have_their_own_bounds() {
     let brake = RobotSpec::race_car().deceleration();
@@ -247,10 +251,10 @@ fn safe_and_emergency_stops_have_their_own_bounds() {
     assert!(weak > soft_bound, "half of a gentle brake: {weak} of {soft_bound}");
 }
 
-/// A sensor that was found at fault is one until somebody vouches for it, whatever it reads meanwhile.
+/// A faulty sensor stays distrusted until somebody confirms it, whatever it reads meanwhile.
 #[test]
 fn a_sensor_at_fault_is_not_trusted_again_by_itself() {
-    // Those that get well again, too: who knows what they were doing.
+    // This includes sensors that recover: nobody knows what they did in between.
     for (text, found_out) in [
         ("late:lidar=0.5@3", false),
         ("late:front=0.5@3", false),
@@ -262,7 +266,7 @@ fn a_sensor_at_fault_is_not_trusted_again_by_itself() {
         let scene = Scene::with_robot(World::walled(8.0, 8.0), RobotSpec::s4(), Pose::new(2.0, 4.0, 0.0));
         let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 7)).unwrap();
         let robot = Faulty::new(simulation.robot(0).unwrap(), vec![text.parse::<Fault>().unwrap()]);
-        // People press buttons again and again, and after 8 s one of them has looked at the sensors.
+        // The operator presses buttons repeatedly, and confirms the sensors after 8 s.
         let people = station(|now, panel| {
             if now > 4.0 {
                 let presses = now.fract() < 0.5;
@@ -288,7 +292,7 @@ fn a_sensor_at_fault_is_not_trusted_again_by_itself() {
     }
 }
 
-/// Clocks that show any time are no time that passes.
+/// A clock that leaps does not make time pass.
 #[test]
 fn a_clock_that_leaps_to_the_end_of_time_is_waited_for_no_longer() {
     let parameters = SupervisedParameters::default();

@@ -1,34 +1,35 @@
-//! Whether sensors are to be trusted.
+//! Detects faulty sensors.
 //!
-//! Readings have no time stamps on most robots. That one is late shows all the same in two ways: the call takes too long, or what was
-//! read before is read again, as a line of readings that is held up is as it gets late. Sensors that have always been late do not
-//! show. A jump is told for odometry alone: what a range or an image shows jumps at every edge.
+//! On most robots, readings carry no time stamps. Lateness still shows in two ways: the call takes too long,
+//! or earlier readings come again, as they do while a delay builds up. A delay that has existed from the
+//! start is not detected. Only odometry is checked for jumps, because ranges and images jump at every edge.
 
 use super::{SignalHealth, SignalLimits, SignalMonitor};
 use crate::geometry::{Pose, Twist, units};
 
-/// Watches odometry: that it reads numbers, does not jump, and moves when the vehicle does.
+/// Monitors odometry: readings are finite, do not jump, and change while the vehicle moves.
 #[derive(Debug, Clone)]
 pub(super) struct OdometryHealth {
     last: Option<(f64, Pose, Twist)>,
-    /// The speed, whose change is bounded, and which may not be missing for long.
+    /// Monitors the speed: its rate of change, and the age of the last reading.
     speed: SignalMonitor,
     frozen: u16,
-    /// Metres that it should have gone since the pose stays, turning included.
+    /// Distance that the vehicle should have covered since the pose last changed, rotation included (m).
     missing: f64,
 }
 
-/// Metres that have to be missing before a pose that stays is odd: encoders count in steps.
+/// Missing distance (m) above which an unchanged pose counts as frozen; allows for the resolution of the
+/// encoders.
 const MISSING: f64 = 0.01;
 
-/// Metres, and radians, by which a pose may differ from what the speeds give.
+/// Maximum difference between the pose and the integrated speed (m, rad).
 const STEP: (f64, f64) = (0.05, 0.08);
-/// The share of the way by which it may differ beside that.
+/// Further difference allowed, as a fraction of the distance covered.
 const SHARE: f64 = 0.5;
 
 impl OdometryHealth {
     pub(super) fn new(limits: &HealthLimits) -> Self {
-        // A speed may well stay as it is: that the pose does says more.
+        // A constant speed is plausible; the frozen check uses the pose instead.
         let signal = SignalLimits {
             age: limits.age,
             rate: limits.acceleration,
@@ -38,7 +39,7 @@ impl OdometryHealth {
         Self { last: None, speed: SignalMonitor::checked(signal), frozen: 0, missing: 0.0 }
     }
 
-    /// Takes in a reading. Whether it is to be trusted.
+    /// Takes a reading and returns whether it is plausible.
     pub(super) fn read(&mut self, now: f64, pose: Pose, speed: Twist, limits: &HealthLimits) -> bool {
         if !(pose.is_finite() && speed.linear.is_finite() && speed.angular.is_finite()) {
             return false;
@@ -57,7 +58,7 @@ impl OdometryHealth {
         let jumps = way > fastest * passed * (1.0 + SHARE) + STEP.0
             || turned > turning * passed * (1.0 + SHARE) + STEP.1
             || self.speed.health(now) != SignalHealth::Good;
-        // A pose that stays to the bit while wheels turn.
+        // A pose that is bit-identical although the wheels turn counts as frozen.
         if pose == before {
             self.frozen = self.frozen.saturating_add(1);
             self.missing += (speed.linear.abs() + units::ARM * speed.angular.abs()) * passed;
@@ -68,12 +69,13 @@ impl OdometryHealth {
         !(jumps || frozen || late)
     }
 
-    /// Somebody vouches for it: what it did before is no more held against it.
+    /// Somebody confirms the sensor: earlier faults are forgotten.
     pub(super) fn trust(&mut self) {
         (self.frozen, self.missing) = (0, 0.0);
     }
 
-    /// The pose was set: what comes next is measured against that. How fast it was is known as before, and since when.
+    /// The program set the pose: later readings are compared with the new one. Speed and time of the last
+    /// reading stay.
     pub(super) fn move_to(&mut self, pose: Pose) {
         if let Some((_, before, _)) = &mut self.last {
             *before = pose;
@@ -81,23 +83,23 @@ impl OdometryHealth {
     }
 }
 
-/// Whether the sensors are trusted: not from a fault on until somebody vouches for them.
+/// Whether the sensors are trusted. A fault ends the trust until somebody confirms the sensors.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Trust {
     lost: bool,
-    /// Whether somebody vouched at the last look.
+    /// Level of the confirmation in the last period.
     vouched: bool,
 }
 
 impl Default for Trust {
-    /// Who vouches at the first look has not begun to: the button may be stuck.
+    /// A confirmation that is already active in the first period does not count: the button may be stuck.
     fn default() -> Self {
         Self { lost: false, vouched: true }
     }
 }
 
 impl Trust {
-    /// Takes in whether somebody vouches for them. Whether they begin to be trusted by that.
+    /// Takes the level of the confirmation and returns whether it has just risen.
     pub(super) fn begins(&mut self, vouches: bool) -> bool {
         let begins = vouches && !self.vouched;
         self.vouched = vouches;
@@ -105,24 +107,24 @@ impl Trust {
         begins
     }
 
-    /// Takes in whether one is at fault now. Whether they are not trusted.
+    /// Takes whether a sensor is faulty now and returns whether trust is lost.
     pub(super) fn is_lost(&mut self, fault: bool) -> bool {
         self.lost |= fault;
         self.lost
     }
 }
 
-/// What readings may do.
+/// Limits of plausible sensor readings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HealthLimits {
-    /// The greatest acceleration that odometry may measure, in m/s².
+    /// Maximum acceleration that odometry may report (m/s²).
     pub acceleration: f64,
-    /// What its speed may change beside that, in m/s.
+    /// Speed change that noise may add to that (m/s).
     pub speed_step: f64,
-    /// Equal readings in a row, while the vehicle moves, after which a sensor counts as frozen; and readings in a row that were all
-    /// there before, after which it counts as late.
+    /// Number of equal readings in a row, while the vehicle moves, after which a sensor counts as frozen.
+    /// Also the number of repeated earlier readings after which it counts as late.
     pub repeats: u16,
-    /// Seconds between two readings of odometry, and those that a call for any reading may take.
+    /// Maximum time between two odometry readings, and maximum duration of any sensor call (s).
     pub age: f64,
 }
 
@@ -132,7 +134,8 @@ impl Default for HealthLimits {
     }
 }
 
-/// Watches a sensor whose readings have noise: that they are numbers, and differ while the vehicle moves, from those long ago as well.
+/// Monitors a noisy sensor: its readings must be numbers, must change while the vehicle moves, and must not
+/// repeat earlier ones.
 #[derive(Debug, Clone, Default)]
 pub(super) struct ReadingHealth {
     last: Option<u64>,
@@ -141,12 +144,12 @@ pub(super) struct ReadingHealth {
     echo: Echo,
 }
 
-/// Metres, and radians, that a vehicle has to move before equal readings are odd.
+/// Motion after which equal readings are suspicious (m, rad).
 const MOVED: (f64, f64) = (0.01, 0.01);
 
 impl ReadingHealth {
-    /// Takes in a digest of a reading, `None` for one that may repeat itself, as of a scan that shows nothing, made at a pose.
-    /// Whether it is to be trusted.
+    /// Takes the digest of a reading and the pose at which it was made, and returns whether the reading is
+    /// plausible. The digest is `None` for readings that may repeat, such as a scan without any echo.
     pub(super) fn read(&mut self, digest: Option<u64>, pose: Pose, limits: &HealthLimits) -> bool {
         let moved = self.at.is_none_or(|at| {
             (pose.position() - at.position()).norm() > MOVED.0
@@ -161,29 +164,29 @@ impl ReadingHealth {
         if moved || !equal {
             self.at = Some(pose);
         }
-        // What stays as it is repeats nothing.
+        // An unchanged reading is not an echo of an earlier one.
         let late = !equal && self.echo.hears(digest, limits.repeats);
         self.last = digest;
         self.frozen < limits.repeats && !late
     }
 
-    /// Somebody vouches for it: that it stays as it is counts from now on, and only while the vehicle moves.
+    /// Somebody confirms the sensor: the count of equal readings starts again.
     pub(super) fn trust(&mut self) {
         self.frozen = 0;
         self.echo.runs = [0; REMEMBERED];
     }
 }
 
-/// How many readings are remembered.
+/// Number of stored readings.
 const REMEMBERED: usize = 64;
 
-/// Hears that readings repeat earlier ones in their order: they come late from now on.
+/// Detects that readings repeat earlier ones in the same order, as they do when they become late.
 #[derive(Debug, Clone)]
 struct Echo {
-    /// Digests of changed readings, the last one before `count`, round and round.
+    /// Ring buffer of the digests of changed readings; the newest is at `count - 1`.
     past: [Option<u64>; REMEMBERED],
     count: usize,
-    /// For each number of readings back: how many in a row were those of so many before.
+    /// For each lag `k`, the number of consecutive readings equal to the one `k` readings before.
     runs: [u16; REMEMBERED],
 }
 
@@ -194,7 +197,8 @@ impl Default for Echo {
 }
 
 impl Echo {
-    /// Takes in a reading that differs from the one before. Whether so many in a row were there before.
+    /// Takes a reading that differs from the previous one. Returns whether `repeats` readings in a row came
+    /// again.
     fn hears(&mut self, digest: Option<u64>, repeats: u16) -> bool {
         let mut heard = false;
         for back in 1..=REMEMBERED.min(self.count) {
@@ -209,7 +213,7 @@ impl Echo {
     }
 }
 
-/// FNV-1a over numbers.
+/// FNV-1a hash of a sequence of numbers.
 pub(super) fn digest(values: impl Iterator<Item = u64>) -> u64 {
     values.fold(0xcbf2_9ce4_8422_2325, |hash, value| (hash ^ value).wrapping_mul(0x0000_0100_0000_01b3))
 }
@@ -218,7 +222,7 @@ pub(super) fn digest(values: impl Iterator<Item = u64>) -> u64 {
 mod tests {
     use super::*;
 
-    /// Readings at poses 0.1 m apart: whether each is to be trusted.
+    /// Reads the digests at poses 0.1 m apart and returns which readings were accepted.
     fn read(digests: impl IntoIterator<Item = u64>) -> Vec<bool> {
         let (mut health, limits) = (ReadingHealth::default(), HealthLimits::default());
         let places = (0..).map(|k| Pose::new(0.1 * f64::from(k), 0.0, 0.0));
@@ -228,9 +232,9 @@ mod tests {
     #[test]
     fn readings_that_come_again_are_late() {
         let good = read((0..30).chain(20..40));
-        assert_eq!(good.iter().position(|good| !good), Some(33), "the fourth one of those that come again");
+        assert_eq!(good.iter().position(|good| !good), Some(33), "the fourth repeated reading");
         assert!(read(0..500).iter().all(|good| *good));
-        // Whole millimetres are often those of a while ago, but not in their order.
+        // Ranges rounded to millimetres often equal earlier ones, but not in the same order.
         let mut random = crate::random::Stream::new(3);
         let rounded: Vec<u64> =
             (0..20_000).map(|_| (200.0 + 10.0 * random.normal()).round() as u64).collect();
@@ -247,7 +251,10 @@ mod tests {
         odometry.move_to(Pose::new(5.0, 0.0, 0.0));
         assert!(odometry.read(0.02, Pose::new(5.01, 0.0, 0.0), speed, &limits));
         odometry.move_to(Pose::default());
-        assert!(!odometry.read(0.04, Pose::new(0.4, 0.2, 0.0), speed, &limits), "it has jumped since");
+        assert!(
+            !odometry.read(0.04, Pose::new(0.4, 0.2, 0.0), speed, &limits),
+            "a jump after the pose was set"
+        );
     }
 
     #[test]

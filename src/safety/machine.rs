@@ -2,27 +2,27 @@
 
 use super::cause::{Causes, Requests};
 
-/// What a vehicle may do.
+/// State of the vehicle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum SafetyState {
     /// A person drives.
     #[default]
     Manual,
-    /// It stands, ready to drive by itself.
+    /// The vehicle stands, ready for automatic driving.
     Armed,
-    /// It drives by itself.
+    /// The program drives.
     Auto,
-    /// It brakes as it would on a road, and stands.
+    /// The vehicle brakes gently and stands.
     SafeStop,
-    /// It brakes as hard as it can, without power, and stands.
+    /// The vehicle brakes as hard as it can, without power, and stands.
     EmergencyStop,
 }
 
 impl SafetyState {
-    /// All of them.
+    /// All states.
     pub const ALL: [Self; 5] = [Self::Manual, Self::Armed, Self::Auto, Self::SafeStop, Self::EmergencyStop];
 
-    /// How bad it is: 0 without a stop, 1 for a safe one, 2 for an emergency.
+    /// Severity: 0 without a stop, 1 for a safe stop, 2 for an emergency stop.
     pub const fn severity(self) -> u8 {
         match self {
             Self::Manual | Self::Armed | Self::Auto => 0,
@@ -31,7 +31,7 @@ impl SafetyState {
         }
     }
 
-    /// Whether the vehicle has to stop and stand.
+    /// Whether this is one of the two stops.
     pub const fn is_stop(self) -> bool {
         self.severity() > 0
     }
@@ -42,18 +42,18 @@ impl SafetyState {
     }
 }
 
-/// What the core is told in each control period.
+/// Inputs of the state machine in one control period.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct SafetyInputs {
-    /// What is wrong.
+    /// Active causes.
     pub causes: Causes,
-    /// What people ask for.
+    /// Requests of the operator.
     pub requests: Requests,
     /// Whether the vehicle stands.
     pub standing: bool,
 }
 
-/// The state machine. The same inputs lead to the same states, whatever they are.
+/// The safety state machine. It is deterministic: equal inputs lead to equal states.
 ///
 /// ```
 /// use roverlab::safety::{Causes, Requests, SafetyCore, SafetyInputs, SafetyState};
@@ -70,7 +70,7 @@ pub struct SafetyInputs {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct SafetyCore {
     state: SafetyState,
-    /// The requests of the last period.
+    /// Requests in the last control period.
     last: Requests,
 }
 
@@ -81,7 +81,8 @@ impl Default for SafetyCore {
 }
 
 impl SafetyCore {
-    /// A vehicle that a person drives. A request that is there in the first period has not begun: its button may be stuck.
+    /// Starts in `Manual`. A request that is active in the first period does not count: its button may be
+    /// stuck.
     pub const fn new() -> Self {
         let last = Requests { arm: true, start: true, disarm: true };
         Self { state: SafetyState::Manual, last }
@@ -92,7 +93,7 @@ impl SafetyCore {
         self.state
     }
 
-    /// One control period: the state from now on.
+    /// Advances by one control period and returns the new state.
     pub const fn step(&mut self, inputs: SafetyInputs) -> SafetyState {
         let SafetyInputs { causes, requests, standing } = inputs;
         let rises = Requests {
@@ -106,7 +107,7 @@ impl SafetyCore {
     }
 }
 
-/// The table of transitions.
+/// Transition table.
 const fn next(state: SafetyState, causes: Causes, rises: Requests, standing: bool) -> SafetyState {
     use SafetyState::{Armed, Auto, EmergencyStop, Manual, SafeStop};
     if causes.is_hard() {
@@ -118,7 +119,7 @@ const fn next(state: SafetyState, causes: Causes, rises: Requests, standing: boo
         Armed | Auto if causes.is_soft() => SafeStop,
         Armed | Auto if to_person => Manual,
         Armed if rises.start => Auto,
-        // Soft causes do not take the wheel from a person: none is asked for here.
+        // A soft cause does not take control from a driver, so `Manual` stays.
         Manual | SafeStop | EmergencyStop if may_arm => Armed,
         unchanged => unchanged,
     }
@@ -129,7 +130,7 @@ mod tests {
     use super::*;
     use crate::random::Stream;
 
-    /// The reference: rules, the first that applies decides. Written from the description, not from the code.
+    /// Reference: the first rule that applies decides. Derived from the specification, not from the code.
     fn expected(state: SafetyState, inputs: SafetyInputs, rises: Requests) -> SafetyState {
         use SafetyState::*;
         type Rule = (bool, SafetyState);
@@ -161,7 +162,7 @@ mod tests {
 
     fn random_inputs(random: &mut Stream) -> SafetyInputs {
         let bits = random.bits();
-        // Causes are rare enough that every state is visited often.
+        // Causes are rare, so that every state is visited often.
         let causes = if bits.is_multiple_of(8) {
             Causes::from_bits((random.bits() & random.bits()) as u16)
         } else {
@@ -172,7 +173,7 @@ mod tests {
         SafetyInputs { causes, requests, standing: bit(12) || bit(13) }
     }
 
-    /// Ten million transitions against the reference, and the rules that must hold whatever the table says.
+    /// Ten million random transitions, compared with the reference and with the invariants of the table.
     #[test]
     fn random_transitions_follow_the_reference() {
         let steps = 10_000_000;
@@ -194,7 +195,7 @@ mod tests {
             if before.is_stop() && !after.is_stop() {
                 assert!(
                     rises.arm && inputs.standing && inputs.causes.is_empty(),
-                    "a stop is left by arming alone"
+                    "only arming leaves a stop"
                 );
             }
             if inputs.causes.is_hard() {
@@ -213,7 +214,7 @@ mod tests {
         let mut core = SafetyCore::new();
         let arm = Requests { arm: true, ..Requests::default() };
         let held = SafetyInputs { requests: arm, standing: true, ..SafetyInputs::default() };
-        assert_eq!(core.step(held), SafetyState::Manual, "stuck since before the power came");
+        assert_eq!(core.step(held), SafetyState::Manual, "stuck since before power-on");
         core.step(SafetyInputs { causes: Causes::REMOTE_STOP, ..held });
         for _ in 0..10 {
             assert_eq!(core.step(held), SafetyState::EmergencyStop);

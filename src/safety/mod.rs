@@ -1,7 +1,7 @@
 //! The safety system of a car that drives by wire (book, sections 14.2 and 14.3).
 //!
-//! [`SafetyCore`] decides in which of five states a vehicle is. It is a plain state machine: no memory is allocated,
-//! nothing can panic, and its files compile without the standard library.
+//! [`SafetyCore`] holds the state of the vehicle, one of five. It is a plain state machine: it allocates no
+//! memory, cannot panic, and compiles without the standard library.
 //!
 //! ```text
 //!                 arm                start
@@ -30,16 +30,18 @@
 //! | `SafeStop` | `EmergencyStop` | `SafeStop` | `SafeStop` | | `Armed` |
 //! | `EmergencyStop` | `EmergencyStop` | `EmergencyStop` | `EmergencyStop` | | `Armed` |
 //!
-//! Of the columns that apply and have an entry, the one farthest to the left decides; without one, the state stays. A *hard*
-//! cause is an emergency stop, on board or remote; a *soft* one is a lost heartbeat, a place outside the fence, a program that
-//! hangs, or a sensor that is not to be trusted. The worse state always wins. A stop is left only by arming again: a new
-//! request, made while the vehicle stands and no cause is left. What counts as a request is its beginning, so that a button that
-//! is stuck arms nothing, even if it was stuck before the power came.
+//! In each row, the leftmost column that applies and has an entry decides; if none does, the state stays. A
+//! *hard* cause is an emergency stop, on board or remote. A *soft* cause is a lost heartbeat, a position
+//! outside the fence, a program that hangs, or a faulty sensor. The more severe state wins. Only arming
+//! leaves a stop: a new request while the vehicle stands and no cause is active. A request counts on its
+//! rising edge, so a stuck button arms nothing, even if it was stuck before power-on.
 //!
-//! What a sensor was found at stays a cause until somebody vouches for the sensor ([`Panel::sensors_checked`]).
+//! A sensor fault remains a cause until somebody confirms the sensors ([`Panel::sensors_checked`]).
 //!
-//! [`Supervised`] puts any robot under this system: it looks at buttons, heartbeats, fence, pedals, program and sensors in every
-//! control period, and brakes; its documentation says what it notices, how soon, and what it cannot. [`StoppingModel`] says how far it goes until it stands, with the [`SpeedError`] of what it measures. [`BaseStation`] is its other end.
+//! [`Supervised`] wraps any robot. In every control period it checks buttons, heartbeats, fence, pedals,
+//! program and sensors, and brakes if necessary; its documentation lists what it detects, how soon, and what
+//! it cannot detect. [`StoppingModel`] bounds the stopping distance, including the [`SpeedError`].
+//! [`BaseStation`] is the remote end.
 
 mod cause;
 #[cfg(test)]

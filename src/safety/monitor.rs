@@ -1,6 +1,15 @@
 // This file compiles without the standard library.
 
-/// Something that has to happen again and again: a heartbeat, a program's commands.
+/// Watches an event that must recur: a heartbeat, or the commands of a program.
+///
+/// ```
+/// use roverlab::safety::Deadline;
+/// let mut heartbeat = Deadline::new(0.5)?;
+/// assert!(heartbeat.is_over(0.0), "no event yet");
+/// heartbeat.feed(1.0);
+/// assert!(!heartbeat.is_over(1.4) && heartbeat.is_over(1.6) && heartbeat.is_over(f64::NAN));
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Deadline {
     limit: f64,
@@ -8,27 +17,34 @@ pub struct Deadline {
 }
 
 impl Deadline {
-    /// Over when nothing has happened for so many seconds, a positive, finite number.
+    /// A deadline with a limit that is already validated (s).
     pub(super) const fn checked(limit: f64) -> Self {
         Self { limit, last: None }
     }
 
-    /// It has happened.
+    /// Records an event.
     pub const fn feed(&mut self, now: f64) {
         self.last = Some(now);
     }
 
-    /// Whether it is over: it has never happened, too long ago, or the clock makes no sense.
+    /// Whether the deadline has expired: no event yet, the last one is too old, or the time is invalid.
     pub const fn is_over(&self, now: f64) -> bool {
         match self.last {
             None => true,
-            // Written so that NaN is over.
+            // NaN counts as expired.
             Some(last) => !(now - last >= 0.0 && now - last <= self.limit),
         }
     }
 }
 
-/// Something that has to be seen several times in a row before it counts.
+/// Counts an observation only after several in a row.
+///
+/// ```
+/// use roverlab::safety::Debounce;
+/// let mut outside = Debounce::new(3);
+/// let counts = [true, true, false, true, true, true].map(|seen| outside.update(seen));
+/// assert_eq!(counts, [false, false, false, false, false, true], "three times in a row");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Debounce {
     needed: u16,
@@ -36,20 +52,27 @@ pub struct Debounce {
 }
 
 impl Debounce {
-    /// Counts after so many times in a row; 0 and 1 are at once.
+    /// An observation counts after `needed` in a row; 0 and 1 mean at once.
     pub const fn new(needed: u16) -> Self {
         Self { needed, seen: 0 }
     }
 
-    /// Takes in whether it is seen now. Whether it counts.
+    /// Takes an observation and returns whether it counts.
     pub const fn update(&mut self, seen: bool) -> bool {
         self.seen = if seen { self.seen.saturating_add(1) } else { 0 };
         seen && self.seen >= self.needed
     }
 }
 
-/// Whether a point lies inside a polygon of these corners, by counting crossings. What is not a number is outside, as is
-/// everything for fewer than three corners.
+/// Whether a point lies inside a polygon, by counting crossings. Points that are not finite count as outside,
+/// and so does every point if there are fewer than three corners.
+///
+/// ```
+/// use roverlab::safety::is_inside;
+/// let fence = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]];
+/// assert!(is_inside(&fence, [1.0, 1.0]) && !is_inside(&fence, [5.0, 1.0]));
+/// assert!(!is_inside(&fence, [f64::NAN, 1.0]), "NaN counts as outside");
+/// ```
 pub fn is_inside(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     if !(x.is_finite() && y.is_finite()) {
         return false;
@@ -66,35 +89,48 @@ pub fn is_inside(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     inside
 }
 
-/// What a sensor's signal may do.
+/// Limits of a plausible signal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SignalLimits {
-    /// Seconds between two readings.
+    /// Maximum time between two readings (s).
     pub age: f64,
-    /// Change of the signal in a second.
+    /// Maximum rate of change (1/s).
     pub rate: f64,
-    /// Change of the signal beside that, as of noise.
+    /// Further change allowed between two readings, for noise.
     pub step: f64,
-    /// Equal readings in a row while it should change.
+    /// Number of equal readings in a row after which a changing signal counts as frozen.
     pub repeats: u16,
 }
 
-/// What is wrong with a signal.
+/// State of a signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SignalHealth {
-    /// Nothing.
+    /// No fault.
     Good,
-    /// No readings come, or they come late.
+    /// Readings are missing or late.
     Lost,
-    /// It is no number.
+    /// The last reading is not finite.
     NotANumber,
-    /// It changed faster than it can.
+    /// The signal changed faster than is possible.
     Jump,
-    /// It does not change though it should.
+    /// The signal does not change although it should.
     Frozen,
 }
 
-/// Watches one number that a sensor gives.
+/// Monitors one scalar signal of a sensor.
+///
+/// ```
+/// use roverlab::safety::{SignalHealth, SignalLimits, SignalMonitor};
+/// let limits = SignalLimits { age: 0.5, rate: 2.0, step: 0.1, repeats: 3 };
+/// let mut range = SignalMonitor::new(limits)?;
+/// range.read(0.0, 1.0, true);
+/// range.read(0.1, 1.1, true);
+/// assert_eq!(range.health(0.2), SignalHealth::Good);
+/// assert_eq!(range.health(1.0), SignalHealth::Lost, "too old");
+/// range.read(1.1, 9.0, true);
+/// assert_eq!(range.health(1.1), SignalHealth::Jump, "faster than 2 m/s");
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SignalMonitor {
     limits: SignalLimits,
@@ -104,13 +140,13 @@ pub struct SignalMonitor {
 }
 
 impl SignalMonitor {
-    /// A monitor that has not seen a reading, with limits that are in range.
+    /// A monitor without a reading yet; the limits are already validated.
     pub(super) const fn checked(limits: SignalLimits) -> Self {
         Self { limits, last: None, repeats: 0, health: SignalHealth::Lost }
     }
 
-    /// Takes in a reading made at a time. `alive` says that the signal should change, as while the vehicle moves. A jump is
-    /// told once, as the reading behind it is the new measure.
+    /// Takes a reading at time `now` (s). `alive` means that the signal should change, for example because
+    /// the vehicle moves. A jump is reported once: the reading after it is compared with the new value.
     pub fn read(&mut self, now: f64, value: f64, alive: bool) {
         if !value.is_finite() {
             self.health = SignalHealth::NotANumber;
@@ -133,7 +169,7 @@ impl SignalMonitor {
         };
     }
 
-    /// What is wrong at a time.
+    /// State of the signal at time `now` (s).
     pub fn health(&self, now: f64) -> SignalHealth {
         let Some((time, _)) = self.last else { return SignalHealth::Lost };
         let fresh = now - time >= 0.0 && now - time <= self.limits.age;
@@ -154,7 +190,7 @@ mod tests {
         assert!(deadline.is_over(0.0));
         deadline.feed(1.0);
         assert!(!deadline.is_over(1.0) && !deadline.is_over(1.5));
-        // Too late, a clock that went back, and no time at all.
+        // Too late, a clock that ran backwards, and an invalid time.
         assert!(deadline.is_over(1.51) && deadline.is_over(0.9) && deadline.is_over(f64::NAN));
     }
 
@@ -199,7 +235,7 @@ mod tests {
         for _ in 0..5 {
             signal.read(0.5, 1.6, false);
         }
-        assert_eq!(signal.health(0.5), SignalHealth::Good, "standing, nothing needs to change");
+        assert_eq!(signal.health(0.5), SignalHealth::Good, "nothing changes while standing");
         for _ in 0..3 {
             signal.read(0.6, 1.6, true);
         }

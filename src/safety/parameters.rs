@@ -4,33 +4,33 @@ use crate::ParameterError;
 use crate::geometry::Point;
 use crate::parameter::{require, require_finite, require_not_negative, require_positive};
 
-/// What a vehicle is supervised by.
+/// Parameters of [`Supervised`](super::Supervised).
 #[derive(Debug, Clone, PartialEq)]
 pub struct SupervisedParameters {
-    /// Seconds between two looks at everything, 0.1 ms at least.
+    /// Control period (s), at least 0.1 ms.
     pub period: f64,
-    /// Seconds without a heartbeat of the base station that are allowed.
+    /// Maximum time without a heartbeat of the base station (s).
     pub heartbeat: f64,
-    /// Seconds that are allowed without a command of the driving program, or, while the vehicle is told to stand, or drives a way
-    /// that has an end, without any call of it.
+    /// Maximum time without a command of the program (s). While the last command was to stand, or a manoeuvre
+    /// with an end, any call of the program counts.
     pub watchdog: f64,
-    /// Corners of the area that must not be left, in the frame of odometry: none, or at least three.
+    /// Corners of the allowed area in the odometry frame: none, or at least three.
     pub fence: Vec<Point>,
-    /// Looks in a row outside before it counts.
+    /// Number of periods in a row outside the fence before it counts.
     pub fence_debounce: u16,
-    /// How far a pedal has to be pressed, or how hard the wheel has to be held, before the driver has taken over.
+    /// Pedal position, or steering force, above which the driver takes over.
     pub override_threshold: f64,
-    /// The deceleration of a safe stop, in m/s²; an emergency stop takes all that there is.
+    /// Deceleration of a safe stop (m/s²). An emergency stop uses the full brake.
     pub gentle: f64,
-    /// Metres per second, and radians per second, below which the vehicle stands.
+    /// Speeds below which the vehicle counts as standing (m/s, rad/s).
     pub standing: [f64; 2],
-    /// How well the speed is measured, which says how far a stop may go.
+    /// Error of the measured speed; enters the stopping distance.
     pub speed_error: SpeedError,
-    /// What sensors may do.
+    /// Limits of plausible sensor readings.
     pub health: HealthLimits,
 }
 
-/// The shortest control period, in seconds: a wait is no more looks than can be made.
+/// Shortest control period (s); it bounds the number of checks during a wait.
 const SHORTEST: f64 = 1e-4;
 
 impl Default for SupervisedParameters {
@@ -51,21 +51,22 @@ impl Default for SupervisedParameters {
 }
 
 impl SupervisedParameters {
-    /// How a vehicle comes to a safe stop that follows speeds with a lag in seconds and a greatest deceleration in m/s²: it reacts
-    /// within one control period, and brakes as gently as is allowed from the speed that it measures. A stop that becomes an
-    /// emergency on its way is shorter.
+    /// Stopping model of a safe stop, for a vehicle with a speed lag (s) and a maximum deceleration (m/s²).
+    /// The reaction takes two control periods; the vehicle then brakes gently, starting from its measured
+    /// speed. A safe stop that turns into an emergency stop is shorter.
     pub fn stopping(&self, lag: f64, deceleration: f64) -> StoppingModel {
         let deceleration = deceleration.min(self.gentle);
         StoppingModel { reaction: 2.0 * self.period, lag, deceleration, error: self.speed_error }
     }
 
-    /// How the same vehicle comes to an emergency stop: with all the deceleration that there is, and whatever speed it measures, as
-    /// it is told to stand at once.
+    /// Stopping model of an emergency stop, for the same vehicle: the full deceleration, and no speed error
+    /// because the command is zero at once.
     pub fn emergency_stopping(&self, lag: f64, deceleration: f64) -> StoppingModel {
         StoppingModel { reaction: 2.0 * self.period, lag, deceleration, error: SpeedError::NONE }
     }
 
-    /// How it stops in a state: [`stopping`](Self::stopping), or [`emergency_stopping`](Self::emergency_stopping).
+    /// Stopping model for a state: [`stopping`](Self::stopping) or
+    /// [`emergency_stopping`](Self::emergency_stopping).
     pub fn stopping_in(&self, state: SafetyState, lag: f64, deceleration: f64) -> StoppingModel {
         match state {
             SafetyState::EmergencyStop => self.emergency_stopping(lag, deceleration),
@@ -110,7 +111,11 @@ impl SupervisedParameters {
 }
 
 impl Deadline {
-    /// Over when nothing has happened for so many seconds. Fails unless that is a positive, finite number.
+    /// A deadline that expires `limit` seconds after the last event.
+    ///
+    /// # Errors
+    ///
+    /// If `limit` is not positive and finite.
     pub fn new(limit: f64) -> std::result::Result<Self, ParameterError> {
         require_positive("limit of a deadline", limit)?;
         Ok(Self::checked(limit))
@@ -118,7 +123,11 @@ impl Deadline {
 }
 
 impl SignalMonitor {
-    /// A monitor that has not seen a reading: lost, until one comes. Fails with the name of the limit that is out of range.
+    /// A monitor without a reading yet: its state is `SignalHealth::Lost`.
+    ///
+    /// # Errors
+    ///
+    /// If a limit is out of range.
     pub fn new(limits: SignalLimits) -> std::result::Result<Self, ParameterError> {
         require_positive("age of readings", limits.age)?;
         require_not_negative("rate of the signal", limits.rate)?;

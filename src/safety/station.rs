@@ -1,45 +1,44 @@
 use super::{Causes, Deadline, Requests, SafetyState};
 use crate::ParameterError;
 
-/// What people and the base station tell a vehicle's safety system in one control period.
+/// Inputs from the operator and the base station in one control period.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a wire of its own")]
 pub struct Panel {
-    /// The button on board that takes the power away.
+    /// Emergency button on board, which cuts the power.
     pub emergency_button: bool,
-    /// The button on board that gives the wheel back to the driver.
+    /// Button on board that returns control to the driver.
     pub disengage: bool,
-    /// A stop button of the base station, real or on the screen.
+    /// Stop button of the base station, physical or on screen.
     pub remote_stop: bool,
-    /// The base station's counter, as far as it was heard; it has to change.
+    /// Counter of the base station as last received; it must change.
     pub heartbeat: Option<u64>,
-    /// How far the accelerator is pressed, 0 to 1.
+    /// Accelerator position, 0 to 1.
     pub accelerator: f64,
-    /// How far the brake is pressed, 0 to 1.
+    /// Brake position, 0 to 1.
     pub brake: f64,
-    /// The force on the steering wheel, as a share of the greatest.
+    /// Force on the steering wheel, as a fraction of the maximum.
     pub steering_force: f64,
-    /// What people ask for.
+    /// Requests of the operator.
     pub requests: Requests,
-    /// Somebody has looked at the sensors and vouches for them: those that were found at fault are trusted again. What counts is
-    /// when it rises.
+    /// Somebody has inspected the sensors and confirms that they work. Only the rising edge counts.
     pub sensors_checked: bool,
 }
 
-/// What a vehicle tells its base station in each control period: the heartbeat's other direction.
+/// The vehicle's heartbeat, sent to the base station in each control period.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Heartbeat {
-    /// Counts up.
+    /// Counter, incremented in each period.
     pub count: u64,
-    /// The state of the safety system.
+    /// State of the safety system.
     pub state: SafetyState,
-    /// What was wrong when it got into that state, or still is.
+    /// Causes found by the last check.
     pub causes: Causes,
 }
 
-/// Whoever sits at the other end: people, buttons, the base station.
+/// The remote end: operator, buttons, base station.
 pub trait Station {
-    /// Hears the vehicle's heartbeat and answers. `now` is the time in seconds.
+    /// Takes the vehicle's heartbeat and answers with the inputs. `now` is the vehicle's time (s).
     fn exchange(&mut self, now: f64, heartbeat: Heartbeat) -> Panel;
 }
 
@@ -49,11 +48,11 @@ impl<F: FnMut(f64, Heartbeat) -> Panel> Station for F {
     }
 }
 
-/// A base station (book, section 14.3): it has a heartbeat of its own, listens to the vehicle's, and orders a stop when that is
-/// missing; the order stays until it is taken back.
+/// A base station (book, section 14.3). It sends a heartbeat, listens for the vehicle's, and orders a stop
+/// when that one is missing. The order stays until it is withdrawn.
 ///
-/// A vehicle that hangs does not ask it anything. So the station has to be [looked](Self::look) at again and again by a clock of
-/// its own, from where the people are who should know; from the first look on, that clock alone counts.
+/// A vehicle that hangs does not call its station. Therefore call [`look`](Self::look) regularly, with the
+/// station's own clock. From the first call on, only that clock counts.
 ///
 /// ```
 /// use roverlab::safety::{BaseStation, Heartbeat, Causes, SafetyState, Station};
@@ -62,31 +61,36 @@ impl<F: FnMut(f64, Heartbeat) -> Panel> Station for F {
 /// station.look(10.0);
 /// assert!(!station.exchange(0.0, heartbeat(1)).remote_stop);
 /// assert!(!station.look(10.4));
-/// // No heartbeat for too long: nobody is there.
+/// The heartbeat has been missing for too long.
 /// assert!(station.look(10.6));
-/// assert!(station.exchange(0.7, heartbeat(2)).remote_stop, "an order stays");
+/// assert!(station.exchange(0.7, heartbeat(2)).remote_stop, "the order stays");
 /// station.take_back();
 /// assert!(!station.look(10.7) && !station.exchange(0.8, heartbeat(3)).remote_stop);
 /// # Ok::<(), roverlab::ParameterError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct BaseStation {
-    /// What is told beside heartbeat and stop: buttons and pedals on board, and `remote_stop` for another button of the station.
-    /// Its heartbeat is the station's own.
+    /// Further inputs: buttons and pedals on board, and an additional stop button in `remote_stop`. The
+    /// `heartbeat` field is ignored.
     pub panel: Panel,
     vehicle: Deadline,
     last: Option<u64>,
     count: u64,
     stop: bool,
-    /// What the station's own clock showed last; without one, it goes by what the vehicle says.
+    /// Latest time of the station's own clock (s); `None` until the first [`look`](Self::look), when the
+    /// vehicle's time counts.
     time: Option<f64>,
-    /// Whether the vehicle's heartbeat reaches it, and whether what it says reaches the vehicle.
+    /// State of the radio link, per direction: vehicle to station, station to vehicle.
     hears: bool,
     is_heard: bool,
 }
 
 impl BaseStation {
-    /// A station that waits so many seconds for a heartbeat. Fails unless that is a positive, finite number.
+    /// A station that waits `limit` seconds for a heartbeat.
+    ///
+    /// # Errors
+    ///
+    /// If `limit` is not positive and finite.
     pub fn new(limit: f64) -> Result<Self, ParameterError> {
         Ok(Self {
             panel: Panel::default(),
@@ -100,39 +104,39 @@ impl BaseStation {
         })
     }
 
-    /// Somebody presses a stop button.
+    /// Orders a stop.
     pub fn stop(&mut self) {
         self.stop = true;
     }
 
-    /// Somebody takes the order back. The vehicle stands until it is armed. While its heartbeat is missing, the next look orders
-    /// it anew.
+    /// Withdraws the order. The vehicle stands until it is armed. If its heartbeat is still missing, the next
+    /// [`look`](Self::look) orders a stop again.
     pub fn take_back(&mut self) {
         self.stop = false;
     }
 
-    /// Cuts or mends the radio link, in both directions.
+    /// Cuts or restores the radio link in both directions.
     pub fn connect(&mut self, connected: bool) {
         self.connect_each(connected, connected);
     }
 
-    /// Cuts or mends each direction: whether the station hears the vehicle, and whether it is heard.
+    /// Cuts or restores each direction: from the vehicle, and to the vehicle.
     pub fn connect_each(&mut self, hears: bool, is_heard: bool) {
         (self.hears, self.is_heard) = (hears, is_heard);
     }
 
-    /// Looks whether the vehicle is still there, at a time in seconds of the station's own clock. Whether the station orders a
-    /// stop.
+    /// Checks the vehicle's heartbeat at time `now` of the station's own clock (s). Returns whether the
+    /// station orders a stop.
     pub fn look(&mut self, now: f64) -> bool {
         if self.time.is_none() && self.last.is_some() {
-            // What was heard so far was heard by another clock.
+            // Earlier heartbeats carry times of another clock.
             self.vehicle.feed(now);
         }
         self.time = Some(now);
         self.judge(now)
     }
 
-    /// Orders a stop if a vehicle that was there is no more.
+    /// Orders a stop if the vehicle was there and its heartbeat is missing.
     fn judge(&mut self, now: f64) -> bool {
         self.stop |= self.last.is_some() && self.vehicle.is_over(now);
         self.stop
@@ -148,7 +152,7 @@ impl Station for BaseStation {
         }
         self.judge(now);
         if !self.is_heard {
-            // What is on board is there all the same; nothing of the station's own comes through.
+            // Inputs on board need no link; those of the station are lost.
             return Panel { heartbeat: None, remote_stop: false, ..self.panel };
         }
         self.count += 1;
@@ -170,7 +174,7 @@ mod tests {
         station.connect(false);
         let heard = station.exchange(0.0, heartbeat(1));
         assert!(!heard.remote_stop && heard.heartbeat.is_none(), "{heard:?}");
-        assert!(heard.emergency_button && heard.brake == 0.5, "what is on board needs no link: {heard:?}");
+        assert!(heard.emergency_button && heard.brake == 0.5, "inputs on board need no link: {heard:?}");
         station.connect(true);
         let heard = station.exchange(0.1, heartbeat(2));
         assert!(heard.remote_stop && heard.heartbeat == Some(1), "{heard:?}");

@@ -1,27 +1,28 @@
 // This file compiles without the standard library.
 
-/// By how much the speed that a vehicle measures may differ from the one that it has.
+/// Maximum error of the measured speed.
 ///
-/// The default is five standard deviations of what wheels measure in the simulator for noise 1: 5 % for their diameter, and
-/// `5 · 0.0005 √(v / 10 ms)` m/s for slip in a tick, which is less than 0.6 % of the speed and 0.031 m/s.
+/// The default is five standard deviations of the simulated wheel encoders at noise 1: 5 % for the wheel
+/// diameter, plus `5 · 0.0005 √(v / 10 ms)` m/s for slip within a tick, which is below 0.6 % of the speed
+/// plus 0.031 m/s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpeedError {
-    /// A share of the speed.
+    /// Relative error (fraction of the speed).
     pub share: f64,
-    /// Metres per second beside that.
+    /// Absolute error (m/s).
     pub offset: f64,
 }
 
 impl SpeedError {
-    /// A speed that is measured as it is.
+    /// No error.
     pub const NONE: Self = Self { share: 0.0, offset: 0.0 };
 
-    /// The greatest difference at a speed, in metres per second.
+    /// Maximum error at a speed (m/s).
     pub const fn at(&self, speed: f64) -> f64 {
         self.share * speed.abs() + self.offset
     }
 
-    /// The error of a robot with so many times the noise.
+    /// The error scaled by the noise level.
     #[must_use]
     pub const fn scaled(self, factor: f64) -> Self {
         Self { share: self.share * factor, offset: self.offset * factor }
@@ -34,38 +35,39 @@ impl Default for SpeedError {
     }
 }
 
-/// How a vehicle comes to a stop: for a reaction time it goes on as it was, then it follows the command to stand as a drive
-/// with a first-order lag does whose deceleration is limited.
+/// Model of a stop. During the reaction time the speed is unchanged; then the drive follows the command to
+/// stand, with a first-order lag and limited deceleration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StoppingModel {
-    /// Seconds from the event to the brake, a control period included.
+    /// Time from the event to the start of braking, one control period included (s).
     pub reaction: f64,
-    /// The time constant of the lag, in seconds.
+    /// Time constant of the first-order lag (s).
     pub lag: f64,
-    /// The greatest deceleration, in metres per second squared.
+    /// Maximum deceleration (m/s²).
     pub deceleration: f64,
-    /// How well the speed is known from which it brakes.
+    /// Error of the speed from which braking starts.
     pub error: SpeedError,
 }
 
 impl StoppingModel {
-    /// The greatest distance, in metres, that a vehicle still goes that truly has this speed.
+    /// Upper bound of the stopping distance from the true speed `speed` (m).
     ///
-    /// It brakes from the speed that it measures, which may be greater by the error `e`: until its command has fallen below the
-    /// true speed, it is told to go faster. What follows is for `v = speed + e`, as a vehicle goes no further that is slower.
+    /// Braking starts at the measured speed, which may exceed the true one by the error `e`: until the
+    /// command falls below the true speed, the vehicle accelerates. The bound therefore uses `v = speed + e`;
+    /// a slower vehicle stops earlier.
     ///
-    /// While it reacts, that is speed times reaction. Afterwards it brakes with the smaller one of `v / lag` and the
-    /// deceleration `a`, so the distance is the integral of `max(lag, v / a)` over the speed, which is less than that of
-    /// `lag + v / a`: `v · lag + v² / 2a`. A command that falls with `a` from `v` gives the same: it goes `v² / 2a` itself, and a lag
-    /// adds the speed that is lost in it times its time constant.
+    /// During the reaction, the distance is `v · reaction`. Afterwards the deceleration is the smaller of
+    /// `v / lag` and `a`, so the distance is the integral of `max(lag, v / a)` over the speed, which is less
+    /// than that of `lag + v / a`: `v · lag + v² / 2a`. A command that falls from `v` at rate `a` gives the
+    /// same bound: the command covers `v² / 2a`, and the lag adds its time constant times the speed lost.
     pub const fn distance(&self, speed: f64) -> f64 {
         let speed = speed.abs() + self.error.at(speed);
         speed * (self.reaction + self.lag) + speed * speed / (2.0 * self.deceleration)
     }
 
-    /// The speed, in metres per second, from which the vehicle stops within a distance.
+    /// Speed from which the vehicle stops within a distance (m/s).
     pub fn speed_within(&self, distance: f64) -> f64 {
-        // By bisection, as there is no square root without the standard library.
+        // By bisection: there is no square root without the standard library.
         let (mut low, mut high) = (0.0, 1.0);
         while self.distance(high) < distance && high < 1e6 {
             high *= 2.0;
@@ -98,7 +100,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(crate::testing::cases(256))]
-        /// The model itself, stepped until next to nothing of the speed is left.
+        /// The model itself, integrated until the speed is negligible.
         #[test]
         fn no_vehicle_of_the_model_goes_further(
             speed in 0.01..20.0f64,
@@ -115,7 +117,7 @@ mod tests {
             prop_assert!(way <= model.distance(speed) + 2.0 * speed * step, "{way} of {}", model.distance(speed));
         }
 
-        /// A vehicle whose command falls from the speed that it has measured, which is not the one that it has.
+        /// A vehicle whose command falls from the measured speed, which differs from the true one.
         #[test]
         fn nor_does_one_that_is_wrong_about_its_speed(
             speed in 0.01..20.0f64,

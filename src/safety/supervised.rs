@@ -6,67 +6,70 @@ use super::{
 use crate::geometry::{Pose, Twist};
 use crate::io::{Clock, Drive, Error, ErrorKind, Odometry, Result};
 
-/// A stop that has begun.
+/// Record of a stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StopRecord {
-    /// When, in seconds of the robot's clock as it was believed.
+    /// Start of the stop (s), on the clock as the safety system counts it.
     pub time: f64,
-    /// Why.
+    /// Causes of the stop.
     pub causes: Causes,
-    /// The state that it led to.
+    /// State that the stop led to.
     pub state: SafetyState,
-    /// The speed at which the vehicle went.
+    /// Measured speed at that moment (m/s).
     pub speed: f64,
 }
 
-/// A robot under the safety system of a car that drives by wire (book, sections 14.2 and 14.3).
+/// A robot supervised by the safety system of a drive-by-wire car (book, sections 14.2 and 14.3).
 ///
-/// It is a robot like the one inside, but a program's commands reach the wheels in the state [`SafetyState::Auto`] alone, and
-/// whenever time passes, every control period, in waits and at calls, it looks at the buttons, the heartbeat of the base
-/// station, the fence, the pedals, the program and the sensors. When something is wrong, it brakes, and keeps the curvature
-/// that was being driven until the vehicle stands; then it stands until somebody arms it again. While it brakes gently for want
-/// of a heartbeat, or of a program that has come back, the program's commands still steer, as long as all sensors are well; its
-/// speeds count for nothing.
+/// It implements the traits of the inner robot, but a program's commands reach the wheels only in the state
+/// [`SafetyState::Auto`]. Once per control period, during waits and calls, it checks the buttons, the
+/// heartbeat of the base station, the fence, the pedals, the program and the sensors. If a check fails, it
+/// brakes at the curvature driven last, stands, and stays until it is armed again. If the only causes of a
+/// safe stop are a missing heartbeat or a program that has resumed, the program still steers while the
+/// vehicle brakes; its speeds are ignored.
 ///
-/// # What it notices, and how soon
+/// # What it detects, and how soon
 ///
-/// What can be noticed is answered by the look after that, so within one control period; during a call of the robot inside that
-/// takes longer, when the call has ended. With the [parameters](SupervisedParameters) it can be noticed
+/// The reaction follows within one control period of the moment at which a fault is detectable; if a call of
+/// the inner robot takes longer, at the end of that call. With the [parameters](SupervisedParameters), a
+/// fault is detectable
 ///
+/// | fault | seconds after its start |
 /// | what | seconds after it began |
 /// |---|---|
-/// | a button, a pedal, the steering wheel, a stop of the base station | 0 |
-/// | the heartbeat is missing | `heartbeat`, from the last one |
-/// | the vehicle is outside the fence | `fence_debounce - 1` periods |
-/// | the program is silent | `watchdog`, from what showed that it lived |
-/// | the link is gone; odometry is lost, reads no numbers, or jumps | 0 |
-/// | the clock stands, goes back or leaps | one period |
-/// | odometry stays as it is | `health.repeats` periods, and as long as 10 mm take at the speed that it tells |
-/// | odometry gets late | as a jump or as one that stays, whichever its first late readings look like |
-/// | odometry has not been read for longer than `health.age`, as a call hung | with the end of that call |
-/// | a sensor that the program reads is lost, reads no numbers, or takes longer than `health.age` | with that reading |
-/// | such a sensor stays as it is, or gets late | with `health.repeats` such readings of a vehicle that moves |
+/// | button, pedal, steering wheel, stop of the base station | 0 |
+/// | heartbeat missing | `heartbeat`, from the last one |
+/// | vehicle outside the fence | `fence_debounce - 1` periods |
+/// | program silent | `watchdog`, from its last sign of life |
+/// | link lost; odometry lost, not a number, or jumping | 0 |
+/// | clock stands still, runs backwards or leaps | one period |
+/// | odometry frozen | `health.repeats` periods, and the time for 10 mm at the reported speed |
+/// | odometry becomes late | as for a jump or a freeze, whichever its first late readings resemble |
+/// | odometry not read for longer than `health.age`, because a call hung | at the end of that call |
+/// | sensor used by the program lost, not a number, or slower than `health.age` | at that reading |
+/// | such a sensor frozen, or becoming late | after `health.repeats` such readings while the vehicle moves |
 ///
-/// While the program's last command keeps the vehicle going without an end, a [speed](Drive::set_speed) or a
-/// [motor](crate::io::Motors), it lives as long as it commands again in time: that it reads sensors, or waits, shows no more that it
-/// drives. While the vehicle is told to stand, or to drive a way that has an end, as by [`straight`](crate::io::Manoeuvres::straight), any call
-/// shows that it lives, and so does a wait while it goes on; a call of the robot inside that hangs does not.
+/// While the last command keeps the vehicle moving indefinitely (a [speed](Drive::set_speed) or a
+/// [motor](crate::io::Motors)), only further commands keep the program alive; sensor reads and waits do not.
+/// While the last command was to stand, or a manoeuvre with an end such as
+/// [`straight`](crate::io::Manoeuvres::straight), every call keeps it alive, and so does a wait in progress.
+/// A call of the inner robot that hangs does not.
 ///
-/// # What it cannot notice
+/// # What it cannot detect
 ///
-/// Readings have no time stamps, so that a sensor gets late is seen, but not that it is: one that has been late since before it
-/// was first read is trusted, and so is odometry that gets stuck while the vehicle stands, and one whose error grows slowly.
-/// Ranges and images that jump are not noticed, as they do so at every edge. Sensors that nobody reads are not looked at, but for
-/// odometry.
+/// Readings carry no time stamps. A sensor that becomes late is detected; one that was late from its first
+/// reading on is trusted. So are odometry that freezes while the vehicle stands, and odometry whose error
+/// grows slowly. Jumps of ranges and images are not detected, because they jump at every edge. Sensors that
+/// the program does not read are not checked, except odometry.
 ///
-/// Therefore a sensor that was found at fault stays a [cause](Causes::SENSOR) until somebody vouches for it
-/// ([`Panel::sensors_checked`]), and so long the vehicle is not armed. Who vouches for a sensor that is still late is believed;
-/// one that is lost, stuck or reads no numbers is found out again.
+/// Therefore a sensor fault stays a [cause](Causes::SENSOR) until somebody confirms the sensors
+/// ([`Panel::sensors_checked`]); until then the vehicle cannot be armed. Confirming a sensor that is still
+/// late hides its fault. A sensor that is still lost, frozen or not a number is detected again.
 ///
-/// # Memory, panics, and time without end
+/// # Memory, panics, endless waits
 ///
-/// All memory is allocated by [`new`](Self::new), some 300 kB. After that, nothing here allocates or panics: what the robot inside
-/// and the station do is their own. A wait of more than a day fails with [`ErrorKind::InvalidInput`].
+/// [`new`](Self::new) allocates all memory, about 300 kB. Afterwards nothing here allocates or panics; the
+/// inner robot and the station may. A wait of more than a day fails with [`ErrorKind::InvalidInput`].
 ///
 /// ```
 /// use roverlab::safety::{Heartbeat, Panel, Requests, SafetyState, Supervised, SupervisedParameters};
@@ -74,7 +77,7 @@ pub struct StopRecord {
 /// use roverlab::io::{Clock, Drive, MockRobot, Odometry};
 ///
 /// # fn main() -> roverlab::io::Result<()> {
-/// // Armed and started at once; the stop button is pressed after a second.
+/// Armed and started at once; the stop button is pressed after one second.
 /// let station = |now: f64, heartbeat: Heartbeat| Panel {
 ///     heartbeat: Some(heartbeat.count),
 ///     requests: Requests { arm: now > 0.01, start: now > 0.05, disarm: false },
@@ -98,49 +101,49 @@ pub struct Supervised<R, S> {
     station: S,
     pub(super) parameters: SupervisedParameters,
     pub(super) core: SafetyCore,
-    /// What calls of the program have shown since the last look.
+    /// Causes found in calls of the program since the last check.
     pub(super) seen: Causes,
     heartbeat: Deadline,
     heard: Option<u64>,
     sent: u64,
-    /// Seconds that have passed: those of the clock, and at least those that were waited, as a clock may stop.
+    /// Time passed (s): by the clock, but at least the time waited, because a clock may stop.
     pub(super) waited: f64,
-    /// What the clock showed when nothing had passed.
+    /// Clock reading at time zero (s).
     origin: Option<f64>,
-    /// When it looks next, in that time.
+    /// Time of the next check (s).
     pub(super) due: f64,
     watchdog: Deadline,
     outside: Debounce,
-    /// The corners of the fence, so that no look has to allocate.
+    /// Corners of the fence, kept so that a check does not allocate.
     fence: Vec<[f64; 2]>,
     pub(super) odometry: OdometryHealth,
     pub(super) scans: ReadingHealth,
     pub(super) images: ReadingHealth,
-    /// Of every distance sensor that there can be, so that no reading has to allocate.
+    /// One entry per possible distance sensor, so that a reading does not allocate.
     pub(super) distances: Box<[ReadingHealth]>,
     trust: Trust,
     clock: Option<f64>,
     pub(super) pose: Pose,
-    /// The speed measured last, and the curvature driven last.
+    /// Last measured speed (m/s); `curvature` is the one driven last (1/m).
     speed: f64,
     pub(super) curvature: f64,
-    /// The speed that the program asked for last; infinite if it drives by other means than speeds.
+    /// Speed that the program last commanded (m/s); infinite if it drives by other means.
     pub(super) wanted: f64,
-    /// Whether it turns motors and servos itself, so that the curvature has to be measured.
+    /// Whether the program commands motors and servos itself, so that the curvature must be measured.
     pub(super) direct: bool,
     going: Going,
-    /// The speed asked for while it brakes.
+    /// Speed commanded while braking (m/s).
     braking: Option<f64>,
     causes: Causes,
     stop: Option<StopRecord>,
 }
 
-/// What of the program's last commands keeps the vehicle going without an end.
+/// Which of the program's last commands keep the vehicle moving indefinitely.
 #[derive(Debug, Clone, Copy)]
 struct Going {
-    /// A speed does.
+    /// A speed command.
     rolls: bool,
-    /// Which motors do.
+    /// Powered motors.
     powered: [bool; 256],
 }
 
@@ -156,15 +159,17 @@ impl Going {
     }
 }
 
-/// The longest wait, in seconds, and the longest time that a clock is believed to have leapt by: what comes after it has to come.
+/// Longest wait, and largest forward leap of the clock that is accepted (s).
 pub(super) const LONGEST: f64 = 86_400.0;
-/// Metres per second above which speeds tell a curvature.
+/// Speed above which the curvature is computed from measured speeds (m/s).
 const ROLLS: f64 = 0.05;
 
 impl<R: Clock + Drive + Odometry, S: Station> Supervised<R, S> {
-    /// A robot in the hands of a person, with somebody at the other end.
+    /// Wraps a robot, in the state `Manual`, with `station` as the remote end.
     ///
-    /// Fails with the name of the parameter that is out of range.
+    /// # Errors
+    ///
+    /// If a parameter is out of range.
     pub fn new(inner: R, station: S, parameters: SupervisedParameters) -> Result<Self> {
         parameters.validate()?;
         let mut watchdog = Deadline::checked(parameters.watchdog);
@@ -207,7 +212,7 @@ impl<R: Clock + Drive + Odometry, S: Station> Supervised<R, S> {
         self.core.state()
     }
 
-    /// What is wrong now.
+    /// Causes active in the last control period.
     pub fn causes(&self) -> Causes {
         self.causes
     }
@@ -217,22 +222,27 @@ impl<R: Clock + Drive + Odometry, S: Station> Supervised<R, S> {
         self.stop
     }
 
-    /// The other end.
+    /// The remote end.
     pub fn station_mut(&mut self) -> &mut S {
         &mut self.station
     }
 
-    /// The robot inside.
+    /// The inner robot.
     pub fn inner(&self) -> &R {
         &self.inner
     }
 
-    /// The robot inside, unsupervised.
+    /// The inner robot, without supervision.
     pub fn into_inner(self) -> R {
         self.inner
     }
 
-    /// The driver drives: reaches the wheels in the state [`SafetyState::Manual`] alone. Whether it did.
+    /// Command of the driver. It reaches the wheels only in the state [`SafetyState::Manual`]. Returns
+    /// whether it did.
+    ///
+    /// # Errors
+    ///
+    /// If the inner robot reports one.
     pub fn drive_by_hand(&mut self, twist: Twist) -> Result<bool> {
         let manual = self.core.state() == SafetyState::Manual;
         if manual {
@@ -241,26 +251,26 @@ impl<R: Clock + Drive + Odometry, S: Station> Supervised<R, S> {
         Ok(manual)
     }
 
-    /// The program calls. What happened in the time since its last call is seen before that counts. That it calls shows no more
-    /// that it drives while the vehicle goes on without an end.
+    /// Records a call of the program, after a check of the time since its last call. While the vehicle moves
+    /// indefinitely, a call does not keep the program alive.
     pub(super) fn alive(&mut self) {
         self.pass(0.0);
         self.look_if_due();
         self.shows_life();
     }
 
-    /// A call, or a wait that goes on as the program asked for it, shows that it lives, unless it has to command.
+    /// Feeds the watchdog, unless the program has to send commands to stay alive.
     pub(super) fn shows_life(&mut self) {
         if !self.going.has_no_end() {
             self.watchdog.feed(self.waited);
         }
     }
 
-    /// Time has passed: so many seconds at least, and more if the clock says so.
+    /// Advances the time by at least `seconds`, and by more if the clock says so.
     pub(super) fn pass(&mut self, seconds: f64) {
         self.waited += seconds;
         let Some(now) = self.inner.peek_time().ok().filter(|now| now.is_finite()) else { return };
-        // To the nanosecond, as in recordings.
+        // Rounded to nanoseconds, as in recordings.
         let now = (now * 1e9).round() / 1e9;
         let shown = now - *self.origin.get_or_insert(now - self.waited);
         if shown - self.waited <= LONGEST {
@@ -268,19 +278,19 @@ impl<R: Clock + Drive + Odometry, S: Station> Supervised<R, S> {
         }
     }
 
-    /// Looks once in every control period.
+    /// Runs the checks once per control period.
     pub(super) fn look_if_due(&mut self) {
         if self.waited < self.due - 1e-6 {
             return;
         }
         let next = self.waited + self.parameters.period;
         self.look();
-        // Looking takes time on some robots, but must not take all of it.
+        // On some robots the checks take time, but they must not take all of it.
         self.pass(0.0);
         self.due = next.max(self.waited + 0.1 * self.parameters.period);
     }
 
-    /// One look at everything, and what follows from it.
+    /// Runs all checks and acts on the result.
     fn look(&mut self) {
         let mut causes = std::mem::take(&mut self.seen);
         causes = causes.with(self.read_clock());
@@ -301,14 +311,14 @@ impl<R: Clock + Drive + Odometry, S: Station> Supervised<R, S> {
         self.act(before, state, standing);
     }
 
-    /// The clock has to go on while time passes.
+    /// Checks that the clock advances while time passes.
     fn read_clock(&mut self) -> Causes {
         match self.inner.now() {
             Err(_) => Causes::LINK,
             Ok(now) => {
                 let went_on = self.clock.replace(now).is_none_or(|before| {
                     let passed = now - before;
-                    // It may go on in calls for longer, but not stand, and not leap.
+                    // Calls may take longer than a period, but the clock must not stand still or leap.
                     passed > 0.2 * self.parameters.period && passed < self.parameters.period + 0.5
                 });
                 Causes::NONE.with_if(!went_on, Causes::CLOCK)
@@ -316,7 +326,7 @@ impl<R: Clock + Drive + Odometry, S: Station> Supervised<R, S> {
         }
     }
 
-    /// What odometry says, and whether the vehicle stands.
+    /// Causes found by odometry, and whether the vehicle stands.
     fn read_odometry(&mut self) -> (Causes, bool) {
         match (self.inner.pose(), self.inner.speed()) {
             (Ok(pose), Ok(speed)) => {
@@ -345,7 +355,7 @@ impl<R: Clock + Drive + Odometry, S: Station> Supervised<R, S> {
             self.heartbeat.feed(self.waited);
         }
         let threshold = self.parameters.override_threshold;
-        // What is no number is taken for a driver who does something.
+        // NaN counts as an action of the driver.
         let quiet = |value: f64| value.abs() <= threshold;
         let driver = panel.disengage
             || !(quiet(panel.accelerator) && quiet(panel.brake) && quiet(panel.steering_force));
@@ -356,8 +366,8 @@ impl<R: Clock + Drive + Odometry, S: Station> Supervised<R, S> {
             .with_if(driver, Causes::DRIVER)
     }
 
-    /// A sensor that was found at fault is not trusted before somebody vouches for it: that it is late, for one, shows only as it
-    /// gets late.
+    /// Sensor cause that stays after a fault until somebody confirms the sensors: lateness, for example,
+    /// shows only while it builds up.
     fn distrusted(&mut self, causes: Causes, vouches: bool) -> Causes {
         if self.trust.begins(vouches) {
             self.odometry.trust();
@@ -369,71 +379,71 @@ impl<R: Clock + Drive + Odometry, S: Station> Supervised<R, S> {
         Causes::NONE.with_if(lost, Causes::SENSOR)
     }
 
-    /// Brakes where the state asks for it. Errors are looked at in the next period, when the link is asked again.
+    /// Brakes in the states that require it. Errors are ignored here: the next period checks the link again.
     fn act(&mut self, before: SafetyState, state: SafetyState, standing: bool) {
         if !state.is_stop() {
             self.braking = None;
             if before == SafetyState::Auto && state == SafetyState::Manual {
-                // The driver has it: nothing of the program's is left.
+                // The driver has control: cancel the program's last command.
                 let _ = self.inner.set_speed(Twist::STOP);
             }
             return;
         }
         let slower = match (state, self.braking) {
             (SafetyState::EmergencyStop, _) => 0.0,
-            // Sensors may say more than is true: brakes that the program had on are not let go.
+            // Odometry may report too high a speed: never brake less than the program did.
             (_, None) => self.speed.abs().min(self.wanted).copysign(self.speed),
             (_, Some(speed)) => speed,
         };
         let step = self.parameters.gentle * self.parameters.period;
         let speed = slower - slower.clamp(-step, step);
         self.braking = Some(speed);
-        // The curvature is kept, by a speed next to none: brakes act before the steering does.
+        // Keep the curvature by a tiny speed: the brakes act before the steering does.
         let least = if standing { 0.0 } else { 1e-6_f64.copysign(self.speed) };
         let speed = if speed == 0.0 { least } else { speed };
         let _ = self.inner.set_speed(Twist::new(speed, speed * self.curvature));
     }
 
-    /// The speed, in m/s, that the program asked for last: a robot whose link is lost may speed up to it until it stops by itself.
-    /// `None` if it drives by other means than speeds.
+    /// Speed that the program last commanded (m/s). A robot whose link is lost may accelerate to it before it
+    /// stops by itself. `None` if the program drives by other means.
     pub fn asked(&self) -> Option<f64> {
         Some(self.wanted).filter(|speed| speed.is_finite())
     }
 
-    /// Remembers a command that has reached the wheels: to brake, its curvature is kept.
+    /// Stores a command that reached the wheels; braking keeps its curvature.
     pub(super) fn told(&mut self, wanted: f64, curvature: f64) {
         (self.wanted, self.direct) = (wanted.abs(), false);
         self.curvature = if curvature.is_finite() { curvature } else { 0.0 };
     }
 
-    /// The same for one of a motor or a servo.
+    /// Records that a motor or servo command reached the wheels.
     pub(super) fn turned(&mut self) {
         (self.wanted, self.direct) = (f64::INFINITY, true);
     }
 
-    /// Whether the program may drive now. By a command it shows that it lives, whether that reaches the wheels or not; `rolls` says
-    /// whether it keeps the vehicle going without an end.
+    /// Records a command and returns whether it may reach the wheels. The command keeps the program alive
+    /// either way. `rolls`: it keeps the vehicle moving indefinitely.
     pub(super) fn may_drive(&mut self, rolls: bool) -> bool {
         self.going = Going { rolls, ..Going::default() };
         self.commanded()
     }
 
-    /// The same for a motor, which is powered or not.
+    /// The same for a motor command.
     pub(super) fn may_turn(&mut self, motor: u8, powered: bool) -> bool {
         self.going.rolls = false;
         self.going.powered[usize::from(motor)] = powered;
         self.commanded()
     }
 
-    /// The same for what drives nothing, as a servo.
+    /// The same for a command that drives nothing, such as that of a servo.
     pub(super) fn commanded(&mut self) -> bool {
         self.alive();
         self.watchdog.feed(self.waited);
         self.core.state().lets_drive()
     }
 
-    /// While it brakes because nobody is heard, or nobody was, a program that lives and sees goes on steering: nobody else keeps the
-    /// vehicle on its way. How fast it is the program has no say in.
+    /// Lets a running program steer while the vehicle brakes because of a missing heartbeat or a program that
+    /// was silent. The commanded speed is ignored.
     pub(super) fn steer_on(&mut self, twist: Twist) {
         let blind = Causes::HEARTBEAT_LOST.with(Causes::WATCHDOG);
         let why = self.stop.map_or(Causes::NONE, |stop| stop.causes).with(self.causes);
@@ -444,7 +454,7 @@ impl<R: Clock + Drive + Odometry, S: Station> Supervised<R, S> {
         }
     }
 
-    /// A reading that the program asked for. How long that took tells how late it is.
+    /// Reads a sensor for the program, and records a fault if the call takes too long.
     pub(super) fn reading<T>(&mut self, read: impl FnOnce(&mut R) -> Result<T>) -> Result<T> {
         self.alive();
         let before = self.waited;
@@ -463,7 +473,7 @@ impl<R: Clock + Drive + Odometry, S: Station> Supervised<R, S> {
     }
 }
 
-/// What an error of a sensor is a sign of. That it was never there, or that the program asked for nonsense, is none.
+/// Causes that an error of a sensor indicates. A missing sensor or an invalid argument is not a fault.
 pub(super) fn fault(error: &Error) -> Causes {
     match error.kind() {
         ErrorKind::Unsupported | ErrorKind::InvalidInput => Causes::NONE,

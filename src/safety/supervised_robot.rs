@@ -1,20 +1,20 @@
-//! What a supervised robot does for a program: the commands that reach the wheels, and the readings that are looked at.
+//! The robot traits of [`Supervised`]: commands are filtered, readings are checked.
 
 use image::RgbImage;
 
 use super::health::digest;
 use super::supervised::{LONGEST, Supervised, fault};
 use super::{Causes, Station};
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::wrappers::signatures;
 use crate::io::{
-    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind,
-    Fill, Font, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio,
-    RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error,
+    ErrorKind, Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors,
+    Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
-/// Capabilities that drive nothing and tell nothing of the surroundings: calls take time all the same.
+/// Traits that neither drive nor sense the surroundings; their calls still take time.
 macro_rules! passed_on {
     ($capability:ident { $( fn $name:ident($($arg:ident: $type:ty),*) -> $result:ty; )* }) => {
         impl<R: Clock + Drive + Odometry + $capability, S: Station> $capability for Supervised<R, S> {
@@ -30,6 +30,7 @@ signatures! { StallDetector => passed_on!() }
 signatures! { Display => passed_on!() }
 signatures! { Radio => passed_on!() }
 signatures! { Encoders => passed_on!() }
+signatures! { Inertial => passed_on!() }
 
 impl<R: Clock + Drive + Odometry + Keys, S: Station> Keys for Supervised<R, S> {
     fn read_key(&mut self) -> Result<Option<Key>> {
@@ -37,7 +38,7 @@ impl<R: Clock + Drive + Odometry + Keys, S: Station> Keys for Supervised<R, S> {
         self.inner.read_key()
     }
 
-    /// Asks once in every control period, and looks.
+    /// Polls once per control period, and runs the checks.
     fn wait_key(&mut self) -> Result<Key> {
         loop {
             if let Some(key) = self.read_key()? {
@@ -170,7 +171,7 @@ impl<R: Clock + Drive + Odometry + Manoeuvres + StallDetector, S: Station> Manoe
     }
 
     fn wait_done(&mut self) -> Result<()> {
-        // A manoeuvre that stopped is none that runs: what brakes is a speed.
+        // After a stop no manoeuvre is active: the brakes use a speed command.
         while !self.inner.is_done()? && !self.inner.is_stalled()? && self.core.state().lets_drive() {
             self.wait(self.parameters.period)?;
         }

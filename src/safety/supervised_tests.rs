@@ -11,7 +11,7 @@ use crate::kinematics::PlanarMotion;
 use crate::race::GapDriver;
 use crate::world::{RobotSpec, Scene, World};
 
-/// Armed and started at once, a heartbeat, and what else is asked for.
+/// A station that arms and starts at once and sends a heartbeat; `change` adds further inputs.
 pub(super) fn station(change: impl Fn(f64, &mut Panel)) -> impl FnMut(f64, Heartbeat) -> Panel {
     move |now, heartbeat| {
         let requests = Requests { arm: now > 0.03, start: now > 0.07, disarm: false };
@@ -21,7 +21,7 @@ pub(super) fn station(change: impl Fn(f64, &mut Panel)) -> impl FnMut(f64, Heart
     }
 }
 
-/// Drives with 0.5 m/s for some seconds, a command every 0.1 s.
+/// Drives at 0.5 m/s for `seconds`, with a command every 0.1 s.
 pub(super) fn drive<R: Clock + Drive + Odometry, S: Station>(car: &mut Supervised<R, S>, seconds: f64) {
     for _ in 0..(10.0 * seconds).round() as usize {
         let _ = car.set_speed(Twist::new(0.5, 0.1));
@@ -163,13 +163,13 @@ fn the_base_station_hears_and_is_heard() {
     car.station_mut().connect(false);
     drive(&mut car, 1.0);
     assert_eq!(car.state(), SafetyState::SafeStop);
-    // With the link back, the station, which has missed the car as well, orders a stop.
+    // The link is back. The station has missed the car as well and orders a stop.
     car.station_mut().connect(true);
     drive(&mut car, 0.2);
     assert_eq!(car.state(), SafetyState::EmergencyStop);
     car.station_mut().take_back();
     drive(&mut car, 0.5);
-    assert_eq!(car.state(), SafetyState::EmergencyStop, "it is left by arming alone");
+    assert_eq!(car.state(), SafetyState::EmergencyStop, "only arming leaves it");
     car.station_mut().panel.requests = Requests::default();
     drive(&mut car, 0.1);
     car.station_mut().panel.requests.arm = true;
@@ -177,7 +177,7 @@ fn the_base_station_hears_and_is_heard() {
     assert_eq!(car.state(), SafetyState::Armed);
 }
 
-/// Eight faults, and what they are seen by.
+/// Eight faults of the simulator.
 const FAULTS: [&str; 8] = [
     "stuck:odometry@3",
     "lost:odometry@3",
@@ -207,7 +207,7 @@ fn a_robot_in_the_simulator_stands_after_every_fault() {
             let _ = car.wait(0.1);
         }
         let way = simulation.truth().pose(0).unwrap().distance_to(before.position());
-        // Without a link nothing reaches the wheels: that is for the watchdog on the other side of it.
+        // Without a link no command reaches the wheels; the watchdog on board has to stop the car.
         assert!(way < 1e-3 || text.starts_with("link"), "{text}: goes on {way} m after {stop:?}");
     }
 }
@@ -220,7 +220,7 @@ fn race(cones: &[Point], noise: f64) -> Simulation {
     Simulation::new(&scene, SimOptions::with_noise(noise, 1)).unwrap()
 }
 
-/// How fast a racing car truly is, a tick later.
+/// True speed of a racing car, measured over one tick (m/s).
 fn speed(race: &Simulation, car: &mut impl Clock) -> f64 {
     let before = race.truth().robot(0).unwrap().path_length;
     let _ = car.wait(TICK);
@@ -229,7 +229,7 @@ fn speed(race: &Simulation, car: &mut impl Clock) -> f64 {
 
 #[test]
 fn a_racing_car_brakes_on_its_line() {
-    // Cones that are never met, so that the lidar shows something.
+    // Cones beside the road give the lidar something to see.
     let cones: Vec<Point> =
         (0..40).flat_map(|i| [-3.0, 3.0].map(|y| Point::new(5.0 * f64::from(i), y))).collect();
     for text in ["stuck:lidar@4", "lost:lidar@4", "nan:lidar@4", "nan:odometry@4", "clock@4"] {
@@ -278,7 +278,7 @@ fn programs_run_supervised_as_they_are() {
     assert!(speed(&race, &mut car) < 0.01 && x > 15.0 && x < 40.0, "{x}");
 }
 
-/// Commands that are no numbers do not keep the brakes from the wheels, and no wait is without end.
+/// NaN and infinite commands do not block the brakes, and no wait is endless.
 #[test]
 fn a_program_that_tells_nonsense_is_stopped_all_the_same() {
     for angular in [f64::NAN, f64::INFINITY, 1e308] {
@@ -298,7 +298,7 @@ fn a_program_that_tells_nonsense_is_stopped_all_the_same() {
     }
 }
 
-/// Odometry that is stuck while the program brakes tells more than is true: the brakes stay on.
+/// Frozen odometry reports too high a speed while the program brakes: the brakes must not be released.
 #[test]
 fn brakes_that_are_on_stay_on() {
     let simulation = race(&[], 0.0);
@@ -325,7 +325,7 @@ fn brakes_that_are_on_stay_on() {
     assert!(way < bound, "{way} of {bound}");
 }
 
-/// Who drives by motors and servos is braked on his bend as well.
+/// A program that drives by motors and servos is braked on its curve, too.
 #[test]
 fn the_bend_of_a_servo_is_kept() {
     let race = race(&[], 0.0);
@@ -346,7 +346,7 @@ fn the_bend_of_a_servo_is_kept() {
     assert!(motion.forward > 0.2 * 0.02 && (steering - 0.3).abs() < 0.05, "{motion:?}: {steering}");
 }
 
-/// A program that never waits is looked at all the same, whatever calls its time goes by.
+/// A program that never waits is checked as well, whatever calls it makes.
 #[test]
 fn reading_takes_time_in_which_it_is_looked_at() {
     let scene = Scene::with_robot(World::walled(8.0, 8.0), RobotSpec::s4(), Pose::new(2.0, 4.0, 0.0));
@@ -385,7 +385,7 @@ fn waiting_for_a_key_takes_time_in_which_it_is_looked_at() {
     assert!(simulation.truth().pose(0).unwrap().x < 2.45 && car.peek_time().unwrap() < 3.1);
 }
 
-/// Readings that come late are seen as they get late.
+/// Late readings are detected while their delay builds up.
 #[test]
 fn late_readings_stop_it() {
     for text in ["late:front=0.5@3", "late:lidar=0.5@3", "late:camera=0.5@3"] {

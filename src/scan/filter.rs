@@ -4,13 +4,28 @@ use crate::geometry::{Point, Pose, direction, math};
 use crate::io::{Error, LidarScan, Result};
 use crate::kinematics::OUTLIER;
 
-/// Takes the noise out of consecutive lidar scans of a moving robot.
+/// Removes noise from consecutive lidar scans of a moving robot.
 ///
-/// Each beam carries an estimate of its range. With every scan the estimates are moved along with the robot's own
-/// motion, which is known far better between two scans than a single range, and then averaged with the new
-/// readings. A reading that does not fit its prediction, because something came into view or went out of it, starts
-/// its beam anew. After some scans the noise is a fraction of the sensor's, without the blur that a plain average
-/// over time or over neighbours would have.
+/// Each beam carries an estimate of its range. With every scan, the estimates are moved by the robot's own
+/// motion, which between two scans is known far better than a single range, and then averaged with the new
+/// readings. A reading that does not fit its prediction, because something came into view or left it,
+/// restarts its beam. After some scans the noise is a fraction of the sensor's, without the blur of an
+/// average over time or neighbours.
+///
+/// ```
+/// use roverlab::geometry::Pose;
+/// use roverlab::io::LidarScan;
+/// use roverlab::scan::ScanFilter;
+/// let mut scan = LidarScan { range_max: 5.0, angle_increment: 1_f64.to_radians(), ..LidarScan::default() };
+/// let mut filter = ScanFilter::new();
+/// for turn in 0..50 {
+///     // A round room of 2 m radius, measured 1 cm too long and 1 cm too short in turns.
+///     scan.ranges = vec![if turn % 2 == 0 { 2.01 } else { 1.99 }; 360];
+///     filter.update(Pose::default(), &scan)?;
+/// }
+/// assert!(filter.ranges().all(|range| (range - 2.0).abs() < 0.008));
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct ScanFilter {
     beams: Vec<Beam>,
@@ -24,11 +39,11 @@ pub struct ScanFilter {
     scratch: Vec<f64>,
 }
 
-/// The estimate of one beam.
+/// Estimate of one beam.
 #[derive(Debug, Clone, Copy)]
 struct Beam {
     range: f64,
-    /// How many readings the estimate rests on; 0 when there is none.
+    /// Number of readings in the estimate; 0 if there is none.
     weight: f64,
 }
 
@@ -36,14 +51,14 @@ struct Beam {
 pub(super) const RANGE_ERROR: f64 = 0.010;
 /// A beam that has met nothing.
 const UNKNOWN: Beam = Beam { range: f64::INFINITY, weight: 0.0 };
-/// The most readings that an estimate counts for, so that it still follows small changes.
+/// Maximum weight of an estimate, so that it follows small changes.
 const MAX_WEIGHT: f64 = 20.0;
 /// Beams next to each other whose ranges differ by less than this part of the range see one surface.
 pub(super) const SURFACE_STEP: f64 = 0.1;
 /// Beams whose hits lie closer together than this, in metres, see the same piece of surface; seen at a slant, it moves by as much
 /// between them.
 const SMOOTHING_ARC: f64 = 0.015;
-/// Neighbours on either side that are averaged at most.
+/// Maximum number of averaged neighbours on either side.
 const MAX_SMOOTHING: usize = 10;
 
 impl Default for ScanFilter {
@@ -53,7 +68,7 @@ impl Default for ScanFilter {
 }
 
 impl ScanFilter {
-    /// A filter without a scan. It finds the noise of the sensor by itself.
+    /// A filter without scans. It estimates the sensor's noise itself.
     pub fn new() -> Self {
         Self {
             beams: Vec::new(),
@@ -68,8 +83,12 @@ impl ScanFilter {
         }
     }
 
-    /// Takes in a scan that was made at `pose`, by odometry or better. The scan must cover a full turn; a change of
-    /// the number of beams starts the filter anew.
+    /// Takes a scan made at `pose`, by odometry or better. A change of the number of beams restarts the
+    /// filter.
+    ///
+    /// # Errors
+    ///
+    /// If the scan does not cover a full turn with at least 36 beams.
     pub fn update(&mut self, pose: Pose, scan: &LidarScan) -> Result<()> {
         check(scan)?;
         if self.beams.len() == scan.ranges.len() {
@@ -82,12 +101,12 @@ impl ScanFilter {
         Ok(())
     }
 
-    /// The estimated range of every beam in metres, +infinity where nothing is seen.
+    /// Estimated range of every beam (m), infinite without an echo.
     pub fn ranges(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
         (0..self.beams.len()).map(|i| self.smoothed(i))
     }
 
-    /// The estimated hits in the robot's frame.
+    /// Estimated hits in the robot frame.
     pub fn points(&self) -> impl Iterator<Item = Point> + '_ {
         let origin = self.mount.position();
         self.ranges()
@@ -96,7 +115,7 @@ impl ScanFilter {
             .map(move |(range, &(cos, sin))| Point::new(origin.x + range * cos, origin.y + range * sin))
     }
 
-    /// The standard deviation of the sensor's ranges as found so far, in metres.
+    /// Estimated standard deviation of the sensor's ranges (m).
     pub fn noise(&self) -> f64 {
         self.noise
     }
@@ -114,7 +133,7 @@ impl ScanFilter {
             .collect();
     }
 
-    /// Moves the estimates to where they are seen from the new pose.
+    /// Moves the estimates to the new pose.
     fn predict(&mut self, pose: Pose) {
         let before = self.pose.compose(&self.mount);
         let now = pose.compose(&self.mount);
@@ -133,11 +152,11 @@ impl ScanFilter {
             let seen = math::hypot(x, y);
             let bearing = (math::atan2(y, x) - self.angle_min) / self.angle_increment;
             let bearing = within_turn(bearing, self.beams.len() as f64);
-            // Rounded half up; `round` is a call where the processor is not known to have it.
+            // Rounded half up; `round` may be a function call on generic processors.
             let whole = bearing as usize;
             let nearest = whole + usize::from(bearing - whole as f64 >= 0.5);
             let target = if nearest < self.beams.len() { nearest } else { 0 };
-            // The estimate is for the beam's own direction, which the moved point misses by up to half a beam.
+            // Correct for the moved point missing the beam's direction by up to half a beam.
             let range = seen + self.slope(i) * (nearest as f64 - bearing);
             self.predicted[target] = merge(self.predicted[target], Beam { range, weight });
         }
@@ -145,18 +164,18 @@ impl ScanFilter {
         self.fill_gaps();
     }
 
-    /// The beam that comes so many, at most a full turn, before another one.
+    /// The beam `steps` before another one; at most a full turn.
     fn before(&self, index: usize, steps: usize) -> Beam {
         self.beams[if index >= steps { index - steps } else { index + self.beams.len() - steps }]
     }
 
-    /// The beam that comes so many, at most a full turn, after another one.
+    /// The beam `steps` after another one; at most a full turn.
     fn after(&self, index: usize, steps: usize) -> Beam {
         let (to, n) = (index + steps, self.beams.len());
         self.beams[if to < n { to } else { to - n }]
     }
 
-    /// A surface that comes nearer spreads over more beams: one between two that see it sees it too.
+    /// Fills single gaps: an approaching surface spreads over more beams.
     fn fill_gaps(&mut self) {
         let n = self.beams.len();
         for i in 0..n {
@@ -169,7 +188,7 @@ impl ScanFilter {
         }
     }
 
-    /// A beam's direction in the sensor's frame.
+    /// Direction of a beam in the sensor frame.
     fn local_direction(&self, index: usize) -> (f64, f64) {
         let (x, y) = self.directions[index];
         if self.mount.heading == 0.0 {
@@ -179,12 +198,12 @@ impl ScanFilter {
         (cos * x + sin * y, cos * y - sin * x)
     }
 
-    /// How much the range changes from one beam to the next on the surface that a beam sees.
+    /// Change of the range per beam on the surface that a beam sees.
     fn slope(&self, index: usize) -> f64 {
         let (before, after) = (self.before(index, 1).range, self.after(index, 1).range);
         let slope = 0.5 * (after - before);
         let here = self.beams[index].range;
-        // Across an edge between surfaces there is no slope.
+        // No slope across an edge between surfaces.
         if slope.abs() < 0.1 * here && (before + after - 2.0 * here).abs() < 0.05 * here {
             slope
         } else {
@@ -202,7 +221,7 @@ impl ScanFilter {
                 *beam = Beam { range: if reading.is_nan() { f64::INFINITY } else { reading }, weight };
                 continue;
             }
-            // A prediction that rests on many readings is nearly exact, so its surprise is the reading's noise.
+            // A prediction from many readings is nearly exact, so the innovation is the reading's noise.
             if beam.weight >= 4.0 {
                 self.scratch.push(surprise.abs());
             }
@@ -212,19 +231,19 @@ impl ScanFilter {
         self.learn_noise();
     }
 
-    /// Moves the estimate of the sensor's noise towards what this scan showed.
+    /// Updates the estimate of the sensor's noise by this scan.
     fn learn_noise(&mut self) {
         let n = self.scratch.len();
         if n < 20 {
             return;
         }
         let (_, median, _) = self.scratch.select_nth_unstable_by(n / 2, f64::total_cmp);
-        // The median of absolute normal deviations is 0.6745 of their standard deviation.
+        // The median absolute deviation of a normal distribution is 0.6745 standard deviations.
         let observed = *median / 0.6745;
         self.noise += 0.1 * (observed - self.noise);
     }
 
-    /// A beam's estimate, averaged with neighbours that see the same piece of surface.
+    /// Estimate of a beam, averaged with neighbours on the same piece of surface.
     fn smoothed(&self, index: usize) -> f64 {
         let here = self.beams[index];
         let arc = here.range * self.angle_increment;
@@ -237,7 +256,7 @@ impl ScanFilter {
         means[0] = Mean { sum: here.range * here.weight, weight: here.weight };
         let mut pairs = 0;
         while pairs < reach {
-            // Neighbours come in pairs, so that the slope of the surface cancels.
+            // Neighbours in pairs, so that the slope of the surface cancels.
             let (before, after) = (self.before(index, pairs + 1), self.after(index, pairs + 1));
             let farther = (before.range - here.range).abs().max((after.range - here.range).abs());
             if farther.is_nan() || farther >= gate {
@@ -250,9 +269,8 @@ impl ScanFilter {
         self.straight_part(&means[..=pairs]).value()
     }
 
-    /// The widest of the means over ever more neighbours whose outer half agrees with its inner one. A corner stays
-    /// sharp thereby: the mean over both its sides lies behind it when it points at the robot, and before it when it
-    /// points away.
+    /// The mean over the widest neighbourhood whose outer half agrees with its inner one. This keeps corners
+    /// sharp: a mean across a corner would lie behind it or in front of it.
     fn straight_part(&self, means: &[Mean]) -> Mean {
         let mut reach = means.len() - 1;
         while reach > 0 {
@@ -269,7 +287,7 @@ impl ScanFilter {
     }
 }
 
-/// A weighted mean in the making.
+/// Accumulator of a weighted mean.
 #[derive(Debug, Clone, Copy, Default)]
 struct Mean {
     sum: f64,
@@ -286,7 +304,7 @@ impl Mean {
     }
 }
 
-/// A bearing in beams, brought into one turn of them. The remainder of a division is slow, and seldom needed.
+/// Brings a bearing (in beams) into one turn. The remainder of a division is slow and rarely needed.
 fn within_turn(bearing: f64, beams: f64) -> f64 {
     if (0.0..beams).contains(&bearing) {
         bearing
@@ -297,7 +315,7 @@ fn within_turn(bearing: f64, beams: f64) -> f64 {
     }
 }
 
-/// Two estimates that come to lie on one beam: their average if they are of one surface, or else the nearer one.
+/// Merges two estimates on one beam: their average if they belong to one surface, otherwise the nearer one.
 fn merge(a: Beam, b: Beam) -> Beam {
     if a.weight == 0.0 {
         return b;
@@ -310,8 +328,7 @@ fn merge(a: Beam, b: Beam) -> Beam {
     if a.range < b.range { a } else { b }
 }
 
-/// Fails unless a scan covers a full turn.
-/// Fails for odometry that is no place, and for a scan without a single number.
+/// Rejects non-finite odometry and scans of NaN only.
 pub(crate) fn check_measured(odometry: &Pose, scan: &LidarScan) -> Result<()> {
     if !odometry.is_finite() {
         let Pose { x, y, heading } = odometry;
@@ -325,6 +342,7 @@ pub(crate) fn check_measured(odometry: &Pose, scan: &LidarScan) -> Result<()> {
     Ok(())
 }
 
+/// Rejects scans that do not cover a full turn.
 fn check(scan: &LidarScan) -> Result<()> {
     let covered = scan.angle_increment * scan.ranges.len() as f64;
     if scan.ranges.len() < 36 || (covered - TAU).abs() > 0.02 * TAU {

@@ -7,42 +7,71 @@ use crate::kinematics::{
 };
 use crate::parameter::require_positive;
 
-/// A round pole, a can, say, whose place is known.
+/// A cylindrical landmark, such as a can, at a known position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Landmark {
-    /// Its axis.
+    /// Position of its axis (m).
     pub position: Point,
-    /// Metres from the axis to its surface.
+    /// Radius (m).
     pub radius: f64,
 }
 
-/// A robot's pose from odometry and from what its lidar sees of known landmarks: an extended Kalman filter, whose state
-/// holds the systematic errors of odometry beside the pose, so that it learns them on the way (the book asks for such
-/// feedback in section 3.7).
+/// Localisation by odometry and lidar observations of known landmarks: an extended Kalman filter. Its state
+/// includes the systematic errors of odometry, so it calibrates odometry on the way (the feedback suggested
+/// in section 3.7 of the book).
 ///
-/// It starts at a known pose. One landmark suffices, because the pose at the start is known; more are better.
+/// It starts at a known pose; therefore one landmark suffices. More are better.
+///
+/// ```
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::io::Lidar;
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::kinematics::{Differential, OdometryErrors};
+/// use roverlab::scan::{Landmark, LandmarkFilter};
+/// use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Shape, World};
+/// let (mut world, place) = (World::empty(3.0, 3.0), Point::new(1.5, 1.2));
+/// let (radius, height) = (0.04, 0.15);
+/// let pole = ObjectKind::new("pole", Shape::Cylinder { radius, height }, Colour::GREEN);
+/// world.objects.push(Object::new(pole.into(), Pose::new(place.x, place.y, 0.0)));
+/// let truth = Pose::new(0.8, 1.0, 0.0);
+/// let scene = Scene::with_robot(world, RobotSpec::s4(), truth);
+/// let scan = Simulation::new(&scene, SimOptions::ideal())?.robot(0)?.scan()?;
+/// // The robot starts at x = 0.3 m; odometry is 4 cm too large.
+/// let errors = OdometryErrors { wheel_scale: 0.1, ..Default::default() };
+/// let start = Pose::new(0.3, 1.0, 0.0);
+/// let (pole, drive) = (Landmark { position: place, radius }, Differential { track: 0.1 });
+/// let mut filter = LandmarkFilter::new(start, start, vec![pole], drive, errors, 0.005)?;
+/// filter.predict(Pose::new(0.84, 1.0, 0.0));
+/// assert_eq!(filter.correct(&scan), 1, "one landmark is visible");
+/// assert!(filter.pose().distance_to(truth.position()) < 0.01);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct LandmarkFilter {
     landmarks: Vec<Landmark>,
     drive: Differential,
     errors: OdometryErrors,
     range_error: f64,
-    /// What odometry said last.
+    /// Last pose by odometry.
     odometry: Pose,
     pose: Pose,
-    /// Estimates of the errors of scale, mismatch and track.
+    /// Estimated errors of scale, mismatch and track.
     systematic: nalgebra::Vector3<f64>,
     covariance: Matrix6<f64>,
 }
 
-/// Metres by which a landmark may seem to be elsewhere than expected.
+/// Maximum distance of a hit from a landmark's expected surface (m).
 const GATE: f64 = 0.12;
 /// The standard deviation of a bearing in beams, and its least value in radians.
 const BEARING_BEAMS: f64 = 0.4;
 
 impl LandmarkFilter {
-    /// A filter for a robot at a known pose, whose odometry says the pose `odometry`. `range_error` is the standard
-    /// deviation of a beam of its lidar, in metres.
+    /// A filter for a robot at a known pose, whose odometry reads `odometry`. `range_error` is the standard
+    /// deviation of a lidar range (m).
+    ///
+    /// # Errors
+    ///
+    /// If a parameter is out of range.
     pub fn new(
         pose: Pose,
         odometry: Pose,
@@ -69,17 +98,17 @@ impl LandmarkFilter {
         })
     }
 
-    /// The estimated pose.
+    /// Estimated pose.
     pub fn pose(&self) -> Pose {
         self.pose
     }
 
-    /// The covariance of x, y and heading.
+    /// Covariance of x, y and heading (m, rad).
     pub fn covariance(&self) -> Matrix3<f64> {
         self.covariance.fixed_view::<3, 3>(0, 0).into_owned()
     }
 
-    /// Takes up where odometry is now.
+    /// Prediction step, to a new pose by odometry.
     pub fn predict(&mut self, odometry: Pose) {
         let measured = arc_between(self.odometry, odometry);
         self.odometry = odometry;
@@ -102,7 +131,7 @@ impl LandmarkFilter {
         self.pose = step.end;
     }
 
-    /// Corrects the pose by the landmarks in a scan. Returns how many were seen.
+    /// Correction step, with the landmarks in a scan. Returns the number of landmarks detected.
     pub fn correct(&mut self, scan: &LidarScan) -> usize {
         let landmarks = std::mem::take(&mut self.landmarks);
         let seen = landmarks.iter().filter(|landmark| self.correct_by(landmark, scan)).count();
@@ -133,20 +162,20 @@ impl LandmarkFilter {
             normalize_angle(self.pose.heading + change[2]),
         );
         self.systematic += change.fixed_rows::<3>(3);
-        // Joseph's form keeps the covariance symmetric and positive.
+        // Joseph's form keeps the covariance symmetric and positive definite.
         let rest = Matrix6::identity() - gain * measurement;
         self.covariance = rest * self.covariance * rest.transpose() + gain * noise * gain.transpose();
         true
     }
 }
 
-/// Derivatives of distance and bearing of a landmark by the state, for a lidar at an arm's length from the robot, both seen
-/// in the world.
+/// Jacobian of a landmark's distance and bearing with respect to the state. `away` leads from lidar to
+/// landmark, `arm` from robot to lidar, both in the world frame.
 fn sensitivity(away: Vector, arm: Vector) -> Matrix2x6<f64> {
     let distance = away.norm();
     let along = away / distance;
     let across = Vector::new(-along.y, along.x) / distance;
-    // Turning the robot swings the lidar about it.
+    // Rotation of the robot swings the lidar around it.
     let swing = Vector::new(-arm.y, arm.x);
     let mut by_state = Matrix2x6::zeros();
     by_state.fixed_view_mut::<1, 3>(0, 0).copy_from_slice(&[-along.x, -along.y, -along.dot(&swing)]);
@@ -154,15 +183,15 @@ fn sensitivity(away: Vector, arm: Vector) -> Matrix2x6<f64> {
     by_state
 }
 
-/// What a scan says about a landmark.
+/// Detection of a landmark in a scan.
 struct Sighting {
-    /// Metres from the lidar to the landmark's axis, and the bearing.
+    /// Distance from the lidar to the landmark's axis (m); `bearing` in rad.
     distance: f64,
     bearing: f64,
     variances: Vector2<f64>,
 }
 
-/// The beams that meet a landmark where it is expected.
+/// Detects a landmark in the beams that hit it at its expected position.
 fn sighting(landmark: &Landmark, lidar: &Pose, scan: &LidarScan, range_error: f64) -> Option<Sighting> {
     let expected = lidar.to_local(landmark.position);
     let reach = landmark.radius + GATE;
@@ -209,7 +238,7 @@ mod tests {
     const ERRORS: OdometryErrors =
         OdometryErrors { wheel_scale: 0.02, wheel_mismatch: 0.001, track: 0.005, slip: 0.001 };
 
-    /// What a lidar without noise sees of the pole from a pose, with its own place on the robot.
+    /// Scan of the pole without noise, for a robot pose and a lidar mount.
     fn scan(robot: Pose, mount: Pose) -> LidarScan {
         let lidar = robot.compose(&mount);
         let increment = std::f64::consts::TAU / 360.0;
@@ -259,7 +288,7 @@ mod tests {
     fn what_is_elsewhere_is_no_landmark() {
         let mut filter = filter(ERRORS);
         let before = filter.clone();
-        // Seen from a metre farther back, the pole seems to be where none is.
+        // From one metre farther back, the pole appears where there is none.
         assert_eq!(filter.correct(&scan(Pose::new(-1.0, 0.0, 0.0), Pose::default())), 0);
         let nothing =
             LidarScan { ranges: vec![f64::INFINITY; 360], ..scan(Pose::default(), Pose::default()) };

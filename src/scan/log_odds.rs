@@ -4,14 +4,14 @@ use crate::io::LidarScan;
 use crate::parameter::require;
 use crate::world::OccupancyGrid;
 
-/// How much a single beam says about the cells that it crosses and hits.
+/// Sensor model: how much a single beam changes the cells that it hits and crosses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LogOddsMapParameters {
-    /// Probability that a cell which a beam ends in is occupied: more than 0.5 and less than 1.
+    /// Probability that the cell at the end of a beam is occupied, between 0.5 and 1.
     pub hit: f64,
-    /// Probability that a cell which a beam passes is occupied: more than 0 and less than 0.5.
+    /// Probability that a cell crossed by a beam is occupied, between 0 and 0.5.
     pub miss: f64,
-    /// The largest certainty that a cell can reach, so that it can change its mind: more than 0.5 and less than 1.
+    /// Maximum certainty of a cell, so that it can change again; between 0.5 and 1.
     pub most: f64,
 }
 
@@ -21,12 +21,12 @@ impl Default for LogOddsMapParameters {
     }
 }
 
-/// An occupancy grid that lidar scans are entered into (book, section 10.3; H. Moravec, A. Elfes, *High Resolution Maps
+/// An occupancy grid built from lidar scans (book, section 10.3; H. Moravec, A. Elfes, *High Resolution Maps
 /// from Wide Angle Sonar*, ICRA 1985).
 ///
-/// Each cell holds the logarithm of its odds to be occupied. A scan adds to the cells in which its beams end, and takes
-/// away from those that they pass, each once; a beam without an end clears its way as far as the scanner sees. Poses are
-/// taken as they are given.
+/// Each cell holds the log odds of being occupied. A scan increases them in the cells at the ends of its
+/// beams and decreases them in the cells crossed, once per cell. A beam without an echo clears its path up to
+/// the maximum range. Poses are taken as exact.
 ///
 /// ```
 /// use roverlab::geometry::Pose;
@@ -45,7 +45,7 @@ impl Default for LogOddsMapParameters {
 pub struct LogOddsMap {
     grid: OccupancyGrid,
     odds: Vec<f64>,
-    /// The scan that a cell was last touched by, twice; one more if it was hit.
+    /// Twice the number of the scan that last changed a cell, plus one for a hit.
     touched: Vec<u32>,
     scans: u32,
     hit: f64,
@@ -54,7 +54,11 @@ pub struct LogOddsMap {
 }
 
 impl LogOddsMap {
-    /// A map of which nothing is known: see [`OccupancyGrid::unknown`] for the numbers.
+    /// An unknown map; see [`OccupancyGrid::unknown`] for the parameters.
+    ///
+    /// # Errors
+    ///
+    /// If a parameter is out of range.
     pub fn new(
         width: usize,
         height: usize,
@@ -74,7 +78,7 @@ impl LogOddsMap {
         Ok(Self { grid, odds: vec![0.0; cells], touched: vec![0; cells], scans: 0, hit, miss, most })
     }
 
-    /// Enters a scan that was taken with the robot at a pose. Ranges that are negative or no numbers are left out.
+    /// Enters a scan made at a robot pose. Negative and NaN ranges are ignored.
     pub fn add(&mut self, robot: Pose, scan: &LidarScan) {
         self.scans = if self.scans >= u32::MAX / 2 - 1 {
             self.touched.fill(0);
@@ -87,7 +91,7 @@ impl LogOddsMap {
         if !(origin.x.is_finite() && origin.y.is_finite() && heading.is_finite()) {
             return;
         }
-        // Hits first: a cell that one beam ends in is not cleared by another one that grazes it.
+        // Hits first, so that no grazing beam clears a cell in which another one ends.
         for hits in [true, false] {
             for (index, &range) in scan.ranges.iter().enumerate() {
                 let ends = range <= scan.range_max;
@@ -105,13 +109,13 @@ impl LogOddsMap {
         }
     }
 
-    /// The probability that a cell is occupied; `None` outside.
+    /// Probability that a cell is occupied; `None` outside the map.
     pub fn probability(&self, column: usize, row: usize) -> Option<f64> {
         let inside = column < self.grid.width() && row < self.grid.height();
         inside.then(|| 1.0 / (1.0 + math::exp(-self.odds[row * self.grid.width() + column])))
     }
 
-    /// The map with cells free below one probability, occupied above another one, and unknown in between.
+    /// The map with three states: free below one probability, occupied above another, unknown in between.
     pub fn to_occupancy(&self, free: f64, occupied: f64) -> OccupancyGrid {
         let mut grid = self.grid.clone();
         for row in 0..grid.height() {
@@ -136,7 +140,7 @@ impl LogOddsMap {
         }
     }
 
-    /// Clears the cells from one point to another, but not those that were hit.
+    /// Clears the cells between two points, except those that were hit.
     ///
     /// J. Amanatides, A. Woo, *A Fast Voxel Traversal Algorithm for Ray Tracing*, Eurographics 1987.
     fn clear(&mut self, from: Point, to: Point) {
@@ -181,7 +185,7 @@ impl LogOddsMap {
     }
 }
 
-/// The part of a segment within a box from (0, 0), as fractions of its length.
+/// Part of a segment inside a box at the origin, as fractions of its length.
 fn within(a: Point, b: Point, width: f64, height: f64) -> Option<(f64, f64)> {
     let (mut first, mut last) = (0.0f64, 1.0f64);
     for (from, d, size) in [(a.x, b.x - a.x, width), (a.y, b.y - a.y, height)] {
@@ -246,14 +250,14 @@ mod tests {
                 }
             }
         }
-        // What was seen can change: the room is opened.
+        // Observations may change: the room is opened.
         (0..20).for_each(|_| map.add(Pose::default(), &scan(vec![f64::INFINITY; 720])));
         assert_eq!(map.to_occupancy(0.3, 0.7).count(Occupancy::Occupied), 0);
     }
 
     proptest! {
         #![proptest_config(crate::testing::cases(256))]
-        /// Whatever comes in, probabilities stay within their bounds, and outside of beams nothing changes.
+        /// Probabilities stay within their bounds for any input, and cells outside all beams do not change.
         #[test]
         fn odds_stay_within_bounds(
             x in -9.0..9.0f64, y in -9.0..9.0f64, heading in -9.0..9.0f64,

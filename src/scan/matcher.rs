@@ -4,66 +4,90 @@ use super::reference::{Evidence, OVERLAP_GATE, Reference};
 use crate::geometry::{Point, Pose, math, normalize_angle};
 use crate::kinematics::{DISTANCE_ERROR, SCALE_ERROR, TURN_ERROR};
 
-/// Corrects odometry by matching scans against earlier ones.
+/// Corrects odometry by scan matching.
 ///
-/// The first scan, and others on the way, are kept as references with the poses at which they were made. Each new
-/// scan is laid over the nearest reference: points against the lines between neighbouring points there
-/// (point-to-line ICP after A. Censi, "An ICP variant using a point-to-line metric", ICRA 2008, with correspondences
-/// found by bearing as in polar scan matching). Errors then grow with the number of references in a chain, not with
-/// the distance driven, and returning to a known place takes them back.
+/// The first scan, and others on the way, are kept as references with their poses. Each new scan is
+/// registered with the nearest references, points against the lines between adjacent reference points:
+/// point-to-line ICP (A. Censi, "An ICP variant using a point-to-line metric", ICRA 2008), with
+/// correspondences by bearing as in polar scan matching. Errors grow with the number of chained references,
+/// not with the distance, and vanish on return to a known place.
 ///
-/// Match and odometry are weighed by what each knows: odometry by how far the robot has moved, the match by the
-/// directions in which the visible surfaces hold the scan. Along a bare corridor or in a round room odometry decides.
+/// Match and odometry are fused by their covariances: that of odometry grows with the motion, that of the
+/// match depends on the directions in which the visible surfaces constrain the scan. In a bare corridor or a
+/// round room, odometry decides.
+///
+/// ```
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::scan::ScanMatcher;
+/// // A room of 3 m by 2 m, scanned from a pose inside it with one beam per degree.
+/// let seen_from = |pose: Pose| -> Vec<Point> {
+///     let hit = |degree: i32| {
+///         let (sin, cos) = (pose.heading + f64::from(degree).to_radians()).sin_cos();
+///         let x = if cos > 0.0 { (1.5 - pose.x) / cos } else { (-1.5 - pose.x) / cos };
+///         let y = if sin > 0.0 { (1.0 - pose.y) / sin } else { (-1.0 - pose.y) / sin };
+///         pose.to_local(pose.position() + roverlab::geometry::Vector::new(cos, sin) * x.min(y))
+///     };
+///     (-180..180).map(hit).collect()
+/// };
+/// let mut matcher = ScanMatcher::new();
+/// // Odometry turns 3 degrees too far per metre.
+/// for step in 0..30 {
+///     let (way, turn) = (0.02 * f64::from(step), 0.001 * f64::from(step));
+///     let scan = seen_from(Pose::new(way, 0.0, 0.0));
+///     let pose = matcher.update(Pose::new(way, 0.0, turn), &scan);
+///     matcher.learn(&scan);
+///     assert!(step < 10 || pose.heading < 0.5 * turn, "{pose:?} after {step} steps");
+/// }
+/// ```
 #[derive(Debug, Clone)]
 pub struct ScanMatcher {
     references: Vec<Reference>,
-    /// The references that scans are matched against at present, and where they were chosen.
+    /// Active references, and the position where they were selected.
     active: Vec<usize>,
     chosen_at: Point,
-    /// The share of the last scan that found counterparts.
+    /// Fraction of the last scan's points with correspondences.
     overlap: f64,
-    /// The pose by odometry of the last scan, and its corrected pose.
+    /// Odometry at the last scan, and its corrected pose.
     odometry: Pose,
     pose: Pose,
-    /// By which part of themselves odometry underrates distances and turns: what wheels of other than nominal size
-    /// and a track of other than nominal width do.
+    /// Fractions by which odometry underestimates distances and turns, due to wheel size and track.
     scale_errors: Vector2<f64>,
-    /// The covariance of corrected pose (metres, radians) and scale errors.
+    /// Covariance of the corrected pose (m, rad) and the scale errors.
     covariance: Matrix5<f64>,
 }
 
-/// References farther away than this, in metres, are not matched against.
+/// Maximum distance of an active reference (m).
 const REFERENCE_REACH: f64 = 0.8;
-/// How many references a scan is matched against at most.
+/// Maximum number of active references.
 const ACTIVE_REFERENCES: usize = 3;
 /// After so many metres they are chosen anew, or where the present ones share little with the scan; they stand at least as far apart.
 const CHOICE_SPACING: f64 = 0.1;
 /// A scan of which less than this share matches any reference becomes one itself.
 const MIN_OVERLAP: f64 = 0.6;
-/// References that are kept at most.
+/// Maximum number of references kept.
 const MAX_REFERENCES: usize = 10_000;
-/// A match below this share is not believed.
+/// Overlap below which a match is rejected (fraction).
 const MIN_MATCH: f64 = 0.3;
-/// Rounds of finding counterparts and solving.
+/// Number of ICP iterations.
 const ITERATIONS: usize = 6;
-/// Points farther from the reference's surface than this, in metres, have no counterpart in the first round.
+/// Maximum distance of a correspondence in the first iteration (m).
 const COARSE_GATE: f64 = 0.10;
-/// The same of the track.
+/// Initial standard deviation of the track (fraction).
 const TRACK_ERROR: f64 = 0.005;
-/// The variance that slip adds to the heading in a metre, in radians squared.
+/// Variance of the heading due to slip, per metre (rad²).
 const SLIP_PER_METRE: f64 = 6e-5;
-/// The same in a turn of a radian.
+/// Variance of the heading due to slip, per radian turned (rad²).
 const SLIP_PER_RADIAN: f64 = 2.5e-6;
-/// The least variance of a step, so that no direction ever counts as exactly known.
+/// Minimum variance of a step, so that no direction counts as exactly known.
 const LEAST_VARIANCE: f64 = 1e-10;
 
-/// The result of laying a scan over the references.
+/// Result of a registration.
 #[derive(Debug, Clone, Copy)]
 struct Match {
     pose: Pose,
     scale_errors: Vector2<f64>,
     covariance: Matrix5<f64>,
-    /// The share of points that found counterparts in one reference.
+    /// Fraction of points with correspondences in one reference.
     overlap: f64,
 }
 
@@ -74,9 +98,9 @@ impl Default for ScanMatcher {
 }
 
 impl ScanMatcher {
-    /// A matcher without references, whose corrected frame is odometry's own.
+    /// A matcher without references; the corrected frame initially equals that of odometry.
     pub fn new() -> Self {
-        // Both scales err by the wheels' size; turns also by the track.
+        // The wheel size affects both scales, the track only turns.
         let wheels = SCALE_ERROR * SCALE_ERROR;
         let mut covariance = Matrix5::zeros();
         covariance.fixed_view_mut::<2, 2>(3, 3).fill(wheels);
@@ -94,19 +118,18 @@ impl ScanMatcher {
         }
     }
 
-    /// The corrected pose for a pose by odometry, by the last match.
+    /// Corrected pose for a pose by odometry, from the last match.
     pub fn corrected(&self, odometry: Pose) -> Pose {
         self.pose.compose(&self.odometry.inverse().compose(&odometry))
     }
 
-    /// How many scans are kept as references.
+    /// Number of references.
     pub fn references(&self) -> usize {
         self.references.len()
     }
 
-    /// Matches a scan that was made at `odometry`, given as points in the robot's frame in order of bearing, and
-    /// returns the corrected pose. The points shall be as measured: what a filter carries over from earlier scans
-    /// carries odometry's errors with it.
+    /// Matches a scan made at `odometry`, given as points in the robot frame in order of bearing, and returns
+    /// the corrected pose. Use unfiltered points: a filter carries odometry errors over from earlier scans.
     pub fn update(&mut self, odometry: Pose, points: &[Point]) -> Pose {
         let predicted = self.predict(odometry);
         if self.active.is_empty() {
@@ -122,8 +145,8 @@ impl ScanMatcher {
         self.pose
     }
 
-    /// Takes in what is seen from the present pose, as clean as it is known: where earlier scans share too little
-    /// with it, it becomes a reference for later ones.
+    /// Takes the best available view from the present pose. If earlier references have too little in common
+    /// with it, it becomes a reference.
     pub fn learn(&mut self, points: &[Point]) {
         if self.references.is_empty() {
             self.add_reference(points);
@@ -135,7 +158,7 @@ impl ScanMatcher {
         }
     }
 
-    /// Takes in what is to be seen from a pose by what is known of the world, in place of all earlier references.
+    /// Replaces all references by the expected view at a pose in a known world.
     pub(crate) fn know(&mut self, pose: Pose, points: &[Point]) {
         self.references.clear();
         self.references.push(Reference::new(pose, points));
@@ -144,7 +167,7 @@ impl ScanMatcher {
         self.chosen_at = pose.position();
     }
 
-    /// Moves pose and covariance on by odometry.
+    /// Advances pose and covariance by odometry.
     fn predict(&mut self, odometry: Pose) -> Pose {
         let measured = self.odometry.inverse().compose(&odometry);
         self.odometry = odometry;
@@ -170,7 +193,7 @@ impl ScanMatcher {
         self.pose
     }
 
-    /// Moves a scan from its predicted pose to where it fits the active references best.
+    /// Registers a scan with the active references, starting from its predicted pose.
     fn lay_over(&self, predicted: Pose, points: &[Point]) -> Match {
         let known = self.covariance.try_inverse().unwrap_or_else(Matrix5::zeros);
         let mut pose = predicted;
@@ -203,7 +226,7 @@ impl ScanMatcher {
         Match { pose, scale_errors, covariance, overlap }
     }
 
-    /// The average of what the active references say about a pose; `matched` is that of the one that shares most.
+    /// Mean evidence of the active references; `matched` is that of the best one.
     fn evidence(&self, pose: Pose, points: &[Point], gate: f64) -> Evidence {
         let mut sum = Evidence::default();
         for &index in &self.active {
@@ -216,8 +239,8 @@ impl ScanMatcher {
         Evidence { information: sum.information * part, residual: sum.residual * part, ..sum }
     }
 
-    /// Makes those references active that are near and share most with a scan; where none shares enough, the scan
-    /// becomes a reference itself.
+    /// Selects the nearby references with the largest overlap; if none has enough, the scan becomes a
+    /// reference.
     fn choose_references(&mut self, points: &[Point]) {
         let pose = self.pose;
         self.chosen_at = pose.position();

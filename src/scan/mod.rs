@@ -1,12 +1,11 @@
-//! What is made of a lidar's scans (book, chapters 3 and 4): free of noise, as walls and corners, as a map,
-//! and as the place where the robot must be.
+//! Processing of lidar scans (book, chapters 3 and 4): noise filters, features, maps and localisation.
 //!
-//! - [`ScanFilter`]: takes most of the noise out of the scans of a moving robot;
+//! - [`ScanFilter`]: removes most of the noise from the scans of a moving robot;
 //! - [`extract_features`]: walls, corners and objects; [`plot_scan`]: the scan on the robot's display;
-//! - [`ScanMatcher`]: odometry corrected by what stays where it is;
-//! - [`Localiser`]: where the robot is in a world that it knows;
-//! - [`LandmarkFilter`]: odometry corrected by what a lidar sees of known landmarks;
-//! - [`LogOddsMap`]: a map made of scans.
+//! - [`ScanMatcher`]: odometry corrected by scan matching;
+//! - [`Localiser`]: global localisation in a known world;
+//! - [`LandmarkFilter`]: odometry corrected by known landmarks;
+//! - [`LogOddsMap`]: an occupancy grid built from scans.
 
 mod filter;
 mod landmark;

@@ -9,7 +9,7 @@ use crate::geometry::{Point, Pose, Vector, cross, direction, math};
 #[derive(Debug, Clone)]
 pub(super) struct Reference {
     pub(super) pose: Pose,
-    /// Where each beam hit, in the robot's frame, in the order of bearing; `None` where nothing was seen.
+    /// Hits in the robot frame, by bearing; `None` without an echo.
     hits: Vec<Option<Hit>>,
 }
 
@@ -17,11 +17,11 @@ pub(super) struct Reference {
 struct Hit {
     point: Point,
     range: f64,
-    /// The unit normal of the surface, towards the viewer; `None` where the neighbours lie on no common line.
+    /// Unit normal of the surface, towards the viewer; `None` if the neighbours are not collinear.
     normal: Option<Vector>,
 }
 
-/// Gauss-Newton's equations for a pose, from the points that have counterparts.
+/// Gauss-Newton equations for a pose, from the points with correspondences.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Evidence {
     pub(super) information: Matrix3<f64>,
@@ -37,15 +37,15 @@ const BINS: usize = 360;
 /// after the other; counted singly they would drown what odometry knows where the surfaces say little, as in a round
 /// room. Found by trial: 2 lets spirals turn the pose by degrees, 200 lets odometry's drift through.
 const POINTS_PER_FACT: f64 = 40.0;
-/// Metres that neighbours reach that a line is fitted to.
+/// Extent of the neighbours used for a line (m).
 const LINE_REACH: f64 = 0.06;
-/// How many neighbours on either side there are at least.
+/// Minimum number of neighbours on either side.
 const MIN_NEIGHBOURS: usize = 2;
-/// How many there are at most.
+/// Maximum number of neighbours on either side.
 const MAX_NEIGHBOURS: usize = 25;
-/// How far neighbours may lie from their line, as a share of its length.
+/// Maximum deviation of neighbours from their line (fraction of its length).
 const FLATNESS: f64 = 0.05;
-/// The same in metres, for short lines.
+/// Further deviation allowed, for short lines (m).
 const ROUGHNESS: f64 = 0.003;
 
 impl Reference {
@@ -61,19 +61,19 @@ impl Reference {
         Self { pose, hits }
     }
 
-    /// The rotation from this reference's frame to the world's, for pose covariances.
+    /// Rotation from this reference's frame to the world, for pose covariances.
     fn rotation(&self) -> Matrix3<f64> {
         let d = direction(self.pose.heading);
         Matrix3::new(d.x, -d.y, 0.0, d.y, d.x, 0.0, 0.0, 0.0, 1.0)
     }
 
-    /// The share of a scan's points that have counterparts when it was made at `pose`.
+    /// Fraction of a scan's points with correspondences, for a scan made at `pose`.
     pub(super) fn overlap(&self, pose: Pose, points: &[Point]) -> f64 {
         let found = self.evidence(pose, points, OVERLAP_GATE);
         found.matched as f64 / points.len().max(1) as f64
     }
 
-    /// What the counterparts of a scan's points say about its pose.
+    /// Evidence of a scan's correspondences about its pose.
     pub(super) fn evidence(&self, pose: Pose, points: &[Point], gate: f64) -> Evidence {
         let relative = self.pose.inverse().compose(&pose);
         let local = self.local_evidence(relative, points, gate);
@@ -106,13 +106,13 @@ impl Reference {
         evidence
     }
 
-    /// The surface's normal and the signed distance to it, where a point has a counterpart.
+    /// Surface normal and signed distance, if a point has a correspondence.
     ///
-    /// A surface has only one visible side: from `viewer` behind it, a thin wall's other face is seen.
+    /// A surface has one visible side: a viewer behind a thin wall sees its other face.
     fn counterpart(&self, point: Point, viewer: Point, gate: f64) -> Option<(Vector, f64)> {
         let bin = bin_of(point);
         let range = point.coords.norm();
-        // Near surfaces spread over many bins: the best of the neighbours is the nearest point.
+        // Near surfaces spread over many bins: the best of the neighbours is the closest point.
         let candidates = [bin, (bin + 1) % BINS, (bin + BINS - 1) % BINS];
         let hit = candidates
             .iter()
@@ -134,8 +134,9 @@ fn bin_of(point: Point) -> usize {
     ((turn * BINS as f64).round() as i64).rem_euclid(BINS as i64) as usize
 }
 
-/// The normal, towards the viewer at the origin, of the line that a point and its neighbours lie on, if they do. Near surfaces are seen by many beams a few
-/// millimetres apart, so the neighbours reach as far as [`LINE_REACH`], not a fixed number of beams.
+/// Normal, towards the viewer at the origin, of the line through a point and its neighbours, if they are
+/// collinear. Many beams hit a near surface a few millimetres apart, so the neighbourhood is [`LINE_REACH`]
+/// wide rather than a number of beams.
 fn normal_at(points: &[Point], index: usize) -> Option<Vector> {
     let centre = points[index];
     let mut sums = LineSums::default();
@@ -164,7 +165,7 @@ impl LineSums {
         self.product += p.x * p.y;
     }
 
-    /// Adds the neighbours on one side that belong to the same surface, and returns how many they are.
+    /// Adds the neighbours on one side that belong to the same surface; returns their number.
     fn add_side(&mut self, points: &[Point], index: usize, stride: usize) -> usize {
         let centre = points[index];
         let mut last = centre;
@@ -188,7 +189,7 @@ impl LineSums {
         added
     }
 
-    /// The normal of the line through the points, if they lie close to one.
+    /// Normal of the line through the points, if they are nearly collinear.
     fn normal(&self) -> Option<Vector> {
         let mean = self.sum / self.count;
         let xx = self.squares.x / self.count - mean.x * mean.x;

@@ -2,16 +2,16 @@ use std::env;
 
 use proptest::test_runner::{Config, RngSeed};
 
-/// The configuration of a property test with a number of cases, the same ones in every run and on every
+/// Configuration of a property test with a number of cases, which are the same in every run and on every
 /// machine.
 ///
-/// The environment variable `PROPTEST_RNG_SEED`, a whole number, draws other cases. `PROPTEST_CASES` draws
-/// more of them: it is the number for a property of 256, and changes that of every other one in proportion. A
-/// failing case is printed, and written to no file.
+/// The environment variable `PROPTEST_RNG_SEED`, an integer, selects other cases. `PROPTEST_CASES` changes
+/// their number: it is the number for a property of 256, and scales all others in proportion. A failing case
+/// is printed and not written to a file.
 ///
 /// # Panics
 ///
-/// If `PROPTEST_RNG_SEED` is no whole number: cases that nobody can draw again would be of no use.
+/// If `PROPTEST_RNG_SEED` is not an integer, because its cases could not be reproduced.
 ///
 /// ```
 /// use proptest::prelude::*;
@@ -38,12 +38,12 @@ pub fn cases(cases: u32) -> Config {
     Config {
         cases,
         rng_seed: RngSeed::Fixed(seed),
-        // Properties that leave out many cases do so in proportion.
+        // Scale the limit on rejected cases.
         max_global_rejects: usual.max_global_rejects.max(cases.saturating_mul(4)),
         failure_persistence: None,
         ..usual
     }
 }
 
-/// The number of cases that `proptest` draws unless it is told otherwise.
+/// Default number of cases of `proptest`.
 const USUAL_CASES: u32 = 256;

@@ -4,22 +4,22 @@ use crate::nav::grid::{AnyAngle, GridPath, GridPlanner, GridSearch, PlanError};
 use crate::parameter::debug_as_sentence;
 use crate::world::{BitGrid, GridCell};
 
-/// Which ways count as the shortest.
+/// Which paths count as shortest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Movement {
-    /// Steps along edges and along diagonals whose both side cells are free.
+    /// Steps along edges, and along diagonals whose two side cells are free.
     Octile,
     /// Straight lines in any direction, which may touch corners.
     AnyAngle,
 }
 
-/// What a planner did wrong.
+/// A mistake of a planner.
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[error("from {start} to {goal}: {what}")]
 pub struct Violation {
-    /// The start of the query.
+    /// Start of the query.
     pub start: GridCell,
-    /// Its goal.
+    /// Goal of the query.
     pub goal: GridCell,
     /// What was found, and what was expected.
     pub what: String,
@@ -27,7 +27,7 @@ pub struct Violation {
 
 debug_as_sentence!(Violation);
 
-/// Whether two costs are the same. NaN is no cost.
+/// Whether two costs are equal; false for NaN.
 fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= NEGLIGIBLE
 }
@@ -36,9 +36,13 @@ fn violation(start: GridCell, goal: GridCell, what: String) -> Violation {
     Violation { start, goal, what }
 }
 
-/// The planner's cost is that of the shortest way. Queries without an answer pass.
+/// Checks that the planner's cost is that of the shortest path. Queries without an answer pass.
 ///
-/// The truth is Dijkstra's algorithm, or this library's shortest paths in any direction.
+/// The ground truth is Dijkstra's algorithm, or this library's any-angle planner.
+///
+/// # Errors
+///
+/// If the costs differ.
 pub fn optimal(
     planner: &mut impl GridPlanner,
     grid: &BitGrid,
@@ -59,9 +63,13 @@ pub fn optimal(
     }
 }
 
-/// The planner's path leads from the start to the goal along straight lines, and is as long as it says. It enters no blocked
-/// cell, but may run along one and touch corners; it squeezes neither between two blocked cells side by side nor between two
-/// that touch at a corner. Queries without an answer pass.
+/// Checks that the planner's path leads from start to goal along straight lines, has the stated length, and
+/// enters no blocked cell. It may run along blocked cells and touch corners, but not pass between two blocked
+/// cells that are adjacent or touch at a corner. Queries without an answer pass.
+///
+/// # Errors
+///
+/// If the path violates one of these rules.
 pub fn collision_free(
     planner: &mut impl GridPlanner,
     grid: &BitGrid,
@@ -98,7 +106,11 @@ pub fn collision_free(
     Ok(())
 }
 
-/// The planner finds a path if there is one, and says that there is none if there is none.
+/// Checks that the planner finds a path exactly if there is one.
+///
+/// # Errors
+///
+/// If it does not.
 pub fn complete(
     planner: &mut impl GridPlanner,
     grid: &BitGrid,
@@ -113,8 +125,12 @@ pub fn complete(
     }
 }
 
-/// The way from one cell to another one is no longer than the detour by a third. Holds for every planner that finds the
-/// shortest ways. Queries without an answer pass.
+/// Checks that the path between two cells is no longer than a detour by a third; true for every optimal
+/// planner. Queries without an answer pass.
+///
+/// # Errors
+///
+/// If the detour is shorter.
 pub fn triangle_inequality(
     planner: &mut impl GridPlanner,
     start: GridCell,
@@ -139,7 +155,7 @@ pub fn triangle_inequality(
 /// use roverlab::nav::grid::{GridPath, PlanError};
 /// use roverlab::testing::{PlanWith, collision_free};
 /// use roverlab::world::{BitGrid, GridCell};
-/// // A planner that drives straight on, whatever stands there.
+/// // A planner that drives straight on, ignoring all obstacles.
 /// let mut straight = PlanWith(|start: GridCell, goal: GridCell| -> Result<GridPath, PlanError> {
 ///     let points = vec![start.centre(), goal.centre()];
 ///     Ok(GridPath { cost: (points[1] - points[0]).norm(), points, statistics: Default::default() })

@@ -1,11 +1,11 @@
-//! What a line meets on a grid.
+//! Intersections of lines with grids.
 
 use crate::geometry::units::NEGLIGIBLE;
 use crate::geometry::{Point, Vector};
 use crate::world::{BitGrid, GridCell};
 
 
-/// A blocked cell, or a place outside, whose inside a segment meets.
+/// The first blocked or outside cell whose interior a segment enters.
 pub(super) fn entered(grid: &BitGrid, a: Point, b: Point) -> Option<GridCell> {
     let bounds = |a: f64, b: f64, cells: usize| {
         let low = (a.min(b) - 1.0).floor().max(0.0) as usize;
@@ -23,7 +23,7 @@ pub(super) fn entered(grid: &BitGrid, a: Point, b: Point) -> Option<GridCell> {
     cells.into_iter().find(|&cell| !grid.is_free(cell) && meets(a, b, cell))
 }
 
-/// Whether a part of a segment lies inside a cell, edges aside.
+/// Whether a part of a segment lies in the interior of a cell.
 fn meets(a: Point, b: Point, cell: GridCell) -> bool {
     let (mut first, mut last) = (0.0f64, 1.0f64);
     for (from, d, low) in [(a.x, b.x - a.x, cell.column as f64), (a.y, b.y - a.y, cell.row as f64)] {
@@ -40,7 +40,7 @@ fn meets(a: Point, b: Point, cell: GridCell) -> bool {
     first < last
 }
 
-/// Whether a segment runs along a line of the grid where the cells on both sides are blocked.
+/// Whether a segment runs along a grid line with blocked cells on both sides.
 pub(super) fn between_walls(grid: &BitGrid, a: Point, b: Point) -> bool {
     let along_line = |at: f64, d: f64| d.abs() < NEGLIGIBLE && (at - at.round()).abs() < NEGLIGIBLE;
     let stretch = |a: f64, b: f64| {
@@ -59,7 +59,7 @@ pub(super) fn between_walls(grid: &BitGrid, a: Point, b: Point) -> bool {
     false
 }
 
-/// A point at which two blocked cells touch and through which a path gets from one of the two free cells there to the other.
+/// A point at which two blocked cells touch and a path passes between the two free cells there.
 pub(super) fn squeezed(grid: &BitGrid, path: &[Point]) -> Option<Point> {
     path.windows(2).enumerate().find_map(|(i, pair)| {
         let is_squeeze = |&corner: &Point| {
@@ -74,7 +74,7 @@ pub(super) fn squeezed(grid: &BitGrid, path: &[Point]) -> Option<Point> {
     })
 }
 
-/// Points of the grid in the box around a segment.
+/// Grid points in the bounding box of a segment.
 fn corners_near(grid: &BitGrid, a: Point, b: Point) -> impl Iterator<Item = Point> + use<> {
     let range = |a: f64, b: f64, cells: usize| {
         let (low, high) = ((a.min(b) - NEGLIGIBLE).ceil().max(0.0), (a.max(b) + NEGLIGIBLE).floor());
@@ -84,7 +84,7 @@ fn corners_near(grid: &BitGrid, a: Point, b: Point) -> impl Iterator<Item = Poin
     rows.flat_map(move |y| columns.clone().map(move |x| Point::new(x as f64, y as f64)))
 }
 
-/// Whether a point lies on a segment, but not at its ends.
+/// Whether a point lies in the interior of a segment.
 fn corner_is_on(corner: Point, a: Point, b: Point) -> bool {
     let (d, way) = (b - a, corner - a);
     let along = way.dot(&d) / d.norm();
@@ -92,8 +92,8 @@ fn corner_is_on(corner: Point, a: Point, b: Point) -> bool {
     aside < NEGLIGIBLE && along > NEGLIGIBLE && along < d.norm() - NEGLIGIBLE
 }
 
-/// Whether two of the four cells at a point are blocked crosswise, and none of the free ones is on the way both from `a` to
-/// the point and from the point to `b`.
+/// Whether two of the four cells at a point are diagonally blocked, and no free one contains both the way
+/// from `a` and that to `b`.
 fn passes(grid: &BitGrid, corner: Point, a: Point, b: Point) -> bool {
     let (x, y) = (corner.x as isize, corner.y as isize);
     let free = |dx: isize, dy: isize| is_free(grid, x + dx.min(0), y + dy.min(0));

@@ -1,5 +1,5 @@
-//! For people who test planners and behaviours of their own (feature `testing`): strategies that draw maps and worlds,
-//! and checks that take any planner.
+//! Tools for testing your own planners and behaviours (feature `testing`): strategies that draw maps and
+//! worlds, and checks for any planner.
 //!
 //! ```
 //! use proptest::prelude::*;

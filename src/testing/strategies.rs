@@ -6,10 +6,10 @@ use crate::random::Stream;
 use crate::world::generate::{Course, CourseOptions, obstacle_course};
 use crate::world::{BitGrid, GridCell};
 
-/// Grids of some widths and heights, at least one cell: scattered cells, boxes, or rooms with doors, with few to many
-/// cells blocked.
+/// Random grids with sides in the given ranges (at least one cell): scattered cells, boxes, or rooms with
+/// doors, with few to many blocked cells.
 ///
-/// A failing grid is not made smaller cell by cell, but through its size.
+/// A failing grid shrinks by its size, not cell by cell.
 ///
 /// ```
 /// use proptest::prelude::*;
@@ -33,8 +33,8 @@ pub fn grids(widths: Range<usize>, heights: Range<usize>) -> impl Strategy<Value
     })
 }
 
-/// Grids as of [`grids`], each with three of its free cells, possibly the same; not always connected. If a grid has no free
-/// cell, its first one is made free.
+/// Grids as in [`grids`], each with three of its free cells, which may be equal and need not be connected. If
+/// a grid has no free cell, its first one is freed.
 pub fn grid_queries(
     widths: Range<usize>,
     heights: Range<usize>,
@@ -86,21 +86,21 @@ fn filled(width: usize, height: usize, is_free: impl FnMut(usize, usize) -> bool
         .unwrap_or_else(|error| panic!("a strategy's sizes are too large: {error}"))
 }
 
-/// A maze with one way between every two places, and the way between two of them.
+/// A maze with exactly one path between any two places, and that between two of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GridMaze {
-    /// The maze: passages one cell wide, between walls one cell thick.
+    /// The maze: passages and walls are one cell wide.
     pub grid: BitGrid,
-    /// Where the way begins.
+    /// Start of the path.
     pub start: GridCell,
-    /// Where it ends.
+    /// End of the path.
     pub goal: GridCell,
-    /// The cells of the only way from one to the other, both included. Its length is one less.
+    /// Cells of the only path, both ends included. Its length is one less.
     pub way: Vec<GridCell>,
 }
 
-/// Mazes of some numbers of places in both directions, at least one, with the answer known from how they were made. The grid
-/// has twice as many columns and rows, less one. No diagonal step is possible in them.
+/// Mazes with numbers of places in the given ranges (at least one per direction), whose solution is known by
+/// construction. The grid has twice as many columns and rows, less one. No diagonal step is possible.
 ///
 /// ```
 /// use proptest::prelude::*;
@@ -124,7 +124,7 @@ pub fn mazes(widths: Range<usize>, heights: Range<usize>) -> impl Strategy<Value
 fn maze(width: usize, height: usize, stream: &mut Stream) -> GridMaze {
     let mut grid = filled(2 * width - 1, 2 * height - 1, |_, _| false);
     let [start, goal] = [(); 2].map(|()| (stream.below(width), stream.below(height)));
-    // Depth first from the start: the way to the goal is what lies on the stack when it is met.
+    // Depth-first from the start: the path to the goal is on the stack when the goal is reached.
     let place = |(x, y): (usize, usize)| GridCell::new(2 * x, 2 * y);
     let mut stack = vec![start];
     grid.set_free(place(start), true);
@@ -155,8 +155,7 @@ fn maze(width: usize, height: usize, stream: &mut Stream) -> GridMaze {
     GridMaze { grid, start: place(start), goal: place(goal), way: cells }
 }
 
-/// Worlds of obstacles with a start and a goal, and the answer whether a way leads there, as
-/// [`obstacle_course`] makes them.
+/// Random worlds with obstacles, a start, a goal, and whether the goal is reachable; see [`obstacle_course`].
 ///
 /// ```
 /// use proptest::prelude::*;

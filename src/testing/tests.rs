@@ -46,7 +46,7 @@ proptest! {
     }
 }
 
-/// Worlds take longer to draw: a few of them.
+/// Worlds take longer to draw, so only a few.
 #[test]
 fn worlds_are_drawn() {
     use proptest::strategy::ValueTree;
@@ -55,7 +55,8 @@ fn worlds_are_drawn() {
     assert!(!course.world.walls.is_empty() && course.goal != course.start.position());
 }
 
-/// The planner's own lines of sight, in whole numbers, say the same of lines between middles and corners of cells.
+/// Compares with the planner's own integer line-of-sight test, for lines between centres and corners of
+/// cells.
 #[test]
 fn lines_are_free_as_the_planners_see_them() {
     let mut stream = Stream::new(7);
@@ -100,7 +101,7 @@ fn squeezing_between_blocked_cells_is_caught() {
         let caught = collision_free(&mut straight(points), &crosswise, a, b).unwrap_err();
         assert!(caught.what.contains("squeezes"), "{caught}");
     }
-    // Touching that corner and going back is no squeeze.
+    // Touching that corner and returning is allowed.
     let touching = vec![a.centre(), Point::new(2.0, 1.0), a.centre()];
     collision_free(&mut straight(touching), &crosswise, a, a).unwrap();
 
@@ -109,7 +110,7 @@ fn squeezing_between_blocked_cells_is_caught() {
     let inside = vec![a.centre(), Point::new(2.0, 1.0), Point::new(2.0, 3.0), b.centre()];
     let caught = collision_free(&mut straight(inside), &block, a, b).unwrap_err();
     assert!(caught.what.contains("between blocked cells"), "{caught}");
-    // Along one of them it is free.
+    // Along one of them is allowed.
     let (a, b) = (GridCell::new(0, 0), GridCell::new(0, 3));
     let beside = vec![a.centre(), Point::new(1.0, 1.0), Point::new(1.0, 3.0), b.centre()];
     collision_free(&mut straight(beside), &block, a, b).unwrap();

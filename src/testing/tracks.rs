@@ -2,8 +2,8 @@ use proptest::prelude::*;
 
 use crate::race::{GeneratedTrack, TrackOptions, generate};
 
-/// Closed tracks of cones, legal by the rules of Formula Student: of all lengths, widths, distances of cones, and with up to
-/// three hairpins.
+/// Closed cone tracks, legal by the rules of Formula Student: various lengths, widths, cone distances, and up
+/// to three hairpins.
 ///
 /// ```
 /// use proptest::prelude::*;
@@ -27,14 +27,14 @@ mod tests {
 
     proptest! {
         #![proptest_config(crate::testing::cases(12))]
-        /// What the whole plan is made of: the way closes, and the racing line bends less than the middle.
+        /// Tests the whole plan: the track closes, and the racing line bends less than the centre line.
         #[test]
         fn every_track_can_be_planned(generated in cone_tracks()) {
             prop_assert!(bending_left(&generated) < 1.0);
         }
     }
 
-    /// The racing line's bending energy as a share of that of the middle.
+    /// Bending energy of the racing line relative to that of the centre line.
     fn bending_left(generated: &GeneratedTrack) -> f64 {
         let track = &generated.track;
         let start = track.start.unwrap();
@@ -48,8 +48,7 @@ mod tests {
 
     #[test]
     fn a_narrow_track_of_wide_bends_leaves_little_to_gain() {
-        // Round a bend of radius r, a line that is d farther out bends by r / (r + d) of what the middle
-        // does.
+        // In a bend of radius r, a line d farther out has r / (r + d) of the curvature of the centre line.
         let seed = 8_368_310_778_412_755_768;
         let left = bending_left(&generate(seed, &TrackOptions::drawn(seed)).unwrap());
         assert!(left < 0.97, "{left}");

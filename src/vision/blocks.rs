@@ -1,17 +1,17 @@
-//! Loops over whole blocks of pixels, which vectorise without a rest.
+//! Loops over whole blocks of pixels, which vectorise without a remainder.
 
-/// Items of a block: as many as fill the widest register.
+/// Items per block: as many as fill the widest register.
 #[inline(always)]
 pub(super) const fn block_of<T>(_: &[T]) -> usize {
     64 / size_of::<T>()
 }
 
-/// `in_blocks!(out; a in first, b in second => expression)` writes the expression for each place of `out`, where `a` and
-/// `b` stand for the items at that place of rows that are at least as long. There may be several outputs of one length
-/// and as many values.
+/// `in_blocks!(out; a in first, b in second => expression)` evaluates the expression for each index of `out`;
+/// `a` and `b` are the items of the rows at that index. The rows must be at least as long as `out`. Several
+/// outputs of equal length, and as many values, are allowed.
 ///
-/// A loop of any length ends with single items, up to several registers of them. So all is done in blocks, the last of
-/// which overlaps the one before; only where there is no room for one block do items come singly.
+/// A plain loop ends with up to several registers of single items. Here everything runs in blocks, the last
+/// of which overlaps the one before. Single items occur only where not even one block fits.
 macro_rules! in_blocks {
     ($first:ident $(, $more:ident)*; $($item:ident in $row:expr),+ => $point:expr) => {{
         let block = $crate::vision::blocks::block_of($first);

@@ -1,17 +1,17 @@
 use super::blocks::in_blocks;
 use super::view::{GrayView, GrayViewMut};
 
-/// What a kernel does at the border of an image, where neighbours are missing.
+/// Treatment of the image border, where a kernel lacks neighbours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Border {
-    /// The output's outermost pixels are 0, as the book has it.
+    /// The outermost pixels of the output are 0, as in the book.
     #[default]
     Zero,
-    /// The image is continued by its mirror image about the outermost pixels (`dcb|abcd|cba`), as OpenCV does.
+    /// The image is mirrored about its outermost pixels (`dcb|abcd|cba`), as in OpenCV.
     Mirror,
 }
 
-/// The index in `0..n` that stands for `i` in an image continued by mirrors about its outermost pixels.
+/// Index in `0..n` that corresponds to `i` in an image mirrored about its outermost pixels.
 #[inline]
 pub(super) fn mirrored(i: isize, n: usize) -> usize {
     let last = n as isize - 1;
@@ -19,7 +19,7 @@ pub(super) fn mirrored(i: isize, n: usize) -> usize {
     if once >= 0 {
         return once as usize;
     }
-    // Farther out than the image is wide. Divisions are slow, and some kernels come here for every row.
+    // Farther out than the image is wide. Divisions are slow, and some kernels call this for every row.
     if last == 0 {
         return 0;
     }
@@ -29,7 +29,8 @@ pub(super) fn mirrored(i: isize, n: usize) -> usize {
 
 /// Applies a function of 3 x 3 pixels, rows from the top, to every pixel. Its result is at most 255.
 ///
-/// It has to be a function that is always inlined, which no closure is: otherwise it is not compiled for the processor.
+/// The function must be `#[inline(always)]`, which a closure is not; otherwise it is not compiled for the
+/// selected processor.
 #[inline(always)]
 pub(super) fn stencil(
     input: GrayView<'_>,
@@ -62,9 +63,9 @@ pub(super) fn stencil(
     }
 }
 
-/// The pixels of a row but its first and its last one, two at a time: in words of 16 bits the pixels `x - 1`, `x` and
-/// `x + 1`, `x + 2` are all that `x` and `x + 1` need, and an and and a shift take them apart. To widen bytes one by one
-/// takes longer than to compute with them.
+/// All pixels of a row except the first and the last, two at a time. The 16-bit words `x - 1`, `x` and
+/// `x + 1`, `x + 2` hold all that `x` and `x + 1` need; a mask and a shift separate them. Widening byte by
+/// byte would take longer than the computation.
 #[inline(always)]
 fn inner([above, row, below]: [&[u8]; 3], out: &mut [u8], point: impl Fn([[u16; 3]; 3]) -> u16) {
     let n = out.len();
@@ -83,7 +84,7 @@ fn inner([above, row, below]: [&[u8]; 3], out: &mut [u8], point: impl Fn([[u16; 
     }
 }
 
-/// The pixels of three columns.
+/// Pixels of three columns.
 #[inline(always)]
 fn taken([a, b, c]: [&[u8]; 3], [w, x, e]: [usize; 3]) -> [[u16; 3]; 3] {
     let pixel = u16::from;

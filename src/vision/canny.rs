@@ -3,33 +3,36 @@ use super::dispatch::vectorised;
 use super::{GrayView, GrayViewMut, ImageError};
 use crate::ParameterError;
 
-/// The gradients that make edges of Canny's detector.
+/// Thresholds of [`Canny`] on the gradient magnitude.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct CannyThresholds {
-    /// Edges consist of pixels whose gradient `|dx| + |dy|` is above this.
+    /// Minimum magnitude `|dx| + |dy|` (exclusive) of every edge pixel.
     pub low: u16,
-    /// They have at least one pixel whose gradient is above this.
+    /// Magnitude that at least one pixel of an edge must exceed.
     pub high: u16,
 }
 
 impl Default for CannyThresholds {
-    /// The book's (Program 11.8).
+    /// Values of the book (Program 11.8).
     fn default() -> Self {
         Self { low: 50, high: 100 }
     }
 }
 
-/// Canny's edge detector (J. Canny, "A computational approach to edge detection", IEEE PAMI 8(6), 1986; book, Program
-/// 11.8), in the form that OpenCV gave it. It keeps its memory from one image to the next.
+/// Canny's edge detector (J. Canny, "A computational approach to edge detection", IEEE PAMI 8(6), 1986; book,
+/// Program 11.8), as defined by OpenCV. Its buffers are reused from image to image.
 ///
-/// Smooth noisy images first, with [`gaussian_into`](super::gaussian_into). Then:
+/// Smooth noisy images first, with [`gaussian_into`](super::gaussian_into). The steps:
 ///
-/// 1. The Sobel gradient of each pixel, the image continued by its outermost pixels; its magnitude is `|dx| + |dy|`.
-/// 2. A pixel above `low` stays if its magnitude is larger than that of one neighbour along the gradient, and at least
-///    that of the other: of west and east where `|dy| < tan(22.5°) |dx|`, of north and south where
-///    `|dy| > tan(67.5°) |dx|`. On diagonals it must be larger than both. `tan(22.5°)` is `13573 / 32768` and
-///    `tan(67.5°)` is 2 more. Outside the image magnitudes are 0.
-/// 3. What is left is an edge, 255, if a chain of neighbours, diagonal ones included, leads to a pixel above `high`.
+/// 1. Sobel gradient of each pixel, the image extended by its outermost pixels; the magnitude is `|dx| +
+///    |dy|`.
+/// 2. Non-maximum suppression. A pixel above `low` stays if its magnitude exceeds that of the first neighbour
+///    along the gradient and is at least that of the second. The neighbours are west and east where
+///    `|dy| < tan(22.5°) |dx|`, north and south where `|dy| > tan(67.5°) |dx|`, and otherwise diagonal, where
+///    it must exceed both. `tan(22.5°)` is `13573 / 32768`, `tan(67.5°)` is that plus 2. Outside the image,
+///    magnitudes are 0.
+/// 3. Hysteresis. A remaining pixel is an edge, 255, if a chain of 8-connected neighbours leads to a pixel
+///    above `high`.
 ///
 /// ```
 /// use roverlab::vision::{Canny, CannyThresholds, GrayView, GrayViewMut};
@@ -46,39 +49,43 @@ impl Default for CannyThresholds {
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct Canny {
-    /// Gradients of three rows in turn.
+    /// Gradients of three rows, used in rotation.
     rows: [Gradients; 3],
-    /// What each pixel is, with a margin of one pixel all round.
+    /// Mark of each pixel, with a margin of one pixel on all sides.
     marks: Vec<u8>,
-    /// Places in `marks` of edge pixels whose neighbours have yet to be looked at.
+    /// Indices in `marks` of edge pixels whose neighbours are not yet examined.
     open: Vec<usize>,
 }
 
-/// The gradients of a row.
+/// Gradients of one row.
 #[derive(Debug, Clone, Default)]
 struct Gradients {
     dx: Vec<i16>,
     dy: Vec<i16>,
-    /// With one 0 on either side.
+    /// Padded with one 0 on either side.
     magnitude: Vec<u16>,
 }
 
-/// Pixels that are searched for strong ones together.
+/// Number of pixels searched for strong ones at a time.
 const PIECE: usize = 64;
-/// No edge.
+/// Mark of a pixel that is no edge.
 const NONE: u8 = 0;
-/// An edge if it leads to a strong one.
+/// Mark of an edge candidate: an edge if connected to a strong pixel.
 const WEAK: u8 = 1;
-/// An edge.
+/// Mark of an edge pixel.
 const STRONG: u8 = 2;
 
 impl Canny {
-    /// A detector that has yet to allocate its memory.
+    /// A detector without buffers; the first image allocates them.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Finds the edges: 255, and 0 elsewhere. Fails if the thresholds are in the wrong order.
+    /// Writes 255 at edges and 0 elsewhere. Linear in the number of pixels.
+    ///
+    /// # Errors
+    ///
+    /// If the sizes differ or `low` exceeds `high`.
     pub fn find_into(
         &mut self,
         input: GrayView<'_>,
@@ -109,7 +116,7 @@ impl Canny {
         self.marks.resize((width + 2) * (height + 2), NONE);
     }
 
-    /// Makes all weak pixels strong that strong ones lead to.
+    /// Promotes all weak pixels that are connected to strong ones.
     fn follow(&mut self, width: usize) {
         let stride = width + 2;
         let neighbours = [
@@ -150,7 +157,7 @@ fn mark_portable(
 ) {
     let (width, height) = input.size();
     let stride = width + 2;
-    // Of the three, the first is the row above the one that is marked, whose gradients come last.
+    // The first of the three rows is the one above the marked row; the last holds the newest gradients.
     for y in 0..=height {
         rows.rotate_left(1);
         if y < height {
@@ -166,7 +173,7 @@ fn mark_portable(
     }
 }
 
-/// The gradients of a row.
+/// Computes the gradients of a row.
 #[inline(always)]
 fn differentiate(above: &[u8], row: &[u8], below: &[u8], out: &mut Gradients) {
     let width = row.len();
@@ -198,7 +205,7 @@ fn gradient(above: [u8; 3], [w, e]: [u8; 2], below: [u8; 3]) -> (i16, i16, u16) 
     (dx, dy, dx.unsigned_abs() + dy.unsigned_abs())
 }
 
-/// Marks the pixels of the middle row.
+/// Marks the pixels of the middle row: non-maximum suppression and thresholds.
 #[inline(always)]
 fn suppress(rows: &[Gradients; 3], marks: &mut [u8], CannyThresholds { low, high }: CannyThresholds) {
     let [above, row, below] = rows;
@@ -209,7 +216,7 @@ fn suppress(rows: &[Gradients; 3], marks: &mut [u8], CannyThresholds { low, high
         w in b, magnitude in b[1..], e in b[2..],
         sw in c, s in c[1..], se in c[2..] => {
         let (along, up) = (dx.unsigned_abs(), dy.unsigned_abs());
-        // `tan(22.5°) |dx|` is whole only where `dx` is 0, so rounding down keeps the order.
+        // // `tan(22.5°) |dx|` is an integer only where `dx` is 0, so rounding down keeps the order.
         let flat = ((u32::from(2 * along) * 13_573) >> 16) as u16;
         let (horizontal, vertical) = (up <= flat, up > flat + 2 * along);
         let rising = (dx ^ dy) < 0;
@@ -235,7 +242,7 @@ fn write_portable(marks: &[u8], output: &mut GrayViewMut<'_>) {
     }
 }
 
-/// The whole detector without choice of a processor.
+/// The whole detector without processor selection.
 #[cfg(test)]
 pub(super) fn find_portable(input: GrayView<'_>, output: &mut GrayViewMut<'_>, thresholds: CannyThresholds) {
     let mut canny = Canny::new();

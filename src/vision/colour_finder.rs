@@ -4,34 +4,34 @@ use super::{
 };
 use crate::geometry::Point;
 
-/// How a colour is found in an image.
+/// How a colour is located in an image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FindMethod {
-    /// By the largest number of matching pixels in a column (Programs 11.9 and 11.10).
+    /// The column with the most matching pixels (Programs 11.9 and 11.10).
     Histogram,
-    /// By the largest group of connected matching pixels.
+    /// The largest connected group of matching pixels.
     #[default]
     Blob,
 }
 
-/// Where in an image a colour is.
+/// Detection of a colour in an image.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sighting {
-    /// The column of its middle.
+    /// Column of its centre (pixels).
     pub column: f64,
-    /// Its first and its last column.
+    /// Its first and last column.
     pub columns: (usize, usize),
-    /// Matching pixels: of the largest group, or in the fullest column.
+    /// Number of matching pixels: of the largest group, or of the fullest column.
     pub pixels: u32,
-    /// The direction of its middle from the camera, in radians to the left of straight ahead.
+    /// Bearing of its centre from the camera; positive to the left of straight ahead (rad).
     pub bearing: f64,
-    /// Where it stands on the floor, in the robot's frame, if its foot is in the image.
+    /// Position of its foot on the floor, in the robot frame (m), if the foot is visible.
     pub place: Option<Point>,
-    /// Whether it reaches down to the last rows of the image, as what is near does.
+    /// Whether it reaches the last rows of the image, as near objects do.
     pub at_the_bottom: bool,
 }
 
-/// Finds a taught hue in images. It keeps its memory from one image to the next.
+/// Finds a taught hue in images. Its buffers are reused from image to image.
 ///
 /// ```
 /// use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod, RgbView};
@@ -48,15 +48,15 @@ pub struct Sighting {
 /// ```
 #[derive(Debug, Clone)]
 pub struct ColourFinder {
-    /// The hues that match.
+    /// Matching hues.
     pub range: HueRange,
-    /// How much colour and light a pixel needs.
+    /// Minimum saturation and intensity of a pixel.
     pub limits: HueLimits,
-    /// How the colour is found.
+    /// Method of location.
     pub method: FindMethod,
-    /// The fewest pixels of a group, or an eighth of it in a column.
+    /// Minimum number of pixels of a group; a column needs an eighth of it.
     pub min_pixels: u32,
-    /// The camera.
+    /// Projection of the camera.
     pub camera: CameraGeometry,
     columns: Vec<u32>,
     mask: Vec<u8>,
@@ -64,10 +64,14 @@ pub struct ColourFinder {
 }
 
 impl ColourFinder {
-    /// Limits that keep a hue down to light of a fourth of a room's.
+    /// Limits under which a hue is still recognised at a quarter of the room's light.
     pub const LIMITS: HueLimits = HueLimits { min_saturation: 128, min_intensity: 6 };
 
-    /// A finder of the hues less than `tolerance` away from one, on RoBIOS's scale.
+    /// A finder of the hues less than `tolerance` away from `hue`, on the RoBIOS scale.
+    ///
+    /// # Errors
+    ///
+    /// If `hue` is not a hue or `tolerance` is 0.
     pub fn new(
         hue: u8,
         tolerance: u8,
@@ -86,8 +90,11 @@ impl ColourFinder {
         })
     }
 
-    /// Where the colour is in an image or a view of one; `None` if there is not enough of it. Fails for an
-    /// image without pixels.
+    /// Locates the colour in an image or a view; `None` if too few pixels match.
+    ///
+    /// # Errors
+    ///
+    /// If the image has no pixels.
     pub fn find<'a>(
         &mut self,
         image: impl TryInto<RgbView<'a>, Error: Into<ImageError>>,
@@ -106,7 +113,7 @@ impl ColourFinder {
         else {
             return Ok(None);
         };
-        // The columns around the fullest that are half as full at least.
+        // // Neighbouring columns that are at least half as full as the fullest.
         let full = |count: &&u32| 2 * **count >= most;
         let left = peak - self.columns[..peak].iter().rev().take_while(full).count();
         let right = peak + self.columns[peak + 1..].iter().take_while(full).count();
@@ -115,7 +122,7 @@ impl ColourFinder {
         Ok(Some(self.sighting(image, (left, right), (column, foot), most)))
     }
 
-    /// The last row of a column that matches.
+    /// Last matching row of a column.
     fn lowest(&self, image: RgbView<'_>, column: usize) -> usize {
         let matches = |row: &usize| {
             let pixel = image.row(*row).as_chunks().0[column];
@@ -136,7 +143,7 @@ impl ColourFinder {
         Ok(Some(self.sighting(image, columns, (blob.centroid.0, blob.max.1), blob.area as u32)))
     }
 
-    /// What is seen of something in some columns, from its middle column and the last row where it is.
+    /// The detection for a range of columns, a centre column and the last row.
     fn sighting(
         &self,
         image: RgbView<'_>,
@@ -153,8 +160,9 @@ impl ColourFinder {
     }
 }
 
-/// The hue that most pixels in the middle of an image have, if there are enough: what is held before the camera to
-/// teach it. Neighbouring hues help each other.
+/// The most frequent hue in the middle of an image (a quarter of its width and height), to learn an object
+/// held before the camera. Counts are smoothed over neighbouring hues. `None` if less than an eighth of the
+/// pixels has that hue.
 ///
 /// ```
 /// use roverlab::vision::{HueLimits, RgbView, teach_hue};
@@ -164,14 +172,17 @@ impl ColourFinder {
 /// assert_eq!(teach_hue(RgbView::new(&wall, 40, 30)?, HueLimits::default())?, None);
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the image has no pixels.
 pub fn teach_hue<'a>(
     image: impl TryInto<RgbView<'a>, Error: Into<ImageError>>,
     limits: HueLimits,
 ) -> Result<Option<u8>, ImageError> {
-    // Hues of RoBIOS's circle, and how far those may be that help one.
-    /// Hues of a full turn.
+    /// Number of hues of the RoBIOS circle.
     const CIRCLE: usize = 252;
-    /// Hues to both sides over which a histogram is summed.
+    /// Half-width of the smoothing window (hues).
     const REACH: usize = 4;
     let view = image.try_into().map_err(Into::into)?;
     let (width, height) = view.size();
@@ -186,7 +197,7 @@ pub fn teach_hue<'a>(
             }
         }
     }
-    // Those nearer to a hue help it more, so that of a single one the hue itself comes out.
+    // // Nearer hues weigh more, so that a single hue yields itself.
     let around = |hue: usize, weight: &dyn Fn(usize) -> u32| {
         let near = (0..=2 * REACH).map(|step| (step, (hue + CIRCLE + step - REACH) % CIRCLE));
         near.map(|(step, place)| weight(step.abs_diff(REACH)) * counts[place]).sum::<u32>()

@@ -2,7 +2,7 @@ use super::dispatch::{vectorised, vectorised_filter};
 use super::view::{flatten, require_size};
 use super::{GrayView, GrayViewMut, ImageError, RgbView, RgbViewMut};
 
-/// 255 where a pixel is above the threshold, 0 elsewhere (book, Program 11.7).
+/// Thresholds an image: 255 where a pixel is above the threshold, 0 elsewhere (book, Program 11.7).
 ///
 /// ```
 /// use roverlab::vision::{GrayView, GrayViewMut, threshold_into};
@@ -11,6 +11,10 @@ use super::{GrayView, GrayViewMut, ImageError, RgbView, RgbViewMut};
 /// assert_eq!(mask, [0, 0, 255, 255]);
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn threshold_into(input: GrayView<'_>, output: GrayViewMut<'_>, threshold: u8) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     let (input, mut output) = flatten(input, output);
@@ -18,9 +22,8 @@ pub fn threshold_into(input: GrayView<'_>, output: GrayViewMut<'_>, threshold: u
     Ok(())
 }
 
-/// The first image in gray, and a colour (red, green, blue) wherever the second one is not 0 (book, section
-/// 11.2; RoBIOS's
-/// `IPOverlayGray`).
+/// Draws marks over a gray image: the colour (red, green, blue) where `marks` is not 0, the gray pixel
+/// elsewhere (book, section 11.2; `IPOverlayGray` of RoBIOS).
 ///
 /// ```
 /// use roverlab::vision::{GrayView, RgbViewMut, overlay_gray_into};
@@ -30,6 +33,10 @@ pub fn threshold_into(input: GrayView<'_>, output: GrayViewMut<'_>, threshold: u
 /// assert_eq!(shown, [10, 10, 10, 255, 0, 0]);
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn overlay_gray_into(
     base: GrayView<'_>,
     marks: GrayView<'_>,
@@ -42,7 +49,8 @@ pub fn overlay_gray_into(
     Ok(())
 }
 
-/// The second image, and the first wherever the second is black (RoBIOS's `IPOverlay`).
+/// Overlays two images: the pixels of `top`, and those of `base` where `top` is black (`IPOverlay` of
+/// RoBIOS).
 ///
 /// ```
 /// use roverlab::vision::{RgbView, RgbViewMut, overlay_into};
@@ -52,6 +60,10 @@ pub fn overlay_gray_into(
 /// assert_eq!(shown, [1, 2, 3, 0, 0, 9]);
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn overlay_into(
     base: RgbView<'_>,
     top: RgbView<'_>,

@@ -3,20 +3,19 @@ use super::GrayView;
 /// A connected group of pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Blob {
-    /// Pixels.
+    /// Number of pixels.
     pub area: usize,
-    /// Column and row of the upper left corner of its bounding box.
+    /// Upper left pixel (column, row) of the bounding box.
     pub min: (usize, usize),
-    /// Column and row of the lower right pixel of its bounding box.
+    /// Lower right pixel (column, row) of the bounding box.
     pub max: (usize, usize),
-    /// The mean column and row of its pixels.
+    /// Mean column and row of the pixels.
     pub centroid: (f64, f64),
 }
 
-/// Finds connected groups of pixels that are not 0; diagonal neighbours are connected. It keeps its memory from one
-/// image to the next.
+/// Finds 8-connected groups of pixels that are not 0. Its buffers are reused from image to image.
 ///
-/// Runs of pixels are joined to those of the row above by union-find: linear in the number of pixels.
+/// Union-find joins runs of pixels to those of the row above: linear in the number of pixels.
 ///
 /// ```
 /// use roverlab::vision::{Components, GrayView};
@@ -33,22 +32,22 @@ pub struct Blob {
 #[derive(Debug, Clone, Default)]
 pub struct Components {
     runs: Vec<Run>,
-    /// For each run, one that it is connected to; itself at a group's root. Never larger than itself.
+    /// For each run, a connected run with an index at most its own; the root of a group points to itself.
     parents: Vec<usize>,
     groups: Vec<Group>,
     blobs: Vec<Blob>,
 }
 
-/// Neighbouring pixels of a row.
+/// A run of adjacent pixels in a row.
 #[derive(Debug, Clone, Copy)]
 struct Run {
     y: usize,
     from: usize,
-    /// The column behind the last one.
+    /// One past the last column.
     to: usize,
 }
 
-/// What is known of a group while its runs are added up.
+/// Accumulated data of a group.
 #[derive(Debug, Clone, Copy)]
 struct Group {
     root: usize,
@@ -59,12 +58,12 @@ struct Group {
 }
 
 impl Components {
-    /// A finder that has yet to allocate its memory.
+    /// A finder without buffers; the first image allocates them.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// The groups of at least `min_area` pixels, in the order of their first pixels, row by row.
+    /// Groups of at least `min_area` pixels, ordered by their first pixel, row by row.
     pub fn find(&mut self, mask: GrayView<'_>, min_area: usize) -> &[Blob] {
         self.runs.clear();
         self.parents.clear();
@@ -81,7 +80,7 @@ impl Components {
         &self.blobs
     }
 
-    /// The largest group, the first of several; `None` if there is none of at least `min_area` pixels.
+    /// The largest group, the first one if several are equal; `None` if no group has `min_area` pixels.
     pub fn largest(&mut self, mask: GrayView<'_>, min_area: usize) -> Option<Blob> {
         let blobs = self.find(mask, min_area);
         let most = blobs.iter().map(|blob| blob.area).max()?;
@@ -129,7 +128,7 @@ impl Components {
         run
     }
 
-    /// Adds up the runs of each group. A root comes before the other runs of its group.
+    /// Accumulates the runs of each group. The root precedes the other runs of its group.
     fn add_up(&mut self) {
         self.groups.clear();
         for index in 0..self.runs.len() {
@@ -157,7 +156,7 @@ impl Group {
         self.area += length;
         self.min = (self.min.0.min(from), self.min.1);
         self.max = (self.max.0.max(to - 1), y);
-        // The sum of the columns is their number times the mean of the first and the last.
+        // // Sum of the columns: their number times the mean of the first and the last.
         self.sum.0 += (length * (from + to - 1) / 2) as u64;
         self.sum.1 += (length * y) as u64;
     }

@@ -2,7 +2,7 @@ use super::dispatch::vectorised;
 use super::view::{flatten, require_size};
 use super::{GrayView, GrayViewMut, ImageError};
 
-/// `|first - second|`, pixel by pixel (book, Program 11.13).
+/// Absolute difference `|first - second|`, pixel by pixel (book, Program 11.13).
 ///
 /// ```
 /// use roverlab::vision::{GrayView, GrayViewMut, absolute_difference_into};
@@ -12,6 +12,10 @@ use super::{GrayView, GrayViewMut, ImageError};
 /// assert_eq!(change, [0, 20, 40]);
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn absolute_difference_into(
     first: GrayView<'_>,
     second: GrayView<'_>,
@@ -20,13 +24,13 @@ pub fn absolute_difference_into(
     require_size("second image", second.size(), first.size())?;
     output.require_size(first.size())?;
     let (second, mut output) = if first.is_flat() { flatten(second, output) } else { (second, output) };
-    // As one long row all three, or none of them.
+    // // Either all three images as one long row, or none.
     let first = if second.height() == first.height() { first } else { first.flat() };
     subtract(first, second, &mut output);
     Ok(())
 }
 
-/// The mean of `|first - second|` over all pixels, in one pass (book, Program 11.13, without rounding).
+/// Mean of `|first - second|` over all pixels, in one pass (book, Program 11.13, without rounding).
 ///
 /// ```
 /// use roverlab::vision::{GrayView, mean_difference};
@@ -37,15 +41,15 @@ pub fn absolute_difference_into(
 pub fn mean_difference(first: GrayView<'_>, second: GrayView<'_>) -> Result<f64, ImageError> {
     require_size("second image", second.size(), first.size())?;
     let (width, height) = first.size();
-    // As one long row both, or none of them.
+    // // Either both images as one long row, or none.
     let (first, second) =
         if first.is_flat() && second.is_flat() { (first.flat(), second.flat()) } else { (first, second) };
     let total = sum(first, second, 0, first.width());
     Ok(total as f64 / (width * height) as f64)
 }
 
-/// The mean of `|first - second|` in each of `N` sectors from left to right (book, section 11.5), in one pass. Sector
-/// `i` has the columns from `i * width / N` on; where that leaves it none, its mean is 0.
+/// Mean of `|first - second|` in each of `N` sectors from left to right (book, section 11.5). Sector `i`
+/// starts at column `i * width / N`; the mean of an empty sector is 0.
 ///
 /// ```
 /// use roverlab::vision::{GrayView, sector_differences};
@@ -78,9 +82,9 @@ pub(super) fn subtract_portable(first: GrayView<'_>, second: GrayView<'_>, outpu
     }
 }
 
-/// Pixels that are summed up side by side.
+/// Number of pixels summed side by side.
 const LANES: usize = 256;
-/// How many such blocks fit sums of 16 bits: 257 times 255 is 65535.
+/// Number of such blocks whose sums fit 16 bits: 257 * 255 = 65535.
 const BLOCKS: usize = 257;
 
 #[inline(always)]

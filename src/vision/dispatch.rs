@@ -1,7 +1,7 @@
-//! Choice among processors at run time.
+//! Selection of the processor's instruction set at run time.
 
-/// Compiles a function for several generations of x86 and ARM processors, of which the best is chosen when it is
-/// called, beside a portable version. Functions that it calls take part if they are inlined into it.
+/// Compiles a function for several generations of x86-64 processors, besides a portable version; the best one
+/// is chosen at each call. Functions that it calls take part only if they are inlined.
 macro_rules! vectorised {
     ($function:item) => {
         #[multiversion::multiversion(targets(
@@ -13,8 +13,8 @@ macro_rules! vectorised {
     };
 }
 
-/// A vectorised function that fills an image from another one, of which it sees the bytes as slices of its own: of views, which
-/// hold slices, the compiler does not know that they do not overlap, and checks that over and over.
+/// A vectorised function from one image to another that receives the bytes as separate slices. The compiler
+/// knows that slices do not overlap; for views it would check that repeatedly.
 macro_rules! vectorised_filter {
     (fn $name:ident($input:ident: $from:ty, $output:ident: &mut $to:ty $(, $argument:ident: $kind:ty)* $(,)?) $body:block) => {
         fn $name($input: $from, $output: &mut $to $(, $argument: $kind)*) {

@@ -4,8 +4,8 @@ use super::planes::{PIECE, split};
 use super::view::require_size;
 use super::{HueLimits, HueRange, ImageError, RgbView};
 
-/// How many pixels of each column have a hue of the range (book, Program 11.9): from the colours to the histogram in
-/// one pass. Hues are on RoBIOS's scale. Fails unless there is one count for each column.
+/// Counts, per column, the pixels whose hue is in the range (book, Program 11.9). Hues are on the RoBIOS
+/// scale. One pass from colours to histogram.
 ///
 /// ```
 /// use roverlab::vision::{HueLimits, HueRange, HueScale, RgbView, hue_histogram_into};
@@ -17,6 +17,10 @@ use super::{HueLimits, HueRange, ImageError, RgbView};
 /// assert_eq!(columns, [2, 1, 0], "red pixels in each column");
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If `columns` does not have one entry per column.
 pub fn hue_histogram_into(
     input: RgbView<'_>,
     columns: &mut [u32],
@@ -28,9 +32,9 @@ pub fn hue_histogram_into(
     Ok(())
 }
 
-/// Columns that are counted together.
+/// Number of columns counted at a time.
 const STRIP: usize = PIECE;
-/// Rows whose count fits 16 bits.
+/// Number of rows whose count fits 16 bits.
 const ROWS: usize = 65_535;
 
 #[inline(always)]

@@ -5,10 +5,10 @@ use super::{GrayView, GrayViewMut, ImageError};
 use crate::ParameterError;
 use crate::geometry::math;
 
-/// A bell-shaped, symmetric filter of 3, 5 or 7 pixels a side.
+/// A symmetric Gaussian filter of 3, 5 or 7 pixels a side.
 ///
-/// The weights are 256ths that add up to 1. Without a width of one's own, 3 and 5 pixels have the binomial weights
-/// `1 2 1` and `1 4 6 4 1`, and 7 pixels `2 7 14 18 14 7 2` of 64, as OpenCV has them.
+/// The weights are in 256ths and sum to 1. The named kernels have OpenCV's weights: binomial `1 2 1` and
+/// `1 4 6 4 1` for 3 and 5 pixels, and `2 7 14 18 14 7 2` (64ths) for 7.
 ///
 /// ```
 /// use roverlab::vision::GaussianKernel;
@@ -20,21 +20,25 @@ use crate::geometry::math;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct GaussianKernel {
-    /// The middle weight, then those to either side.
+    /// Centre weight, then those towards either side.
     weights: [u16; 4],
     size: usize,
 }
 
 impl GaussianKernel {
-    /// 3 pixels.
+    /// 3 x 3 pixels.
     pub const THREE: Self = Self { weights: [128, 64, 0, 0], size: 3 };
-    /// 5 pixels.
+    /// 5 x 5 pixels.
     pub const FIVE: Self = Self { weights: [96, 64, 16, 0], size: 5 };
-    /// 7 pixels.
+    /// 7 x 7 pixels.
     pub const SEVEN: Self = Self { weights: [72, 56, 28, 8], size: 7 };
 
-    /// The kernel of a size and a standard deviation in pixels. Weights are rounded to the nearest from the outermost
-    /// inwards, each with the rounding error of the one before; the middle one makes up for the rest.
+    /// The kernel of a size and a standard deviation `sigma` (pixels). Weights are rounded from the outermost
+    /// inwards, each including the rounding error of the one before; the centre weight makes the sum 1.
+    ///
+    /// # Errors
+    ///
+    /// If the size is not 3, 5 or 7, or `sigma` is not positive and finite.
     pub fn new(size: usize, sigma: f64) -> Result<Self, ImageError> {
         if ![3, 5, 7].contains(&size) {
             let found = size as f64;
@@ -58,19 +62,19 @@ impl GaussianKernel {
         Ok(Self { weights, size })
     }
 
-    /// Pixels a side.
+    /// Pixels on each side.
     pub fn size(&self) -> usize {
         self.size
     }
 
-    /// The weights from the middle outwards, in 256ths; 0 beyond the kernel.
+    /// Weights from the centre outwards (256ths); 0 beyond the kernel.
     pub fn weights(&self) -> [u16; 4] {
         self.weights
     }
 }
 
-/// Smooths an image: the weighted sum of the pixels around each, rounded to the nearest (halves up), with the image
-/// continued by its mirror image about the outermost pixels.
+/// Smooths an image. Each pixel becomes the weighted sum of its surroundings, rounded to the nearest, halves
+/// up. The image is mirrored at the border.
 ///
 /// ```
 /// use roverlab::vision::{GaussianKernel, GrayView, GrayViewMut, gaussian_into};
@@ -81,6 +85,10 @@ impl GaussianKernel {
 /// assert_eq!(smooth[3..6], [40, 40, 40], "and the mirrored border sees it twice");
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn gaussian_into(
     input: GrayView<'_>,
     mut output: GrayViewMut<'_>,
@@ -95,10 +103,10 @@ pub fn gaussian_into(
     Ok(())
 }
 
-/// Columns that are smoothed together; the sums of so many fit the fastest cache.
+/// Number of columns smoothed at a time; their sums fit the L1 cache.
 const STRIP: usize = 4096;
 
-/// The columns of a strip with three more on either side.
+/// Sums of a strip, with three more columns on either side.
 type Sums = [u16; STRIP + 6];
 
 #[inline(always)]
@@ -106,14 +114,14 @@ pub(super) fn three_portable(input: GrayView<'_>, output: &mut GrayViewMut<'_>) 
     stencil(input, output, Border::Mirror, binomial);
 }
 
-// Small whole weights keep the sums within 16 bits.
+// // Small integer weights keep the sums within 16 bits.
 
 #[inline(always)]
 pub(super) fn five_portable(input: GrayView<'_>, output: &mut GrayViewMut<'_>) {
     filter::<2, true>(input, output, [6, 4, 1, 0]);
 }
 
-/// Kernels of seven pixels and of any weights.
+/// The seven-pixel kernel, and kernels with arbitrary weights.
 #[inline(always)]
 pub(super) fn smooth_portable(input: GrayView<'_>, output: &mut GrayViewMut<'_>, kernel: GaussianKernel) {
     let GaussianKernel { weights, size } = kernel;
@@ -125,17 +133,18 @@ pub(super) fn smooth_portable(input: GrayView<'_>, output: &mut GrayViewMut<'_>,
     }
 }
 
-/// 3 x 3 pixels with weights of 16ths.
+/// 3 x 3 pixels with weights in 16ths.
 #[inline(always)]
 fn binomial([[nw, n, ne], [w, c, e], [sw, s, se]]: [[u16; 3]; 3]) -> u16 {
     let (west, middle, east) = (nw + 2 * w + sw, n + 2 * c + s, ne + 2 * e + se);
-    // The sum of two columns is that of the next pixel as well.
+    // // The sum of two adjacent columns also serves the next pixel.
     ((west + middle + 8) + (middle + east)) >> 4
 }
 
-/// Sums up columns, then rows of those sums, strip by strip. `SMALL` weights are those of the kernels with a name.
+/// Sums columns, then rows of those sums, strip by strip. `SMALL` selects the weights of the named kernels.
 ///
-/// No function is handed on here: what is called through one is not inlined, and so not compiled for the processor.
+/// No function is passed as an argument: calls through one are not inlined and not compiled for the
+/// processor.
 #[inline(always)]
 fn filter<const R: usize, const SMALL: bool>(
     input: GrayView<'_>,
@@ -146,7 +155,7 @@ fn filter<const R: usize, const SMALL: bool>(
     let mut sums: Sums = [0; STRIP + 6];
     for start in (0..width).step_by(STRIP) {
         let end = (start + STRIP).min(width);
-        // The columns that the strip needs and the image has.
+        // // Columns that the strip needs and the image has.
         let (from, to) = (start.saturating_sub(R), (end + R).min(width));
         let offset = from + R - start;
         for y in 0..height {
@@ -165,13 +174,13 @@ fn filter<const R: usize, const SMALL: bool>(
     }
 }
 
-/// So many columns of the row `dy` rows below another.
+/// A range of columns of the row `dy` below `y`.
 #[inline(always)]
 fn row(input: GrayView<'_>, y: usize, dy: isize, (from, to): (usize, usize)) -> &[u8] {
     &input.row(mirrored(y as isize + dy, input.height()))[from..to]
 }
 
-/// Weighted sums of columns.
+/// Weighted column sums.
 #[inline(always)]
 fn down<const R: usize>(
     input: GrayView<'_>,
@@ -205,7 +214,7 @@ fn both(a: u8, b: u8) -> u16 {
     u16::from(a) + u16::from(b)
 }
 
-/// Sums of the columns that the image lacks: those of their mirror images.
+/// Fills in the sums of mirrored columns outside the image.
 fn mirror_columns<const R: usize>(sums: &mut Sums, start: usize, end: usize, width: usize) {
     let column = |x: isize| mirrored(x, width) + R - start;
     if start == 0 {
@@ -213,7 +222,7 @@ fn mirror_columns<const R: usize>(sums: &mut Sums, start: usize, end: usize, wid
             sums[R - i] = sums[column(-(i as isize))];
         }
     }
-    // The strip may end a column or two before the image does.
+    // // The strip may end up to `R` columns before the image does.
     for x in width..end + R {
         sums[x + R - start] = sums[column(x as isize)];
     }
@@ -226,9 +235,9 @@ fn across_five(sums: &[u16], out: &mut [u8]) {
     });
 }
 
-/// Sums of 64ths of 64ths, `T = 18 c + 14 a + 7 b + 2 d`, need 20 bits, and only `(T + 2048) / 4096` is wanted. As
-/// `T = 16 (c + a) + 2 (c + d) - 2 a + 7 b`, the parts that are not multiples of 16 lose their lower bits, which go
-/// another way; what is left of `T / 16` has 16 bits.
+/// The sum `T = 18 c + 14 a + 7 b + 2 d` of column sums in 64ths needs 20 bits, but only `(T + 2048) / 4096`
+/// is wanted. Because `T = 16 (c + a) + 2 (c + d) - 2 a + 7 b`, the terms that are not multiples of 16 are
+/// split into high and low parts; the high part of `T / 16` then fits 16 bits.
 #[inline(always)]
 fn across_seven(sums: &[u16], out: &mut [u8]) {
     let (c, e1, e2, e3) = (&sums[3..], &sums[4..], &sums[5..], &sums[6..]);
@@ -261,7 +270,7 @@ fn across_32<const R: usize>(sums: &[u16], out: &mut [u8], weights: [u32; 4]) {
     }
 }
 
-// Each of these has its own function: of several loops in one, the compiler keeps pointers and weights in memory.
+// // One function each: with several loops in one, the compiler keeps pointers and weights in memory.
 
 vectorised_filter! {
     fn smooth_three(input: GrayView<'_>, output: &mut GrayViewMut<'_>) {
@@ -275,7 +284,7 @@ vectorised_filter! {
     }
 }
 
-// Seven pixels take a tenth longer, as measured, where the compiler knows what slices do not overlap.
+// // For seven pixels, `vectorised_filter!` is a tenth slower, as measured.
 vectorised! {
     fn smooth(input: GrayView<'_>, output: &mut GrayViewMut<'_>, kernel: GaussianKernel) {
         smooth_portable(input, output, kernel);

@@ -2,18 +2,18 @@ use super::dispatch::vectorised_filter;
 use super::view::flatten;
 use super::{GrayView, GrayViewMut, ImageError, RgbView, RgbViewMut, planes};
 
-/// How much each colour adds to the brightness.
+/// Weights of the colour channels in the gray level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum GrayWeights {
     /// RoBIOS: `(red + blue) / 4 + green / 2`, both rounded down.
     #[default]
     Robios,
-    /// Rec. 601, as OpenCV has it: `0.299 red + 0.587 green + 0.114 blue`, in fixed point:
-    /// `(9798 red + 19235 green + 3735 blue + 16384) / 32768` rounded down.
+    /// Rec. 601 as in OpenCV: `0.299 red + 0.587 green + 0.114 blue`, in fixed point
+    /// `(9798 red + 19235 green + 3735 blue + 16384) / 32768`, rounded down.
     Rec601,
 }
 
-/// Colour to shades of gray.
+/// Converts colour to gray levels.
 ///
 /// ```
 /// use roverlab::vision::{GrayViewMut, GrayWeights, RgbView, gray_into};
@@ -23,6 +23,10 @@ pub enum GrayWeights {
 /// assert_eq!(gray, [76, 150, 29], "green is the brightest to the eye, blue the darkest");
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn gray_into(
     input: RgbView<'_>,
     output: GrayViewMut<'_>,
@@ -34,7 +38,7 @@ pub fn gray_into(
     Ok(())
 }
 
-/// Shades of gray to colour: each byte three times.
+/// Converts gray levels to colour: each byte three times.
 ///
 /// ```
 /// use roverlab::vision::{GrayView, RgbViewMut, gray_to_rgb_into};
@@ -43,6 +47,10 @@ pub fn gray_into(
 /// assert_eq!(colours, [7, 7, 7, 90, 90, 90]);
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn gray_to_rgb_into(input: GrayView<'_>, output: RgbViewMut<'_>) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     let (input, mut output) = flatten(input, output);
@@ -73,8 +81,8 @@ pub(super) fn triple_portable(input: GrayView<'_>, output: &mut RgbViewMut<'_>) 
     }
 }
 
-/// Four pixels become three words, which vectorise better than twelve bytes. They begin with a cache line of the output,
-/// as wide stores across two lines take longer.
+/// Four pixels become three words, which vectorise better than twelve bytes. The words start at a cache line
+/// of the output, because wide stores across two lines take longer.
 #[inline(always)]
 fn triple_row(row: &[u8], out: &mut [u8]) {
     let first = pixels_to_line(out).min(row.len());
@@ -93,11 +101,11 @@ fn triple_row(row: &[u8], out: &mut [u8]) {
     planes::merge(last_out.as_chunks_mut::<3>().0, last, last, last);
 }
 
-/// Pixels of three bytes before one that begins with a cache line.
+/// Number of three-byte pixels before one that starts at a cache line.
 fn pixels_to_line(out: &[u8]) -> usize {
-    /// Pixels that are converted at a time.
+    /// Size of a cache line (bytes).
     const LINE: usize = 64;
-    /// `3 * THIRD` is 1 and whole lines.
+    /// Inverse of 3 modulo the line: `3 * THIRD` is 129 = 2 * 64 + 1.
     const THIRD: usize = 43;
     out.as_ptr().align_offset(LINE).wrapping_mul(THIRD) % LINE
 }

@@ -5,35 +5,35 @@ use super::dispatch::vectorised;
 use super::{GrayView, ImageError};
 use crate::geometry::math;
 
-/// How histograms of oriented gradients are taken.
+/// Parameters of [`Hog`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct HogParameters {
-    /// Pixels on each side of a cell.
+    /// Cell size (pixels a side).
     pub cell: usize,
-    /// Cells on each side of a block.
+    /// Block size (cells a side).
     pub block: usize,
-    /// Directions that are told apart in half a turn.
+    /// Number of orientation bins in half a turn.
     pub bins: usize,
 }
 
 impl Default for HogParameters {
-    /// Those of the paper: cells of 8 x 8 pixels, blocks of 2 x 2 cells, nine directions.
+    /// Values of the paper: cells of 8 x 8 pixels, blocks of 2 x 2 cells, nine bins.
     fn default() -> Self {
         Self { cell: 8, block: 2, bins: 9 }
     }
 }
 
-/// Histograms of oriented gradients (N. Dalal and B. Triggs, "Histograms of oriented gradients for human detection",
-/// CVPR 2005), which describe shapes to a classifier. It keeps its memory from one image to the next.
+/// Histograms of oriented gradients, a shape descriptor for classifiers (N. Dalal and B. Triggs, "Histograms
+/// of oriented gradients for human detection", CVPR 2005). Its buffers are reused from image to image.
 ///
-/// 1. The gradient of a pixel is `dx = e - w`, `dy = s - n`, the image continued by its outermost pixels. Its magnitude
-///    is `8 sqrt(dx² + dy²)`, rounded to the nearest whole number.
-/// 2. Directions are those of lines: a gradient that points up, or straight to the left, counts as its opposite. It
-///    falls into the last bin `k` for which `c dy >= s dx`, where `c` and `s` are 16384 times the cosine and the sine of
-///    `k pi / bins`, rounded to the nearest.
-/// 3. The magnitudes of a cell's pixels are added up bin by bin. Pixels beyond the last whole cell do not count.
-/// 4. The histograms of a block's cells, row by row, are divided by `sqrt(|v|² + 1)`, no number is left above 0.2, and
-///    they are divided by their length again, if they have one. Blocks follow each other cell by cell, row by row.
+/// 1. The gradient of a pixel is `dx = e - w`, `dy = s - n`, the image extended by its outermost pixels. Its
+///    magnitude is `8 sqrt(dx² + dy²)`, rounded to the nearest.
+/// 2. Orientation is that of a line: a gradient that points up, or straight to the left, counts as its
+///    opposite. It falls into the last bin `k` with `c dy >= s dx`, where `c` and `s` are 16384 times the
+///    cosine and sine of `k pi / bins`, rounded to the nearest.
+/// 3. The magnitudes of a cell's pixels are summed per bin. Pixels beyond the last whole cell are ignored.
+/// 4. The histograms of a block's cells, row by row, are divided by `sqrt(|v|² + 1)`, clipped at 0.2, and
+///    divided by their norm again unless it is 0. Blocks advance by one cell, row by row.
 ///
 /// ```
 /// use roverlab::vision::{GrayView, Hog, HogParameters};
@@ -48,7 +48,7 @@ impl Default for HogParameters {
 #[derive(Debug, Clone)]
 pub struct Hog {
     parameters: HogParameters,
-    /// Cosine and sine of the directions between the bins, without the first.
+    /// Cosine and sine of the bin boundaries, without the first.
     borders: Vec<[i16; 2]>,
     magnitudes: Vec<u16>,
     bins: Vec<u8>,
@@ -57,8 +57,11 @@ pub struct Hog {
 }
 
 impl Hog {
-    /// A describer that has yet to allocate its memory. Fails unless cells have 2 to 64 pixels on each side, blocks 1
-    /// to 8 cells, and there are 2 to 36 bins.
+    /// A descriptor without buffers; the first image allocates them.
+    ///
+    /// # Errors
+    ///
+    /// If cells do not have 2 to 64 pixels a side, blocks 1 to 8 cells a side, or there are not 2 to 36 bins.
     pub fn new(parameters: HogParameters) -> Result<Self, ImageError> {
         let HogParameters { cell, block, bins } = parameters;
         for (parameter, found, range, expected) in [
@@ -82,14 +85,18 @@ impl Hog {
         })
     }
 
-    /// Blocks across and down in an image of a size.
+    /// Number of blocks across and down in an image of a size.
     pub fn blocks(&self, (width, height): (usize, usize)) -> (usize, usize) {
         let HogParameters { cell, block, .. } = self.parameters;
         let along = |pixels: usize| (pixels / cell + 1).saturating_sub(block);
         (along(width), along(height))
     }
 
-    /// Describes an image: `bins` numbers for each cell of each block. Fails if not one block fits the image.
+    /// Describes an image: `bins` numbers for each cell of each block. Linear in the number of pixels.
+    ///
+    /// # Errors
+    ///
+    /// If the image is smaller than one block.
     pub fn describe(&mut self, input: GrayView<'_>) -> Result<&[f32], ImageError> {
         let blocks = self.blocks(input.size());
         if blocks.0 == 0 || blocks.1 == 0 {
@@ -139,7 +146,7 @@ impl Hog {
     }
 }
 
-/// The length of a vector, its squares added up in order.
+/// Squared norm of a vector, summed in order so that the result is reproducible.
 fn squared_length(vector: &[f32]) -> f32 {
     vector.iter().fold(0.0, |sum, value| sum + value * value)
 }
@@ -157,7 +164,7 @@ fn normalise(vector: &mut [f32]) {
     }
 }
 
-/// Magnitudes and bins of a row.
+/// Computes the magnitudes and bins of a row.
 #[inline(always)]
 pub(super) fn orient_portable(
     above: &[u8],
@@ -167,7 +174,7 @@ pub(super) fn orient_portable(
     magnitudes: &mut [u16],
     bins: &mut [u8],
 ) {
-    /// Pixels of a row that are worked on at a time.
+    /// Number of pixels processed at a time.
     const PIECE: usize = 64;
     let width = row.len();
     let (mut dxs, mut dys) = ([0_i16; PIECE], [0_i16; PIECE]);

@@ -5,24 +5,24 @@ use super::dispatch::vectorised;
 use super::{GrayView, ImageError};
 use crate::geometry::math;
 
-/// A straight line: all points with `x cos(theta) + y sin(theta) = rho`, in pixels from the centre of the upper left
-/// pixel, x to the right and y down.
+/// A straight line: all points with `x cos(theta) + y sin(theta) = rho`, in pixels from the centre of the
+/// upper left pixel, x to the right, y down.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HoughLine {
-    /// Pixels from the origin, negative on the other side.
+    /// Signed distance from the origin (pixels).
     pub rho: f64,
-    /// The direction of the line's normal in radians, at least 0 and less than pi.
+    /// Direction of the line's normal, `0..pi` (rad).
     pub theta: f64,
-    /// Pixels on the line.
+    /// Number of pixels on the line.
     pub votes: u32,
 }
 
-/// Finds straight lines by votes (R. O. Duda and P. E. Hart, "Use of the Hough transformation to detect lines and
-/// curves in pictures", CACM 15(1), 1972). It keeps its memory from one image to the next.
+/// Finds straight lines by the Hough transform (R. O. Duda and P. E. Hart, "Use of the Hough transformation
+/// to detect lines and curves in pictures", CACM 15(1), 1972). Its buffers are reused from image to image.
 ///
-/// Each pixel that is not 0 votes, for each of the angles, for the line through it, its `rho` rounded to a multiple of
-/// the step. A line has more votes than the threshold, more than the next smaller `rho` and angle, and at least as
-/// many as the next larger ones.
+/// Each pixel that is not 0 votes, at each angle, for the line through it, with `rho` rounded to a multiple
+/// of the step. A line has more votes than the threshold, more than its neighbours at the next smaller `rho`
+/// and angle, and at least as many as those at the next larger. Time: edge pixels times angles.
 ///
 /// ```
 /// use roverlab::vision::{GrayView, HoughLines};
@@ -37,15 +37,19 @@ pub struct HoughLines {
     rho_step: f64,
     /// Cosine and sine of each angle, divided by the step.
     directions: Vec<[f32; 2]>,
-    /// The votes of three neighbouring angles; all of them would not fit the faster caches.
+    /// Votes of three neighbouring angles; a full accumulator would not fit the faster caches.
     votes: [Vec<u32>; 3],
-    /// Columns and rows of the pixels that vote.
+    /// Columns and rows of the voting pixels.
     columns: Vec<f32>,
     rows: Vec<f32>,
 }
 
 impl HoughLines {
-    /// Lines at multiples of `rho_step` pixels from the origin, and at so many angles in half a turn.
+    /// A detector with steps of `rho_step` pixels, and `angles` angles in half a turn.
+    ///
+    /// # Errors
+    ///
+    /// If `rho_step` is not finite and at least 0.1, or `angles` is not 1 to 3600.
     pub fn new(rho_step: f64, angles: usize) -> Result<Self, ImageError> {
         if !(rho_step >= 0.1 && rho_step.is_finite()) {
             let expected = "at least 0.1 and finite";
@@ -55,7 +59,7 @@ impl HoughLines {
             let found = angles as f64;
             return Err(ParameterError::new("angles", found, "1 to 3600").into());
         }
-        // Angles in single precision, each the one before and a step, and so the step's inverse: those are the votes of OpenCV.
+        // // Accumulated in single precision, as the step's inverse: this reproduces OpenCV's votes.
         let step = (PI / angles as f64) as f32;
         let mut angle = 0.0_f32;
         let inverse = f64::from(1.0 / rho_step as f32);
@@ -74,18 +78,18 @@ impl HoughLines {
         })
     }
 
-    /// The lines with more than `threshold` votes, those with most votes first.
+    /// Lines with more than `threshold` votes, most votes first.
     pub fn find(&mut self, edges: GrayView<'_>, threshold: u32) -> Vec<HoughLine> {
         self.gather(edges);
         let (width, height) = edges.size();
-        // Votes for `rho` from minus to plus the largest distance, and an empty place on either side.
+        // // One entry per `rho` from minus to plus the largest distance, and an empty one at either end.
         let reach = ((width + height) as f64 / self.rho_step).ceil() as usize + 1;
         for votes in &mut self.votes {
             votes.clear();
             votes.resize(2 * reach + 1, 0);
         }
         let mut lines = Vec::new();
-        // Peaks of an angle are found when the votes of the next one are there; behind the last, there are none.
+        // // Peaks of an angle need the votes of the next one; after the last angle there are none.
         for angle in 0..=self.directions.len() {
             self.votes.rotate_left(1);
             let [before, votes, after] = &mut self.votes;
@@ -100,12 +104,12 @@ impl HoughLines {
                 lines.push(HoughLine { rho, theta, votes: votes[place] });
             });
         }
-        // Stable, so that lines with equally many votes keep the order of their angles.
+        // // A stable sort keeps lines with equal votes in the order of their angles.
         lines.sort_by_key(|line| std::cmp::Reverse(line.votes));
         lines
     }
 
-    /// Collects the pixels that vote.
+    /// Collects the voting pixels.
     fn gather(&mut self, edges: GrayView<'_>) {
         self.columns.clear();
         self.rows.clear();
@@ -123,8 +127,8 @@ impl HoughLines {
     }
 }
 
-/// Calls `found` with every place that has more votes than the threshold and is a peak among the rows of three angles. The
-/// first and the last place of a row have no votes.
+/// Calls `found` with every index that exceeds the threshold and is a peak among the rows of three angles.
+/// The first and last entry of a row have no votes.
 fn for_each_peak([before, votes, after]: [&[u32]; 3], threshold: u32, mut found: impl FnMut(usize)) {
     let is_peak = |place: usize| {
         let count = votes[place];
@@ -141,10 +145,9 @@ fn for_each_peak([before, votes, after]: [&[u32]; 3], threshold: u32, mut found:
     }
 }
 
-/// Points whose places are reckoned together, and places that are looked through together.
+/// Number of points, or entries, processed at a time.
 const BLOCK: usize = 64;
-/// Adding one and a half times 2^23 to a float rounds it to a whole number, halves to even ones, which then stands in
-/// its bits above those of the sum's own.
+/// Adding 1.5 * 2^23 to a float rounds it to an integer, halves to even, which then stands in its low bits.
 const ROUNDING: f32 = 12_582_912.0;
 
 #[inline(always)]

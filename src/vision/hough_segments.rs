@@ -15,16 +15,16 @@ pub struct LineSegment {
     pub to: (usize, usize),
 }
 
-/// What makes a line for [`HoughSegments`].
+/// Parameters of [`HoughSegments`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct SegmentParameters {
-    /// Votes that start the search for a line.
+    /// Number of votes that starts the search for a line.
     pub threshold: u32,
-    /// Pixels that a line must reach across or down.
+    /// Minimum extent of a line across or down (pixels).
     pub min_length: usize,
-    /// Pixels that may be missing between two of a line.
+    /// Maximum gap between two pixels of a line (pixels).
     pub max_gap: usize,
-    /// In which order pixels vote, and which votes a line takes with it.
+    /// Order of the votes, and votes that a line removes.
     pub definition: SegmentDefinition,
 }
 
@@ -34,14 +34,15 @@ impl Default for SegmentParameters {
     }
 }
 
-/// Finds straight lines with their ends by the votes of pixels in random order (J. Matas, C. Galambos and J. Kittler,
-/// "Robust detection of lines using the progressive probabilistic Hough transform", Computer Vision and Image
-/// Understanding 78, 2000). It keeps its memory from one image to the next.
+/// Finds line segments by the votes of pixels in random order: the progressive probabilistic Hough transform
+/// (J. Matas, C. Galambos and J. Kittler, "Robust detection of lines using the progressive probabilistic
+/// Hough transform", Computer Vision and Image Understanding 78, 2000). Its buffers are reused from image to
+/// image.
 ///
-/// One pixel after the other, drawn at random, votes for the lines through it. When the line with most of its votes
-/// has enough, pixels are followed along it to both sides from the one that voted last, over gaps that are not too
-/// wide, and leave the vote; if they reach far enough, they are a line, and their votes are taken back. What differs in
-/// OpenCV is a [`SegmentDefinition`]; with it, lines are OpenCV's, one by one, at a distance step of one pixel.
+/// Pixels are drawn at random, and each votes for the lines through it. When the leading line of a pixel has
+/// enough votes, its pixels are followed to both sides across small gaps and removed from the vote; if they
+/// reach far enough, they form a segment, and their votes are withdrawn. OpenCV's deviations are a
+/// [`SegmentDefinition`]; with it, the segments equal OpenCV's, one by one, at a distance step of one pixel.
 ///
 /// ```
 /// use roverlab::vision::{GrayView, HoughSegments, SegmentParameters};
@@ -56,34 +57,38 @@ impl Default for SegmentParameters {
 #[derive(Debug, Clone)]
 pub struct HoughSegments {
     directions: Vec<[f32; 2]>,
-    /// As many as 16 bits hold: no line has more pixels but in an image with a diagonal of 23,000 pixels. Half the memory is
-    /// looked up much faster. Negative where lines took more than was given.
+    /// Vote counters. 16 bits suffice for images with a diagonal of up to 23,000 pixels, and halve the
+    /// memory, which is much faster. Negative where segments withdrew more votes than were given.
     votes: Vec<i16>,
-    /// The edges that are left, and which of them have voted.
+    /// Remaining edge pixels, and which of them have voted.
     mask: Vec<u8>,
     points: Vec<(u32, u32)>,
     places: Vec<u32>,
     size: (usize, usize),
 }
 
-/// What the mask has for a pixel that is no edge, or none any more.
+/// Mask value of a pixel that is no edge, or no longer one.
 const NO_EDGE: u8 = 0;
-/// What it has for an edge.
+/// Mask value of an edge pixel.
 const EDGE: u8 = 1;
-/// What it has for an edge that has voted.
+/// Mask value of an edge pixel that has voted.
 const VOTED: u8 = 2;
 
-/// Fixed-point fractions of a pixel in a walk along a line.
+/// Fractional bits of the fixed-point walk along a line.
 const FRACTION: u32 = 16;
 
 impl HoughSegments {
-    /// Lines at so many angles in half a turn.
+    /// A detector with `angles` angles in half a turn.
+    ///
+    /// # Errors
+    ///
+    /// If `angles` is not 1 to 3600.
     pub fn new(angles: usize) -> Result<Self, ImageError> {
         if !(1..=3600).contains(&angles) {
             let found = angles as f64;
             return Err(ParameterError::new("angles", found, "1 to 3600").into());
         }
-        // Multiples of a step in single precision: those are the votes of OpenCV.
+        // // Multiples of a step in single precision reproduce OpenCV's votes.
         let step = f64::from((PI / angles as f64) as f32);
         let direction = |angle: usize| {
             let (sin, cos) = math::sin_cos(step * angle as f64);
@@ -99,7 +104,7 @@ impl HoughSegments {
         })
     }
 
-    /// The lines of an image of edges, all pixels that are not 0, in the order in which they are found.
+    /// Segments in an edge image (edges: all pixels that are not 0), in the order in which they are found.
     pub fn find(&mut self, edges: GrayView<'_>, parameters: SegmentParameters) -> Vec<LineSegment> {
         self.gather(edges);
         let mut draw = Draw::new(parameters.definition);
@@ -141,18 +146,18 @@ impl HoughSegments {
         self.places.resize(self.directions.len(), 0);
     }
 
-    /// No pixel's line is farther from the first pixel: the diagonal, in whole pixels.
+    /// Maximum distance of a line from the first pixel: the diagonal, in whole pixels.
     fn reach(&self) -> usize {
         let (width, height) = self.size;
         (width * width + height * height).isqrt() + 1
     }
 
-    /// Places for the votes of an angle: distances from minus to plus the largest.
+    /// Number of counters per angle: distances from minus to plus the maximum.
     fn stride(&self) -> usize {
         2 * self.reach() + 1
     }
 
-    /// Lets a pixel vote. Returns the most votes that one of its lines has, and that line's angle.
+    /// Lets a pixel vote. Returns the highest count among its lines, and the angle of that line.
     fn vote(&mut self, x: usize, y: usize) -> (u32, usize) {
         self.mask[y * self.size.0 + x] = VOTED;
         self.reckon(x, y);
@@ -175,13 +180,14 @@ impl HoughSegments {
         }
     }
 
-    /// Where in the votes a pixel's lines are.
+    /// Accumulator indices of a pixel's lines.
     fn reckon(&mut self, x: usize, y: usize) {
         let (stride, middle) = (self.stride() as u32, self.reach() as u32);
         places_of([x as f32, y as f32], &self.directions, stride, middle, &mut self.places);
     }
 
-    /// Follows the pixels of a line to both sides and takes them out of the image. Returns the line if it is long.
+    /// Follows a line's pixels to both sides and removes them from the image. Returns the segment if it is
+    /// long enough.
     fn follow(
         &mut self,
         start: (usize, usize),
@@ -211,7 +217,7 @@ impl HoughSegments {
         is_long.then(|| LineSegment { from: pixel(from), to: pixel(to) })
     }
 
-    /// The last step to one side at which there is a pixel of the line.
+    /// Last step to one side that has a pixel of the line.
     fn last_on(&self, walk: &Walk, side: i64, max_gap: usize) -> i64 {
         let (mut step, mut last, mut gap) = (0, 0, 0);
         loop {
@@ -232,11 +238,11 @@ impl HoughSegments {
     }
 }
 
-/// A walk along a line, one pixel at a time along its longer side.
+/// A fixed-point walk along a line, one pixel per step along its longer axis.
 struct Walk {
     x: i64,
     y: i64,
-    /// Fixed-point change of either for a step.
+    /// Fixed-point increments per step.
     dx: i64,
     dy: i64,
 }
@@ -256,7 +262,7 @@ impl Walk {
     }
 }
 
-/// Adding one and a half times 2^23 to a float rounds it to a whole number, which then stands in its lowest bits.
+/// Adding 1.5 * 2^23 to a float rounds it to an integer, which then stands in its low bits.
 const ROUNDING: f32 = 12_582_912.0;
 
 #[inline(always)]

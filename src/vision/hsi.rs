@@ -3,20 +3,20 @@ use std::f64::consts::{FRAC_PI_3, TAU};
 use super::{ImageError, NO_HUE, RgbView, RgbViewMut};
 use crate::geometry::math;
 
-/// Hue, saturation and intensity by the book's formulas (section 11.4).
+/// Hue, saturation and intensity as in the book (section 11.4).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Hsi {
-    /// The angle `acos(((R - G) + (R - B)) / 2 / sqrt((R - G)² + (R - B)(G - B)))`, taken from a full turn if blue
-    /// exceeds green, in 255ths of a turn, rounded to the nearest, halves up: red 0, green 85, blue 170, and between them
-    /// yellow 43, cyan 128, magenta 213. [`NO_HUE`] for grays.
+    /// The angle `acos(((R - G) + (R - B)) / 2 / sqrt((R - G)² + (R - B)(G - B)))`, subtracted from a full
+    /// turn if blue exceeds green, in 255ths of a turn, rounded to the nearest, halves up: red 0, yellow 43,
+    /// green 85, cyan 128, blue 170, magenta 213. [`NO_HUE`] for grays.
     pub hue: u8,
-    /// `255 - 255 min(R, G, B) / I` with the intensity `I` before rounding, rounded to the nearest; 0 for black.
+    /// `255 - 255 min(R, G, B) / I` with the unrounded intensity `I`, rounded to the nearest; 0 for black.
     pub saturation: u8,
     /// `(R + G + B) / 3`, rounded to the nearest.
     pub intensity: u8,
 }
 
-/// Red, green and blue to hue, saturation and intensity.
+/// Converts red, green and blue to hue, saturation and intensity.
 ///
 /// ```
 /// use roverlab::vision::{Hsi, NO_HUE, rgb_to_hsi};
@@ -31,7 +31,8 @@ pub fn rgb_to_hsi(pixel: [u8; 3]) -> Hsi {
     Hsi { hue: exact_hue(pixel), saturation: saturation as u8, intensity: ((2 * sum + 3) / 6) as u8 }
 }
 
-/// More than the angle's error, and less than the 1e-4 that any other colour stays away from the middle of two hues.
+/// Tie-breaking offset: above the error of the angle, and below the distance of 1e-4 that all other colours
+/// keep from a boundary between two hues.
 const TIE: f64 = 1e-7;
 
 fn exact_hue(pixel: [u8; 3]) -> u8 {
@@ -43,17 +44,17 @@ fn exact_hue(pixel: [u8; 3]) -> u8 {
     let length = ((red - green) * (red - green) + (red - blue) * (green - blue)).sqrt();
     let angle = math::acos((along / length).clamp(-1.0, 1.0));
     let turn = if blue > green { TAU - angle } else { angle };
-    // Yellow, cyan and magenta are right in the middle of two hues.
+    // Yellow, cyan and magenta lie exactly between two hues.
     let part = turn * (255.0 / TAU) + TIE;
     // A full turn is red again.
     (part.round() as u32 % 255) as u8
 }
 
-/// Hue, saturation and intensity back to red, green and blue, each rounded to the nearest and at most 255; a pixel
-/// without hue becomes gray.
+/// Converts hue, saturation and intensity to red, green and blue, each rounded to the nearest and at most
+/// 255. A pixel without hue becomes gray.
 ///
-/// In the sector that begins with the channel `a`, `h` radians after it, `a = I (1 + S cos h / cos(pi/3 - h))`, the
-/// channel before it is `I (1 - S)`, and the one behind it makes the mean `I`.
+/// In the sector that starts at channel `a`, at an angle `h` after it, `a = I (1 + S cos h / cos(pi/3 - h))`;
+/// the preceding channel is `I (1 - S)`; the following one makes the mean `I`.
 ///
 /// ```
 /// use roverlab::vision::{Hsi, hsi_to_rgb};
@@ -75,7 +76,7 @@ pub fn hsi_to_rgb(Hsi { hue, saturation, intensity }: Hsi) -> [u8; 3] {
     pixel
 }
 
-/// Hue, saturation and intensity of an image; the output has them in the place of red, green and blue.
+/// Converts an image to hue, saturation and intensity, stored in place of red, green and blue.
 ///
 /// ```
 /// use roverlab::vision::{RgbView, RgbViewMut, hsi_into, hsi_to_rgb_into};
@@ -87,6 +88,10 @@ pub fn hsi_to_rgb(Hsi { hue, saturation, intensity }: Hsi) -> [u8; 3] {
 /// assert_eq!(back, colours);
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn hsi_into(input: RgbView<'_>, mut output: RgbViewMut<'_>) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     for y in 0..input.height() {
@@ -99,7 +104,11 @@ pub fn hsi_into(input: RgbView<'_>, mut output: RgbViewMut<'_>) -> Result<(), Im
     Ok(())
 }
 
-/// Red, green and blue of an image that has hue, saturation and intensity in their place; see [`hsi_to_rgb`].
+/// Converts an image of hue, saturation and intensity back to colours; see [`hsi_to_rgb`].
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn hsi_to_rgb_into(input: RgbView<'_>, mut output: RgbViewMut<'_>) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     for y in 0..input.height() {

@@ -4,19 +4,20 @@ use super::planes::{PIECE, merge, split};
 use super::view::flatten;
 use super::{ImageError, RgbView, RgbViewMut};
 
-/// Hue, saturation and value as OpenCV has them.
+/// Hue, saturation and value as in OpenCV.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Hsv {
     /// 0 to 179; see [`HueScale::OpenCv`](super::HueScale::OpenCv).
     pub hue: u8,
-    /// `255 d / largest channel`, rounded: `(d t + 2048) / 4096` rounded down, where `d` is the difference between the
-    /// largest and the smallest channel and `t` is `1044480 / largest` rounded to the nearest; 0 for black.
+    /// `255 d / largest channel`, rounded: `(d t + 2048) / 4096` rounded down, where `d` is the difference
+    /// between the largest and smallest channel and `t` is `1044480 / largest`, rounded to the nearest; 0 for
+    /// black.
     pub saturation: u8,
-    /// The largest channel.
+    /// Largest channel.
     pub value: u8,
 }
 
-/// Red, green and blue to hue, saturation and value.
+/// Converts red, green and blue to hue, saturation and value.
 ///
 /// ```
 /// use roverlab::vision::{Hsv, rgb_to_hsv};
@@ -30,7 +31,7 @@ pub fn rgb_to_hsv([red, green, blue]: [u8; 3]) -> Hsv {
     Hsv { hue: opencv([red, green, blue], value, difference), saturation, value }
 }
 
-/// The same for an image; the output has hue, saturation and value in the place of red, green and blue.
+/// Converts an image to hue, saturation and value, stored in place of red, green and blue.
 ///
 /// ```
 /// use roverlab::vision::{RgbView, RgbViewMut, hsv_into, hsv_to_rgb_into};
@@ -42,6 +43,10 @@ pub fn rgb_to_hsv([red, green, blue]: [u8; 3]) -> Hsv {
 /// assert_eq!(back, colours);
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn hsv_into(input: RgbView<'_>, output: RgbViewMut<'_>) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     let (input, mut output) = flatten(input, output);
@@ -49,11 +54,12 @@ pub fn hsv_into(input: RgbView<'_>, output: RgbViewMut<'_>) -> Result<(), ImageE
     Ok(())
 }
 
-/// Hue, saturation and value back to red, green and blue, as OpenCV does it in single precision.
+/// Converts hue, saturation and value to red, green and blue, in single precision as in OpenCV.
 ///
-/// In the sixth of the circle that begins after `k` of them, with `f` the part of it that is behind the hue, the channels are
-/// `V`, `V (1 - S)` and `V (1 - S f)` or `V (1 - S (1 - f))`, rounded down. A product that is taken from 1 is rounded together
-/// with the difference. (The few pixels at the end of a row that do not fill a register OpenCV rounds to the nearest.)
+/// In sector `k` of six, with the fraction `f` of it before the hue, the channels are `V`, `V (1 - S)` and
+/// `V (1 - S f)` or `V (1 - S (1 - f))`, rounded down. A product subtracted from 1 is rounded together with
+/// the difference. (OpenCV rounds the few pixels at the end of a row that do not fill a register to the
+/// nearest.)
 ///
 /// ```
 /// use roverlab::vision::{Hsv, hsv_to_rgb};
@@ -78,7 +84,11 @@ pub fn hsv_to_rgb(Hsv { hue, saturation, value }: Hsv) -> [u8; 3] {
     colour.map(|channel| (channel * 255.0) as u8)
 }
 
-/// The same for an image that has hue, saturation and value in the place of red, green and blue.
+/// Converts an image of hue, saturation and value back to colours; see [`hsv_to_rgb`].
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn hsv_to_rgb_into(input: RgbView<'_>, mut output: RgbViewMut<'_>) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     for y in 0..input.height() {

@@ -2,49 +2,49 @@ use super::dispatch::vectorised_filter;
 use super::view::flatten;
 use super::{GrayViewMut, ImageError, RgbView, planes};
 
-/// The hue of a pixel that has none.
+/// Hue of a pixel without a hue.
 pub const NO_HUE: u8 = 255;
 
-/// How a hue becomes a number, by whole-number arithmetic from the largest channel, the smallest one and `d`, the
-/// difference between them.
+/// Number scale of hues. Both use integer arithmetic on the largest channel, the smallest, and their
+/// difference `d`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum HueScale {
-    /// RoBIOS: a circle of 252, red at 42, green at 126, blue at 210.
+    /// RoBIOS: a circle of 252; red is 42, green 126, blue 210.
     ///
     /// `42 + 42 (green - blue) / d` if red is largest, else `126 + 42 (blue - red) / d` if green is, else
     /// `210 + 42 (red - green) / d`; quotients are rounded towards zero.
     #[default]
     Robios,
-    /// OpenCV: a circle of 180, red at 0, green at 60, blue at 120.
+    /// OpenCV: a circle of 180; red is 0, green 60, blue 120.
     ///
-    /// `30 n / d` with `n` the sixths: `green - blue`, `blue - red + 2 d` or `red - green + 4 d`; in fixed point:
-    /// `(n t + 2048) / 4096` rounded down, where `t` is `122880 / d` rounded to the nearest; plus 180 if negative.
-    /// Where `d` is 0 the hue is 0.
+    /// `30 n / d` with `n` in sixths: `green - blue`, `blue - red + 2 d` or `red - green + 4 d`. In fixed
+    /// point: `(n t + 2048) / 4096` rounded down, where `t` is `122880 / d` rounded to the nearest; plus 180
+    /// if negative. The hue is 0 where `d` is 0.
     OpenCv,
 }
 
-/// Which pixels have a hue: those with enough colour and light.
+/// Minimum saturation and intensity of pixels that have a hue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct HueLimits {
-    /// The smallest saturation in the sense of HSV, 0 to 255: `255 d >= min_saturation * largest channel`.
+    /// Minimum HSV saturation, 0 to 255: `255 d >= min_saturation * largest channel`.
     pub min_saturation: u8,
-    /// The smallest `(red + blue) / 4 + green / 2`, each quotient rounded down.
+    /// Minimum of `(red + blue) / 4 + green / 2`, each quotient rounded down.
     pub min_intensity: u8,
 }
 
 impl HueLimits {
-    /// Every pixel that is not gray has a hue.
+    /// No limits: every pixel that is not gray has a hue.
     pub const NONE: Self = Self { min_saturation: 0, min_intensity: 0 };
 }
 
 impl Default for HueLimits {
-    /// RoBIOS's: more than half of the full saturation, and an intensity above 25.
+    /// Values of RoBIOS: more than half of the full saturation, and an intensity above 25.
     fn default() -> Self {
         Self { min_saturation: 128, min_intensity: 26 }
     }
 }
 
-/// The hue of red, green and blue; [`NO_HUE`] outside the limits and, on RoBIOS's scale, for grays.
+/// Hue of a colour; [`NO_HUE`] outside the limits and, on the RoBIOS scale, for grays.
 ///
 /// ```
 /// use roverlab::vision::{HueLimits, HueScale, NO_HUE, hue};
@@ -79,7 +79,7 @@ fn robios(r: i32, g: i32, b: i32, largest: i32, d: i32) -> i32 {
         (r - g, 210)
     };
     let numerator = 42 * n.abs();
-    // The number stands in the lowest bits of such a sum.
+    // The integer stands in the low bits of such a sum.
     let nearest = ((numerator as f32 / d.max(1) as f32 + WHOLE).to_bits() & 0x007f_ffff) as i32;
     let quotient = if nearest * d > numerator { nearest - 1 } else { nearest };
     if n < 0 { base - quotient } else { base + quotient }
@@ -100,24 +100,24 @@ pub(super) fn opencv([red, green, blue]: [u8; 3], largest: u8, difference: u8) -
     (if h < 0 { h + 180 } else { h }) as u8
 }
 
-/// The smallest float from which on all are whole numbers: adding it to a smaller one rounds that.
+/// 2^23: from here on, all floats are integers, so adding it rounds a smaller float.
 const WHOLE: f32 = 8_388_608.0;
 
-/// `(n t + 2048) / 4096` rounded down, where `t / 4096` is `one / d` rounded to the nearest 4096th; 0 for an `n` of 0. Neither
-/// `one` nor the result may be above 255.
+/// `(n t + 2048) / 4096` rounded down, where `t / 4096` is `one / d` rounded to the nearest 4096th; 0 if `n`
+/// is 0. Neither `one` nor the result may exceed 255.
 ///
-/// Floats are multiplied faster than whole numbers of 32 bits, and here they are as exact: `t / 4096` is, and the product
-/// misses the multiple of 1/4096 that it should be by less than 2^-16. So 2^-14 more of it rounds halves up and changes nothing
-/// else.
+/// Float multiplication is faster than 32-bit integer multiplication, and exact enough here: `t / 4096` is
+/// exact, and the product misses its multiple of 1/4096 by less than 2^-16. Adding 2^-14 therefore rounds
+/// halves up and changes nothing else.
 #[inline(always)]
 pub(super) fn fixed_point(n: i16, one: f32, d: u8) -> i16 {
     // From 2048 on, floats are multiples of 1/4096.
     let quotient = one / f32::from(d.max(1)) + 2048.0 - 2048.0;
-    // In the lowest bits, also of a negative one.
+    // The integer stands in the low bits, also if negative.
     (f32::from(n) * quotient + 1.0 / 16384.0 + 1.5 * WHOLE).to_bits() as i16
 }
 
-/// The hues of an image; see [`hue`].
+/// Hue of each pixel of an image; see [`hue`].
 ///
 /// ```
 /// use roverlab::vision::{GrayViewMut, HueLimits, HueScale, NO_HUE, RgbView, hue_into};
@@ -128,6 +128,10 @@ pub(super) fn fixed_point(n: i16, one: f32, d: u8) -> i16 {
 /// assert_eq!(hues, [42, 126, 210, NO_HUE], "red, green, blue, gray");
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn hue_into(
     input: RgbView<'_>,
     output: GrayViewMut<'_>,

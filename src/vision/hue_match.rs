@@ -4,18 +4,21 @@ use super::view::flatten;
 use super::{GrayView, GrayViewMut, HueLimits, HueScale, ImageError, NO_HUE, RgbView, planes};
 use crate::ParameterError;
 
-/// Hues from one to another, both included, wrapping round the end of the circle if the first is larger.
+/// A closed range of hues; it wraps around the circle if `low` exceeds `high`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct HueRange {
-    /// The first hue.
+    /// First hue.
     pub low: u8,
-    /// The last one.
+    /// Last hue.
     pub high: u8,
 }
 
 impl HueRange {
-    /// The hues from `low` to `high`, round the end of the circle if `low` is larger. Fails for a number that is no hue:
-    /// 255, or 180 and above on OpenCV's scale.
+    /// The hues from `low` to `high`, wrapping around if `low` is larger.
+    ///
+    /// # Errors
+    ///
+    /// If a number is not a hue: 255, or 180 and above on the OpenCV scale.
     pub fn new(low: u8, high: u8, scale: HueScale) -> Result<Self, ImageError> {
         for (parameter, hue) in [("low hue", low), ("high hue", high)] {
             require_hue(parameter, hue, scale)?;
@@ -23,8 +26,12 @@ impl HueRange {
         Ok(Self { low, high })
     }
 
-    /// The hues less than `threshold` away from one, on a circle of 255 as the book's Program 11.9 reckons, or of 180
-    /// on OpenCV's scale.
+    /// The hues less than `threshold` away from `hue`, on a circle of 255 as in the book's Program 11.9, or
+    /// of 180 on the OpenCV scale.
+    ///
+    /// # Errors
+    ///
+    /// If `hue` is not a hue or `threshold` is 0.
     pub fn around(hue: u8, threshold: u8, scale: HueScale) -> Result<Self, ImageError> {
         require_hue("hue", hue, scale)?;
         let circle = circle(scale);
@@ -39,8 +46,8 @@ impl HueRange {
         Ok(Self { low: wrap(middle - reach), high: wrap(middle + reach) })
     }
 
-    /// The hues less than `threshold` away from that of a sample: `like([255, 0, 0], 20, scale)` is red on either scale.
-    /// Fails for a gray sample, which has no hue.
+    /// The hues less than `threshold` away from that of a sample: `like([255, 0, 0], 20, scale)` is red on
+    /// either scale.
     ///
     /// ```
     /// use roverlab::vision::{HueRange, HueScale};
@@ -49,6 +56,10 @@ impl HueRange {
     /// assert!(HueRange::like([90, 90, 90], 20, HueScale::Robios).is_err());
     /// # Ok::<(), roverlab::vision::ImageError>(())
     /// ```
+    ///
+    /// # Errors
+    ///
+    /// If the sample is gray, which has no hue, or `threshold` is 0.
     pub fn like(sample: [u8; 3], threshold: u8, scale: HueScale) -> Result<Self, ImageError> {
         let [red, green, blue] = sample;
         if red == green && green == blue {
@@ -59,7 +70,7 @@ impl HueRange {
         Self::around(hue(sample, scale, HueLimits::NONE), threshold, scale)
     }
 
-    /// Whether a hue belongs to the range. [`NO_HUE`] never does.
+    /// Whether the range contains a hue; never true for [`NO_HUE`].
     #[inline(always)]
     pub fn contains(&self, hue: u8) -> bool {
         let (from, to) = (hue >= self.low, hue <= self.high);
@@ -67,7 +78,7 @@ impl HueRange {
     }
 }
 
-/// Hues on a circle, as ranges wrap round it.
+/// Size of the circle around which ranges wrap.
 fn circle(scale: HueScale) -> i32 {
     match scale {
         HueScale::Robios => 255,
@@ -82,7 +93,8 @@ fn require_hue(parameter: &'static str, hue: u8, scale: HueScale) -> Result<(), 
     Err(ParameterError::new(parameter, f64::from(hue), "below 255, or 180 on OpenCV's scale").into())
 }
 
-/// 255 where a pixel's hue belongs to the range, 0 elsewhere (book, section 11.4), straight from the colours.
+/// 255 where the hue of a pixel is in the range, 0 elsewhere (book, section 11.4). One pass from colours to
+/// mask.
 ///
 /// ```
 /// use roverlab::vision::{GrayViewMut, HueLimits, HueRange, HueScale, RgbView, hue_match_into};
@@ -94,6 +106,10 @@ fn require_hue(parameter: &'static str, hue: u8, scale: HueScale) -> Result<(), 
 /// assert_eq!(mask, [255, 0, 0]);
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn hue_match_into(
     input: RgbView<'_>,
     output: GrayViewMut<'_>,
@@ -110,7 +126,7 @@ pub fn hue_match_into(
     Ok(())
 }
 
-/// 255 where an image of hues has one of the range, 0 elsewhere.
+/// 255 where a hue image is in the range, 0 elsewhere.
 ///
 /// ```
 /// use roverlab::vision::{GrayView, GrayViewMut, HueRange, HueScale, NO_HUE, match_hue_image_into};
@@ -121,6 +137,10 @@ pub fn hue_match_into(
 /// assert_eq!(mask, [255, 255, 0, 0], "less than 10 away from 126");
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn match_hue_image_into(
     input: GrayView<'_>,
     output: GrayViewMut<'_>,
@@ -132,16 +152,17 @@ pub fn match_hue_image_into(
     Ok(())
 }
 
-/// A range of hues on RoBIOS's scale as conditions that need no division.
+/// A range of RoBIOS hues as conditions without division.
 ///
-/// Within the sector of a largest channel, `base + 42 n / d >= hue` means `42 n - m d > t` for some `m` and `t`.
+/// In the sector of a largest channel, `base + 42 n / d >= hue` is equivalent to `42 n - m d > t` for some
+/// `m` and `t`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sectors {
-    /// `m` and `t` from which on hues belong to the range, for the sectors of red, green and blue.
+    /// `m` and `t` of the lower bound, for the sectors of red, green and blue.
     first: [(i16, i16); 3],
-    /// `m` and `t` from which on they do no longer.
+    /// `m` and `t` of the first hue past the range.
     behind: [(i16, i16); 3],
-    /// Whether the range is what these conditions leave out.
+    /// Whether the range is the complement of these conditions.
     invert: bool,
     limits: HueLimits,
 }
@@ -156,7 +177,7 @@ impl Sectors {
         Self { first: conditions(first), behind: conditions(behind), invert, limits }
     }
 
-    /// Whether a pixel's hue belongs to the range.
+    /// Whether a pixel's hue is in the range.
     #[inline(always)]
     pub(super) fn contain(&self, [red, green, blue]: [u8; 3]) -> bool {
         let (r, g, b) = (i16::from(red), i16::from(green), i16::from(blue));
@@ -177,9 +198,9 @@ impl Sectors {
     }
 }
 
-/// `m` and `t` for which `42 n - m d > t` says that `42 n / d`, rounded towards zero, is at least `least`.
+/// `m` and `t` such that `42 n - m d > t` exactly if `42 n / d`, rounded towards zero, is at least `least`.
 fn condition(least: i16) -> (i16, i16) {
-    // Quotients reach from -42 to 42; further limits say no more.
+    // Quotients lie between -42 and 42; limits beyond are equivalent.
     let least = least.clamp(-42, 43);
     if least > 0 { (least, -1) } else { (least - 1, 0) }
 }

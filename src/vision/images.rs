@@ -1,7 +1,7 @@
-//! The kernels on images of the crate `image` (feature `image`): each takes images and returns a new one, which is
-//! what the function in `_into` of the same name writes. Fails for an image without pixels.
+//! The kernels on images of the crate `image` (feature `image`). Each takes images and returns a new one,
+//! with the result of the `_into` function named. They fail for images without pixels.
 //!
-//! From a camera's image to what is red in it:
+//! From a camera image to its red regions:
 //!
 //! ```
 //! use image::{Rgb, RgbImage};
@@ -81,7 +81,7 @@ fn rgb_image(
     Ok(output)
 }
 
-/// Colour to shades of gray, as [`gray_into`].
+/// Converts colour to gray; see [`gray_into`].
 ///
 /// ```
 /// let photo = image::RgbImage::from_pixel(2, 1, image::Rgb([200, 100, 40]));
@@ -93,7 +93,7 @@ pub fn gray(image: &RgbImage, weights: GrayWeights) -> Result<GrayImage, ImageEr
     gray_image(image.dimensions(), |output| gray_into(image.try_into()?, output, weights))
 }
 
-/// Shades of gray as colours, as [`gray_to_rgb_into`].
+/// Converts gray to colour; see [`gray_to_rgb_into`].
 ///
 /// ```
 /// let gray = image::GrayImage::from_pixel(1, 1, image::Luma([7]));
@@ -104,7 +104,7 @@ pub fn gray_to_rgb(image: &GrayImage) -> Result<RgbImage, ImageError> {
     rgb_image(image.dimensions(), |output| gray_to_rgb_into(image.try_into()?, output))
 }
 
-/// Smooths an image, as [`gaussian_into`].
+/// Smooths an image; see [`gaussian_into`].
 ///
 /// ```
 /// use roverlab::vision::{GaussianKernel, images};
@@ -117,7 +117,7 @@ pub fn gaussian(image: &GrayImage, kernel: GaussianKernel) -> Result<GrayImage, 
     gray_image(image.dimensions(), |output| gaussian_into(image.try_into()?, output, kernel))
 }
 
-/// The magnitude of the gradient by sums, as [`sobel_l1_into`].
+/// Sobel gradient, magnitude `|dx| + |dy|`; see [`sobel_l1_into`].
 ///
 /// ```
 /// use roverlab::vision::{Border, SobelScale, images};
@@ -130,7 +130,7 @@ pub fn sobel_l1(image: &GrayImage, scale: SobelScale, border: Border) -> Result<
     gray_image(image.dimensions(), |output| sobel_l1_into(image.try_into()?, output, scale, border))
 }
 
-/// The magnitude of the gradient by squares, as [`sobel_l2_into`].
+/// Sobel gradient, Euclidean magnitude; see [`sobel_l2_into`].
 ///
 /// ```
 /// use roverlab::vision::{Border, SobelScale, images};
@@ -143,7 +143,7 @@ pub fn sobel_l2(image: &GrayImage, scale: SobelScale, border: Border) -> Result<
     gray_image(image.dimensions(), |output| sobel_l2_into(image.try_into()?, output, scale, border))
 }
 
-/// Edges by the Laplacian, as [`laplace_into`].
+/// Absolute value of the Laplace operator; see [`laplace_into`].
 ///
 /// ```
 /// use roverlab::vision::{Border, images};
@@ -155,7 +155,7 @@ pub fn laplace(image: &GrayImage, border: Border) -> Result<GrayImage, ImageErro
     gray_image(image.dimensions(), |output| laplace_into(image.try_into()?, output, border))
 }
 
-/// Thin edges by Canny's detector, as [`Canny::find_into`]. Who looks at many images keeps a [`Canny`].
+/// Canny's edges; see [`Canny::find_into`]. For image sequences, keep a [`Canny`].
 ///
 /// ```
 /// use roverlab::vision::{CannyThresholds, images};
@@ -169,7 +169,7 @@ pub fn canny(image: &GrayImage, thresholds: CannyThresholds) -> Result<GrayImage
     gray_image(image.dimensions(), |output| Canny::new().find_into(image.try_into()?, output, thresholds))
 }
 
-/// Black and white, as [`threshold_into`].
+/// Thresholds an image; see [`threshold_into`].
 ///
 /// ```
 /// let ramp = image::GrayImage::from_fn(4, 1, |x, _| image::Luma([60 * x as u8]));
@@ -180,7 +180,7 @@ pub fn threshold(image: &GrayImage, threshold: u8) -> Result<GrayImage, ImageErr
     gray_image(image.dimensions(), |output| threshold_into(image.try_into()?, output, threshold))
 }
 
-/// What differs between two images, as [`absolute_difference_into`].
+/// Absolute difference of two images; see [`absolute_difference_into`].
 ///
 /// ```
 /// let [a, b] = [30, 50].map(|gray| image::GrayImage::from_pixel(2, 1, image::Luma([gray])));
@@ -193,7 +193,7 @@ pub fn absolute_difference(image: &GrayImage, other: &GrayImage) -> Result<GrayI
     })
 }
 
-/// The hue of each pixel, as [`hue_into`].
+/// Hue of each pixel; see [`hue_into`].
 ///
 /// ```
 /// use roverlab::vision::{HueLimits, HueScale, images};
@@ -205,7 +205,7 @@ pub fn hues(image: &RgbImage, scale: HueScale, limits: HueLimits) -> Result<Gray
     gray_image(image.dimensions(), |output| hue_into(image.try_into()?, output, scale, limits))
 }
 
-/// 255 where the hue belongs to a range, 0 elsewhere, as [`hue_match_into`].
+/// 255 where the hue is in a range, 0 elsewhere; see [`hue_match_into`].
 ///
 /// ```
 /// use roverlab::vision::{HueLimits, HueRange, HueScale, images};
@@ -224,7 +224,7 @@ pub fn hue_match(
     gray_image(image.dimensions(), |output| hue_match_into(image.try_into()?, output, range, scale, limits))
 }
 
-/// Hue, saturation and value of each pixel, as [`hsv_into`].
+/// Hue, saturation and value of each pixel; see [`hsv_into`].
 ///
 /// ```
 /// let blue = image::RgbImage::from_pixel(1, 1, image::Rgb([0, 0, 255]));
@@ -235,7 +235,7 @@ pub fn hsv(image: &RgbImage) -> Result<RgbImage, ImageError> {
     rgb_image(image.dimensions(), |output| hsv_into(image.try_into()?, output))
 }
 
-/// Colours from hue, saturation and value, as [`hsv_to_rgb_into`].
+/// Colours from hue, saturation and value; see [`hsv_to_rgb_into`].
 ///
 /// ```
 /// use roverlab::vision::images;
@@ -247,7 +247,7 @@ pub fn hsv_to_rgb(image: &RgbImage) -> Result<RgbImage, ImageError> {
     rgb_image(image.dimensions(), |output| hsv_to_rgb_into(image.try_into()?, output))
 }
 
-/// A gray image with marks drawn over it in a colour, as [`overlay_gray_into`].
+/// Draws marks over a gray image; see [`overlay_gray_into`].
 ///
 /// ```
 /// use image::{GrayImage, Luma};

@@ -2,8 +2,12 @@ use super::border::stencil;
 use super::dispatch::vectorised_filter;
 use super::{Border, GrayView, GrayViewMut, ImageError};
 
-/// The Laplace operator's absolute value (book, Program 11.3): `min(255, |4 c - n - s - e - w|)` of a pixel and its
-/// four neighbours.
+/// Absolute value of the Laplace operator: `min(255, |4 c - n - s - e - w|)` of a pixel and its four
+/// neighbours (book, Program 11.3).
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn laplace_into(
     input: GrayView<'_>,
     mut output: GrayViewMut<'_>,
@@ -14,8 +18,8 @@ pub fn laplace_into(
     Ok(())
 }
 
-/// The Laplace operator where it is positive: `n + s + e + w - 4 c`, held within `0..=255`. It finds the dark sides of
-/// edges.
+/// Positive part of the Laplace operator, `n + s + e + w - 4 c` clamped to `0..=255`. It marks the dark side
+/// of edges.
 ///
 /// ```
 /// use roverlab::vision::{Border, GrayView, GrayViewMut, laplace_saturated_into};
@@ -26,6 +30,10 @@ pub fn laplace_into(
 /// assert_eq!(edges, [0, 0, 50, 0, 0, 0], "the last dark pixel before the step");
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn laplace_saturated_into(
     input: GrayView<'_>,
     mut output: GrayViewMut<'_>,

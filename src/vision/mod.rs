@@ -1,8 +1,9 @@
 //! Image processing (book, chapter 11): edges, colour, motion, lines and blobs.
 //!
-//! Every kernel has a written definition in its docs and is tested against a naive version of it, to the bit; line segments
-//! by [`SegmentDefinition::OpenCv`] against OpenCV's. Kernels work on [`View`]s, borrowed 8-bit images of one ([`GrayView`]) or three ([`RgbView`]) bytes a pixel with any
-//! distance between rows, so that a part of an image is as good as a whole one:
+//! Every kernel is defined in its documentation and tested bit for bit against a naive version; line segments
+//! ([`SegmentDefinition::OpenCv`]) are tested against OpenCV. Kernels work on [`View`]s: borrowed 8-bit
+//! images of one ([`GrayView`]) or three ([`RgbView`]) bytes per pixel, with any stride, so that a part of an
+//! image is an image as well:
 //!
 //! ```
 //! use roverlab::vision::{Border, GrayView, GrayViewMut, laplace_into};
@@ -16,27 +17,25 @@
 //! # }
 //! ```
 //!
-//! [`motion`] has what moves in an image. The robots that drive by what they see are in
+//! [`motion`] has what moves in an image, [`lane_markings`] the lane before a car. The robots that drive by what they see are in
 //! [`drive`](crate::drive).
 //!
-//! The module `images` (feature `image`) has the same kernels on images of the crate `image`, which return new images.
+//! The module `images` (feature `image`) has the same kernels on images of the crate `image`; they return new
+//! images.
 //!
-//! The functions in `_into` write into memory of the caller's and allocate nothing. The loops are plain Rust that the
-//! compiler vectorises for several generations of processors; the best one that the processor has is chosen at run
-//! time, and all give the same bits.
+//! Functions ending in `_into` write into the caller's memory and do not allocate. The loops are plain Rust,
+//! which the compiler vectorises for several processor generations; the best one is selected at run time, and
+//! all give the same bits.
 //!
 //! # Errors and complexity
 //!
-//! A kernel fails with [`ImageError`] if its images differ in size, before it writes anything; bad parameters are refused
-//! with their name and range. Time is linear in the number of pixels, except for [`HoughLines`] and [`HoughSegments`]: edge
-//! pixels times angles.
+//! A kernel fails with [`ImageError`] if its images differ in size, before it writes anything, or if a
+//! parameter is out of range. Time is linear in the number of pixels, except for [`HoughLines`] and
+//! [`HoughSegments`]: edge pixels times angles.
 
 #![forbid(unsafe_code)]
-#![allow(clippy::needless_bitwise_bool, reason = "conditions without branches are what vectorises")]
-#![allow(
-    clippy::inline_always,
-    reason = "loops are to be compiled for the processor that their caller has chosen"
-)]
+#![allow(clippy::needless_bitwise_bool, reason = "conditions without branches vectorise")]
+#![allow(clippy::inline_always, reason = "loops must be compiled for the processor that the caller selected")]
 
 mod blocks;
 mod border;
@@ -60,6 +59,7 @@ mod hue;
 mod hue_match;
 #[cfg(feature = "image")]
 pub mod images;
+pub mod lane_markings;
 mod laplace;
 pub mod motion;
 #[cfg(feature = "rayon")]

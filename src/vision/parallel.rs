@@ -5,14 +5,14 @@ use rayon::prelude::*;
 use super::ImageError;
 use super::view::{View, ViewMut};
 
-/// Rows of a band, at least: shorter ones cost more to hand out than they save.
+/// Minimum number of rows per band; shorter bands cost more to distribute than they save.
 const LEAST_ROWS: usize = 16;
 
-/// Runs a kernel on bands of rows at the same time, with the same result as on the whole image.
+/// Runs a kernel on bands of rows in parallel, with the same result as on the whole image.
 ///
-/// `reach` says how many rows above and below a pixel the kernel looks at: 0 for gray values and thresholds, 1 for
-/// Laplace and Sobel, 3 for a Gaussian of 7 x 7. Kernels that look at the whole image (Canny, components, Hough) cannot
-/// be run so.
+/// `reach` is the number of rows above and below a pixel that the kernel reads: 0 for gray conversion and
+/// thresholds, 1 for Laplace and Sobel, 3 for a Gaussian of 7 x 7. Kernels that need the whole image (Canny,
+/// components, Hough) are not suitable.
 ///
 /// ```
 /// use roverlab::vision::{Border, GrayView, GrayViewMut, in_bands, laplace_into};
@@ -29,6 +29,10 @@ const LEAST_ROWS: usize = 16;
 /// # Ok(())
 /// # }
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ, or the kernel fails.
 pub fn in_bands<const C: usize, const D: usize>(
     input: View<'_, C>,
     output: ViewMut<'_, D>,
@@ -47,7 +51,7 @@ pub fn in_bands<const C: usize, const D: usize>(
         if reach == 0 {
             return kernel(input.region((0, top), width, rows)?, output);
         }
-        // With the rows around it a band comes out as in the whole image; those themselves do not and are dropped.
+        // The rows around a band make it equal to the whole image; they themselves differ and are dropped.
         let first = top.saturating_sub(reach);
         let last = (top + rows + reach).min(height);
         let mut whole = vec![0; width * D * (last - first)];

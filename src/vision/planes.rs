@@ -1,13 +1,13 @@
-//! Pixels of three bytes taken apart and put together, piece by piece, so that the loops between see one colour after
-//! the other: those vectorise well.
+//! Splits three-byte pixels into planes and merges them again, piece by piece, because loops over one colour
+//! at a time vectorise well.
 
-/// Pixels that are taken apart together.
+/// Number of pixels split at a time.
 pub(super) const PIECE: usize = 512;
 
-/// A colour of a piece.
+/// One colour of a piece.
 pub(super) type Plane = [u8; PIECE];
 
-/// Takes up to [`PIECE`] pixels apart.
+/// Splits up to [`PIECE`] pixels.
 #[inline(always)]
 pub(super) fn split(pixels: &[[u8; 3]], red: &mut Plane, green: &mut Plane, blue: &mut Plane) {
     let colours = red.iter_mut().zip(green).zip(blue);
@@ -16,7 +16,7 @@ pub(super) fn split(pixels: &[[u8; 3]], red: &mut Plane, green: &mut Plane, blue
     }
 }
 
-/// Puts up to [`PIECE`] pixels together.
+/// Merges up to [`PIECE`] pixels.
 #[inline(always)]
 pub(super) fn merge(pixels: &mut [[u8; 3]], red: &[u8], green: &[u8], blue: &[u8]) {
     for (((pixel, &red), &green), &blue) in pixels.iter_mut().zip(red).zip(green).zip(blue) {
@@ -24,7 +24,7 @@ pub(super) fn merge(pixels: &mut [[u8; 3]], red: &[u8], green: &[u8], blue: &[u8
     }
 }
 
-/// A function of each pixel of a row.
+/// Applies a function to each pixel of a row.
 #[inline(always)]
 pub(super) fn map(row: &[u8], out: &mut [u8], point: impl Fn(u8, u8, u8) -> u8) {
     let (mut red, mut green, mut blue) = ([0; PIECE], [0; PIECE], [0; PIECE]);

@@ -2,9 +2,7 @@ use super::dispatch::vectorised;
 use super::view::require_size;
 use super::{GrayView, ImageError};
 
-/// The sums of all columns and of all rows (book, section 11.4, where the image is one of matches).
-///
-/// Fails unless there is one sum for each column and row.
+/// Sums of all columns and of all rows (book, section 11.4, for a mask).
 ///
 /// ```
 /// use roverlab::vision::{GrayView, maximum, projections_into};
@@ -15,6 +13,10 @@ use super::{GrayView, ImageError};
 /// assert_eq!(maximum(&columns), Some((1, 510)), "the object is in column 1");
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If there is not one sum per column and row.
 pub fn projections_into(
     input: GrayView<'_>,
     columns: &mut [u32],
@@ -25,20 +27,21 @@ pub fn projections_into(
     Ok(())
 }
 
-/// The first place of the largest value, and the value (book, Program 11.10); `None` if there is none above 0.
+/// Index and value of the first maximum (book, Program 11.10); `None` if no value is above 0.
 pub fn maximum(histogram: &[u32]) -> Option<(usize, u32)> {
     let largest = histogram.iter().copied().max().filter(|&value| value > 0)?;
     histogram.iter().position(|&value| value == largest).map(|place| (place, largest))
 }
 
-/// Pixels of a block. They are added up as words of two, which are parted by a shift: nothing moves from lane to lane.
+/// Number of pixels per block. Pairs are added as 16-bit words and separated by a shift, so that nothing
+/// moves between lanes.
 const BLOCK: usize = 64;
-/// Blocks that are summed up together: their sums fit the fastest cache, and those of a row 16 bits.
+/// Number of blocks summed at a time: their sums fit the L1 cache, and row sums fit 16 bits.
 const STRIP: usize = 64;
-/// Rows of bytes whose sum fits 16 bits.
+/// Number of rows of bytes whose sum fits 16 bits.
 const ROWS: usize = 257;
 
-/// Sums of the columns of a block: those of even ones, then those of odd ones.
+/// Column sums of a block: even columns, then odd ones.
 type Sums = [[u16; BLOCK / 2]; 2];
 
 #[inline(always)]
@@ -57,7 +60,7 @@ pub(super) fn project_portable(input: GrayView<'_>, columns: &mut [u32], rows: &
     }
 }
 
-/// Adds a row to the sums of its columns; returns its own.
+/// Adds a row to its column sums and returns the row sum.
 #[inline(always)]
 fn add_row(row: &[u8], sums: &mut [Sums; STRIP]) -> u32 {
     let (blocks, rest) = row.as_chunks::<BLOCK>();

@@ -1,16 +1,16 @@
 use crate::random::Stream;
 
-/// In which order pixels vote for the lines of [`HoughSegments`](super::HoughSegments), and which votes a line that was
-/// found takes with it.
+/// Order in which pixels vote for the lines of [`HoughSegments`](super::HoughSegments), and votes that a
+/// found segment withdraws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SegmentDefinition {
-    /// An order drawn by a seed. A line takes the votes of its pixels that have voted, as Matas, Galambos and Kittler have it.
+    /// Random order. A segment withdraws the votes of its pixels that have voted, as in the paper.
     Voted {
-        /// The seed.
+        /// Seed of the order.
         seed: u64,
     },
-    /// OpenCV's order, the same for every image. A line takes a vote for each of its pixels, also for those that never gave
-    /// one, so that lines which cross it need more votes than the threshold.
+    /// OpenCV's order, the same for every image. A segment withdraws one vote per pixel, even for pixels that
+    /// never voted, so lines that cross it need more votes than the threshold.
     OpenCv,
 }
 
@@ -44,13 +44,13 @@ impl Draw {
     }
 }
 
-/// The generator of OpenCV (G. Marsaglia's multiply with carry): the lower half of the state is the number, the upper one
-/// what is carried.
+/// OpenCV's generator (G. Marsaglia's multiply-with-carry): the lower half of the state is the number, the
+/// upper half the carry.
 #[derive(Debug)]
 pub(super) struct MultiplyWithCarry(u64);
 
 impl MultiplyWithCarry {
-    /// OpenCV's multiplier of its multiply-with-carry generator.
+    /// OpenCV's multiplier.
     const FACTOR: u64 = 4_164_903_690;
 
     fn next(&mut self) -> u32 {

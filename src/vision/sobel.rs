@@ -2,17 +2,17 @@ use super::border::stencil;
 use super::dispatch::vectorised_filter;
 use super::{Border, GrayView, GrayViewMut, ImageError};
 
-/// How the magnitude of a gradient becomes a byte.
+/// Scale of the gradient magnitude.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum SobelScale {
-    /// As it is, at most 255.
+    /// Full magnitude, at most 255.
     #[default]
     Full,
-    /// A third of it, at most 255, as RoBIOS has it.
+    /// A third of the magnitude, at most 255, as in RoBIOS.
     Third,
 }
 
-/// The Sobel gradient's magnitude by sums: `|dx| + |dy|`, or a third of that rounded down, at most 255.
+/// Sobel gradient: `|dx| + |dy|`, or a third of that rounded down, at most 255.
 ///
 /// `dx = (ne + 2 e + se) - (nw + 2 w + sw)` and `dy = (sw + 2 s + se) - (nw + 2 n + ne)`.
 ///
@@ -25,6 +25,10 @@ pub enum SobelScale {
 /// assert_eq!(edges, [0, 0, 0, 0, 120, 0, 0, 0, 0], "dx = dy = 60");
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn sobel_l1_into(
     input: GrayView<'_>,
     mut output: GrayViewMut<'_>,
@@ -39,8 +43,8 @@ pub fn sobel_l1_into(
     Ok(())
 }
 
-/// The Sobel gradient's Euclidean magnitude: `sqrt(dx² + dy²)`, or a third of that, rounded to the nearest whole
-/// number, at most 255; see [`sobel_l1_into`].
+/// Sobel gradient: `sqrt(dx² + dy²)`, or a third of that, rounded to the nearest, at most 255; see
+/// [`sobel_l1_into`].
 ///
 /// ```
 /// use roverlab::vision::{Border, GrayView, GrayViewMut, SobelScale, sobel_l2_into};
@@ -51,6 +55,10 @@ pub fn sobel_l1_into(
 /// assert_eq!(edges[4], 85, "dx = dy = 60, and the root of 60² + 60² is 84.9");
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn sobel_l2_into(
     input: GrayView<'_>,
     mut output: GrayViewMut<'_>,
@@ -65,9 +73,9 @@ pub fn sobel_l2_into(
     Ok(())
 }
 
-/// Half the sum and half the difference of `dx` and `dy`, each of which takes fewer steps than `dx` or `dy` does.
+/// Half the sum and half the difference of `dx` and `dy`, which take fewer operations than `dx` and `dy`.
 ///
-/// `|dx| + |dy|` is the larger of `|dx + dy|` and `|dx - dy|`, and `dx² + dy²` is half the sum of their squares.
+/// `|dx| + |dy|` is the larger of `|dx + dy|` and `|dx - dy|`; `dx² + dy²` is half the sum of their squares.
 #[inline(always)]
 fn diagonals(pixels: [[u16; 3]; 3]) -> (i16, i16) {
     let [[nw, n, ne], [w, _, e], [sw, s, se]] = pixels;
@@ -99,8 +107,8 @@ fn root(pixels: [[u16; 3]; 3], largest: i32, scale: f32) -> u16 {
     let (a, b) = diagonals(pixels);
     let (a, b) = (i32::from(a), i32::from(b));
     let length = ((2 * (a * a + b * b)).min(largest * largest) as f32).sqrt() * scale;
-    // From 2^23 on, floats are whole numbers: adding that much rounds to the nearest and puts it in the lowest bits.
-    // The root of a whole number, or a third of it, never lies halfway between two.
+    // From 2^23 on, floats are integers: adding that rounds to the nearest and puts the result in the low
+    // bits. The root of an integer, or a third of it, never lies halfway between two integers.
     (length + 8_388_608.0).to_bits() as u16
 }
 
@@ -114,7 +122,7 @@ fn third_of_root(pixels: [[u16; 3]; 3]) -> u16 {
     root(pixels, 765, 1.0 / 3.0)
 }
 
-// Each has its own: of several loops in one function, the compiler keeps the pointers in memory.
+// One function each: with several loops in one, the compiler keeps the pointers in memory.
 
 vectorised_filter! {
     fn sums_in_full(input: GrayView<'_>, output: &mut GrayViewMut<'_>, border: Border) {
@@ -140,7 +148,7 @@ vectorised_filter! {
     }
 }
 
-/// The same as compiled for any processor.
+/// The same, compiled for any processor.
 #[cfg(test)]
 pub(super) mod portable {
     use super::*;

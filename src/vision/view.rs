@@ -1,6 +1,6 @@
 use super::ImageError;
 
-/// A borrowed image of `C` bytes a pixel. It has at least one pixel.
+/// A borrowed image of `C` bytes per pixel, with at least one pixel.
 ///
 /// ```
 /// use roverlab::vision::{GrayView, RgbView};
@@ -8,7 +8,16 @@ use super::ImageError;
 /// let gray = GrayView::new(&bytes, 4, 3)?;
 /// assert_eq!(gray.region((1, 1), 2, 2)?.row(0), [6, 7]);
 /// assert_eq!(RgbView::new(&bytes, 2, 2)?.row(1), [7, 8, 9, 10, 11, 12]);
-/// assert!(GrayView::new(&bytes, 5, 3).is_err(), "three bytes are missing");
+/// assert!(GrayView::new(&bytes, 5, 3).is_err(), "three bytes short");
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
+///
+/// ```
+/// use roverlab::vision::View;
+/// let pixels: Vec<u8> = (0..12).collect();
+/// let gray = View::<1>::new(&pixels, 4, 3)?;
+/// assert_eq!(gray.region((1, 1), 2, 2)?.row(0), [5, 6]);
+/// assert!(View::<3>::new(&pixels, 4, 3).is_err(), "colours take three bytes a pixel");
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
 #[derive(Debug, Clone, Copy)]
@@ -17,7 +26,7 @@ pub struct View<'a, const C: usize> {
     shape: Shape,
 }
 
-/// A borrowed image of `C` bytes a pixel to write into. It has at least one pixel.
+/// A borrowed, writable image of `C` bytes per pixel, with at least one pixel.
 ///
 /// ```
 /// use roverlab::vision::{GrayView, GrayViewMut, threshold_into};
@@ -27,19 +36,28 @@ pub struct View<'a, const C: usize> {
 /// assert_eq!(mask, [0, 0, 0, 0, 0, 0, 255, 0, 0, 0, 0, 255]);
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// ```
+/// use roverlab::vision::ViewMut;
+/// let mut pixels = vec![0; 12];
+/// let mut gray = ViewMut::<1>::new(&mut pixels, 4, 3)?;
+/// gray.row_mut(2).fill(9);
+/// assert_eq!(&pixels[8..], [9; 4]);
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 #[derive(Debug)]
 pub struct ViewMut<'a, const C: usize> {
     data: &'a mut [u8],
     shape: Shape,
 }
 
-/// An image in shades of gray.
+/// A gray image.
 pub type GrayView<'a> = View<'a, 1>;
 /// An image of red, green and blue.
 pub type RgbView<'a> = View<'a, 3>;
-/// An image in shades of gray to write into.
+/// A writable gray image.
 pub type GrayViewMut<'a> = ViewMut<'a, 1>;
-/// An image of red, green and blue to write into.
+/// A writable image of red, green and blue.
 pub type RgbViewMut<'a> = ViewMut<'a, 3>;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,7 +69,7 @@ pub(super) struct Shape {
 }
 
 impl Shape {
-    /// The shape and its bytes, if they are no more than `found`.
+    /// The shape, if its bytes do not exceed `found`.
     fn new(
         width: usize,
         height: usize,
@@ -73,7 +91,7 @@ impl Shape {
         Ok(Self { width, height, stride })
     }
 
-    /// The offset of the first byte and the shape of a part.
+    /// Byte offset and shape of a part.
     fn region(
         &self,
         (x, y): (usize, usize),
@@ -91,7 +109,7 @@ impl Shape {
         Ok((y * self.stride + x * channels, Self { width, height, stride: self.stride }))
     }
 
-    /// The shape as one long row, if there is nothing between rows.
+    /// The shape as one long row, if rows are contiguous.
     fn flat(self, channels: usize) -> Self {
         if self.stride == self.width * channels {
             let width = self.width * self.height;
@@ -103,13 +121,20 @@ impl Shape {
 }
 
 impl<'a, const C: usize> View<'a, C> {
-    /// An image whose rows follow each other without a gap.
+    /// An image with contiguous rows.
+    ///
+    /// # Errors
+    ///
+    /// If the image has no pixels or `data` is too short.
     pub fn new(data: &'a [u8], width: usize, height: usize) -> Result<Self, ImageError> {
         Self::with_stride(data, width, height, width.saturating_mul(C))
     }
 
-    /// An image with `stride` bytes from the start of one row to that of the next. What follows the last row in
-    /// `data` is left alone.
+    /// An image with `stride` bytes from one row to the next. Data after the last row is not accessed.
+    ///
+    /// # Errors
+    ///
+    /// If the image has no pixels, the stride is shorter than a row, or `data` is too short.
     pub fn with_stride(
         data: &'a [u8],
         width: usize,
@@ -119,30 +144,34 @@ impl<'a, const C: usize> View<'a, C> {
         Ok(Self { data, shape: Shape::new(width, height, stride, C, data.len())? })
     }
 
-    /// A part of the image, from its upper left pixel (column, row).
+    /// A part of the image with the given upper left pixel (column, row) and size.
+    ///
+    /// # Errors
+    ///
+    /// If the part is empty or exceeds the image.
     pub fn region(&self, corner: (usize, usize), width: usize, height: usize) -> Result<Self, ImageError> {
         let (start, shape) = self.shape.region(corner, width, height, C)?;
         Ok(Self { data: &self.data[start..], shape })
     }
 
-    /// Columns and rows.
+    /// Number of columns and rows.
     pub fn size(&self) -> (usize, usize) {
         (self.shape.width, self.shape.height)
     }
 
-    /// Columns.
+    /// Number of columns.
     #[inline]
     pub fn width(&self) -> usize {
         self.shape.width
     }
 
-    /// Rows.
+    /// Number of rows.
     #[inline]
     pub fn height(&self) -> usize {
         self.shape.height
     }
 
-    /// The bytes of a row.
+    /// Bytes of a row.
     ///
     /// # Panics
     ///
@@ -153,13 +182,13 @@ impl<'a, const C: usize> View<'a, C> {
         &self.data[y * self.shape.stride..][..self.shape.width * C]
     }
 
-    /// The same as one long row where possible, for kernels that look at single pixels.
+    /// The image as one long row where possible, for kernels on single pixels.
     #[inline]
     pub(super) fn flat(self) -> Self {
         Self { shape: self.shape.flat(C), ..self }
     }
 
-    /// The bytes and their shape, which [`of`](Self::of) puts together again.
+    /// Bytes and shape; [`of`](Self::of) is the inverse.
     pub(super) fn parts(self) -> (&'a [u8], Shape) {
         (self.data, self.shape)
     }
@@ -169,20 +198,28 @@ impl<'a, const C: usize> View<'a, C> {
         Self { data, shape }
     }
 
-    /// Whether rows follow each other without a gap.
+    /// Whether rows are contiguous.
     pub(super) fn is_flat(&self) -> bool {
         self.shape.stride == self.shape.width * C
     }
 }
 
 impl<'a, const C: usize> ViewMut<'a, C> {
-    /// An image whose rows follow each other without a gap.
+    /// An image with contiguous rows.
+    ///
+    /// # Errors
+    ///
+    /// If the image has no pixels or `data` is too short.
     pub fn new(data: &'a mut [u8], width: usize, height: usize) -> Result<Self, ImageError> {
         Self::with_stride(data, width, height, width.saturating_mul(C))
     }
 
-    /// An image with `stride` bytes from the start of one row to that of the next. What lies between rows and follows
-    /// the last one is left alone.
+    /// An image with `stride` bytes from one row to the next. Data between and after the rows is not
+    /// accessed.
+    ///
+    /// # Errors
+    ///
+    /// If the image has no pixels, the stride is shorter than a row, or `data` is too short.
     pub fn with_stride(
         data: &'a mut [u8],
         width: usize,
@@ -193,30 +230,34 @@ impl<'a, const C: usize> ViewMut<'a, C> {
         Ok(Self { data, shape })
     }
 
-    /// A part of the image, from its upper left pixel (column, row).
+    /// A part of the image with the given upper left pixel (column, row) and size.
+    ///
+    /// # Errors
+    ///
+    /// If the part is empty or exceeds the image.
     pub fn region(self, corner: (usize, usize), width: usize, height: usize) -> Result<Self, ImageError> {
         let (start, shape) = self.shape.region(corner, width, height, C)?;
         Ok(Self { data: &mut self.data[start..], shape })
     }
 
-    /// Columns and rows.
+    /// Number of columns and rows.
     pub fn size(&self) -> (usize, usize) {
         (self.shape.width, self.shape.height)
     }
 
-    /// Columns.
+    /// Number of columns.
     #[inline]
     pub fn width(&self) -> usize {
         self.shape.width
     }
 
-    /// Rows.
+    /// Number of rows.
     #[inline]
     pub fn height(&self) -> usize {
         self.shape.height
     }
 
-    /// The bytes of a row.
+    /// Bytes of a row.
     ///
     /// # Panics
     ///
@@ -232,7 +273,7 @@ impl<'a, const C: usize> ViewMut<'a, C> {
         Self { shape: self.shape.flat(C), ..self }
     }
 
-    /// The bytes and their shape, which [`of`](Self::of) puts together again.
+    /// Bytes and shape; [`of`](Self::of) is the inverse.
     pub(super) fn parts(&mut self) -> (&mut [u8], Shape) {
         (&mut *self.data, self.shape)
     }
@@ -246,7 +287,7 @@ impl<'a, const C: usize> ViewMut<'a, C> {
         self.shape.stride == self.shape.width * C
     }
 
-    /// The image in parts of so many rows each, the last one perhaps of fewer.
+    /// Splits the image into bands of `rows` rows each; the last one may be shorter.
     #[cfg(feature = "rayon")]
     pub(super) fn into_bands(self, rows: usize) -> Vec<Self> {
         let Shape { width, height, stride } = self.shape;
@@ -256,13 +297,13 @@ impl<'a, const C: usize> ViewMut<'a, C> {
             .collect()
     }
 
-    /// Fails unless the output has the size of the input.
+    /// Checks that the output has the expected size.
     pub(super) fn require_size(&self, expected: (usize, usize)) -> Result<(), ImageError> {
         require_size("output", self.size(), expected)
     }
 }
 
-/// Fails unless an image has the size of another.
+/// Checks the size of an image.
 pub(super) fn require_size(
     what: &'static str,
     found: (usize, usize),
@@ -271,7 +312,7 @@ pub(super) fn require_size(
     if found == expected { Ok(()) } else { Err(ImageError::Size { what, found, expected }) }
 }
 
-/// Input and output as one long row each if both can be: for kernels that look at single pixels.
+/// Input and output as one long row each, if both are contiguous; for kernels on single pixels.
 #[inline]
 pub(super) fn flatten<'a, 'b, const C: usize, const D: usize>(
     input: View<'a, C>,

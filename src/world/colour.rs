@@ -1,6 +1,11 @@
 use std::fmt;
 
-/// An opaque colour, 8 bits a channel.
+/// An opaque colour with 8 bits per channel.
+///
+/// ```
+/// use roverlab::world::Colour;
+/// assert_eq!(Colour::from_hex(0xff_80_00), Colour::new(255, 128, 0));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Colour {
     /// Red, 0 to 255.

@@ -13,6 +13,7 @@ pub mod generate;
 mod grid;
 mod mesh;
 mod object;
+pub mod road;
 mod robot;
 mod scene;
 mod site;
@@ -20,6 +21,8 @@ pub mod space;
 mod terrain;
 mod texture;
 mod wall;
+#[cfg(feature = "parry2d")]
+mod with_parry;
 
 pub use bit_grid::{BitGrid, BitGridError, GridCell};
 pub use body::{Axis, Body, Collider, Place3};
@@ -29,9 +32,12 @@ pub use grid::{Occupancy, OccupancyGrid};
 pub use mesh::{Face, Material, Mesh};
 pub use object::{Billboard, Marker, Object, ObjectKind, Shape};
 pub use robot::{
-    CameraSpec, CarDynamics, DriveSpec, Footprint, LidarSpec, Mast, MotorSpec, Mount, PsdSpec, RobotSpec,
+    CameraSpec, CarDynamics, DriveSpec, Footprint, InertialSpec, LidarSpec, Mast, MotorSpec, Mount, PsdSpec,
+    RobotSpec,
 };
 pub use scene::{Place, RobotPlacement, Scene, Settings, World};
 pub use terrain::{HeightField, Terrain};
 pub use texture::Texture;
 pub use wall::Wall;
+#[cfg(feature = "parry2d")]
+pub use with_parry::ParryError;

@@ -3,10 +3,17 @@ use std::sync::Arc;
 
 use super::{Body, Mesh};
 use crate::ParameterError;
-use crate::geometry::Aabb;
+use crate::geometry::{Aabb, Point3, Pose3};
 use crate::parameter::{require, require_finite, require_not_negative, require_positive};
 
 /// A description of a robot: its drive, outline and sensors. EyeSim's `.robi`.
+///
+/// ```
+/// use roverlab::world::{Footprint, RobotSpec};
+/// let mut robot = RobotSpec { name: "wide".into(), ..RobotSpec::s4() };
+/// robot.footprint = Footprint::Disc { radius: 0.2 };
+/// assert_eq!((robot.footprint.bounding_radius(), robot.validate().is_ok()), (0.2, true));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct RobotSpec {
     /// The name under which scenes place it.
@@ -31,6 +38,8 @@ pub struct RobotSpec {
     pub lidar: Option<LidarSpec>,
     /// Its camera, if it has one.
     pub camera: Option<CameraSpec>,
+    /// What its inertial unit measures.
+    pub inertial: InertialSpec,
     /// The file of its 3D model, if it has one.
     pub model: Option<PathBuf>,
     /// The surface that cameras see; without it, they see the outline.
@@ -260,15 +269,34 @@ pub struct Mount {
     pub y: f64,
     /// Metres above the floor.
     pub z: f64,
+    /// Radians by which its left side is above its right one.
+    pub roll: f64,
+    /// Radians by which it looks down.
+    pub pitch: f64,
     /// Radians counter-clockwise from straight ahead.
     pub yaw: f64,
 }
 
 impl Mount {
+    /// The sensor's frame in that of the robot: roll, pitch and yaw turn it about fixed axes in this order.
+    pub fn frame(&self) -> Pose3 {
+        Pose3::from_angles(Point3::new(self.x, self.y, self.z), self.roll, self.pitch, self.yaw)
+    }
+
+    /// Whether the sensor's plane is that of the robot's floor.
+    pub fn is_level(&self) -> bool {
+        self.roll == 0.0 && self.pitch == 0.0
+    }
+
     fn validate(&self) -> Result<(), ParameterError> {
-        for (name, value) in
-            [("mount x", self.x), ("mount y", self.y), ("mount z", self.z), ("mount yaw", self.yaw)]
-        {
+        for (name, value) in [
+            ("mount x", self.x),
+            ("mount y", self.y),
+            ("mount z", self.z),
+            ("mount roll", self.roll),
+            ("mount pitch", self.pitch),
+            ("mount yaw", self.yaw),
+        ] {
             require_finite(name, value)?;
         }
         Ok(())
@@ -296,11 +324,11 @@ impl PsdSpec {
 /// A laser scanner.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LidarSpec {
-    /// Where it sits. The scan is centred on its yaw.
+    /// Where it sits, and how its plane is turned. The scan is centred on its yaw.
     pub mount: Mount,
     /// The angle that a scan covers, in radians, at most a full turn.
     pub field_of_view: f64,
-    /// Radians by which the beams point above the horizontal.
+    /// Radians by which each beam points above the scanner's plane, so that they make a cone.
     pub tilt: f64,
     /// Beams in a scan.
     pub points: usize,
@@ -325,7 +353,7 @@ impl Default for LidarSpec {
 /// A camera on a pan-tilt head.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CameraSpec {
-    /// Where it sits; the yaw is the pan at rest.
+    /// Where it sits; the yaw is the pan at rest. Its roll and pitch are 0.
     pub mount: Mount,
     /// Radians above the horizontal at rest.
     pub tilt: f64,
@@ -346,12 +374,51 @@ impl CameraSpec {
 
     fn validate(&self) -> Result<(), ParameterError> {
         self.mount.validate()?;
+        let turned = if self.mount.roll == 0.0 { self.mount.pitch } else { self.mount.roll };
+        require(
+            "camera mount's roll and pitch",
+            turned,
+            turned == 0.0,
+            "0: the camera's tilt says how it looks",
+        )?;
         require_finite("camera tilt", self.tilt)?;
         require_not_negative("camera max pan", self.max_pan)?;
         require_not_negative("camera max tilt", self.max_tilt)?;
         let (view, full_turn) = (self.field_of_view, std::f64::consts::TAU * (1.0 + 1e-9));
         let good = view > 0.0 && view <= full_turn;
         require("camera field of view", view, good, "more than 0 and at most a full turn")
+    }
+}
+
+/// What a robot's inertial unit measures, and the channels by which RoBIOS programs read it with `ANALOGRead`. The
+/// default measures nothing: a robot without a unit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct InertialSpec {
+    /// The channels of roll, pitch and yaw, in tenths of degrees.
+    pub attitude: Option<[u8; 3]>,
+    /// The channels of the turn rates about the forward, left and upright axes, in tenths of degrees per second.
+    pub turn_rates: Option<[u8; 3]>,
+    /// The channels of the accelerations along these axes, in mm/s².
+    pub acceleration: Option<[u8; 3]>,
+}
+
+impl InertialSpec {
+    /// A unit that measures all, on channels behind those that RoBIOS itself has.
+    pub const ALL: Self = Self {
+        attitude: Some([9, 10, 11]),
+        turn_rates: Some([12, 13, 14]),
+        acceleration: Some([15, 16, 17]),
+    };
+
+    /// Fails unless channels have numbers of their own, from 1.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        let groups = [self.attitude, self.turn_rates, self.acceleration];
+        let channels: Vec<u8> = groups.into_iter().flatten().flatten().collect();
+        for (index, &channel) in channels.iter().enumerate() {
+            let new = channel > 0 && !channels[..index].contains(&channel);
+            require("channel of the inertial unit", channel.into(), new, "1 to 255, each once")?;
+        }
+        Ok(())
     }
 }
 
@@ -444,6 +511,7 @@ impl RobotSpec {
         require_positive("height", self.height)?;
         require_not_negative("mass", self.mass)?;
         require_not_negative("friction", self.friction)?;
+        self.inertial.validate()?;
         for psd in &self.psds {
             require_positive("PSD maximal range", psd.max_range)?;
             psd.mount.validate()?;

@@ -28,14 +28,15 @@ fn the_simulator() {
         but seed, noise, pushing, ideal_encoders);
     check!(NoiseModel = NoiseModel::real(),
         |p| simulation(RobotSpec::s4(), SimOptions { noise: p, ..SimOptions::default() })?,
-        { BoundedFromZero: wheel_scale, wheel_mismatch, track, slip, range, command, shot, exposure, blur; });
+        { BoundedFromZero: wheel_scale, wheel_mismatch, track, slip, range, command, shot, exposure, blur, attitude, turn_rate,
+            acceleration; });
 }
 
 #[test]
 fn robots() {
     let s4 = RobotSpec::s4;
     check!(RobotSpec = s4(), |p| simulation(p, SimOptions::default())?, { Positive: height; NotNegative: mass, friction; }
-        but name, drive, motor, footprint, mast, psds, lidar, camera, model, mesh, body);
+        but name, drive, motor, footprint, mast, psds, lidar, camera, inertial, model, mesh, body);
     check!(MotorSpec = MotorSpec::default(), |p| simulation(RobotSpec { motor: p, ..s4() }, SimOptions::default())?,
         { NotNegative: time_constant; Positive: max_acceleration; });
     check!(PsdSpec = s4().psds[0].clone(),
@@ -91,7 +92,7 @@ fn outlines_and_mounts() {
     assert!(RobotSpec { mast: Some(mast), ..s4() }.validate().is_ok());
     check!(Mount = Mount::default(),
         |p| RobotSpec { lidar: Some(LidarSpec { mount: p, ..LidarSpec::default() }), ..s4() }.validate()?,
-        { Finite: x, y, z, yaw; });
+        { Finite: x, y, z, roll, pitch, yaw; });
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! What the page calls, and what it is called back with. A text or a file goes into memory that [`room`] has made.
+//! Functions that the page calls, and its callbacks. A text or a file is placed in memory from [`room`].
 #![allow(unsafe_code, reason = "the page and the module share memory")]
 
 use std::cell::RefCell;
@@ -8,7 +8,7 @@ use crate::{Job, Message};
 
 #[link(wasm_import_module = "page")]
 unsafe extern "C" {
-    /// Takes a message: what it carries, and where its bytes are.
+    /// Receives a message: its kind and its bytes.
     fn tell(message: u32, start: *const u8, length: usize);
 }
 
@@ -18,11 +18,11 @@ thread_local! {
 }
 
 fn say(message: Message, bytes: &[u8]) {
-    // SAFETY: the page reads the bytes before it returns, and keeps none.
+    // SAFETY: the page reads the bytes before it returns and does not keep them.
     unsafe { tell(message as u32, bytes.as_ptr(), bytes.len()) }
 }
 
-/// Room for so many bytes. What was in it before is gone.
+/// Allocates room for `length` bytes. Previous content is lost.
 #[unsafe(no_mangle)]
 extern "C" fn room(length: usize) -> *mut u8 {
     ROOM.with_borrow_mut(|room| {
@@ -32,7 +32,7 @@ extern "C" fn room(length: usize) -> *mut u8 {
     })
 }
 
-/// Takes a file that was opened in the page out of the room: its name, a line feed, and its bytes.
+/// Takes a file opened in the page from the room: its name, a line feed, and its bytes.
 #[unsafe(no_mangle)]
 extern "C" fn open_file() {
     let room = ROOM.take();
@@ -42,7 +42,7 @@ extern "C" fn open_file() {
     FILES.with_borrow_mut(|files| files.insert(name, bytes));
 }
 
-/// Tells the commands and their options.
+/// Sends the commands and their options.
 #[unsafe(no_mangle)]
 extern "C" fn options() {
     say(Message::Options, roverlab_cli::options().as_bytes());

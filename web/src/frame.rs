@@ -1,4 +1,4 @@
-//! The world at an instant, in bytes: what the page keeps of a run, 25 times a second.
+//! A snapshot of the world in bytes: what the page keeps of a run, 25 times a second.
 //!
 //! All numbers are little-endian; lengths are metres and angles radians unless said otherwise. A frame is
 //!
@@ -33,22 +33,22 @@ pub(crate) struct Frames {
     bytes: Vec<u8>,
 }
 
-/// What has come of a robot since the last frame.
+/// Changes of a robot since the last frame.
 #[derive(Default)]
 struct News {
     distances: BTreeMap<u8, f32>,
     scan: Option<Vec<u8>>,
     image: Option<RgbImage>,
-    /// Seconds of the last image, and of the last display, in a frame.
+    /// Times of the last image and of the last display in a frame (s).
     image_time: Option<f64>,
     display_time: Option<f64>,
-    /// Calls of the display that have been shown.
+    /// Number of display calls already shown.
     drawings: u64,
     menu: String,
     contacts: usize,
 }
 
-/// Seconds between images, and between displays, of a robot.
+/// Interval between images, and between displays, of a robot (s).
 const IMAGE_INTERVAL: f64 = 0.2;
 
 impl fmt::Debug for Frames {
@@ -88,21 +88,21 @@ impl Frames {
         self.robots[robot].image = Some(image.clone());
     }
 
-    /// Forgets contacts up to now: the page knows them.
+    /// Skips contacts up to now, as the page knows them.
     pub(crate) fn skip(&mut self, world: &Onlooking<'_>) {
         for (index, news) in self.robots.iter_mut().enumerate() {
             news.contacts = world.contacts(index).map_or(0, |(_, places)| places.len());
         }
     }
 
-    /// The frame of an instant.
+    /// The current frame.
     pub(crate) fn frame(&mut self, world: &Onlooking<'_>) -> &[u8] {
         let time = world.time();
         let mut out = std::mem::take(&mut self.bytes);
         out.clear();
         out.extend_from_slice(&time.to_le_bytes());
         put_u16(&mut out, self.robots.len());
-        // The numbers of objects and of news are known when these are written.
+        // The numbers of objects and changes are filled in later.
         out.extend_from_slice(&[0; 6]);
         for (index, start) in self.starts.iter().enumerate() {
             let pose = world.pose(index).unwrap_or_default();
@@ -194,7 +194,7 @@ fn put_u16(out: &mut Vec<u8>, number: usize) {
     out.extend_from_slice(&u16::try_from(number).unwrap_or(u16::MAX).to_le_bytes());
 }
 
-/// Whole millimetres; the greatest number for what is too far.
+/// Whole millimetres; the maximum for ranges that are too large.
 fn millimetres(range: f64) -> usize {
     let millimetres = (1000.0 * range).round();
     if millimetres < 65_535.0 { millimetres as usize } else { 65_535 }
@@ -203,7 +203,7 @@ fn millimetres(range: f64) -> usize {
 fn png(image: &RgbImage) -> Vec<u8> {
     let mut out = Vec::new();
     let encoder = PngEncoder::new_with_quality(&mut out, CompressionType::Fast, FilterType::Up);
-    // A vector takes any number of bytes.
+    // Writing to a vector cannot fail.
     let _ = encoder.write_image(image.as_raw(), image.width(), image.height(), ExtendedColorType::Rgb8);
     out
 }

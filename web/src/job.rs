@@ -4,44 +4,44 @@ use roverlab::geometry::{Point, Pose};
 use roverlab::io::Key;
 use serde_json::Value;
 
-/// A run that a page asks for.
+/// A run requested by a page.
 #[derive(Debug, Clone, Default)]
 pub struct Job {
-    /// The command line, without the program's name.
+    /// Command line without the program's name.
     pub words: Vec<String>,
-    /// Files that were opened in the page, by their names.
+    /// Files opened in the page, by name.
     pub files: BTreeMap<String, Vec<u8>>,
-    /// What a hand does during the run, in order of time.
+    /// User actions during the run, ordered by time.
     pub wishes: Vec<Wish>,
-    /// Walls that were drawn, from end to end; robots are not told of them.
+    /// Drawn walls, given by their ends; robots are not informed of them.
     pub walls: Vec<[Point; 2]>,
-    /// Seconds before which nothing is shown: the page has it already.
+    /// Time before which nothing is shown, as the page has it already (s).
     pub from: f64,
 }
 
-/// Something that a hand does.
+/// A user action.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wish {
-    /// Seconds.
+    /// Time (s).
     pub time: f64,
-    /// What it does.
+    /// Kind of the action.
     pub thing: Thing,
 }
 
-/// What a hand does. Robots and objects go by their indices in the scene.
+/// Kind of a user action. Robots and objects are given by their indices in the scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Thing {
-    /// Puts a robot somewhere.
+    /// Moves a robot to a pose.
     Robot(usize, Pose),
-    /// Puts an object somewhere.
+    /// Moves an object to a pose.
     Object(usize, Pose),
     /// Presses a soft key of a robot.
     Key(usize, Key),
 }
 
 impl Job {
-    /// Reads `{words, wishes: [{time, robot | object | key, pose | of}], walls: [[x, y, x, y]], from}`: metres, radians
-    /// and seconds; keys count from 1. What is missing is empty, and 0.
+    /// Parses `{words, wishes: [{time, robot | object | key, pose | of}], walls: [[x, y, x, y]], from}` in
+    /// metres, radians and seconds; keys count from 1. Missing parts are empty, or 0.
     pub fn parse(text: &str, files: BTreeMap<String, Vec<u8>>) -> Result<Self, String> {
         let job: Value = serde_json::from_str(text).map_err(|error| format!("the page's wish: {error}"))?;
         let words = list(&job, "words").iter().map(|word| word.as_str().map(String::from));

@@ -1,7 +1,7 @@
-//! The commands of `roverlab` for a page in a browser: a run is a command line, and what a window shows of it is a
-//! stream of [`Message`]s.
+//! The commands of `roverlab` for a web page: a run is given by a command line, and its display is a stream
+//! of [`Message`]s.
 //!
-//! [`run`] does the work. The module that a browser loads has it behind the few functions of `exports`.
+//! [`run`] does the work. The WebAssembly module exposes it through the functions in `exports`.
 
 #[cfg(target_family = "wasm")]
 mod exports;

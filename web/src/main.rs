@@ -1,5 +1,5 @@
-//! Runs command lines as the page does, and prints what came of them: `roverlab-web distbug --seed=1`. Without words, prints
-//! the commands and their options.
+//! Runs command lines like the page, and prints their results: `roverlab-web distbug --seed=1`. Without
+//! arguments, prints the commands and their options.
 
 use std::io::Write;
 use std::sync::{Arc, Mutex, PoisonError};

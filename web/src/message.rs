@@ -1,26 +1,26 @@
-/// What a message carries.
+/// Kind of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Message {
-    /// The scene in which robots are about to drive, as JSON.
+    /// The scene before the robots start, as JSON.
     Scene = 1,
-    /// The world at an instant; see the module `frame`.
+    /// A snapshot of the world; see the module `frame`.
     Frame = 2,
-    /// A line that a person is told: seconds as a `f64`, and the text.
+    /// A line of output: seconds as a `f64`, and the text.
     Told = 3,
-    /// How the run ended, as JSON: `status`, `output`, `errors`, `digest`.
+    /// End of the run, as JSON: `status`, `output`, `errors`, `digest`.
     Ended = 4,
-    /// The program has panicked: why.
+    /// The program has panicked, with the reason.
     Panicked = 5,
-    /// The picture of the run, as SVG.
+    /// Picture of the run, as SVG.
     Picture = 6,
     /// The commands and their options, as JSON.
     Options = 7,
-    /// What the picture of the run shows beside the robots, as JSON.
+    /// Additions of the run's picture besides the robots, as JSON.
     Overlay = 8,
 }
 
-/// Sixty-four bits that tell streams of bytes apart, by Fowler, Noll and Vo.
+/// A 64-bit FNV-1a digest (Fowler, Noll and Vo).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Digest(u64);
 
@@ -31,7 +31,7 @@ impl Default for Digest {
 }
 
 impl Digest {
-    /// Takes in some bytes.
+    /// Adds bytes.
     pub fn add(&mut self, bytes: &[u8]) {
         for &byte in bytes {
             self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);

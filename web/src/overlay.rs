@@ -2,13 +2,13 @@ use roverlab::geometry::Point;
 use roverlab::picture::{Figure, Item, Mark, Picture};
 use serde_json::{Value, json};
 
-/// What a picture of a run shows beside robots, their paths and the marks that the page has by itself: what the robot knew, and
-/// when. Points are lists of x and y by turns.
+/// The additions of a run's picture besides robots, their paths and the page's own marks: what the robot
+/// knew, and when. Points are lists of alternating x and y.
 pub(crate) fn json(picture: &Picture) -> Value {
     Value::from(picture.items().iter().filter(|item| !is_known(item)).filter_map(item).collect::<Vec<_>>())
 }
 
-/// Whether the page draws it without being told.
+/// Whether the page draws the item by itself.
 fn is_known(item: &Item) -> bool {
     match &item.figure {
         Figure::Robot { .. } => true,
@@ -43,7 +43,7 @@ fn flat(points: &[Point]) -> Vec<f64> {
     points.iter().flat_map(|point| [rounded(point.x), rounded(point.y)]).collect()
 }
 
-/// To a tenth of a millimetre, or of a millisecond.
+/// Rounded to a tenth of a millimetre, or of a millisecond.
 fn rounded(number: f64) -> f64 {
     (number * 1e4).round() / 1e4
 }

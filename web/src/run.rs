@@ -14,7 +14,7 @@ use serde_json::json;
 use crate::frame::Frames;
 use crate::{Digest, Job, Message, Thing, Wish, overlay, scene};
 
-/// Runs a job, and tells what happens in messages.
+/// Runs a job and reports its progress in messages.
 pub fn run(job: Job, tell: impl FnMut(Message, &[u8]) + Send + 'static) {
     let Job { words, files, wishes, walls, from } = job;
     let mouth =
@@ -30,17 +30,17 @@ pub fn run(job: Job, tell: impl FnMut(Message, &[u8]) + Send + 'static) {
     mouth.say(Message::Ended, ended.to_string().as_bytes());
 }
 
-/// Says messages, for who looks on at a command and for who watches its world.
+/// Sends messages, for the observer of a command and the watcher of its world.
 #[derive(Clone)]
 struct Mouth(Arc<Mutex<Telling>>);
 
-/// Takes a message and its bytes.
+/// Receives a message and its bytes.
 type Tell = dyn FnMut(Message, &[u8]) + Send;
 
 struct Telling {
     tell: Box<Tell>,
     digest: Digest,
-    /// Seconds in the world.
+    /// Simulated time (s).
     time: f64,
 }
 
@@ -63,7 +63,7 @@ impl Mouth {
     }
 }
 
-/// The page, as it looks on at a command.
+/// The page as observer of a command.
 #[derive(Debug)]
 struct Page {
     mouth: Mouth,
@@ -81,7 +81,7 @@ impl Onlooker for Page {
         }
     }
 
-    /// Folders are not opened with their files, so that the last part of a name must do.
+    /// Files are opened without their folders, so the last part of a name must suffice.
     fn file(&mut self, name: &str) -> Option<Vec<u8>> {
         let last = |name: &str| name.rsplit(['/', '\\']).next().unwrap_or_default().to_lowercase();
         let found = self.files.get(name);
@@ -111,19 +111,19 @@ impl Onlooker for Page {
     }
 }
 
-/// Takes frames of a world, and does there what a hand does in the page.
+/// Takes frames of a world and applies the user's actions.
 #[derive(Debug)]
 struct Camera {
     mouth: Mouth,
     frames: Frames,
     wishes: Vec<Wish>,
-    /// How many wishes have been fulfilled.
+    /// Number of actions applied.
     fulfilled: usize,
     from: f64,
     ticks: u64,
 }
 
-/// Ticks from one frame to the next.
+/// Ticks between frames.
 const TICKS: u64 = 4;
 
 impl Watcher for Camera {
@@ -132,7 +132,7 @@ impl Watcher for Camera {
         self.mouth.with(|telling| telling.time = time);
         while let Some(wish) = self.wishes.get(self.fulfilled).filter(|wish| wish.time <= time) {
             self.fulfilled += 1;
-            // What is not there cannot be moved.
+            // Missing robots or objects cannot be moved.
             let _ = match wish.thing {
                 Thing::Robot(robot, pose) => world.place_robot(robot, pose),
                 Thing::Object(object, pose) => world.place_object(object, pose),

@@ -2,7 +2,7 @@ use roverlab::geometry::{Aabb, Pose};
 use roverlab::world::{DriveSpec, Footprint, Object, RobotPlacement, Scene, Shape, Wall};
 use serde_json::{Value, json};
 
-/// A scene as the page draws it: metres and radians.
+/// A scene for the page, in metres and radians.
 pub(crate) fn json(scene: &Scene) -> Value {
     let world = &scene.world;
     json!({

@@ -1,18 +1,18 @@
-//! One run of an acceleration or a skidpad.
+//! One run of an acceleration or skidpad event.
 
 use roverlab::geometry::Point;
+use roverlab::io::control::SensedBy;
 use roverlab::io::{self, Resolution, RobotIo};
-use roverlab::race::{EventCourse, EventParameters, EventPhase, EventRacer, EventShape};
+use roverlab::race::{EventCourse, EventParameters, EventRacer, EventShape};
 
-use super::Sensors;
 use super::race::{Ending, Eyes, Outcome, Settings, limits};
 use crate::common::{Failure, Stage};
-use crate::cones::{Course, Judge, pass};
+use crate::cones::{Course, Judge, judged};
 
-/// Seconds that a run takes at most, where no limit is given.
+/// Default time limit of a run (s).
 const LIMIT: f64 = 90.0;
 
-/// Drives the event of a course. The car knows which one it is, and nothing of the course.
+/// Drives the event of a course. The car knows the event, but not the course.
 pub(crate) fn race(
     course: &Course,
     event: &EventCourse,
@@ -49,29 +49,13 @@ fn drive<R: RobotIo + ?Sized>(
     judge: &mut Judge,
     racer: &mut EventRacer,
 ) -> io::Result<Ending> {
-    let mut eyes = Eyes::new(settings.sensors);
-    if settings.sensors != Sensors::Lidar {
-        car.set_resolution(Resolution::Vga)?;
-    }
-    let period = EventParameters::default().period;
-    while judge.time() < settings.limit.unwrap_or(LIMIT) {
-        let seen = eyes.look(car)?;
-        let (pose, speed) = (car.pose()?, car.speed()?);
-        car.set_speed(racer.decide(pose, speed, &seen))?;
-        pass(car, judge, period)?;
-        if racer.is_done(car.speed()?) {
-            break;
-        }
-    }
-    Ok(match racer.phase() {
-        EventPhase::Finished if judge.is_complete() => Ending::Finished,
-        EventPhase::Finished => Ending::Missed,
-        EventPhase::Lost => Ending::Lost,
-        EventPhase::Looking | EventPhase::Driving => Ending::TimedOut,
-    })
+    let mut eyes = Eyes::new(settings.sensors, Resolution::Vga, car)?;
+    let mut seeing = SensedBy::new(racer, |car: &mut R, _, seen: &mut _| eyes.look(car, seen));
+    let outcome = judged(car, &mut seeing, settings.limit.unwrap_or(LIMIT), judge, |_, _, _| ())?;
+    Ok(Ending::of(outcome, judge.is_complete()))
 }
 
-/// The line that was followed, from the start on, in the frame of the world.
+/// The followed line from the start on, in the world.
 fn line(course: &Course, racer: &EventRacer) -> Vec<Point> {
     let Some((layout, line)) = racer.layout().zip(racer.line()) else { return Vec::new() };
     let place = course.start.compose(&layout.pose);

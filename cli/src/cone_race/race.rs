@@ -1,23 +1,25 @@
 //! One race.
 
+use std::ops::ControlFlow;
 use std::thread;
 
 use image::RgbImage;
 use roverlab::geometry::{Point, Pose, Twist};
+use roverlab::io::control::{Behaviour, Decision, Halt, LidarObservation, SensedBy, Senses, until};
 use roverlab::io::sim::{RobotTruth, SimOptions};
-use roverlab::io::{self, LidarScan, RobotIo};
+use roverlab::io::{self, Resolution, RobotIo};
 use roverlab::race::{
-    CameraMount, CameraSight, CarLimits, Cone, ConeMap, ConeSighting, LaneFinder, LineTracker, RacePhase,
-    RaceScore, Racer, SpeedProfile, sightings,
+    CameraMount, CameraSight, CarLimits, Cone, ConeMap, LaneFinder, LineTracker, RaceObservation,
+    RaceOutcome, RacePhase, RaceScore, Racer, SpeedProfile, sightings,
 };
 use roverlab::world::{RobotSpec, Scene};
 
 use super::Sensors;
 use super::event;
 use crate::common::{Claimed, Failure, Stage};
-use crate::cones::{Course, Judge, Passed, pass};
+use crate::cones::{Course, Judge, Passed, judged};
 
-/// What a race is made of, beside its course.
+/// Settings of a race apart from its course.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Settings {
     pub(crate) laps: usize,
@@ -36,44 +38,43 @@ impl Settings {
         course.scene(&starts.into_iter().flatten().collect::<Vec<_>>())
     }
 
-    /// How the world of a race runs.
+    /// Options of a race's simulation.
     pub(crate) fn options(&self) -> SimOptions {
         SimOptions::with_noise(self.noise, self.seed)
     }
 
-    /// Seconds that a race takes at most: a first lap at a crawl, and all others at a walk.
+    /// Time limit of a race (s): a very slow first lap, and slow further ones.
     fn limit(&self, course: &Course) -> f64 {
         let slow = if self.other { 2.0 } else { 3.0 };
         self.limit.unwrap_or(course.corridor.length() * (1.0 + self.laps as f64 / slow))
     }
 }
 
-/// Metres that a second car is ahead at first.
+/// Initial lead of a second car (m).
 const HEAD_START: f64 = 6.0;
-/// Metres per second of a second car, metres that it looks ahead on its way, and those within which it counts on cones.
+/// Speed of a second car (m/s), its lookahead (m), and its maximum distance to cones (m).
 const STROLL: f64 = 3.0;
 const LOOK_AHEAD: f64 = 3.5;
 const SIGHT: f64 = 24.0;
-/// Metres from its rear axle to halfway between the axles.
+/// Distance from its rear axle to halfway between the axles (m).
 const MIDDLE: f64 = 0.775;
 
-/// The second car, which drives in the middle of the lane that it sees, whatever it was like a lap ago.
+/// The second car, which drives in the middle of the lane that it sees, without a map.
 struct Other {
     car: Claimed,
     pilot: Pilot,
     judge: Judge,
 }
 
-/// What the second car knows.
+/// State of the second car.
 struct Pilot {
-    scan: LidarScan,
     map: ConeMap,
     lane: LaneFinder,
 }
 
-/// Seconds between two decisions of a second car.
+/// Control period of a second car (s).
 const OTHER_PERIOD: f64 = 0.1;
-/// The second car by radio, and what it is told when the race is over.
+/// Radio id of the second car, and the message at the end of the race.
 const OTHER: u32 = 2;
 const OVER: &[u8] = b"over";
 
@@ -82,38 +83,49 @@ impl Other {
         let judge = Judge::new(course, stage.truth(1)?, 1).map_err(Failure::run)?;
         let parameters = course.parameters(1);
         let (map, lane) = (ConeMap::new(parameters.map)?, LaneFinder::new(parameters.lane)?);
-        let pilot = Pilot { scan: LidarScan::default(), map, lane };
+        let pilot = Pilot { map, lane };
         Ok(Self { car: stage.claim(1)?, pilot, judge })
     }
 
-    /// Drives until it hears that the race is over, or time is.
+    /// Drives until the message of the end, or the time limit.
     fn drive(self, limit: f64) -> Result<Second, Failure> {
         let Self { car, mut pilot, mut judge } = self;
         let mut car = car.ready()?;
-        while judge.time() < limit && car.receive()?.is_none() {
-            let command = pilot.decide(car.as_mut())?;
-            car.set_speed(command)?;
-            pass(car.as_mut(), &mut judge, OTHER_PERIOD)?;
-        }
+        judged(car.as_mut(), &mut pilot, limit, &mut judge, |car, _, _| {
+            Ok::<_, io::Error>(until(car.receive()?.is_some()))
+        })?;
         Ok(Second { cones_hit: judge.verdict().cones_hit, trail: judge.trail().to_vec() })
     }
 }
 
-impl Pilot {
-    fn decide(&mut self, car: &mut dyn RobotIo) -> io::Result<Twist> {
-        car.scan_into(&mut self.scan)?;
-        self.map.update(car.pose()?, &sightings(&self.scan));
+impl Behaviour for Pilot {
+    type Observation = LidarObservation;
+    type Command = Twist;
+    type Outcome = Halt;
+
+    fn period(&self) -> f64 {
+        OTHER_PERIOD
+    }
+
+    fn step(&mut self, _time: f64, seen: &LidarObservation) -> Decision<Self> {
+        self.map.update(seen.odometry, &sightings(&seen.scan));
         let pose = self.map.pose();
         let near: Vec<Cone> =
             self.map.fresh_cones().filter(|cone| (cone.position - pose.position()).norm() < SIGHT).collect();
         let middle = pose.compose(&Pose::new(MIDDLE, 0.0, 0.0));
         let lane = self.lane.step(middle, &near);
-        // Without a lane it stands, and looks on.
-        Ok(lane.map_or(Twist::STOP, |lane| pursue(&lane.points, pose)))
+        // Without a lane it stands and keeps looking.
+        Ok(ControlFlow::Continue(lane.map_or(Twist::STOP, |lane| pursue(&lane.points, pose))))
     }
 }
 
-/// The way on a circle to the point of a line that is some metres ahead.
+impl<R: RobotIo + ?Sized> Senses<R> for Pilot {
+    fn sense(&mut self, car: &mut R, _time: f64, seen: &mut LidarObservation) -> io::Result<()> {
+        seen.read(car)
+    }
+}
+
+/// The arc to the point of a line at the lookahead distance.
 fn pursue(line: &[Point], rear: Pose) -> Twist {
     let ahead = line.iter().map(|point| rear.to_local(*point)).filter(|point| point.x > 0.0);
     let off = |point: &Point| (point.coords.norm() - LOOK_AHEAD).abs();
@@ -122,7 +134,7 @@ fn pursue(line: &[Point], rear: Pose) -> Twist {
     Twist::new(STROLL, STROLL * curvature)
 }
 
-/// What came out of a second car's drive.
+/// Result of a second car's drive.
 #[derive(Debug, Clone)]
 pub(crate) struct Second {
     pub(crate) cones_hit: usize,
@@ -132,34 +144,47 @@ pub(crate) struct Second {
 /// How a race ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Ending {
-    /// All laps were driven, or the event.
+    /// All laps, or the event, were driven.
     Finished,
-    /// Time was over.
+    /// The time limit came first.
     TimedOut,
-    /// The car stood without a lane, or without cones that fit its map or its event.
+    /// The car stopped without a lane, or without cones that fit its map or event.
     Lost,
-    /// The car stood, but not behind the finish and before the end of the lane there; or it counted other laps than the referee.
+    /// The car stopped, but not behind the finish and before the end of the lane there; or its lap count
+    /// differs from the referee's.
     Missed,
 }
 
-/// What came out of a race.
+impl Ending {
+    /// The ending for an outcome of the car; `complete` tells whether the referee saw the whole race.
+    pub(super) fn of(outcome: RaceOutcome, complete: bool) -> Self {
+        match outcome {
+            RaceOutcome::Finished if complete => Self::Finished,
+            RaceOutcome::Finished => Self::Missed,
+            RaceOutcome::Lost => Self::Lost,
+            _ => Self::TimedOut,
+        }
+    }
+}
+
+/// Result of a race.
 #[derive(Debug, Clone)]
 pub(crate) struct Outcome {
     pub(crate) verdict: RaceScore,
-    /// How far it came, or what failed.
+    /// How the race ended, or the error.
     pub(crate) ending: Result<Ending, String>,
     pub(crate) truth: RobotTruth,
     pub(crate) time: f64,
-    /// Where the car was, and how fast, at every decision.
+    /// Pose and speed of the car at every decision.
     pub(crate) trail: Vec<Passed>,
-    /// The racing line in the frame of the world.
+    /// Racing line in the world.
     pub(crate) line: Vec<Point>,
-    /// Of each flying lap on a racing line, the lap time over the quasi-steady optimum on that line.
+    /// For each flying lap on a racing line, the lap time divided by the quasi-steady optimum on that line.
     pub(crate) over_optimum: Vec<f64>,
     pub(crate) standing: Vec<bool>,
     /// Whether the car touched another one.
     pub(crate) touched: bool,
-    /// What became of a second car.
+    /// Result of a second car.
     pub(crate) other: Option<Second>,
 }
 
@@ -175,42 +200,54 @@ impl Outcome {
     }
 }
 
-/// What a car sees cones with.
+/// A car's cone detection.
 pub(super) struct Eyes {
     sensors: Sensors,
     camera: CameraSight,
-    scan: LidarScan,
     image: RgbImage,
 }
 
 impl Eyes {
-    pub(super) fn new(sensors: Sensors) -> Self {
+    pub(super) fn new<R: RobotIo + ?Sized>(
+        sensors: Sensors,
+        resolution: Resolution,
+        car: &mut R,
+    ) -> io::Result<Self> {
+        if sensors != Sensors::Lidar {
+            car.set_resolution(resolution)?;
+        }
         let camera = CameraSight::new(CameraMount::default());
-        Self { sensors, camera, scan: LidarScan::default(), image: RgbImage::default() }
+        Ok(Self { sensors, camera, image: RgbImage::default() })
     }
 
-    /// The cones around a car.
-    pub(super) fn look<R: RobotIo + ?Sized>(&mut self, car: &mut R) -> io::Result<Vec<ConeSighting>> {
-        let mut seen = Vec::new();
+    /// The cones around a car, and its own motion.
+    pub(super) fn look<R: RobotIo + ?Sized>(
+        &mut self,
+        car: &mut R,
+        seen: &mut RaceObservation,
+    ) -> io::Result<()> {
         if self.sensors != Sensors::Camera {
-            car.scan_into(&mut self.scan)?;
-            seen = sightings(&self.scan);
+            car.scan_into(&mut seen.scan)?;
+            seen.cones = sightings(&seen.scan);
         }
         if self.sensors != Sensors::Lidar {
             car.image_into(&mut self.image)?;
             let found = self.camera.find(&self.image);
-            seen = if self.sensors == Sensors::Both { self.camera.fuse(&seen, &found) } else { found };
+            let both = self.sensors == Sensors::Both;
+            seen.cones = if both { self.camera.fuse(&seen.cones, &found) } else { found };
         }
-        Ok(seen)
+        (seen.odometry, seen.speed) = (car.pose()?, car.speed()?);
+        Ok(())
     }
 }
 
-/// What a racer has planned, in its map's frame.
+/// A racer's plans, in its map's frame.
 #[derive(Default)]
 struct Plans {
     /// The first racing line.
     first: Vec<Point>,
-    /// Of each lap: seconds of the quasi-steady optimum on its racing line. `None` for laps that do not begin at full speed.
+    /// For each lap, the quasi-steady optimum on its racing line (s). `None` for laps that do not begin at
+    /// full speed.
     optima: Vec<Option<f64>>,
     racing: bool,
 }
@@ -237,7 +274,7 @@ impl Plans {
     }
 }
 
-/// What the car can do at most, in balance: what the optimum is for.
+/// Steady-state limits of the car, for the optimum.
 pub(super) fn limits() -> Result<CarLimits, Failure> {
     CarLimits::of(&RobotSpec::race_car()).ok_or_else(|| Failure::run("a racing car without tyres"))
 }
@@ -257,7 +294,7 @@ pub(crate) fn race(course: &Course, settings: &Settings, stage: &Stage) -> Resul
         let other = other.map(|other| scope.spawn(move || other.drive(limit)));
         let mut car = car.ready()?;
         let driven = drive(course, settings, car.as_mut(), &mut judge, |racer| plans.see(racer, &limits));
-        // A car that does not hear it drives until time is over.
+        // A car that misses the message drives until the time limit.
         let told = if other.is_some() { car.send(OTHER, OVER) } else { Ok(()) };
         drop(car);
         let other = other.map(|other| other.join().expect("the second car's thread does not panic"));
@@ -285,27 +322,10 @@ fn drive<R: RobotIo + ?Sized>(
     judge: &mut Judge,
     mut see: impl FnMut(&Racer),
 ) -> io::Result<Ending> {
-    let parameters = course.parameters(settings.laps);
-    let mut racer = Racer::new(parameters)?;
-    let mut eyes = Eyes::new(settings.sensors);
-    if settings.sensors != Sensors::Lidar {
-        car.set_resolution(course.resolution())?;
-    }
-    let limit = settings.limit(course);
-    while judge.time() < limit {
-        let seen = eyes.look(car)?;
-        let (pose, speed) = (car.pose()?, car.speed()?);
-        car.set_speed(racer.decide(pose, speed, &seen))?;
-        pass(car, judge, parameters.period)?;
-        see(&racer);
-        if racer.is_done(speed) {
-            break;
-        }
-    }
-    Ok(match racer.phase() {
-        RacePhase::Finished if judge.verdict().lap_times.len() == settings.laps => Ending::Finished,
-        RacePhase::Finished => Ending::Missed,
-        RacePhase::Lost => Ending::Lost,
-        RacePhase::Mapping | RacePhase::Racing => Ending::TimedOut,
-    })
+    let mut racer = Racer::new(course.parameters(settings.laps))?;
+    let mut eyes = Eyes::new(settings.sensors, course.resolution(), car)?;
+    let mut seeing = SensedBy::new(&mut racer, |car: &mut R, _, seen: &mut _| eyes.look(car, seen));
+    let watch = |_: &mut R, racer: &SensedBy<'_, Racer, _>, _: &Judge| see(racer.behaviour());
+    let outcome = judged(car, &mut seeing, settings.limit(course), judge, watch)?;
+    Ok(Ending::of(outcome, judge.verdict().lap_times.len() == settings.laps))
 }

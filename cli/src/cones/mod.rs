@@ -1,4 +1,4 @@
-//! What the commands that drive between cones share.
+//! Shared parts of the commands that drive between cones.
 
 mod course;
 pub(crate) mod drawing;
@@ -6,5 +6,5 @@ mod judge;
 mod options;
 
 pub(crate) use course::{Course, Spoils};
-pub(crate) use judge::{Judge, Passed, pass};
+pub(crate) use judge::{Judge, Passed, judged, pass};
 pub(crate) use options::{check_campaign, check_race, refuse};

@@ -22,7 +22,7 @@ extern "C" fn MOTORPIDOff(motor: c_int) -> c_int {
     code(enter("MOTORPIDOff", |robios| robios.motor_pid(motor)))
 }
 
-/// The name of 2017.
+/// Name of 2017.
 #[unsafe(no_mangle)]
 extern "C" fn MOTORPIDoff(motor: c_int) -> c_int {
     MOTORPIDOff(motor)
@@ -83,7 +83,7 @@ extern "C" fn SERVOWait(servo: c_int) -> c_int {
     code(enter("SERVOWait", |robios| robios.servo_check(servo)))
 }
 
-/// No servo ever stalls.
+/// Simulated servos never stall.
 #[unsafe(no_mangle)]
 extern "C" fn SERVOStalled(servo: c_int) -> c_int {
     enter("SERVOStalled", |robios| robios.servo_check(servo)).map_or(0, |()| 0)

@@ -1,5 +1,5 @@
-//! The system's alarm clock, in the place of that of the C library: it goes by the program's clock, and its signal is
-//! sent when a call, or the watch over a program that calls nothing, lets that time pass.
+//! Replacement of the C library's alarm clock: it follows the program's clock. Its signal is sent when that
+//! time passes, in a call or in the watch over a program that makes none.
 
 use std::ffi::{c_int, c_uint, c_void};
 
@@ -10,11 +10,11 @@ use super::memory::{input, output};
 use super::runtime::enter;
 
 extern "C" fn ring() {
-    // SAFETY: sends this process the signal of its alarm clock.
+    // SAFETY: sends this process its alarm signal.
     unsafe { libc::kill(libc::getpid(), libc::SIGALRM) };
 }
 
-/// Sets the alarm clock, where there is one that is virtual: to seconds, and a period. Tells what it was set to.
+/// Sets the virtual alarm clock, if there is one, to seconds and a period. Returns its previous setting.
 fn set(times: (f64, f64)) -> Option<(f64, f64)> {
     let earlier = if is_virtual() { enter("time", |robios| Ok(robios.set_alarm(times, ring))) } else { None };
     if earlier.is_some() {
@@ -36,7 +36,7 @@ extern "C" fn alarm(time: c_uint) -> c_uint {
     unsafe { std::mem::transmute::<*mut c_void, extern "C" fn(c_uint) -> c_uint>(found)(time) }
 }
 
-/// Seconds of a time that has no more than a million microseconds.
+/// Seconds of a time with less than a million microseconds.
 fn seconds(time: timeval) -> Option<f64> {
     let sane = time.tv_sec >= 0 && (0..1_000_000).contains(&time.tv_usec);
     sane.then_some(time.tv_sec as f64 + time.tv_usec as f64 / 1e6)
@@ -47,12 +47,12 @@ fn fields(seconds: f64) -> timeval {
     timeval { tv_sec: microseconds / 1_000_000, tv_usec: microseconds % 1_000_000 }
 }
 
-/// What the alarm clock is set to, as C has it.
+/// The alarm clock's setting in C's format.
 fn setting((rest, period): (f64, f64)) -> itimerval {
     itimerval { it_interval: fields(period), it_value: fields(rest) }
 }
 
-/// What a program sets the alarm clock to; `None` if that makes no sense.
+/// The setting requested by a program; `None` if invalid.
 fn times(setting: itimerval) -> Option<(f64, f64)> {
     Some((seconds(setting.it_value)?, seconds(setting.it_interval)?))
 }
@@ -72,7 +72,7 @@ extern "C" fn setitimer(which: c_int, new: *const itimerval, old: *mut itimerval
     if found.is_null() {
         return -1;
     }
-    // SAFETY: the C library's function of this name has this type, and gets what the program has passed.
+    // SAFETY: the C library's function has this type; the arguments are the program's.
     unsafe { std::mem::transmute::<*mut c_void, Set>(found)(which, new, old) }
 }
 
@@ -91,11 +91,11 @@ extern "C" fn getitimer(which: c_int, now: *mut itimerval) -> c_int {
     if found.is_null() {
         return -1;
     }
-    // SAFETY: the C library's function of this name has this type, and gets what the program has passed.
+    // SAFETY: the C library's function has this type; the arguments are the program's.
     unsafe { std::mem::transmute::<*mut c_void, Get>(found)(which, now) }
 }
 
-/// As `alarm`, in microseconds.
+/// Like `alarm`, in microseconds.
 #[unsafe(no_mangle)]
 extern "C" fn ualarm(time: c_uint, period: c_uint) -> c_uint {
     let micro = |time: c_uint| fields(f64::from(time) / 1e6);

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicI32, Ordering};
 use super::memory::output;
 use super::runtime::{code, enter};
 
-/// Variables of the library that programs read.
+/// Variables of the library read by programs.
 macro_rules! variables {
     ($($name:ident),*) => {
         $(#[unsafe(no_mangle)] static $name: AtomicI32 = AtomicI32::new(0);)*

@@ -1,10 +1,9 @@
-//! The system's functions that sleep or tell the time, in the place of those of the C library: a program's time is
-//! virtual wherever it looks.
+//! Replacements of the C library's functions that sleep or read the time: a program sees only virtual time.
 //!
-//! They take effect in programs that are linked against this library before the C library, as `gccsim` does, from the
-//! first call of a function of RoBIOS on, or from the start if the runner has started the program. Everybody else gets
-//! the system's own. What is not replaced runs by the real clock: `timer_create`, `timerfd_create`, waiting for files and
-//! sockets, and for semaphores and mutexes with a time limit.
+//! They act in programs linked against this library before the C library, as `gccsim` does, from the first
+//! RoBIOS call on, or from the start if the runner started the program. Everybody else gets the system's
+//! functions. Not replaced, and in real time: `timer_create`, `timerfd_create`, waiting for files and
+//! sockets, and timed waits for semaphores and mutexes.
 
 use std::ffi::{c_int, c_long, c_uint, c_ulong, c_void};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,11 +17,11 @@ use super::sleep::{let_others_run, sleep_for};
 use super::threads::{is_alive, is_ours, is_the_programs, note_thread};
 use crate::robios::EPOCH;
 
-/// Whether the runner has started this process.
+/// Whether the runner started this process.
 static STARTED_BY_RUNNER: AtomicBool = AtomicBool::new(false);
 
-/// Notes that it has. Until then, whoever asks for the time while the library is loaded gets the system's: an
-/// allocator may, which cannot be called again.
+/// Records that it did. Before, time queries while the library is loaded go to the system: they may come from
+/// an allocator, which must not be re-entered.
 pub(super) fn note_runner() {
     STARTED_BY_RUNNER.store(true, Ordering::Relaxed);
 }
@@ -35,7 +34,7 @@ pub(super) fn is_virtual() -> bool {
     (is_alive() || started_by_runner()) && is_ours()
 }
 
-/// Seconds since the start of the run by the program's clock.
+/// Time since the start of the run by the program's clock (s).
 fn now() -> Option<f64> {
     if !is_virtual() {
         return None;
@@ -46,7 +45,7 @@ fn now() -> Option<f64> {
     })
 }
 
-/// Sleeps by the program's clock. `None` if there is none.
+/// Sleeps by the program's clock. `None` without one.
 fn sleep_virtually(seconds: f64) -> Option<()> {
     if is_virtual() { sleep_for("time", seconds) } else { None }
 }
@@ -69,7 +68,7 @@ extern "C" fn nanosleep(request: *const timespec, rest: *mut timespec) -> c_int 
     {
         return 0;
     }
-    // SAFETY: the kernel checks both pointers, and sets the error's number as the C library would.
+    // SAFETY: the kernel checks both pointers, and the error number is set as by the C library.
     unsafe { libc::syscall(libc::SYS_nanosleep, request, rest) as c_int }
 }
 
@@ -90,7 +89,7 @@ extern "C" fn clock_nanosleep(
     }
     // SAFETY: the kernel checks both pointers.
     let result = unsafe { libc::syscall(libc::SYS_clock_nanosleep, clock, flags, request, rest) };
-    // This function returns the error's number.
+    // This function returns the error number.
     if result == 0 { 0 } else { std::io::Error::last_os_error().raw_os_error().unwrap_or(libc::EINVAL) }
 }
 
@@ -114,7 +113,7 @@ extern "C" fn sleep(time: c_uint) -> c_uint {
     if done { 0 } else { rest.tv_sec as c_uint }
 }
 
-/// Clocks that go while a program sleeps.
+/// Clocks that advance while a program sleeps.
 fn is_wall_clock(clock: clockid_t) -> bool {
     matches!(
         clock,
@@ -157,28 +156,28 @@ extern "C" fn gettimeofday(result: *mut timeval, _zone: *mut c_void) -> c_int {
     0
 }
 
-/// Processor time passes as the program's clock does.
+/// Processor time equals the program's time.
 #[unsafe(no_mangle)]
 extern "C" fn clock() -> libc::clock_t {
     if let Some(now) = now() {
         return (1e6 * now) as libc::clock_t;
     }
     let mut time = spec(0.0);
-    // SAFETY: the kernel writes to a time that lives until it returns.
+    // SAFETY: the kernel writes to a variable that outlives the call.
     unsafe { libc::syscall(libc::SYS_clock_gettime, libc::CLOCK_PROCESS_CPUTIME_ID, &raw mut time) };
     time.tv_sec * 1_000_000 + time.tv_nsec / 1000
 }
 
-/// The C library's function of a name.
+/// The C library's function with this name.
 pub(super) fn original(name: &std::ffi::CStr) -> *mut c_void {
-    // SAFETY: looks up a name that ends with a zero byte.
+    // SAFETY: the name ends with a zero byte.
     unsafe { libc::dlsym(libc::RTLD_NEXT, name.as_ptr()) }
 }
 
 type Start = extern "C" fn(*mut c_void) -> *mut c_void;
 type Create = unsafe extern "C" fn(*mut pthread_t, *const pthread_attr_t, Start, *mut c_void) -> c_int;
 
-/// Starts a thread as the C library does, and notes that there are several now.
+/// Starts a thread like the C library, and records that there are several.
 #[unsafe(no_mangle)]
 extern "C" fn pthread_create(
     thread: *mut pthread_t,
@@ -191,7 +190,7 @@ extern "C" fn pthread_create(
     if found.is_null() {
         return libc::ENOSYS;
     }
-    // SAFETY: the C library's function of this name has this type, and gets what the program has passed.
+    // SAFETY: the C library's function has this type; the arguments are the program's.
     let result = unsafe {
         let create = std::mem::transmute::<*mut c_void, Create>(found);
         create(thread, attributes, start, argument)
@@ -206,21 +205,21 @@ type ConditionWait = unsafe extern "C" fn(*mut c_void, *mut c_void, clockid_t, *
 
 type TimedWait = unsafe extern "C" fn(*mut c_void, *mut c_void, *const timespec) -> c_int;
 
-/// Real time that a thread waits for a condition before it looks at the program's clock.
+/// Real time of a condition wait between two checks of the program's clock (s).
 const GLANCE: f64 = 50e-6;
 
-/// Waits for a condition until a time on the program's clock: in short waits by the real one, between which the
-/// program's time passes.
+/// Waits for a condition until a time on the program's clock, by short real waits with virtual time passing
+/// in between.
 fn wait_virtually(condition: *mut c_void, mutex: *mut c_void, end: f64) -> Option<c_int> {
     let found = original(c"pthread_cond_clockwait");
     if found.is_null() {
         return None;
     }
-    // SAFETY: the C library's function of this name has this type.
+    // SAFETY: the C library's function has this type.
     let wait = unsafe { std::mem::transmute::<*mut c_void, ConditionWait>(found) };
     loop {
         let until = spec(real_seconds() + GLANCE);
-        // SAFETY: the program has passed condition and mutex for this, and the time lives until the function returns.
+        // SAFETY: condition and mutex are the program's, and the time outlives the call.
         let result = unsafe { wait(condition, mutex, libc::CLOCK_REALTIME, &raw const until) };
         if result != libc::ETIMEDOUT {
             return Some(result);
@@ -233,7 +232,7 @@ fn wait_virtually(condition: *mut c_void, mutex: *mut c_void, end: f64) -> Optio
     }
 }
 
-/// The program's time at an absolute one; `None` if the program has no clock of its own.
+/// Program time of an absolute time; `None` if the program has no clock of its own.
 fn end_of_wait(clock: clockid_t, time: *const timespec) -> Option<f64> {
     let time = input(time, 1).and_then(|times| seconds(times[0]))?;
     now().filter(|_| is_wall_clock(clock)).map(|_| time - EPOCH)
@@ -253,7 +252,7 @@ extern "C" fn pthread_cond_clockwait(
     if found.is_null() {
         return libc::ENOSYS;
     }
-    // SAFETY: the C library's function of this name has this type, and gets what the program has passed.
+    // SAFETY: the C library's function has this type; the arguments are the program's.
     unsafe { std::mem::transmute::<*mut c_void, ConditionWait>(found)(condition, mutex, clock, time) }
 }
 
@@ -270,13 +269,13 @@ extern "C" fn pthread_cond_timedwait(
     if found.is_null() {
         return libc::ENOSYS;
     }
-    // SAFETY: the C library's function of this name has this type, and gets what the program has passed.
+    // SAFETY: the C library's function has this type; the arguments are the program's.
     unsafe { std::mem::transmute::<*mut c_void, TimedWait>(found)(condition, mutex, time) }
 }
 
 type Poll = unsafe extern "C" fn(*mut c_void, c_ulong, c_int) -> c_int;
 
-/// Programs sleep by waiting for no files in this way too.
+/// Programs also sleep by polling no files.
 #[unsafe(no_mangle)]
 extern "C" fn poll(files: *mut c_void, count: c_ulong, milliseconds: c_int) -> c_int {
     if count == 0
@@ -289,17 +288,17 @@ extern "C" fn poll(files: *mut c_void, count: c_ulong, milliseconds: c_int) -> c
     if found.is_null() {
         return -1;
     }
-    // SAFETY: the C library's function of this name has this type, and gets what the program has passed.
+    // SAFETY: the C library's function has this type; the arguments are the program's.
     unsafe { std::mem::transmute::<*mut c_void, Poll>(found)(files, count, milliseconds) }
 }
 
-/// The sleep of C11.
+/// Sleep function of C11.
 #[unsafe(no_mangle)]
 extern "C" fn thrd_sleep(request: *const timespec, rest: *mut timespec) -> c_int {
     nanosleep(request, rest)
 }
 
-/// The time of C11. Returns the base, as it should, for the only one that there is.
+/// Time function of C11. Returns the base for the only supported one.
 #[unsafe(no_mangle)]
 extern "C" fn timespec_get(time: *mut timespec, base: c_int) -> c_int {
     let known = base == TIME_UTC && output(time, &[wall_time()]);
@@ -310,7 +309,7 @@ const TIME_UTC: c_int = 1;
 
 type Select = unsafe extern "C" fn(c_int, *mut c_void, *mut c_void, *mut c_void, *mut timeval) -> c_int;
 
-/// Programs sleep by waiting for no files.
+/// Programs sleep by selecting from no files.
 #[unsafe(no_mangle)]
 extern "C" fn select(
     files: c_int,
@@ -330,7 +329,7 @@ extern "C" fn select(
     if found.is_null() {
         return -1;
     }
-    // SAFETY: the C library's function of this name has this type, and gets what the program has passed.
+    // SAFETY: the C library's function has this type; the arguments are the program's.
     unsafe {
         let select = std::mem::transmute::<*mut c_void, Select>(found);
         select(files, readable, writable, special, timeout)

@@ -103,11 +103,11 @@ extern "C" fn LCDImageStart(x: c_int, y: c_int, width: c_int, height: c_int) -> 
     code(enter("LCDImageStart", |robios| robios.lcd_image_start((x, y), width, height)))
 }
 
-/// Copies an image of so many bytes a pixel and shows it.
+/// Copies an image with `channels` bytes per pixel and shows it.
 fn show(call: &'static str, image: *const u8, channels: usize, frame: fn(Vec<u8>) -> Frame) -> c_int {
     code(enter(call, |robios| {
         let (width, height) = robios.lcd_image_dimensions();
-        // A null pointer becomes an image that is too short, which is an error.
+        // A null pointer gives an image that is too short, which is an error.
         let data = input(image, width * height * channels).map(<[u8]>::to_vec).unwrap_or_default();
         robios.lcd_image(frame(data))
     }))

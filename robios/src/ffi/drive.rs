@@ -55,7 +55,7 @@ pub(super) extern "C" fn VWRemain() -> c_int {
 
 #[unsafe(no_mangle)]
 pub(super) extern "C" fn VWDone() -> c_int {
-    // A program that waits for the end of a drive that is not there should not wait.
+    // A program must not wait for the end of a drive that does not exist.
     c_int::from(enter("VWDone", |robios| robios.vw_done()).unwrap_or(true))
 }
 

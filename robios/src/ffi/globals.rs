@@ -1,12 +1,12 @@
-//! Variables that programs read.
+//! Variables read by programs.
 
 use std::sync::atomic::{AtomicI32, Ordering};
 
-/// How many distances `LIDARGet` writes.
+/// Number of distances that `LIDARGet` writes.
 #[unsafe(no_mangle)]
 static LIDAR_RESOLUTION: AtomicI32 = AtomicI32::new(360);
 
-/// Robots' scanners differ: a program learns by this number how many points theirs has.
+/// Publishes the robot's number of lidar points to the program.
 pub(super) fn publish_points(points: usize) {
     LIDAR_RESOLUTION.store(points as i32, Ordering::Relaxed);
 }

@@ -1,5 +1,5 @@
-//! Image processing. The images have the size of `CAMInit` or `IPSetSize`. Input is copied before output is written,
-//! so that a program may hand over one piece of memory for both.
+//! Image processing. Images have the size set by `CAMInit` or `IPSetSize`. Input is copied before output is
+//! written, so that a program may use the same memory for both.
 
 use std::ffi::{c_char, c_int};
 use std::path::PathBuf;
@@ -9,17 +9,17 @@ use super::runtime::{code, enter};
 use crate::robios::images::{self, Pnm, Size};
 use crate::screen::colour;
 
-/// Columns and rows of the images.
+/// Number of columns and rows of the images.
 fn size(call: &'static str) -> Option<Size> {
     enter(call, |robios| robios.charge().map(|()| robios.image_size()))
 }
 
-/// Copies an image of so many bytes a pixel.
+/// Copies an image with `channels` bytes per pixel.
 fn copied(image: *const u8, channels: usize, (width, height): Size) -> Option<Vec<u8>> {
     input(image, width * height * channels).map(<[u8]>::to_vec)
 }
 
-/// A function from one image to another. Missing memory means that nothing happens.
+/// Applies a function from one image to another. With a null pointer nothing happens.
 fn map(
     call: &'static str,
     (source, from): (*const u8, usize),
@@ -92,7 +92,7 @@ extern "C" fn IPOverlayGray(base: *const u8, marks: *const u8, mark: c_int, imag
     output(image, &result);
 }
 
-/// Returns 1 for an image of black (1) and white (0), 2 for shades of gray, 3 for colours, -1 if it cannot be read.
+/// Returns 1 for a binary image of black (1) and white (0), 2 for grayscale, 3 for colour, -1 on failure.
 #[unsafe(no_mangle)]
 extern "C" fn IPReadFile(name: *const c_char, image: *mut u8) -> c_int {
     let Some((name, size)) = text(name).zip(size("IPReadFile")) else { return -1 };

@@ -32,7 +32,7 @@ extern "C" fn KEYGetXY(x: *mut c_int, y: *mut c_int) -> c_int {
     code(place.filter(|&(px, py)| scatter([x, y], [px, py])).map(|_| ()))
 }
 
-/// Without a touch the coordinates are 0, and the code is 1.
+/// Without a touch the coordinates are 0 and the return code is 1.
 #[unsafe(no_mangle)]
 extern "C" fn KEYReadXY(x: *mut c_int, y: *mut c_int) -> c_int {
     let place = enter("KEYReadXY", |robios| robios.key_read_xy()).flatten();

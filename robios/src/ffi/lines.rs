@@ -13,36 +13,36 @@ extern "C" fn SERSendChar(port: c_int, letter: c_char) -> c_int {
     code(enter("SERSendChar", |robios| robios.ser_send(port, &[letter as u8])))
 }
 
-/// Sends a text that ends with a zero byte.
+/// Sends a zero-terminated text.
 #[unsafe(no_mangle)]
 extern "C" fn SERSend(port: c_int, message: *const c_char) -> c_int {
     code(bytes(message).and_then(|message| enter("SERSend", |robios| robios.ser_send(port, message))))
 }
 
-/// The form with a length, to which the header sends calls that have one.
+/// Variant with a length, to which the header redirects such calls.
 #[unsafe(no_mangle)]
 extern "C" fn eyesim_SERSendN(port: c_int, message: *const u8, length: c_uint) -> c_int {
     let message = input(message, length as usize);
     code(message.and_then(|message| enter("SERSend", |robios| robios.ser_send(port, message))))
 }
 
-/// 0 if nothing waits.
+/// Returns 0 if nothing is waiting.
 #[unsafe(no_mangle)]
 extern "C" fn SERReceiveChar(port: c_int) -> c_char {
     let letter = enter("SERReceiveChar", |robios| robios.ser_receive(port, 1));
     letter.and_then(|data| data.first().copied()).unwrap_or(0) as c_char
 }
 
-/// Bytes that the form without a size receives at most, the zero byte behind them included.
+/// Maximum number of bytes received without a given size, including the terminating zero byte.
 const UNSIZED: usize = 128;
 
-/// Returns how many bytes were received.
+/// Returns the number of bytes received.
 #[unsafe(no_mangle)]
 extern "C" fn SERReceive(port: c_int, buffer: *mut c_char) -> c_int {
     eyesim_SERReceiveN(port, buffer, UNSIZED as c_int)
 }
 
-/// The form with a size, to which the header sends calls that have one.
+/// Variant with a size, to which the header redirects such calls.
 #[unsafe(no_mangle)]
 extern "C" fn eyesim_SERReceiveN(port: c_int, buffer: *mut c_char, size: c_int) -> c_int {
     let room = usize::try_from(size).unwrap_or(0).saturating_sub(1);
@@ -104,7 +104,7 @@ extern "C" fn ANALOGRecord(channel: c_int, samples: c_int) -> c_int {
     code(enter("ANALOGRecord", |robios| robios.analog_record(channel, samples)))
 }
 
-/// Returns how many samples there are.
+/// Returns the number of samples.
 #[unsafe(no_mangle)]
 extern "C" fn ANALOGTransfer(buffer: *mut u8) -> c_int {
     let samples = enter("ANALOGTransfer", |robios| robios.analog_transfer()).unwrap_or_default();
@@ -126,7 +126,7 @@ pub(super) extern "C" fn AUDone() -> c_int {
     c_int::from(enter("AUDone", |robios| robios.au_done()).unwrap_or(true))
 }
 
-/// There is nothing to hear.
+/// There is no sound to record.
 #[unsafe(no_mangle)]
 extern "C" fn AUMicrophone() -> c_int {
     enter("AUMicrophone", |robios| robios.charge()).map_or(0, |()| 0)

@@ -1,8 +1,8 @@
-//! What C calls. Every function checks its pointers, goes through [`runtime::enter`], and returns a code; the meaning
-//! is in [`robios`](crate::robios).
+//! The C interface. Every function checks its pointers, goes through [`runtime::enter`], and returns a code;
+//! the implementation is in [`robios`](crate::robios).
 //!
-//! Pointers that are not null must be what the header says, as everywhere in C: memory of the stated size, which
-//! nobody else uses during the call.
+//! As usual in C, non-null pointers must refer to memory of the size stated in the header, which nobody else
+//! uses during the call.
 
 #![allow(unsafe_code, non_snake_case, non_upper_case_globals)]
 #![allow(clippy::redundant_closure_for_method_calls, reason = "all calls of the robot look alike")]

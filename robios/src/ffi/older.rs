@@ -1,5 +1,5 @@
-//! Functions that RoBIOS-7 had in its first years under these names, and that programs still call: drives, inverted
-//! pixels, tones, threads and semaphores.
+//! Functions of early RoBIOS-7 versions that programs still call: drives, inverted pixels, tones, threads and
+//! semaphores.
 
 use std::ffi::{c_int, c_long, c_uint, c_void};
 
@@ -25,13 +25,13 @@ extern "C" fn VWDriveWait() -> c_int {
     VWWait()
 }
 
-/// The display needs no beginning.
+/// The display needs no initialisation.
 #[unsafe(no_mangle)]
 extern "C" fn LCDInit() -> c_int {
     code(enter("LCDInit", |robios| robios.charge()))
 }
 
-/// No display reaches further than this, in pixels.
+/// Upper limit of a display's size (pixels).
 const FAR: c_int = 2000;
 
 fn near(coordinate: c_int) -> c_int {
@@ -84,7 +84,7 @@ extern "C" fn AUCheckPlay() -> c_int {
     AUDone()
 }
 
-/// There is nothing to hear, so nothing is written.
+/// There is no sound to record, so nothing is written.
 #[unsafe(no_mangle)]
 extern "C" fn AURecord(_buffer: *mut u8, _time: c_int, _frequency: c_long) -> c_int {
     code(enter("AURecord", |robios| robios.charge()))
@@ -95,7 +95,7 @@ extern "C" fn AUCheckRecord() -> c_int {
     c_int::from(enter("AUCheckRecord", |robios| robios.charge()).is_some())
 }
 
-/// A thread.
+/// Handle of a thread.
 #[derive(Clone, Copy)]
 #[repr(C)]
 struct Task {
@@ -116,15 +116,15 @@ extern "C" fn MTSleep(time: c_int) -> c_int {
     code(sleep_for("MTSleep", f64::from(time.max(0)) / 100.0))
 }
 
-/// Starts a thread, which gets its identifier as its argument.
+/// Starts a thread with its identifier as argument.
 #[unsafe(no_mangle)]
 extern "C" fn MTSpawn(function: Option<Body>, identifier: c_int) -> Task {
     super::threads::note_thread();
     let mut thread: pthread_t = 0;
     if let Some(function) = function {
         let argument = std::ptr::without_provenance_mut(identifier as usize);
-        // SAFETY: the place for the handle lives until the function returns, there are no attributes, and the function
-        // gets a number that it does not follow.
+        // SAFETY: the handle outlives the call, there are no attributes, and the function gets a number that
+        // it does not dereference.
         unsafe { libc::pthread_create(&raw mut thread, std::ptr::null(), function, argument) };
     }
     Task { thread, identifier }
@@ -135,27 +135,27 @@ extern "C" fn MTGetUID(task: Task) -> c_int {
     task.identifier
 }
 
-/// Ends a thread where it may be ended.
+/// Cancels a thread at its next cancellation point.
 #[unsafe(no_mangle)]
 extern "C" fn MTKill(task: Task) -> c_int {
     if task.thread == 0 {
         return 1;
     }
-    // SAFETY: the handle is one of MTSpawn's, which is not joined.
+    // SAFETY: the handle comes from MTSpawn and was not joined.
     c_int::from(unsafe { libc::pthread_cancel(task.thread) } != 0)
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn SEMAInit(semaphore: *mut sem_t, value: c_int) -> c_int {
     let Ok(value) = c_uint::try_from(value) else { return 1 };
-    // SAFETY: the pointer is not null, and points to a semaphore of the program's.
+    // SAFETY: the pointer is not null and refers to a semaphore of the program.
     c_int::from(semaphore.is_null() || unsafe { libc::sem_init(semaphore, 0, value) } != 0)
 }
 
-/// Waits for a semaphore, by the program's clock.
+/// Waits for a semaphore by the program's clock.
 #[unsafe(no_mangle)]
 extern "C" fn SEMALock(semaphore: *mut sem_t) -> c_int {
-    // SAFETY: the pointer is not null, and points to a semaphore that SEMAInit has made.
+    // SAFETY: the pointer is not null and refers to a semaphore made by SEMAInit.
     while !semaphore.is_null() && unsafe { libc::sem_trywait(semaphore) } != 0 {
         if sleep_for("", roverlab::io::sim::TICK).is_none() {
             return 1;
@@ -166,6 +166,6 @@ extern "C" fn SEMALock(semaphore: *mut sem_t) -> c_int {
 
 #[unsafe(no_mangle)]
 extern "C" fn SEMAUnlock(semaphore: *mut sem_t) -> c_int {
-    // SAFETY: the pointer is not null, and points to a semaphore that SEMAInit has made.
+    // SAFETY: the pointer is not null and refers to a semaphore made by SEMAInit.
     c_int::from(semaphore.is_null() || unsafe { libc::sem_post(semaphore) } != 0)
 }

@@ -26,10 +26,10 @@ extern "C" fn RADIOSend(to: c_int, message: *const c_char) -> c_int {
     code(bytes(message).and_then(|message| enter("RADIOSend", |robios| robios.radio_send(to, message))))
 }
 
-/// Seconds that one request waits; it is asked again until there is a message.
+/// Waiting time of one request (s); repeated until there is a message.
 const PATIENCE: f64 = 1.0;
 
-/// Returns the message's length, or 0 if there can be none. A zero byte follows it where there is room.
+/// Returns the message's length, or 0 on failure. A zero byte follows where there is room.
 #[unsafe(no_mangle)]
 extern "C" fn RADIOReceive(from: *mut c_int, buffer: *mut c_char, size: c_int) -> c_int {
     let Some(room) = usize::try_from(size).ok().filter(|_| !buffer.is_null()) else { return 0 };
@@ -47,7 +47,7 @@ extern "C" fn RADIOReceive(from: *mut c_int, buffer: *mut c_char, size: c_int) -
         text.push(0);
     }
     output(buffer, &text);
-    // A program that does not care whom a message is from may pass a null pointer.
+    // A program that ignores the sender may pass a null pointer.
     output(from, &[message.from as c_int]);
     length as c_int
 }
@@ -57,7 +57,7 @@ extern "C" fn RADIOCheck() -> c_int {
     c_int::from(enter("RADIOCheck", |robios| robios.radio_check()).flatten().is_some())
 }
 
-/// The form with an argument, to which the header sends calls that have one.
+/// Variant with an argument, to which the header redirects such calls.
 #[unsafe(no_mangle)]
 extern "C" fn eyesim_RADIOCheckFrom(from: *mut c_int) -> c_int {
     let found = enter("RADIOCheck", |robios| robios.radio_check()).flatten();

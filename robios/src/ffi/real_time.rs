@@ -1,4 +1,4 @@
-//! The real clock, whatever the program sees.
+//! The real clock, independent of the program's virtual time.
 
 #[cfg(target_os = "linux")]
 use std::ffi::c_long;
@@ -10,16 +10,16 @@ use libc::{time_t, timespec};
 #[cfg(target_os = "linux")]
 pub(super) const BILLION: f64 = 1e9;
 
-/// Sleeps for a real time.
+/// Sleeps in real time.
 #[cfg(target_os = "linux")]
 pub(super) fn nap(time: Duration) {
     let time =
         timespec { tv_sec: time.as_secs() as time_t, tv_nsec: c_long::from(time.subsec_nanos() as i32) };
-    // SAFETY: the kernel reads the time, which lives until it returns, and writes nothing.
+    // SAFETY: the kernel only reads the time, which outlives the call.
     unsafe { libc::syscall(libc::SYS_nanosleep, &raw const time, std::ptr::null_mut::<timespec>()) };
 }
 
-/// Sleeps for a real time.
+/// Sleeps in real time.
 #[cfg(not(target_os = "linux"))]
 pub(super) fn nap(time: Duration) {
     std::thread::sleep(time);
@@ -28,12 +28,12 @@ pub(super) fn nap(time: Duration) {
 #[cfg(target_os = "linux")]
 pub(super) fn real_time() -> timespec {
     let mut time = timespec { tv_sec: 0, tv_nsec: 0 };
-    // SAFETY: the kernel writes to a time that lives until it returns.
+    // SAFETY: the kernel writes to a variable that outlives the call.
     unsafe { libc::syscall(libc::SYS_clock_gettime, libc::CLOCK_REALTIME, &raw mut time) };
     time
 }
 
-/// Real seconds since 1970.
+/// Real time since 1970 (s).
 #[cfg(target_os = "linux")]
 pub(super) fn real_seconds() -> f64 {
     let time = real_time();

@@ -1,4 +1,4 @@
-//! The one robot of a process: its beginning, its lock and its end.
+//! The single robot of a process: start, lock and end.
 
 use std::env;
 use std::ffi::c_int;
@@ -28,28 +28,28 @@ use super::watch::{self, Unasked};
 
 #[derive(Debug)]
 enum State {
-    /// No function has been called.
+    /// No RoBIOS function has been called.
     Unborn,
     Alive(Box<Robios>),
-    /// The run is over, or never began.
+    /// The run is over, or could not start.
     Over,
 }
 
 static STATE: Mutex<State> = Mutex::new(State::Unborn);
-/// Whether a timer's function is being called.
+/// Whether a timer function is running.
 static IN_TIMER: AtomicBool = AtomicBool::new(false);
 
-/// The exit status of a program that the library ends.
+/// Exit status of a program ended by the library.
 const ENDED: c_int = 124;
 
-/// Calls the robot. `None` if there is none, or if it cannot do what is asked. Ends the program when its time is over.
-/// The call's name says what it takes, and stands in the report.
+/// Calls the robot. `None` if there is none, or if the call fails. Ends the program at its time limit. The
+/// call's name determines its cost and appears in the report.
 pub(super) fn enter<T>(name: &'static str, call: impl FnOnce(&mut Robios) -> Result<T>) -> Option<T> {
     count_call();
     enter_as(name, call)
 }
 
-/// As [`enter`], for threads that sleep.
+/// Like [`enter`], for sleeping threads.
 pub(super) fn enter_quietly<T>(call: impl FnOnce(&mut Robios) -> Result<T>) -> Option<T> {
     enter_as("", call)
 }
@@ -70,7 +70,7 @@ fn enter_as<T>(name: &'static str, call: impl FnOnce(&mut Robios) -> Result<T>) 
     serve(state, inside, name, call)
 }
 
-/// Calls the robot behind the lock, and what is due of the timers' functions without it.
+/// Calls the robot with the lock held, then the due timer functions without it.
 fn serve<T>(
     mut state: MutexGuard<'static, State>,
     inside: Inside,
@@ -78,7 +78,7 @@ fn serve<T>(
     call: impl FnOnce(&mut Robios) -> Result<T>,
 ) -> Option<T> {
     let State::Alive(robios) = &mut *state else { return None };
-    // A panic would be a mistake of this library. The robot is as consistent after it as before each step.
+    // A panic would be a bug of this library. Each step leaves the robot consistent.
     let answer = catch_unwind(AssertUnwindSafe(|| {
         robios.begin(name);
         if let Some(computed) = computing::so_far() {
@@ -120,12 +120,12 @@ fn serve<T>(
     answer.and_then(Result::ok)
 }
 
-/// Lets time pass, from now on, while the program calls nothing.
+/// From now on, lets time pass while the program makes no calls.
 pub(super) fn watch_program() {
     watch::start(pass_unasked, env::var_os(names::SHARED).is_some());
 }
 
-/// Lets time pass that nobody has asked for: so many seconds to where the next timer is due, or without timers.
+/// Lets time pass without a call: `with_timers` seconds to the next due timer, or `without` seconds.
 fn pass_unasked(with_timers: f64, without: f64) -> Unasked {
     let Some(inside) = Inside::new().filter(|_| is_ours()) else { return Unasked::Over };
     let state = match STATE.try_lock() {
@@ -151,7 +151,7 @@ fn lock() -> MutexGuard<'static, State> {
     STATE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The robot that the environment describes.
+/// Creates the robot described by the environment.
 fn born() -> State {
     own();
     match catch_unwind(robot) {
@@ -186,7 +186,7 @@ fn keys() -> std::result::Result<KeyDesk, String> {
     Ok(KeyDesk::with_typed(plan.transpose()?.unwrap_or_default(), typed))
 }
 
-/// What is shared with the runner that has started this process, if one has.
+/// Memory shared with the runner, if the runner started this process.
 fn memory() -> Option<&'static Arc<Memory>> {
     static MEMORY: OnceLock<Option<Arc<Memory>>> = OnceLock::new();
     let found = MEMORY.get_or_init(|| {
@@ -196,7 +196,7 @@ fn memory() -> Option<&'static Arc<Memory>> {
     found.as_ref()
 }
 
-/// Runs when the library is loaded: from then on, nothing that the program closes is needed.
+/// Runs when the library is loaded; files that the program closes later are no longer needed.
 #[unsafe(no_mangle)]
 extern "C" fn eyesim_begin() {
     if memory().is_some() {
@@ -220,35 +220,35 @@ fn link(plan: &Plan) -> std::result::Result<Box<dyn Link>, String> {
     Ok(Box::new(Remote::new(Arc::clone(memory))))
 }
 
-/// The socket that whoever started this process has left open, under the number in a variable.
+/// The socket left open by the parent process, with its number in a variable.
 fn inherited(name: &str) -> std::result::Result<Option<UnixStream>, String> {
     let Ok(text) = env::var(name) else { return Ok(None) };
     let number: c_int = text.parse().map_err(|_| format!("{name} is {text:?}; expected a number"))?;
-    // SAFETY: only asks whether the number stands for something that is open.
+    // SAFETY: only tests whether the descriptor is open.
     let open = number > 2 && unsafe { libc::fcntl(number, libc::F_SETFD, libc::FD_CLOEXEC) } == 0;
     if !open {
         return Err(format!("{name} is {number}; expected an open socket"));
     }
-    // SAFETY: the descriptor is open, and whoever started the process has left it to this library.
+    // SAFETY: the descriptor is open and was left to this library by the parent process.
     Ok(Some(unsafe { UnixStream::from_raw_fd(number) }))
 }
 
-/// Writes down how the run ended, and ends the program.
+/// Writes the report and ends the program.
 fn end(mut state: MutexGuard<'static, State>, stage: Stage) -> ! {
     if let State::Alive(robios) = &mut *state {
         let _ = catch_unwind(AssertUnwindSafe(|| robios.finish(stage)));
     }
     *state = State::Over;
-    // SAFETY: writes out what the program has printed, and leaves without the handlers of a program that may be in
-    // the middle of anything.
+    // SAFETY: flushes the program's output and exits without its handlers, as the program may be interrupted
+    // anywhere.
     unsafe {
         libc::fflush(std::ptr::null_mut());
         libc::_exit(ENDED)
     }
 }
 
-/// Ends the robot's program. Runs after what the program itself does at its end, since it is registered when the library
-/// is loaded, before anything of the program.
+/// Ends the robot's run. Registered when the library is loaded, before anything of the program, so it runs
+/// after the program's own exit handlers.
 #[unsafe(no_mangle)]
 extern "C" fn eyesim_end() {
     let Some(_inside) = Inside::new().filter(|_| is_ours()) else { return };
@@ -259,7 +259,7 @@ extern "C" fn eyesim_end() {
     *state = State::Over;
 }
 
-/// How far a program is ahead of the real time since its first call.
+/// Lead of the program's time over real time since its first call.
 fn lead(now: f64) -> Duration {
     static START: OnceLock<f64> = OnceLock::new();
     let real = real_seconds();
@@ -267,7 +267,7 @@ fn lead(now: f64) -> Duration {
     Duration::try_from_secs_f64(lead).unwrap_or_default()
 }
 
-/// RoBIOS's code for what has been done or not.
+/// RoBIOS's return code for success or failure.
 pub(super) fn code(done: Option<()>) -> c_int {
     c_int::from(done.is_none())
 }

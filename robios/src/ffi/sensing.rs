@@ -29,13 +29,13 @@ extern "C" fn LIDARSet(range: c_int, tilt: c_int, points: c_int) -> c_int {
     code(set)
 }
 
-/// The name of 2017.
+/// Name of 2017.
 #[unsafe(no_mangle)]
 extern "C" fn SIMLaserScan(distances: *mut c_int) -> c_int {
     LIDARGet(distances)
 }
 
-/// Zeros stand for a thing that there is not.
+/// Writes zeros if the thing does not exist.
 fn place<const N: usize>(places: [*mut c_int; N], found: Option<[i32; N]>) {
     scatter(places, found.unwrap_or([0; N]));
 }
@@ -64,13 +64,13 @@ fn without_z([x, y, _, phi]: [i32; 4]) -> [i32; 3] {
     [x, y, phi]
 }
 
-/// The form of 2017, to which the header sends calls with four arguments.
+/// Variant of 2017, to which the header redirects calls with four arguments.
 #[unsafe(no_mangle)]
 extern "C" fn eyesim_SIMGetObject4(id: c_int, x: *mut c_int, y: *mut c_int, phi: *mut c_int) {
     place([x, y, phi], enter("SIMGetObject", |robios| robios.sim_get_object(id)).map(without_z));
 }
 
-/// The form of 2017, to which the header sends calls with four arguments.
+/// Variant of 2017, to which the header redirects calls with four arguments.
 #[unsafe(no_mangle)]
 extern "C" fn eyesim_SIMSetObject4(id: c_int, x: c_int, y: c_int, phi: c_int) {
     enter("SIMSetObject", |robios| robios.sim_set_object(id, [x, y, phi]));

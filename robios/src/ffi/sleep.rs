@@ -1,4 +1,4 @@
-//! How a program waits.
+//! Waiting of programs.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -16,24 +16,23 @@ use super::turns::{Turn, is_there, own_number};
 use crate::keys::Waiting;
 use crate::robios::Robios;
 
-/// Lets the program wait for so many seconds.
+/// Lets the program wait for a time (s).
 pub(super) fn sleep_for(call: &'static str, seconds: f64) -> Option<()> {
     let start = enter(call, |robios| Ok(robios.now()))?;
     sleep_until(start + seconds)
 }
 
-/// Real time between two looks of a thread that sleeps at what other threads do.
+/// Real time between a sleeping thread's checks of the others.
 const GRACE: Duration = Duration::from_micros(50);
 
-/// When the threads that sleep wake up, in seconds since the start, and their numbers.
+/// Wake-up times of the sleeping threads since the start (s), and their numbers.
 static ENDS: Mutex<BTreeMap<u64, (f64, u32)>> = Mutex::new(BTreeMap::new());
 static SLEEPERS: AtomicU64 = AtomicU64::new(0);
-/// Threads that have started another one and let it run: it does not take them long, so nobody wakes up
+/// Number of threads that are starting another one and let it run: this is short, so nobody wakes up
 /// meanwhile.
 static STARTERS: AtomicU64 = AtomicU64::new(0);
 
-/// Looks at them as within a call, so that a signal handler that sleeps meanwhile does not wait for this
-/// thread.
+/// Accesses the list as within a call, so that a sleeping signal handler does not wait for this thread.
 fn at_ends<T>(look: impl FnOnce(&mut BTreeMap<u64, (f64, u32)>) -> T) -> T {
     let _inside = Inside::new();
     look(&mut ENDS.lock().unwrap_or_else(PoisonError::into_inner))
@@ -43,21 +42,21 @@ fn nobody_starts() -> bool {
     STARTERS.load(Ordering::Relaxed) == 0
 }
 
-/// The numbers of the threads that sleep.
+/// Numbers of the sleeping threads.
 fn asleep() -> Vec<u32> {
     at_ends(|ends| ends.values().map(|&(_, thread)| thread).collect())
 }
 
-/// A thread that sleeps.
+/// A sleeping thread.
 struct Sleeper {
     number: u64,
-    /// Looks at somebody else who should have woken up.
+    /// Number of checks for another thread that should have woken up.
     waits: u32,
 }
 
-/// Looks after which whoever should have woken up and has ended is forgotten: its thread has been cancelled.
+/// Checks after which a thread that should have woken up and has ended is forgotten: it was cancelled.
 const SOME_WAITS: u32 = 200;
-/// Looks after which anybody is who should have woken up: it has left its sleep in a way of its own.
+/// Checks after which any thread that should have woken up is forgotten: it left its sleep in another way.
 const MOST_WAITS: u32 = 20_000;
 
 impl Sleeper {
@@ -67,7 +66,8 @@ impl Sleeper {
         Self { number, waits: 0 }
     }
 
-    /// Lets a tick pass, but no more than until somebody wakes up, and nothing before who is due has done so.
+    /// Lets a tick pass, but at most until the next thread wakes up, and nothing before due threads have done
+    /// so.
     fn pass(&mut self) -> Option<()> {
         let earliest = at_ends(|ends| ends.values().map(|&(end, _)| end).fold(f64::INFINITY, f64::min));
         let passed = enter_quietly(|robios| {
@@ -79,7 +79,7 @@ impl Sleeper {
         Some(())
     }
 
-    /// Forgets those who should have woken up and never will.
+    /// Forgets threads that should have woken up and never will.
     fn forget_others(&self) {
         if self.waits.is_multiple_of(SOME_WAITS) {
             let lost = self.waits >= MOST_WAITS;
@@ -88,9 +88,9 @@ impl Sleeper {
         }
     }
 
-    /// Whether it is this thread's turn to wake up, of all that should have: those who sleep wake in the
-    /// order of their times, and each one when the one before waits again, so that the system does not decide
-    /// who calls first.
+    /// Whether it is this thread's turn to wake up among all that are due. Sleeping threads wake in the order
+    /// of their times, each when the previous one waits again, so that the order of calls does not depend on
+    /// the system.
     fn may_wake(&mut self, turn: &mut Turn, end: f64) -> bool {
         let first = at_ends(|ends| {
             let earlier = |(&number, &(other, _)): (&u64, &(f64, u32))| (other, number) < (end, self.number);
@@ -108,10 +108,10 @@ impl Drop for Sleeper {
     }
 }
 
-/// Lets the program wait until a time, in seconds since the start. Timers' functions are called in between.
+/// Lets the program wait until a time since the start (s). Timer functions are called in between.
 ///
-/// A program with one thread skips the time. Of several threads, one that sleeps lets the world go on by a
-/// tick whenever the others have had the opportunity to do something and have not taken it.
+/// A program with one thread skips the time. With several threads, a sleeping one advances the world by a
+/// tick whenever the others have had and not used the opportunity to act.
 fn sleep_until(end: f64) -> Option<()> {
     let (mut sleeper, mut turn) = (Sleeper::new(end), Turn::default());
     let mut waking: Option<Turn> = None;
@@ -145,8 +145,7 @@ fn sleep_until(end: f64) -> Option<()> {
     }
 }
 
-/// Lets the program's other threads go on until they wait: a thread that has just been started is the first
-/// to run.
+/// Lets the program's other threads run until they wait: a thread just started is the first to run.
 #[cfg(target_os = "linux")]
 pub(super) fn let_others_run() {
     let mut turn = Turn::default();
@@ -157,7 +156,7 @@ pub(super) fn let_others_run() {
     STARTERS.fetch_sub(1, Ordering::Relaxed);
 }
 
-/// Where nobody tells what threads do, they have had their turn after a nap.
+/// Where thread states are unknown, the others have had their turn after a nap.
 #[cfg(not(target_os = "linux"))]
 #[derive(Debug, Default)]
 struct Turn;
@@ -185,12 +184,12 @@ impl Turn {
     }
 }
 
-/// Whether a call may wait in the world, because the program has nothing else to do meanwhile.
+/// Whether a call may block in the world, because the program has nothing else to do.
 pub(super) fn may_block() -> bool {
     alone() && enter_quietly(|robios| Ok(robios.timers.is_empty())).unwrap_or(true)
 }
 
-/// Waits until a question has an answer.
+/// Waits until a query has an answer.
 pub(super) fn wait_for<T>(
     call: &'static str,
     mut ask: impl FnMut(&mut Robios) -> Result<Waiting<T>>,

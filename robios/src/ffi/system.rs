@@ -6,10 +6,10 @@ use super::runtime::{code, enter, watch_program};
 use super::sleep::sleep_for;
 use crate::robios::Callback;
 
-/// Bytes that are written to memory whose size the program does not state.
+/// Maximum number of bytes written to memory of unstated size.
 const ROOM: usize = 128;
 
-/// Runs a command and hands back the beginning of what it prints.
+/// Runs a command and returns the beginning of its output.
 #[unsafe(no_mangle)]
 extern "C" fn OSExecute(command: *const c_char, result: *mut c_char) -> c_int {
     code(text(command).and_then(|command| {
@@ -39,13 +39,13 @@ extern "C" fn OSMachineName(buffer: *mut c_char) -> c_int {
     tell("OSMachineName", buffer, "EyeBot")
 }
 
-/// In MHz.
+/// Returns the speed in MHz.
 #[unsafe(no_mangle)]
 extern "C" fn OSMachineSpeed() -> c_int {
     enter("OSMachineSpeed", |robios| robios.charge()).map_or(0, |()| 1200)
 }
 
-/// A vehicle.
+/// Returns the type of a vehicle.
 #[unsafe(no_mangle)]
 extern "C" fn OSMachineType() -> c_int {
     enter("OSMachineType", |robios| robios.charge()).map_or(0, |()| 1)
@@ -106,7 +106,7 @@ extern "C" fn OSGetCount() -> c_int {
     enter("OSGetCount", |robios| robios.os_get_count()).unwrap_or(0)
 }
 
-/// Seconds since 1970 by the program's clock, for `eye.py`; negative if there is none.
+/// Time since 1970 by the program's clock (s), for `eye.py`; negative without one.
 #[unsafe(no_mangle)]
 extern "C" fn eyesim_time() -> f64 {
     let time = enter("time", |robios| {
@@ -116,20 +116,20 @@ extern "C" fn eyesim_time() -> f64 {
     time.map_or(-1.0, |now| crate::robios::EPOCH + now)
 }
 
-/// Waits, for `eye.py`. Returns 1 if there is no clock to wait by.
+/// Waits, for `eye.py`. Returns 1 without a clock.
 #[unsafe(no_mangle)]
 extern "C" fn eyesim_sleep(seconds: f64) -> c_int {
     let sane = seconds.is_finite() && seconds >= 0.0;
     code(sane.then_some(()).and_then(|()| sleep_for("time", seconds.min(1e6))))
 }
 
-/// Notes that the program has started a thread, for `eye.py`.
+/// Records that the program has started a thread, for `eye.py`.
 #[unsafe(no_mangle)]
 extern "C" fn eyesim_note_thread() {
     super::threads::note_thread();
 }
 
-/// Programs for the X window system ask for it.
+/// Programs for the X window system call it.
 #[unsafe(no_mangle)]
 extern "C" fn XInitThreads() -> c_int {
     1

@@ -1,13 +1,13 @@
-//! The process that the robot belongs to, and the threads that call it.
+//! The process that owns the robot, and the threads that call it.
 
 use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, AtomicI32, AtomicU64, AtomicUsize, Ordering};
 
-/// The process that the robot belongs to; a child after `fork` has none.
+/// Process that owns the robot; a child after `fork` does not.
 static OWNER: AtomicI32 = AtomicI32::new(0);
-/// Calls so far, but for those of threads that sleep.
+/// Number of calls so far, except those of sleeping threads.
 static CALLS: AtomicU64 = AtomicU64::new(0);
-/// Threads that call, and whether the program has started any.
+/// Number of threads that make calls, and whether the program has started any.
 static THREADS: AtomicUsize = AtomicUsize::new(0);
 static STARTED_THREADS: AtomicBool = AtomicBool::new(false);
 
@@ -16,14 +16,14 @@ thread_local! {
     static INSIDE: Cell<bool> = const { Cell::new(false) };
     /// Counts this thread while it lives.
     static PRESENT: Present = Present::new();
-    /// Whether this thread is the library's own, or about to start one: it is none of the program's.
+    /// Whether this thread belongs to the library, or is about to start one that does.
     static OURS: Cell<bool> = const { Cell::new(false) };
 }
 
-// A thread that is ending has lost its flags, and there is nothing left to keep in them: so failures of
-// `try_with` are passed over in this file.
+// An ending thread has lost its flags and needs them no more, so failures of `try_with` are ignored in this
+// file.
 
-/// Says whether this thread acts for the library.
+/// Sets whether this thread acts for the library.
 pub(super) fn set_ours(ours: bool) {
     let _ = OURS.try_with(|flag| flag.set(ours));
 }
@@ -32,7 +32,7 @@ pub(super) fn is_the_programs() -> bool {
     !OURS.try_with(Cell::get).unwrap_or(false)
 }
 
-/// Calls so far.
+/// Number of calls so far.
 pub(super) fn calls() -> u64 {
     CALLS.load(Ordering::Relaxed)
 }
@@ -72,7 +72,7 @@ pub(super) struct Inside;
 impl Inside {
     pub(super) fn new() -> Option<Self> {
         let free = INSIDE.try_with(|inside| !inside.replace(true)).unwrap_or(false);
-        // Made only where it is needed: to drop it is to say that the thread has left.
+        // Created only when free: dropping it marks the thread as having left.
         if free { Some(Self) } else { None }
     }
 }
@@ -83,13 +83,13 @@ impl Drop for Inside {
     }
 }
 
-/// Whether the robot belongs to this process, or to nobody yet.
+/// Whether this process owns the robot, or nobody yet.
 pub(super) fn is_ours() -> bool {
     let owner = OWNER.load(Ordering::Acquire);
     owner == 0 || owner == process()
 }
 
-/// Says that the robot belongs to this process.
+/// Makes this process the robot's owner.
 pub(super) fn own() {
     OWNER.store(process(), Ordering::Release);
 }
@@ -98,13 +98,13 @@ fn process() -> i32 {
     std::process::id() as i32
 }
 
-/// Whether there is a robot in virtual time already.
+/// Whether a robot in virtual time exists already.
 #[cfg(target_os = "linux")]
 pub(super) fn is_alive() -> bool {
     OWNER.load(Ordering::Acquire) != 0
 }
 
-/// Notes that the program has started a thread.
+/// Records that the program has started a thread.
 pub(super) fn note_thread() {
     if is_the_programs() {
         STARTED_THREADS.store(true, Ordering::Relaxed);

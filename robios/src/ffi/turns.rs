@@ -1,38 +1,38 @@
-//! Whether a program's other threads have had the opportunity to do something, before one that sleeps lets time pass.
+//! Determines whether a program's other threads have had the opportunity to act, before a sleeping one lets
+//! time pass.
 //!
-//! A real time would not do: on a busy machine a thread may have to wait long for a processor.
+//! Real time is no measure: on a busy machine a thread may wait long for a processor.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::Read;
 
-/// What the other threads have done since one of them looked for the first time.
+/// Activity of the other threads since the first look.
 #[derive(Debug, Default)]
 pub(super) struct Turn {
-    /// Nanoseconds on a processor of every thread, when it was first seen, and at the last look.
+    /// Processor time of every thread at its first and its last look (ns).
     spent: BTreeMap<u32, (u64, u64)>,
-    /// The threads at the last look, if it was over for all of them.
+    /// The threads at the last look, if all had had their turn.
     quiet: Option<Vec<u32>>,
     looks: u32,
 }
 
-/// Nanoseconds on a processor that a thread gets to make a call: one that makes none is busy with something else.
+/// Processor time granted to a thread for making a call (ns): one that makes none is busy with something
+/// else.
 const SHARE: u64 = 1_000_000;
-/// Nanoseconds that a thread gets to go on until it waits, before another one wakes up.
+/// Processor time granted to a thread to reach its next wait, before another one wakes up (ns).
 const LONG_SHARE: u64 = 5_000_000;
-/// Looks after which time passes whatever the threads do: on a busy machine, one that could run may wait
-/// long.
+/// Number of looks after which time passes in any case: on a busy machine, a runnable thread may wait long.
 const MOST_LOOKS: u32 = 20_000;
 
 impl Turn {
-    /// Whether every other thread waits for something, or has had its share of a processor. Those that sleep
-    /// by the program's clock are known to wait.
+    /// Whether every other thread waits, or has had its share of processor time. Threads in `asleep` sleep by
+    /// the program's clock and are known to wait.
     pub(super) fn is_over(&mut self, asleep: &[u32]) -> bool {
         self.is_over_after(SHARE, asleep)
     }
 
-    /// As [`is_over`](Turn::is_over), with a share in which a thread that does not wait does most of what it
-    /// does at a time.
+    /// Like [`is_over`](Turn::is_over), with a share that covers most of a thread's work between waits.
     pub(super) fn is_long_over(&mut self, asleep: &[u32]) -> bool {
         self.is_over_after(LONG_SHARE, asleep)
     }
@@ -44,17 +44,17 @@ impl Turn {
         for &thread in &awake {
             over &= self.is_over_for(thread, share);
         }
-        // Threads are looked at one after the other: one may have woken another up and ended meanwhile.
+        // Threads are examined one after the other: one may have woken another and ended meanwhile.
         let quiet = over.then_some(awake);
         let still = over && self.quiet == quiet;
         self.quiet = quiet;
         still || self.looks > MOST_LOOKS
     }
 
-    /// A thread that was found waiting twice, and has done nothing in between, waits for more than its turn
-    /// at a lock.
+    /// A thread found waiting twice without activity in between waits for more than a lock.
     fn is_over_for(&mut self, thread: u32, share: u64) -> bool {
-        // A system that does not tell what threads have spent does not tell truly whether they could run.
+        // A system that hides the threads' processor time does not reliably show whether they are runnable
+        // either.
         let Some(now) = spent(thread) else { return true };
         let known = self.spent.get(&thread).copied();
         let (first, last) = known.unwrap_or((now, now));
@@ -67,13 +67,13 @@ impl Turn {
     }
 }
 
-/// Whether the program's threads have all been waiting since an earlier look while it has a child process:
-/// for that, most likely, whose time is the real one.
+/// Whether all threads of a program with a child process have been waiting since an earlier look: most likely
+/// for that child, which runs in real time.
 #[derive(Debug, Default)]
 pub(super) struct Stillness(BTreeMap<u32, u64>);
 
 impl Stillness {
-    /// Looks. To be called by a thread that is not the program's.
+    /// Examines the threads. Must be called by a thread of the library.
     pub(super) fn holds(&mut self) -> bool {
         let waiting =
             |thread: u32| spent(thread).filter(|_| state(thread) == Some('S')).map(|time| (thread, time));
@@ -88,29 +88,29 @@ fn has_child() -> bool {
     // SAFETY: an all-zero record of this type is valid.
     let mut child: libc::siginfo_t = unsafe { std::mem::zeroed() };
     let look = libc::WEXITED | libc::WNOHANG | libc::WNOWAIT;
-    // SAFETY: the kernel writes to a record that lives until it returns, and leaves the children as they are.
+    // SAFETY: the kernel writes to a record that outlives the call, and leaves the children as they are.
     unsafe { libc::waitid(libc::P_ALL, 0, &raw mut child, look) == 0 }
 }
 
-/// Whether the thread in which the program began has ended, and all others that it has started. To be called
-/// by a thread that is not the program's.
+/// Whether the program's initial thread and all threads it started have ended. Must be called by a thread of
+/// the library.
 pub(super) fn have_all_ended() -> bool {
     let first = std::process::id();
     state(first) == Some('Z') && others().into_iter().all(|thread| thread == first)
 }
 
-/// Whether there still is a thread of a number.
+/// Whether a thread with this number still exists.
 pub(super) fn is_there(thread: u32) -> bool {
     state(thread).is_some()
 }
 
-/// The number of the thread that asks.
+/// Number of the calling thread.
 pub(super) fn own_number() -> u32 {
-    // SAFETY: asks for a number.
+    // SAFETY: only queries a number.
     unsafe { libc::gettid() as u32 }
 }
 
-/// The threads of this process but for the one that asks.
+/// The threads of this process except the calling one.
 fn others() -> Vec<u32> {
     let own = own_number();
     let Ok(entries) = fs::read_dir("/proc/self/task") else { return Vec::new() };
@@ -118,19 +118,19 @@ fn others() -> Vec<u32> {
     numbers.filter(|&thread| thread != own).collect()
 }
 
-/// The beginning of what the system tells of a thread, in one look, as there are many of them.
+/// The beginning of a thread's file in `/proc`, in one read, as there are many of them.
 fn file(thread: u32, name: &str) -> Option<String> {
     let mut text = [0; 256];
     let length = File::open(format!("/proc/self/task/{thread}/{name}")).ok()?.read(&mut text).ok()?;
     Some(String::from_utf8_lossy(&text[..length]).into_owned())
 }
 
-/// A thread's state: `R` runs or could run, `S` waits, `Z` has ended.
+/// A thread's state: `R` running or runnable, `S` waiting, `Z` ended.
 fn state(thread: u32) -> Option<char> {
     file(thread, "stat").and_then(|text| text.rsplit(')').next()?.trim_start().chars().next())
 }
 
-/// Nanoseconds that a thread has been on a processor.
+/// Processor time of a thread (ns).
 fn spent(thread: u32) -> Option<u64> {
     file(thread, "schedstat")?.split_whitespace().next()?.parse().ok()
 }

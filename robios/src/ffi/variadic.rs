@@ -1,4 +1,4 @@
-//! `LCDPrintf` and `LCDSetPrintf`: jumps to the functions in `shim.c`, which format and hand over the text.
+//! `LCDPrintf` and `LCDSetPrintf`: jumps to the functions in `shim.c` that format the text and pass it on.
 
 use std::arch::naked_asm;
 use std::ffi::{c_char, c_int};
@@ -11,7 +11,7 @@ unsafe extern "C" {
     fn eyesim_shim_set_printf(row: c_int, column: c_int, format: *const c_char, ...) -> c_int;
 }
 
-/// Exports a function of the shim under RoBIOS's name. Whatever the arguments are, they stay where they are.
+/// Exports a function of the shim under RoBIOS's name. The arguments stay where they are.
 macro_rules! jump {
     ($name:ident, $target:ident) => {
         #[unsafe(no_mangle)]

@@ -1,6 +1,6 @@
-//! Lets time pass for a program that calls nothing: it may be waiting for what its timers' functions do, as in
-//! `while (count < 100);`, or for a process that it has forked, or have set its robot going for good, as in
-//! `VWSetSpeed(100, 0); while (1);`. And ends a program whose threads have all gone.
+//! Lets time pass for a program that makes no calls. It may wait for its timer functions, as in `while (count
+//! < 100);`, or for a forked process, or have started its robot for good, as in `VWSetSpeed(100, 0); while
+//! (1);`. Also ends a program whose threads have all ended.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -10,42 +10,42 @@ use super::threads::{calls, set_ours};
 #[cfg(target_os = "linux")]
 use super::turns::{Stillness, have_all_ended};
 
-/// What became of time that was to pass without a call.
+/// Result of letting time pass without a call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Unasked {
-    /// It passed, or there was no reason that it should.
+    /// Time passed, or there was no need.
     Passed,
-    /// Somebody is calling.
+    /// Another thread is in a call.
     Busy,
-    /// There is no robot any more.
+    /// The robot is gone.
     Over,
 }
 
-/// Lets time pass that nobody has asked for: so many seconds to where the next timer is due, or without
-/// timers.
+/// Lets time pass without a call: seconds to the next due timer, or seconds without timers.
 type Pass = fn(f64, f64) -> Unasked;
 
 /// Real time between two looks.
 const LOOK: Duration = Duration::from_millis(5);
-/// Looks without a call after which a program with timers seems to wait.
+/// Number of looks without a call after which a program with timers seems to wait.
 const PATIENCE: u32 = 4;
-/// Looks in which the time that passes at each doubles.
+/// Number of looks after which the time per look doubles.
 const DOUBLING: u32 = 20;
-/// Most seconds that pass at a look.
+/// Maximum time per look (s).
 const MOST: f64 = 0.2;
-/// Looks in which a program has to wait for another process before time passes: what keeps it waiting that
-/// long is not the machine.
+/// Number of looks for which a program must wait for another process before time passes; a shorter wait may
+/// be due to the machine.
 const WAITING: u32 = 40;
-/// Looks without a call after which time passes for a program without timers: most that compute are done by then.
+/// Number of looks without a call after which time passes for a program without timers: most computations are
+/// done by then.
 const LONG: u32 = 1000;
-/// Looks in which the time that then passes doubles: whoever computes for some seconds more loses little.
+/// Number of looks after which that time doubles: long computations lose little.
 const SLOW_DOUBLING: u32 = 400;
 
 static WATCHING: AtomicBool = AtomicBool::new(false);
 
-/// Starts the thread that watches, unless it is there.
+/// Starts the watching thread, unless it is running.
 ///
-/// Where the world is shared, its host decides when time passes for a program that computes.
+/// In a shared world, the host decides when time passes for a computing program.
 pub(super) fn start(pass: Pass, is_shared: bool) {
     if WATCHING.swap(true, Ordering::Relaxed) {
         return;
@@ -53,23 +53,23 @@ pub(super) fn start(pass: Pass, is_shared: bool) {
     set_ours(true);
     let started = std::thread::Builder::new().name("robios".into()).spawn(move || watch(pass, is_shared));
     set_ours(false);
-    // Without the thread, time passes as the program calls.
+    // Without the thread, time passes only with calls.
     drop(started);
 }
 
-/// Seconds that pass at a look, after so many doublings.
+/// Time per look after a number of doublings (s).
 fn step(doublings: u32) -> f64 {
     (LOOK.as_secs_f64() * f64::from(1_u32 << doublings.min(30))).min(MOST)
 }
 
-/// With timers, time passes as the real one at first, and then faster and faster: a program that computes for a while
-/// loses little, and one that waits need not wait for long. Without timers it begins later, and grows faster more slowly.
-/// While the program waits for another process, time passes as the real one.
+/// With timers, time passes like real time at first, then ever faster: a program that computes for a while
+/// loses little, and one that waits need not wait long. Without timers it starts later and accelerates more
+/// slowly. While the program waits for another process, time passes like real time.
 fn watch(pass: Pass, is_shared: bool) {
     set_ours(true);
     let (mut before, mut idle) = (calls(), 0_u32);
     let (mut stillness, mut last) = (Stillness::default(), real_seconds());
-    // Looks and seconds for which the program has been waiting.
+    // Number of looks, and time, for which the program has been waiting.
     let (mut still, mut stood) = (0_u32, 0.0);
     loop {
         nap(LOOK);
@@ -80,8 +80,8 @@ fn watch(pass: Pass, is_shared: bool) {
         before = now;
         let Some(waited) = idle.checked_sub(PATIENCE) else { continue };
         if have_all_ended() {
-            // As the last thread would, were this one not here.
-            // SAFETY: no call of this thread's is running.
+            // Exits as the last thread would without this one.
+            // SAFETY: this thread is not within a call.
             unsafe { libc::exit(0) };
         }
         let fast = step(waited / DOUBLING);
@@ -100,7 +100,7 @@ fn watch(pass: Pass, is_shared: bool) {
     }
 }
 
-/// Where nobody tells what threads do, a program never seems to wait or to have ended.
+/// Where thread states are unknown, a program never seems to wait or to have ended.
 #[cfg(not(target_os = "linux"))]
 #[derive(Debug, Default)]
 struct Stillness;

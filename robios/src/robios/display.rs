@@ -8,14 +8,14 @@ use super::{ImageSize, Robios, images, invalid};
 use crate::keys::{KEYS, Waiting};
 use crate::screen::{colour, number};
 
-/// The images that the display takes unless a program says otherwise: QVGA.
+/// Default size of images for the display: QVGA.
 const DEFAULT_IMAGE: (usize, usize) = (320, 240);
-/// Columns and rows of the largest window for an image.
+/// Maximum number of columns and rows of an image window.
 const WIDEST: i32 = 10_000;
-/// RoBIOS's number of images of a size of the program's own.
+/// RoBIOS's number for images of a custom size.
 const CUSTOM: i32 = 10;
 
-/// The display's habits: the bits that switch them on and off.
+/// Display settings: bits that switch them on and off.
 const MODES: [(i32, i32, DisplayOption); 7] = [
     (0x01_0000, 0x10_0000, DisplayOption::TransparentText),
     (0x02_0000, 0x20_0000, DisplayOption::InvertedBackground),
@@ -29,11 +29,11 @@ const MODES: [(i32, i32, DisplayOption); 7] = [
 /// An image for the display.
 #[derive(Debug)]
 pub enum Frame {
-    /// Three bytes a pixel.
+    /// RGB, three bytes per pixel.
     Colour(Vec<u8>),
-    /// A byte a pixel.
+    /// Grayscale, one byte per pixel.
     Gray(Vec<u8>),
-    /// A byte a pixel, 0 for white.
+    /// Binary, one byte per pixel, 0 for white.
     Binary(Vec<u8>),
 }
 
@@ -42,7 +42,7 @@ impl Robios {
     pub fn lcd_print(&mut self, text: &str) -> Result<()> {
         self.text_changed = true;
         if self.keys.is_live() {
-            // Whoever sits at the terminal has no other display.
+            // The user at the terminal has no other display.
             eprint!("{text}");
         }
         self.screen.print(text)?;
@@ -108,7 +108,7 @@ impl Robios {
         self.charge()
     }
 
-    /// `LCDSetMode`: 0 for all habits as they are at first. What the display does not have is left out.
+    /// `LCDSetMode`: 0 restores the defaults. Unsupported settings are ignored.
     pub fn lcd_set_mode(&mut self, mode: i32) -> Result<()> {
         for (on, off, option) in MODES {
             let initially = [DisplayOption::AutoRefresh, DisplayOption::Scrolling, DisplayOption::LineFeed];
@@ -134,7 +134,7 @@ impl Robios {
         self.charge()
     }
 
-    /// `LCDMenuI`, whose keys are numbered from 1.
+    /// `LCDMenuI`, with keys numbered from 1.
     pub fn lcd_menu_i(&mut self, key: i32, label: &str, foreground: i32, background: i32) -> Result<()> {
         let index = usize::try_from(key).ok().and_then(|key| key.checked_sub(1)).filter(|&index| index < 4);
         let index = index.ok_or_else(|| invalid("key", key, "1 to 4"))?;
@@ -176,13 +176,13 @@ impl Robios {
         self.charge()
     }
 
-    /// `LCDCircle`, whose size is the diameter.
+    /// `LCDCircle`; the size is the diameter.
     pub fn lcd_circle(&mut self, middle: (i32, i32), size: i32, col: i32, fill: bool) -> Result<()> {
         self.screen.lcd.draw_circle(middle, size, colour(col), filled(fill))?;
         self.charge()
     }
 
-    /// `LCDPixelInvert`, and `LCDAreaInvert` and `LCDLineInvert` pixel by pixel.
+    /// `LCDPixelInvert`; also `LCDAreaInvert` and `LCDLineInvert`, pixel by pixel.
     pub fn lcd_invert(&mut self, pixels: impl IntoIterator<Item = (i32, i32)>) -> Result<()> {
         for place in pixels {
             if let Some(found) = self.screen.lcd.pixel(place)? {
@@ -210,9 +210,8 @@ impl Robios {
         self.charge()
     }
 
-    /// Columns and rows of the images that the display takes now: those that `LCDImageSize` says, or else those that
-    /// the camera and the functions of image processing have been set to, or else those of the window that
-    /// `LCDImageStart` gives, or else QVGA.
+    /// Size of the display's images: as set by `LCDImageSize`, or else by the camera and the image processing
+    /// functions, or else by `LCDImageStart`, or else QVGA.
     pub fn lcd_image_dimensions(&self) -> (usize, usize) {
         let window =
             self.window.map_or(DEFAULT_IMAGE, |w| (w.width.max(0) as usize, w.height.max(0) as usize));
@@ -261,7 +260,7 @@ impl Robios {
         Ok(self.keys.read(now, standing, limit).unwrap_or(0) as i32)
     }
 
-    /// What a program gets that waits for one of the keys in a mask.
+    /// Waits for one of the keys in a mask.
     pub fn key_wait(&mut self, mask: u32) -> Result<Waiting<u32>> {
         self.charge()?;
         let now = self.now();
@@ -276,7 +275,7 @@ impl Robios {
         Ok(self.keys.read_touch(now))
     }
 
-    /// What a program gets that waits for a touch of the display.
+    /// Waits for a touch of the display.
     pub fn key_wait_xy(&mut self) -> Result<Waiting<(i32, i32)>> {
         self.charge()?;
         let now = self.now();
@@ -291,7 +290,7 @@ impl Robios {
         Ok(self.keys.read_remote(now).unwrap_or(0))
     }
 
-    /// What a program gets that waits for the remote control.
+    /// Waits for the remote control.
     pub fn irtv_wait(&mut self) -> Result<Waiting<i32>> {
         self.charge()?;
         let now = self.now();
@@ -303,8 +302,8 @@ fn filled(fill: bool) -> Fill {
     if fill { Fill::Solid } else { Fill::Outline }
 }
 
-/// The window of an image whose place nobody has given: its own size in the upper left corner, or that of QVGA for
-/// images that are larger than the display.
+/// Default window of an image: its own size in the upper left corner, or that of QVGA if it is larger than
+/// the display.
 fn fitting(width: usize, height: usize) -> Viewport {
     if width <= Lcd::WIDTH as usize && height <= Lcd::HEIGHT as usize {
         Viewport::new((0, 0), width as i32, height as i32)

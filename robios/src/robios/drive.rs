@@ -4,7 +4,7 @@ use roverlab::io::Result;
 use super::{Moving, Robios, in_whole, invalid, millimetres, pose_from};
 use crate::ask::{Reply, Request};
 
-/// Motors and encoders are numbered from 1.
+/// Number of motors and encoders, numbered from 1.
 const MOTORS: i32 = 4;
 
 impl Robios {
@@ -24,7 +24,7 @@ impl Robios {
         self.moving = moving;
     }
 
-    /// Since when the robot stands; now, if it drives.
+    /// Time since which the robot stands (s); now, if it drives.
     pub(super) fn standing_since(&mut self) -> Result<f64> {
         if self.moving == Moving::Manoeuvre && self.queue.is_empty() && self.flag(&Request::IsDone)? {
             self.drives(Moving::No);
@@ -62,15 +62,15 @@ impl Robios {
         self.manoeuvre(0.0, units::from_deg(angle.into()), units::from_deg(speed.into()))
     }
 
-    /// `VWCurve`: the arc's length, the whole change of heading, and the speed along the arc.
+    /// `VWCurve`: length of the arc, total change of heading, and speed along the arc.
     pub fn vw_curve(&mut self, length: i32, angle: i32, speed: i32) -> Result<()> {
         let speed = f64::from(speed);
         let speed = if length == 0 { units::from_deg(speed) } else { units::from_mm(speed) };
         self.manoeuvre(units::from_mm(length.into()), units::from_deg(angle.into()), speed)
     }
 
-    /// `VWDrive`: the arc that leads to a point ahead and to the left, whose length and angle are whole millimetres
-    /// and degrees.
+    /// `VWDrive`: the arc to a point ahead and to the left, with length and angle in whole millimetres and
+    /// degrees.
     pub fn vw_drive(&mut self, forward: i32, left: i32, speed: i32) -> Result<()> {
         if left == 0 {
             return self.vw_straight(forward, speed);
@@ -92,7 +92,7 @@ impl Robios {
         Ok(())
     }
 
-    /// `VWRemain`: millimetres, or degrees of a turn on the spot.
+    /// `VWRemain`: millimetres, or degrees for a turn on the spot.
     pub fn vw_remain(&mut self) -> Result<i32> {
         let rest = self.number(&Request::Remaining)?;
         Ok(if self.turns { units::to_deg(rest).round() as i32 } else { millimetres(rest) })
@@ -103,12 +103,12 @@ impl Robios {
         self.flag(&Request::IsDone)
     }
 
-    /// Whether `VWWait` may go on: the drive has ended, or something holds the robot.
+    /// Whether `VWWait` may return: the drive has ended or stalled.
     pub fn vw_arrived(&mut self) -> Result<bool> {
         Ok(self.flag(&Request::IsDone)? || self.flag(&Request::IsStalled)?)
     }
 
-    /// `VWWait`, for a program that has nothing else to do.
+    /// `VWWait`, for a program with nothing else to do.
     pub fn vw_wait(&mut self) -> Result<()> {
         self.order(&Request::WaitDone)?;
         self.finish_frame()
@@ -121,19 +121,19 @@ impl Robios {
 
     /// `MOTORDrive`: percent of EyeSim's full speed.
     pub fn motor_drive(&mut self, motor: i32, percent: i32) -> Result<()> {
-        // Programs that ask for more get all there is.
+        // Larger values are clamped.
         let percent = percent.clamp(-100, 100);
         let share = self.identity.full_speed / self.identity.top_speed;
         self.motor(motor, f64::from(percent) / 100.0 * share)
     }
 
-    /// `MOTORSpeed`: encoder ticks in a hundredth of a second.
+    /// `MOTORSpeed`: encoder ticks per hundredth of a second.
     pub fn motor_speed(&mut self, motor: i32, ticks: i32) -> Result<()> {
         let speed = self.identity.tick_length * f64::from(ticks) * 100.0;
         self.motor(motor, speed / self.identity.top_speed)
     }
 
-    /// Drives a motor with a fraction of the speed that it can do.
+    /// Drives a motor at a fraction of its maximum speed.
     fn motor(&mut self, motor: i32, fraction: f64) -> Result<()> {
         let number = motor_number(motor)?;
         self.order(&Request::Motor(number, fraction.clamp(-1.0, 1.0)))?;
@@ -143,7 +143,7 @@ impl Robios {
         Ok(())
     }
 
-    /// `MOTORPID` and `MOTORPIDOff`: the simulated motors' controllers need no tuning.
+    /// `MOTORPID` and `MOTORPIDOff`: the simulated motor controllers need no tuning.
     pub fn motor_pid(&mut self, motor: i32) -> Result<()> {
         motor_number(motor)?;
         self.charge()
@@ -164,7 +164,7 @@ impl Robios {
         self.order(&Request::ResetEncoder(number))
     }
 
-    /// `SERVOSet`: 0 to 255, 128 in the middle. What no device of the robot follows is remembered.
+    /// `SERVOSet`: 0 to 255, 128 in the middle. Positions of servos without a device are only stored.
     pub fn servo_set(&mut self, servo: i32, angle: i32) -> Result<()> {
         let index = servo_index(servo)?;
         let angle = angle.clamp(0, 255);
@@ -186,7 +186,7 @@ impl Robios {
         Ok(self.servos[index])
     }
 
-    /// Whether there is such a servo.
+    /// Whether a servo exists.
     pub fn servo_check(&mut self, servo: i32) -> Result<()> {
         servo_index(servo)?;
         self.charge()
@@ -198,7 +198,7 @@ fn servo_index(servo: i32) -> Result<usize> {
     index.ok_or_else(|| invalid("servo", servo, "1 to 14"))
 }
 
-/// A motor's number as the simulator has it.
+/// The simulator's number of a motor.
 fn motor_number(motor: i32) -> Result<u8> {
     let number = u8::try_from(motor).ok().filter(|_| (1..=MOTORS).contains(&motor));
     number.ok_or_else(|| invalid("motor", motor, "1 to 4"))

@@ -1,4 +1,4 @@
-//! RoBIOS's image processing, by the kernels of [`roverlab::vision`].
+//! RoBIOS's image processing, based on [`roverlab::vision`].
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, BufWriter, Read, Write};
@@ -14,19 +14,19 @@ use roverlab::world::Colour;
 /// Columns and rows.
 pub(crate) type Size = (usize, usize);
 
-/// Columns and rows of a resolution.
+/// Number of columns and rows of a resolution.
 pub(crate) fn size(resolution: Resolution) -> Size {
     let (width, height) = resolution.dimensions();
     (width as usize, height as usize)
 }
 
-/// Columns and rows of a resolution by RoBIOS's number.
+/// Number of columns and rows of a resolution by RoBIOS's number.
 pub(crate) fn named_size(number: i32) -> Result<Size> {
     let found = usize::try_from(number).ok().and_then(|n| Resolution::ALL.get(n).copied());
     found.map(size).ok_or_else(|| Error::invalid_input("image resolution", number, "0 to 5"))
 }
 
-/// The kernels refuse images of the wrong size; the callers here have made them fit.
+/// The kernels reject images of the wrong size; the callers here guarantee the size.
 macro_rules! fitting {
     ($call:expr) => {
         let _ = (|| $call)();
@@ -112,7 +112,7 @@ pub(crate) fn hsi(pixel: [u8; 3]) -> [u8; 3] {
     [hue_of(pixel), saturation.clamp(0, 255) as u8, intensity as u8]
 }
 
-/// What a PNM file holds.
+/// Content of a PNM file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Pnm {
     /// 1 is black.
@@ -121,10 +121,10 @@ pub(crate) enum Pnm {
     Colour(Vec<u8>),
 }
 
-/// The largest image that is read, in pixels.
+/// Maximum size of an image (pixels).
 const LARGEST: usize = 100_000_000;
 
-/// `IPReadFile`: a PNM file, cropped or filled with black to a size from its upper left corner.
+/// `IPReadFile`: a PNM file, cropped or padded with black to a size, from its upper left corner.
 pub(crate) fn read_file(path: &Path, size: Size) -> Result<Pnm> {
     let file = File::open(path).map_err(|error| unreadable(path, &error))?;
     parse(&mut BufReader::new(file), size).map_err(|error| unreadable(path, &error))
@@ -199,7 +199,7 @@ fn next_byte(file: &mut impl BufRead) -> std::io::Result<u8> {
     Ok(byte[0])
 }
 
-/// The next character that is neither blank nor in a comment.
+/// The next character outside blanks and comments.
 fn next_letter(file: &mut impl BufRead) -> std::io::Result<u8> {
     loop {
         match next_byte(file)? {
@@ -220,12 +220,12 @@ fn next_digit(file: &mut impl BufRead) -> std::io::Result<u8> {
     }
 }
 
-/// The next number, and the blank behind it.
+/// The next number, including the blank after it.
 fn next_number(file: &mut impl BufRead) -> std::io::Result<usize> {
     let mut value = usize::from(digit(next_letter(file)?)?);
     loop {
         let byte = match next_byte(file) {
-            // The last number of a file needs no blank behind it.
+            // The last number of a file needs no blank after it.
             Err(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => return Ok(value),
             byte => byte?,
         };
@@ -240,7 +240,7 @@ fn digit(byte: u8) -> std::io::Result<u8> {
     if byte.is_ascii_digit() { Ok(byte - b'0') } else { Err(broken("a letter in place of a number")) }
 }
 
-/// `IPWriteFile` and `IPWriteFileGray`: three bytes a pixel, or one.
+/// `IPWriteFile` and `IPWriteFileGray`: three bytes per pixel, or one.
 pub(crate) fn write_file(path: &Path, data: &[u8], (width, height): Size) -> Result<()> {
     let kind = if data.len() == width * height { 5 } else { 6 };
     let write = || {

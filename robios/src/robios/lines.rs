@@ -1,12 +1,14 @@
 use std::collections::{BTreeMap, VecDeque};
 
+use roverlab::geometry::units;
 use roverlab::io::Result;
 use roverlab::world::formats::DiskFiles;
 
 use super::{Robios, invalid};
+use crate::ask::{Reply, Request};
 
-/// What a simulated robot has no counterpart for: digital and analog lines and serial ports. They are looped back:
-/// what a program writes is what it reads.
+/// Digital and analog lines and serial ports, which have no simulated counterpart. They are looped back: a
+/// program reads what it wrote.
 #[derive(Debug)]
 pub struct Lines {
     digital: [Digital; 16],
@@ -34,17 +36,17 @@ impl Default for Lines {
     }
 }
 
-/// `SERInit` knows the serial port, 0, and 20 USB devices.
+/// Ports of `SERInit`: the serial port, 0, and 20 USB devices.
 const PORTS: std::ops::RangeInclusive<i32> = 0..=20;
-/// Bytes that wait in a port; more are lost.
+/// Maximum number of bytes waiting in a port; further ones are lost.
 const LONGEST_QUEUE: usize = 65_536;
-/// Hundredths of a volt: a battery of two cells, fully charged.
+/// Supply voltage (0.01 V): a battery of two cells, fully charged.
 const SUPPLY: i32 = 820;
-/// What a channel reads that nothing is connected to, of 0 to 255.
+/// Reading of an unconnected channel, of 0 to 255.
 const SILENCE: u8 = 0;
-/// Samples of one recording.
+/// Maximum number of samples per recording.
 const LONGEST_RECORDING: i32 = 65_536;
-/// Seconds that a sound takes.
+/// Duration of a sound (s).
 const SOUND: f64 = 0.5;
 
 impl Robios {
@@ -67,7 +69,7 @@ impl Robios {
         Ok(i32::from(self.lines.digital[index].state))
     }
 
-    /// `DIGITALReadAll`: line 1 is the lowest bit.
+    /// `DIGITALReadAll`, with line 1 as the lowest bit.
     pub fn digital_read_all(&mut self) -> Result<i32> {
         self.charge()?;
         Ok(self.lines.digital.iter().rev().fold(0, |bits, line| bits << 1 | i32::from(line.state)))
@@ -83,13 +85,26 @@ impl Robios {
         self.charge()
     }
 
-    /// `ANALOGRead`: the supply on channel 0, silence elsewhere.
+    /// `ANALOGRead`: the inertial unit on its channels, the supply voltage on channel 0, silence elsewhere.
     pub fn analog_read(&mut self, channel: i32) -> Result<i32> {
+        let unit = self.identity.inertial;
+        let tenths_of_degrees = |radians| 10.0 * units::to_deg(radians);
+        let groups: [(_, _, fn(f64) -> f64); 3] = [
+            (unit.attitude, Request::Attitude, tenths_of_degrees),
+            (unit.turn_rates, Request::TurnRates, tenths_of_degrees),
+            (unit.acceleration, Request::Acceleration, units::to_mm),
+        ];
+        for (channels, request, scale) in groups {
+            let place = channels.and_then(|group| group.iter().position(|&own| i32::from(own) == channel));
+            let Some(place) = place else { continue };
+            let Reply::Three(numbers) = self.ask(&request)? else { return Err(super::foreign()) };
+            return Ok(scale(numbers[place]).round() as i32);
+        }
         self.charge()?;
         match channel {
             0 => Ok(SUPPLY),
             1..=8 => Ok(SILENCE.into()),
-            _ => Err(invalid("analog channel", channel, "0 to 8")),
+            _ => Err(invalid("analog channel", channel, "0 to 8, or one of the inertial unit")),
         }
     }
 
@@ -136,7 +151,7 @@ impl Robios {
         self.charge()
     }
 
-    /// `SERReceive` and `SERReceiveChar`: what there is, at most so many bytes.
+    /// `SERReceive` and `SERReceiveChar`: the waiting bytes, at most `most`.
     pub fn ser_receive(&mut self, port: i32, most: usize) -> Result<Vec<u8>> {
         let queue = self.port(port)?;
         let count = queue.len().min(most);
@@ -145,7 +160,7 @@ impl Robios {
         Ok(data)
     }
 
-    /// `SERCheck`: how many bytes wait.
+    /// `SERCheck`: number of waiting bytes.
     pub fn ser_check(&mut self, port: i32) -> Result<i32> {
         let count = self.port(port)?.len();
         self.charge()?;
@@ -165,7 +180,7 @@ impl Robios {
         self.charge()
     }
 
-    /// `AUPlay`: counted, whether or not there is such a file.
+    /// `AUPlay`: counted, whether or not the file exists.
     pub fn au_play(&mut self, sample: &str) -> Result<()> {
         // A program runs in its own folder.
         if DiskFiles::new().find(sample, "").is_none() {

@@ -1,7 +1,7 @@
-//! RoBIOS in safe Rust: what its functions do, in its own units, for one robot.
+//! RoBIOS in safe Rust: its functions in its own units, for one robot.
 //!
-//! Methods are named after the functions. They answer with what the function returns, or with the error that makes it
-//! return its code for failure; who calls from C is in `ffi`.
+//! Methods are named after the functions. They return the function's result, or the error that leads to its
+//! failure code; the C interface is in `ffi`.
 
 mod display;
 mod drive;
@@ -30,40 +30,40 @@ use crate::screen::Screen;
 
 pub(crate) use system::Callback;
 
-/// One robot and its devices, as a program sees them.
+/// One robot and its devices from a program's perspective.
 #[derive(Debug)]
 pub struct Robios {
     link: Box<dyn Link>,
     identity: Identity,
-    /// Nanoseconds that calls without the world have taken since the last one with it.
+    /// Time taken by local calls since the last request to the world (ns).
     debt: u64,
     queue: time::Queue,
     recent: time::Recent,
-    /// The call that is being served.
+    /// The current call.
     call: &'static str,
     pub(crate) screen: Screen,
     pub(crate) keys: KeyDesk,
     pub(crate) lines: Lines,
     pub(crate) timers: Timers,
-    /// The size of the camera's images, once it is started.
+    /// Size of the camera's images, once initialised.
     camera: Option<Resolution>,
-    /// The size of the images that functions of image processing take.
+    /// Size of images for the image processing functions.
     image_size: (usize, usize),
     image_size_set: bool,
     inbox: radio::Inbox,
-    /// The numbers of all robots, once they are known.
+    /// Numbers of all robots, once known.
     numbers: Vec<u32>,
-    /// The size of the images that the display takes, and where it puts them.
+    /// Size of the display's images, and their window.
     lcd_image: ImageSize,
     window: Option<Viewport>,
-    /// Whether the last drive command was one for a turn on the spot.
+    /// Whether the last drive command was a turn on the spot.
     turns: bool,
     moving: Moving,
-    /// The motors that have been set to turn, a bit for each.
+    /// Motors set to turn, one bit each.
     turning: u8,
     standing_since: f64,
     servos: [i32; 15],
-    /// Seconds by which a program has set the clock forward.
+    /// Offset of the clock set by a program (s).
     clock_offset: f64,
     sounds: u64,
     sound_ends: f64,
@@ -73,17 +73,17 @@ pub struct Robios {
     lcd_file: Option<std::path::PathBuf>,
 }
 
-/// What `LCDImageSize` has said last.
+/// Last setting of `LCDImageSize`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ImageSize {
     Unsaid,
-    /// Columns and rows.
+    /// Number of columns and rows.
     Named((usize, usize)),
-    /// That of the window.
+    /// Size of the window.
     Custom,
 }
 
-/// What the last drive command was.
+/// The last drive command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Moving {
     No,
@@ -92,26 +92,26 @@ enum Moving {
 }
 
 const NANOSECONDS: f64 = 1e9;
-/// Seconds from 1970 to the beginning of every run: noon of the first day of 2020, in Greenwich.
+/// Time from 1970 to the start of every run (s): 1 January 2020, 12:00 UTC.
 pub(crate) const EPOCH: f64 = 1_577_880_000.0;
 
-/// Notes of one call that are kept: a program that tries all numbers needs no more.
+/// Maximum number of notes per call: a program that tries all numbers needs no more.
 const MOST_OF_CALL: usize = 3;
 
-/// Seconds between two looks at a robot that drives on.
+/// Interval of the checks on a robot that drives on (s).
 const LOOK: f64 = 0.1;
 
-/// Where a run is reported.
+/// Outputs of a run's report.
 #[derive(Debug, Default)]
 pub struct Outlets {
-    /// The file of the report.
+    /// Writer of the report.
     pub report: Option<ReportFile>,
-    /// The picture of the display at the end.
+    /// File for the final picture of the display.
     pub lcd: Option<std::path::PathBuf>,
 }
 
 impl Robios {
-    /// A robot at the other end of a link.
+    /// Connects to a robot through a link. Fails if the link does.
     pub fn new(mut link: Box<dyn Link>, keys: KeyDesk, costs: Costs, outlets: Outlets) -> Result<Self> {
         let (Reply::Identity(identity), _) = link.ask(0.0, &[], &Request::Identity)? else {
             return Err(foreign());
@@ -149,12 +149,12 @@ impl Robios {
         })
     }
 
-    /// Who the robot is.
+    /// Properties of the robot.
     pub fn identity(&self) -> &Identity {
         &self.identity
     }
 
-    /// The program's time in seconds since the start.
+    /// Time of the program since the start (s).
     pub fn now(&mut self) -> f64 {
         self.link.now() + self.debt as f64 / NANOSECONDS
     }
@@ -187,7 +187,7 @@ impl Robios {
         }
     }
 
-    /// Notes, once, what a call has asked for in vain, for whoever reads the report.
+    /// Records a failed request of a call, once, for the report.
     pub(crate) fn note(&mut self, what: &str) {
         let what = what.replace('\n', " ");
         let note = if self.call.is_empty() { what } else { format!("{}: {what}", self.call) };
@@ -203,7 +203,7 @@ impl Robios {
         }
     }
 
-    /// Writes the report, if there is a file for it.
+    /// Writes the report, if there is a writer.
     pub(crate) fn publish(&mut self) {
         let Some(file) = &mut self.file else { return };
         self.report.time = self.link.now() + self.debt as f64 / NANOSECONDS;
@@ -223,12 +223,12 @@ impl Robios {
         }
     }
 
-    /// Ends the run: the robot drives on until it stands, is held or the time is over, as it would without a program;
-    /// then everything is written down.
+    /// Ends the run: the robot drives on until it stands, is held or the time is over, as it would without a
+    /// program; then writes the report.
     pub fn finish(&mut self, stage: Stage) {
         self.begin("");
         self.report.stage = stage;
-        // What is known now counts, whatever becomes of the rest.
+        // The current state counts, whatever happens later.
         self.publish();
         let (time, contacts) = (self.report.time, self.report.contacts);
         if stage == Stage::Ended && self.deliver_all().is_ok() {
@@ -236,7 +236,7 @@ impl Robios {
         }
         self.publish();
         if let Some(file) = &mut self.file {
-            // What the robot touches without its program is none of the program's doing.
+            // Contacts without the program are not the program's.
             self.report.time = time;
             self.report.later_contacts = self.report.contacts.saturating_sub(contacts);
             self.report.contacts = contacts;
@@ -247,7 +247,7 @@ impl Robios {
         }
     }
 
-    /// Lets a world of the program's own run until the robot stands.
+    /// Runs a world of the program's own until the robot stands.
     fn drive_on(&mut self) {
         while let Some(before) = self.link.truth() {
             let passed = self.pass(LOOK).is_ok();
@@ -266,12 +266,12 @@ fn invalid(name: &str, found: impl std::fmt::Display, expected: &str) -> Error {
     Error::invalid_input(name, found, expected)
 }
 
-/// Metres in whole millimetres.
+/// Metres to whole millimetres.
 pub(crate) fn millimetres(metres: f64) -> i32 {
     units::to_mm(metres).round() as i32
 }
 
-/// Radians in whole degrees, in `-179..=180`.
+/// Radians to whole degrees, in `-179..=180`.
 pub(crate) fn degrees(radians: f64) -> i32 {
     let whole = units::to_deg(normalize_angle(radians)).round() as i32;
     if whole == -180 { 180 } else { whole }

@@ -5,10 +5,10 @@ use roverlab::io::{RadioMessage, Result};
 use super::{Robios, invalid};
 use crate::ask::{Reply, Request};
 
-/// Bytes of the longest message, as in EyeSim.
+/// Maximum length of a message (bytes), as in EyeSim.
 const LONGEST: usize = 100;
 
-/// The messages that were looked at but not received.
+/// Messages examined but not received.
 pub(crate) type Inbox = VecDeque<RadioMessage>;
 
 impl Robios {
@@ -32,7 +32,7 @@ impl Robios {
         Ok(())
     }
 
-    /// The numbers of all robots, in the order in which they were placed.
+    /// Numbers of all robots in the order of their placement.
     pub fn robot_numbers(&mut self) -> Result<Vec<u32>> {
         if self.numbers.is_empty() {
             let Reply::Numbers(numbers) = self.ask_now(&Request::Numbers)? else {
@@ -43,8 +43,8 @@ impl Robios {
         Ok(self.numbers.clone())
     }
 
-    /// `RADIOReceive`: the oldest message that has not been received; waits for so many seconds at most, and
-    /// is called again until there is one.
+    /// `RADIOReceive`: the oldest unread message; waits for at most `seconds`, and is called again until
+    /// there is one.
     pub fn radio_receive(&mut self, seconds: f64) -> Result<Option<RadioMessage>> {
         let now = self.now();
         self.report.listening_since.get_or_insert(now);
@@ -67,7 +67,7 @@ impl Robios {
         }
     }
 
-    /// `RADIOCheck`: whom the oldest message is from, if there is one.
+    /// `RADIOCheck`: sender of the oldest message, if any.
     pub fn radio_check(&mut self) -> Result<Option<u32>> {
         if self.inbox.is_empty()
             && let Some(message) = self.next_message(0.0)?

@@ -6,20 +6,20 @@ use roverlab::io::{Error, LidarSettings, Resolution, Result};
 use super::{Robios, images, in_whole, invalid, millimetres, pose_from};
 use crate::ask::{Reply, Request};
 
-/// What RoBIOS says where there is nothing within range.
+/// RoBIOS's reading for nothing in range.
 pub const NOTHING: i32 = 9999;
 
-/// Seconds that an image takes where nothing else says so: the camera gives 30 of them in a second.
+/// Default duration of an image (s), for 30 images per second.
 const FRAME: f64 = 0.033;
 
 impl Robios {
-    /// `PSDGet`: at least 1 mm, as 0 says that there is no such sensor.
+    /// `PSDGet`: at least 1 mm, as 0 means a missing sensor.
     pub fn psd_get(&mut self, psd: i32) -> Result<i32> {
         let number = u8::try_from(psd).map_err(|_| invalid("PSD", psd, "0 to 255"))?;
         Ok(range(self.number(&Request::Distance(number))?).max(1))
     }
 
-    /// How many distances `LIDARGet` writes.
+    /// Number of distances that `LIDARGet` writes.
     pub fn lidar_points(&self) -> usize {
         self.identity.lidar_points as usize
     }
@@ -30,13 +30,13 @@ impl Robios {
         let mut distances: Vec<i32> = ranges.into_iter().map(range).collect();
         distances.reverse();
         if self.identity.full_turn {
-            // The simulator's scan begins behind, so its last beam is not the first one here but the second.
+            // The simulator's scan begins behind, so its last beam becomes the second one here.
             distances.rotate_right(1);
         }
         Ok(distances)
     }
 
-    /// `LIDARSet`: degrees covered, degrees of tilt downwards, and beams.
+    /// `LIDARSet`: field of view (degrees), downward tilt (degrees), and number of beams.
     pub fn lidar_set(&mut self, angle: i32, tilt: i32, points: i32) -> Result<()> {
         let count = usize::try_from(points).ok().filter(|&n| (1..=LidarSettings::MAX_POINTS).contains(&n));
         let points = count.ok_or_else(|| invalid("lidar points", points, "1 to 100000"))?;
@@ -77,7 +77,7 @@ impl Robios {
         self.charge()
     }
 
-    /// `CAMGet`. Fails before `CAMInit`, as nobody knows how large the program's memory is.
+    /// `CAMGet`. Fails before `CAMInit`, as the size of the program's memory is unknown.
     pub fn cam_get(&mut self) -> Result<Vec<u8>> {
         if self.camera.is_none() {
             return Err(invalid("camera", "off", "CAMInit before"));
@@ -106,7 +106,7 @@ impl Robios {
         Ok(self.image_size)
     }
 
-    /// Columns and rows of the images that functions of image processing take.
+    /// Number of columns and rows of images for the image processing functions.
     pub fn image_size(&self) -> (usize, usize) {
         self.image_size
     }
@@ -117,8 +117,8 @@ impl Robios {
         Ok(placed(self.pose_of(&Request::RobotAt(id))?))
     }
 
-    /// `SIMSetRobot`: x, y, z and phi. On hills the robot drops from z, unless the ground is higher; on a level floor
-    /// it stays as high as it is.
+    /// `SIMSetRobot`: x, y, z and phi. On hills the robot drops from z, unless the ground is higher; on a
+    /// level floor its height stays.
     pub fn sim_set_robot(&mut self, id: i32, [x, y, z, phi]: [i32; 4]) -> Result<()> {
         let id = u32::try_from(id).map_err(|_| invalid("robot", id, "0 or more"))?;
         let z = units::from_mm(f64::from(z));

@@ -2,10 +2,10 @@ use roverlab::io::Result;
 
 use super::{EPOCH, Robios, invalid};
 
-/// A function that a program has attached to a timer.
+/// A timer function of a program.
 pub(crate) type Callback = extern "C" fn();
 
-/// The functions that are called again and again.
+/// Periodic functions.
 #[derive(Debug, Default)]
 pub struct Timers {
     all: Vec<Timer>,
@@ -20,23 +20,23 @@ struct Timer {
     function: Callback,
 }
 
-/// The handle of the one that the system's alarm clock is.
+/// Handle of the system's alarm clock.
 const ALARM: i32 = 0;
-/// RoBIOS has so many timers.
+/// Maximum number of timers in RoBIOS.
 const MOST: usize = 17;
 
 impl Timers {
-    /// Whether there is none.
+    /// Whether there are no timers.
     pub(crate) fn is_empty(&self) -> bool {
         self.all.is_empty()
     }
 
-    /// When the next one is due.
+    /// Time at which the next timer is due (s).
     pub(crate) fn next(&self) -> Option<f64> {
         self.all.iter().map(|timer| timer.due).min_by(f64::total_cmp)
     }
 
-    /// The functions that are due. One that is late is called once, and goes on from there.
+    /// The due functions. A late one is called once and continues from there.
     pub(crate) fn due(&mut self, now: f64) -> Vec<Callback> {
         let mut due = Vec::new();
         for timer in &mut self.all {
@@ -51,7 +51,7 @@ impl Timers {
 }
 
 impl Robios {
-    /// `OSAttachTimer`: a function that is called every `scale` milliseconds. Returns its handle.
+    /// `OSAttachTimer`: a function called every `scale` milliseconds. Returns its handle.
     pub(crate) fn os_attach_timer(&mut self, scale: i32, function: Callback) -> Result<i32> {
         if scale < 1 || self.timers.all.len() >= MOST {
             return Err(invalid("timer", format!("one of {scale} ms"), "17 of at least 1 ms"));
@@ -64,8 +64,8 @@ impl Robios {
         Ok(self.timers.last)
     }
 
-    /// Sets the alarm clock of the system: it calls a function after so many seconds, and again in periods. No seconds
-    /// are never, no period is once. Returns what [`alarm`](Robios::alarm) would have before.
+    /// Sets the system's alarm clock: it calls a function after `seconds`, and then periodically. Zero
+    /// seconds mean never, a zero period once. Returns the result of [`alarm`](Robios::alarm) before.
     pub(crate) fn set_alarm(&mut self, (seconds, period): (f64, f64), function: Callback) -> (f64, f64) {
         let (now, earlier) = (self.now(), self.alarm());
         self.timers.all.retain(|timer| timer.id != ALARM);
@@ -76,7 +76,7 @@ impl Robios {
         earlier
     }
 
-    /// In how many seconds the alarm clock calls, and its period.
+    /// Time until the next alarm, and its period (s).
     pub(crate) fn alarm(&mut self) -> (f64, f64) {
         let now = self.now();
         let alarm = self.timers.all.iter().find(|timer| timer.id == ALARM);
@@ -119,7 +119,7 @@ impl Robios {
     pub fn os_get_count(&mut self) -> Result<i32> {
         let now = self.now();
         self.charge()?;
-        // The nearest number to a time may lie below it.
+        // The floating-point number nearest to a time may lie below it.
         Ok((1000.0 * now + 1e-6) as i32)
     }
 }

@@ -1,8 +1,8 @@
-//! What calls take of the robot's time, and when the world hears of them.
+//! Duration of calls in robot time, and the time at which their requests reach the world.
 //!
 //! With [`Costs::Frames`], requests wait in a queue of which each frame serves one, in the order of the
-//! calls. A query lets the time until its frame pass. An order that needs no answer is kept until time has
-//! come to its frame; as nothing but this program's own calls lets time pass, that is early enough.
+//! calls. A query lets time pass until its frame. A one-way request is kept until time reaches its frame; as
+//! only this program's calls let time pass, that is early enough.
 
 use std::collections::VecDeque;
 
@@ -13,22 +13,22 @@ use super::{NANOSECONDS, Robios, foreign};
 use crate::ask::{MOST_READINGS, Reply, Request};
 use crate::costs::{Cost, Costs, Kind};
 
-/// The queue of a robot's requests.
+/// Queue of a robot's requests.
 #[derive(Debug)]
 pub(super) struct Queue {
     costs: Costs,
-    /// What the running call takes, until it has been paid.
+    /// Cost of the current call, until it is charged.
     due: Option<Cost>,
-    /// The first frame that is free.
+    /// The first free frame.
     free: u64,
-    /// When they are served, in nanoseconds since the start, which call gave them, and what they are.
+    /// Service time since the start (ns), name of the call, and request of each entry.
     orders: VecDeque<(u64, &'static str, Request)>,
 }
 
-/// Orders that may wait; whoever gives more waits himself, as the buffers of a connection hold about so many.
+/// Maximum number of waiting requests; a further call blocks, as with the buffers of a connection.
 const MOST_ORDERS: usize = 10_000;
 const TICK_NANOSECONDS: u64 = (TICK * NANOSECONDS) as u64;
-/// Nanoseconds of a call with [`Costs::Free`].
+/// Duration of a call with [`Costs::Free`] (ns).
 const FREE_CALL: u64 = 100_000;
 
 impl Queue {
@@ -40,13 +40,13 @@ impl Queue {
         self.orders.is_empty()
     }
 
-    /// The next order whose frame has come.
+    /// The next request whose frame has come.
     fn next_before(&mut self, now: u64) -> Option<(u64, &'static str, Request)> {
         let is_due = self.orders.front().is_some_and(|order| order.0 <= now);
         if is_due { self.orders.pop_front() } else { None }
     }
 
-    /// When a request is served that comes at a time.
+    /// Service time of a request that arrives at a time.
     fn slot(&mut self, now: u64) -> u64 {
         let Costs::Frames(frames) = &self.costs else { return now };
         let frame = frames.after(now).max(self.free);
@@ -55,18 +55,17 @@ impl Queue {
     }
 }
 
-/// What was read at the present tick, which reads the same until the next one or until the robot is told
-/// something.
+/// Cached readings of the current tick, valid until the next one or the next command.
 #[derive(Debug, Default)]
 pub(super) struct Recent {
     tick: u64,
     readings: Vec<(Request, Reply)>,
-    /// What has been read since the world was asked last, which is likely to be read again.
+    /// Readings since the last request, which are likely to be repeated.
     used: Vec<Request>,
 }
 
 impl Robios {
-    /// Begins a call of RoBIOS; one without a name takes no time.
+    /// Starts a RoBIOS call; one without a name takes no time.
     pub(crate) fn begin(&mut self, call: &'static str) {
         self.call = call;
         self.queue.due = match &self.queue.costs {
@@ -75,12 +74,12 @@ impl Robios {
         };
     }
 
-    /// Charges what the program has computed since its last call.
+    /// Charges the program's computing time since its last call.
     pub(crate) fn charge_computing(&mut self, seconds: f64) {
         self.debt += (seconds * NANOSECONDS).round() as u64;
     }
 
-    /// Nanoseconds since the start.
+    /// Time since the start (ns).
     fn clock(&mut self) -> u64 {
         self.link_clock() + self.debt
     }
@@ -94,7 +93,7 @@ impl Robios {
         self.debt = time.saturating_sub(self.link_clock());
     }
 
-    /// Asks the world, in the robot's turn.
+    /// Sends a request to the world, in the robot's turn.
     pub(super) fn ask(&mut self, request: &Request) -> Result<Reply> {
         match self.queue.due.take() {
             None => {}
@@ -115,7 +114,7 @@ impl Robios {
         self.set_clock(slot);
     }
 
-    /// Asks the world out of turn.
+    /// Sends a request to the world out of turn.
     pub(super) fn ask_now(&mut self, request: &Request) -> Result<Reply> {
         self.deliver()?;
         let begin = self.clock();
@@ -128,8 +127,8 @@ impl Robios {
             self.ask_link(debt, request)
         };
         if !self.has_frames() && self.clock() > begin {
-            // A call that fails takes its time too, if it has come to the robot; where this one is, it need
-            // not be asked.
+            // A failing call takes its time too, if it reached the robot; where this one is, it need not be
+            // asked.
             self.debt += FREE_CALL - self.call_in_world();
         }
         let reply = reply?;
@@ -141,12 +140,12 @@ impl Robios {
         Ok(reply)
     }
 
-    /// Nanoseconds of a call in the simulator, which has been charged where the world was asked.
+    /// Duration of a call in the simulator (ns), charged there with every request.
     fn call_in_world(&self) -> u64 {
         (self.identity.call_duration * NANOSECONDS).round() as u64
     }
 
-    /// What has been read at this tick already.
+    /// A cached reading of this tick.
     fn recall(&mut self, request: &Request) -> Option<Reply> {
         let tick = self.clock() / TICK_NANOSECONDS;
         let known = self.recent.readings.iter().filter(|_| self.recent.tick == tick);
@@ -157,7 +156,7 @@ impl Robios {
         reply
     }
 
-    /// Lets so many nanoseconds pass, and asks the world, whatever is known.
+    /// Lets a time pass (ns) and sends a request to the world, bypassing the cache.
     fn ask_link(&mut self, debt: u64, request: &Request) -> Result<Reply> {
         let worthwhile = self.identity.exact && !self.has_frames();
         let wanted = if worthwhile { std::mem::take(&mut self.recent.used) } else { Vec::new() };
@@ -177,7 +176,7 @@ impl Robios {
         Ok(reply)
     }
 
-    /// Whether what is asked changes only with the tick, or with what the robot is told.
+    /// Whether a reading changes only with the tick or a command.
     fn lasts(&self, request: &Request) -> bool {
         match request {
             Request::Speed
@@ -192,7 +191,7 @@ impl Robios {
         }
     }
 
-    /// Asks the world to do something, in the robot's turn.
+    /// Sends a command to the world, in the robot's turn.
     pub(super) fn order(&mut self, request: &Request) -> Result<()> {
         let slot = match self.queue.due {
             Some(Cost { kind: Kind::OneWay, nanoseconds, .. }) => {
@@ -202,7 +201,7 @@ impl Robios {
                 Some(self.queue.slot(now))
             }
             Some(_) => None,
-            // The rest of a call whose first order waits.
+            // A further command of a call whose first one waits.
             None => self.queue.orders.back().map(|order| order.0),
         };
         let Some(slot) = slot else {
@@ -220,7 +219,7 @@ impl Robios {
         self.settle()
     }
 
-    /// Gives the world the orders whose time has come.
+    /// Sends the due commands to the world.
     fn deliver(&mut self) -> Result<()> {
         if self.queue.is_empty() {
             return Ok(());
@@ -229,7 +228,7 @@ impl Robios {
         while let Some((slot, call, request)) = self.queue.next_before(now) {
             let wait = slot.saturating_sub(self.link_clock());
             match self.ask_link(wait, &request) {
-                // The program has gone on, and does not hear of it.
+                // The program has moved on and is not informed.
                 Err(error) if matches!(error.kind(), ErrorKind::Unsupported | ErrorKind::InvalidInput) => {
                     let present = std::mem::replace(&mut self.call, call);
                     self.note(&error.to_string());
@@ -242,7 +241,7 @@ impl Robios {
         Ok(())
     }
 
-    /// Gives the world all orders, and lets the time pass that this takes.
+    /// Sends all commands to the world, and lets the necessary time pass.
     pub(super) fn deliver_all(&mut self) -> Result<()> {
         if let Some(&(last, ..)) = self.queue.orders.back() {
             let now = self.clock();
@@ -251,7 +250,7 @@ impl Robios {
         self.deliver()
     }
 
-    /// Counts a call that the world has no part in.
+    /// Charges a local call.
     pub fn charge(&mut self) -> Result<()> {
         match (&self.queue.costs, self.queue.due.take()) {
             (Costs::Free, _) => self.debt += FREE_CALL,
@@ -271,7 +270,7 @@ impl Robios {
         self.settle()
     }
 
-    /// As [`charge`](Robios::charge), for a call with an image of so many pixels.
+    /// Like [`charge`](Robios::charge), for a call with an image.
     pub(super) fn charge_image(&mut self, pixels: usize) -> Result<()> {
         if let Some(cost) = self.queue.due.as_mut().filter(|cost| cost.per_pixel) {
             cost.nanoseconds *= pixels as u64;
@@ -279,7 +278,7 @@ impl Robios {
         self.charge()
     }
 
-    /// Lets the world catch up with the program, once it lags by a tick.
+    /// Lets the world catch up with the program once it lags by a tick.
     fn settle(&mut self) -> Result<()> {
         if self.debt < TICK_NANOSECONDS && self.now() < self.identity.time_limit {
             return Ok(());
@@ -289,12 +288,12 @@ impl Robios {
 
     fn catch_up(&mut self) -> Result<()> {
         self.deliver()?;
-        // The request is a call itself.
+        // The request itself is a call.
         let rest = std::mem::take(&mut self.debt).saturating_sub(self.call_in_world());
         self.ask_link(0, &Request::Pass(rest as f64 / NANOSECONDS)).map(|_| ())
     }
 
-    /// Lets seconds pass, and the time that the call takes.
+    /// Lets a time (s) and the duration of the call pass.
     pub fn pass(&mut self, seconds: f64) -> Result<()> {
         let seconds = seconds.max(0.0);
         match self.queue.costs {
@@ -308,7 +307,7 @@ impl Robios {
         }
     }
 
-    /// Lets the time pass until the frame in which an event is told.
+    /// Lets time pass until the frame that reports an event.
     pub(super) fn finish_frame(&mut self) -> Result<()> {
         let now = self.clock();
         if let Costs::Frames(frames) = &self.queue.costs {
@@ -318,7 +317,7 @@ impl Robios {
         self.settle()
     }
 
-    /// Whether calls take what they do on EyeSim.
+    /// Whether calls cost as much as on EyeSim.
     pub(super) fn has_frames(&self) -> bool {
         matches!(self.queue.costs, Costs::Frames(_))
     }

@@ -22,26 +22,26 @@ use super::programs::{Program, home, is_python, library};
 use super::verdict::{Ending, Stopwatch, Truth, Verdict};
 use super::work_folder::WorkFolder;
 
-/// A program that runs.
+/// A running program.
 #[derive(Debug)]
 pub(crate) struct Running {
     child: Child,
     memory: Arc<Memory>,
     relays: Vec<Relay>,
-    /// How long the run has taken.
+    /// Duration of the run so far.
     stopwatch: Stopwatch,
 }
 
-/// Bytes that a program may print on each of its outputs; the rest is dropped.
+/// Maximum output of a program per stream (bytes); the rest is dropped.
 const MOST_OUTPUT: usize = 1 << 16;
-/// Bytes of a last line that are kept.
+/// Maximum length of a last line (bytes).
 const MOST_OF_LINE: usize = 500;
-/// How long the runner goes on reading what a program has printed, when whoever it has left behind holds the pipe open.
+/// How long the runner keeps reading output if another process holds the pipe open.
 const LEFT_OPEN: Duration = Duration::from_secs(1);
-/// How often the runner looks whether a program has ended.
+/// Interval of the checks whether a program has ended.
 const LOOK: Duration = Duration::from_millis(1);
 
-/// Runs a program in a world of its own, which lives in the program's process.
+/// Runs a program with its own world in the program's process.
 pub(crate) fn run_alone(
     program: &Program,
     plan: &Plan,
@@ -52,7 +52,7 @@ pub(crate) fn run_alone(
     let mut plan = plan.clone();
     plan.index = program.robot;
     if program.robot != 0 {
-        // Robot and start are said of the first robot.
+        // Robot and start apply to the first robot.
         (plan.robot, plan.start) = (None, None);
     }
     let variables = plan.variables().into_iter().map(|(name, value)| (name, OsString::from(value))).collect();
@@ -64,7 +64,7 @@ pub(crate) fn run_alone(
     let mut truth = Truth { pose: placed.pose, ..Truth::default() };
     if report.known {
         truth = Truth {
-            // A call that waits past the end of time is cut off there.
+            // A call that waits beyond the time limit is cut off there.
             time: report.time.min(options.time_limit),
             pose: report.pose,
             stance: report.stance,
@@ -77,8 +77,7 @@ pub(crate) fn run_alone(
     Ok(vec![Verdict::new(program, ending, &report, truth)])
 }
 
-/// Starts a program in a run that has begun with a stopwatch. The inner error says why it cannot run, which is the
-/// program's own affair.
+/// Starts a program in a run measured by a stopwatch. The inner error is the program's own failure to start.
 pub(crate) fn start(
     program: &Program,
     variables: BTreeMap<&'static str, OsString>,
@@ -113,7 +112,7 @@ pub(crate) fn start(
     }
     let path = search_path("LD_LIBRARY_PATH", &[folder.path(), library.parent().unwrap_or(Path::new("."))]);
     command.env("LD_LIBRARY_PATH", path);
-    // Sets of texts come in the same order each time.
+    // Makes the iteration order of Python's sets reproducible.
     command.env("PYTHONHASHSEED", "0");
     command.env("PYTHONPATH", search_path("PYTHONPATH", &[&home.join("python")]));
     second_name(&library, folder);
@@ -133,7 +132,7 @@ pub(crate) fn start(
     }
 }
 
-/// The socket through which the first program gets what is typed; the others' keys are pressed by nobody in particular.
+/// Socket for typed keys of the first program; the others' keys are automatic.
 fn keyboard(program: &Program, command: &mut Command) -> Result<Option<UnixStream>, String> {
     if !program.is_first {
         command.env(names::KEYS, "AUTO");
@@ -150,34 +149,34 @@ fn keyboard(program: &Program, command: &mut Command) -> Result<Option<UnixStrea
 
 fn python(file: &Path) -> Command {
     let mut command = Command::new(env::var_os("PYTHON").unwrap_or_else(|| "python3".into()));
-    // What a program prints shall be there however it ends.
+    // Unbuffered, so that output is complete however the program ends.
     command.arg("-u").arg(file);
     command
 }
 
-/// Folders before those that a variable of the environment lists.
+/// Folders, followed by those listed in an environment variable.
 fn search_path(name: &str, first: &[&Path]) -> OsString {
     let rest = env::var_os(name).unwrap_or_default();
     let rest: Vec<PathBuf> = env::split_paths(&rest).filter(|path| !path.as_os_str().is_empty()).collect();
     let all = first.iter().map(|path| path.to_path_buf()).chain(rest);
-    // A folder with a colon in its name cannot be listed; the dynamic loader then looks in its usual places.
+    // A folder with a colon in its name cannot be listed; the dynamic loader then searches its default paths.
     env::join_paths(all).unwrap_or_default()
 }
 
-/// The library under its other name, for programs that were linked against the real robot's.
+/// A link to the library under its other name, for programs linked against the real robot's.
 fn second_name(library: &Path, folder: &WorkFolder) {
     let name = library.file_name().map(|name| name.to_string_lossy().replace("eyesim", "eyebot"));
     if let Some(name) = name {
-        // It may be there already, and programs that do not ask for it are none the worse without.
+        // It may exist already, and most programs do not need it.
         let _ = std::os::unix::fs::symlink(library, folder.file(&name));
     }
 }
 
-/// Passes on what a program prints, to standard error, up to a limit; what comes after it is read and dropped.
+/// Forwards a program's output to standard error up to a limit; the rest is read and dropped.
 #[derive(Debug)]
 struct Relay {
     thread: JoinHandle<()>,
-    /// The end of what was printed.
+    /// The end of the output.
     tail: Arc<Mutex<Vec<u8>>>,
 }
 
@@ -200,7 +199,7 @@ impl Relay {
         Self { thread, tail }
     }
 
-    /// The last line, once all has been read or nobody wants to wait for more.
+    /// The last line, once all output is read or the patience is exhausted.
     fn last_line(&self, patience: &Stopwatch) -> String {
         while !self.thread.is_finished() && patience.seconds() < LEFT_OPEN.as_secs_f64() {
             thread::sleep(LOOK);
@@ -212,12 +211,12 @@ impl Relay {
 }
 
 impl Running {
-    /// The number of the process.
+    /// Process number.
     pub(crate) fn id(&self) -> u32 {
         self.child.id()
     }
 
-    /// What it shares with the runner.
+    /// Memory shared with the runner.
     pub(crate) fn memory(&self) -> &Arc<Memory> {
         &self.memory
     }
@@ -227,7 +226,7 @@ impl Running {
         !matches!(self.child.try_wait(), Ok(None))
     }
 
-    /// Waits until the program has ended, and ends it when its real time is over.
+    /// Waits until the program has ended, and ends it at its real-time limit.
     pub(crate) fn wait(mut self, real_limit: f64) -> (Ending, Report) {
         let over = || Ending::OutOfTime(format!("ended after {real_limit} real seconds"));
         let ending = loop {
@@ -243,7 +242,7 @@ impl Running {
                 Err(error) => break Ending::NotStarted(error.to_string()),
             }
         };
-        // What it has started goes with it, and holds no pipe open.
+        // Its child processes go with it and hold no pipe open.
         process::kill_all(self.child.id());
         let _ = self.child.wait();
         let patience = Stopwatch::start();
@@ -266,15 +265,15 @@ impl Running {
         (ending, report)
     }
 
-    /// Whether the process that stands by the program has ended before it could tell how the program did.
+    /// Whether the parent process of the program was killed before it could record the exit status.
     fn was_killed(&self, status: ExitStatus) -> bool {
         status.signal().is_some() && !self.memory.has_status()
     }
 }
 
-/// What is said of a program that has ended its parent.
+/// Message for a program that has killed its parent.
 const ORPHAN: &str = "it has ended its parent process, or all of its group, and so itself";
-/// What is said of one whose children have called.
+/// Message for a program whose forked processes make calls.
 const FORKED: &str = "a process that the program has forked calls RoBIOS: it has no robot, so its calls fail";
 
 fn of_status(status: ExitStatus) -> Ending {

@@ -25,27 +25,27 @@ use super::programs::Program;
 use super::verdict::{Ending, Stopwatch, Truth, Verdict};
 use super::work_folder::WorkFolder;
 
-/// A program's end as its host saw it.
+/// The end of a program from its host's perspective.
 #[derive(Debug)]
 struct Served {
-    /// The program's own time.
+    /// Time of the program (s).
     time: f64,
-    /// Its robot's contacts until then.
+    /// Number of its robot's contacts until then.
     contacts: u64,
-    /// Where it believes to be and how far it has gone, if only its seat knows.
+    /// Pose by odometry and distance walked, for a walker.
     walked: Option<(Pose, f64)>,
-    /// How the program ended, and what it has reported.
+    /// How the program ended, and its report.
     ending: Ending,
     report: Report,
 }
 
-/// Seconds between two points of a path in a picture.
+/// Interval between two points of a path in a picture (s).
 const TRAIL: f64 = 0.1;
-/// How long those who answer programs have, once these have been ended.
+/// Grace period for the threads that answer programs which were ended.
 const GRACE: Duration = Duration::from_secs(1);
 
-/// Runs programs in one world, which lives here: each of them is answered by a thread of its own, and the world moves
-/// on when all that run have asked for it.
+/// Runs programs in one world hosted here: a thread answers each of them, and the world advances when all
+/// running programs have asked it to.
 pub(crate) fn run_together(
     programs: &[Program],
     plan: &Plan,
@@ -56,10 +56,10 @@ pub(crate) fn run_together(
     let trail = options.picture.is_some().then_some(TRAIL);
     let sim_options = SimOptions { trail_interval: trail, ..plan.options() };
     let terms = Terms::of(&sim_options);
-    // A recording has all calls.
+    // A recording contains all calls.
     let terms = Terms { exact: terms.exact && options.record.is_none(), ..terms };
     let simulation = Simulation::new(scene, sim_options).map_err(|error| error.to_string())?;
-    // All are seated before the first one drives, so that the world waits for all of them.
+    // All programs get their robots before the first one drives, so that the world waits for all of them.
     let log = options.record.as_deref().map(|file| recording(file, plan, scene)).transpose()?;
     let seats = programs.iter().map(|program| {
         let (robot, index) = (simulation.robot(program.robot)?, program.robot);
@@ -84,14 +84,14 @@ pub(crate) fn run_together(
         processes.extend(running.as_ref().ok().map(Running::id));
         let (sender, limits) = (sender.clone(), (options.real_limit, options.hang_limit));
         thread::spawn(move || {
-            // Nobody listens any more once the run's real time is over.
+            // Nobody receives any more after the real-time limit.
             let _ = sender.send((number, attend(seat, running, limits)));
         });
     }
     let served = collect(&results, programs.len(), &processes, &stopwatch, options.real_limit);
 
     drive_on(&simulation, scene, &stopwatch, options.real_limit);
-    // Whoever answers still has a part in it, so it is no longer written to.
+    // A thread that is still answering holds a reference, so nothing more is written.
     let finished = served.iter().all(Option::is_some);
     if let Some(Err(error)) = log.filter(|_| finished).map(LogWriter::finish) {
         return Err(format!("--record: the recording is incomplete: {error}"));
@@ -118,7 +118,7 @@ pub(crate) fn run_together(
     Ok(verdicts.collect())
 }
 
-/// Waits for the ends of programs, and ends them all when the run's real time is over.
+/// Waits for the ends of programs, and ends them all at the real-time limit.
 fn collect(
     results: &mpsc::Receiver<(usize, Served)>,
     count: usize,
@@ -146,14 +146,14 @@ fn collect(
     served
 }
 
-/// The program's time at its end: that of its last question, and what calls without a question have taken since, as its
-/// library says. That is not much; more is not believed.
+/// The program's time at its end: that of its last request plus later local calls, as reported by its library
+/// and limited to a plausible value.
 fn program_time(last_question: f64, reported: f64) -> f64 {
     let most = last_question + 2.0 * TICK;
     if (last_question..=most).contains(&reported) { reported } else { last_question }
 }
 
-/// Begins a recording.
+/// Starts a recording.
 fn recording(file: &Path, plan: &Plan, scene: &Scene) -> Result<LogWriter<BufWriter<File>>, String> {
     let begin = || {
         let header = Header { seed: Some(plan.seed), ..Header::new("robios", Vec::<String>::new()) };
@@ -193,7 +193,7 @@ fn attend(mut seat: Seat, running: Result<Running, String>, (real_limit, hang_li
     let offence = serve(&mut seat, &mut running, hang_limit);
     let contacts = seat.truth().robot(seat.index()).map_or(0, |robot| robot.contacts.into());
     let (time, walked) = (seat.now(), seat.walked());
-    // The world goes on without the robot's program.
+    // The world continues without the robot's program.
     drop(seat);
     if offence.is_some() {
         process::kill_all(running.id());
@@ -206,10 +206,10 @@ fn attend(mut seat: Seat, running: Result<Running, String>, (real_limit, hang_li
     Served { time, contacts, walked, ending, report }
 }
 
-/// How long a program is waited for before it is looked whether it has ended without a word.
+/// Interval of the checks whether a silent program has ended.
 const GLANCE: Duration = Duration::from_millis(5);
 
-/// Answers a program's questions until it has no more. Returns what it has to be ended for, if it has.
+/// Answers a program's requests until there are no more. Returns the reason to end it, if any.
 fn serve(seat: &mut Seat, running: &mut Running, hang_limit: f64) -> Option<Ending> {
     let memory = running.memory().clone();
     let mut silence = Stopwatch::start();
@@ -222,7 +222,7 @@ fn serve(seat: &mut Seat, running: &mut Running, hang_limit: f64) -> Option<Endi
                 return Some(Ending::Offence(message));
             }
             Asked::Nothing if running.has_ended() => return None,
-            // Others wait for a program that does not ask.
+            // Others wait for a program that sends no requests.
             Asked::Nothing if silence.seconds() < hang_limit || drift(seat, &memory, running) => continue,
             Asked::Nothing if running.has_ended() => return None,
             Asked::Nothing => {
@@ -247,8 +247,8 @@ fn serve(seat: &mut Seat, running: &mut Running, hang_limit: f64) -> Option<Endi
     }
 }
 
-/// Lets time pass for a program that has not called for long, so that the world goes on without it: it may have nothing
-/// more to ask, as after `VWSetSpeed(0, 100); while (1);`. Returns whether it calls again, before its time is over.
+/// Lets time pass for a program without calls for long, so that the world continues: it may need none, as
+/// after `VWSetSpeed(0, 100); while (1);`. Returns whether it calls again before its time limit.
 fn drift(seat: &mut Seat, memory: &Memory, running: &mut Running) -> bool {
     while !memory.is_asked(Duration::from_millis(1)) {
         if running.has_ended() || seat.ask(0.0, &Request::Pass(LOOK)).is_err() {
@@ -258,7 +258,7 @@ fn drift(seat: &mut Seat, memory: &Memory, running: &mut Running) -> bool {
     true
 }
 
-/// Seconds between two looks at robots that drive on.
+/// Interval of the checks on robots that drive on (s).
 const LOOK: f64 = 0.1;
 
 /// Lets robots whose programs have ended drive on until all stand, or the time is over.

@@ -3,7 +3,7 @@ use std::path::Path;
 
 use super::programs::{home, library};
 
-/// Copies the library under both its names, headers, scripts, Python modules and the runner to a folder.
+/// Copies the library under both names, headers, scripts, Python modules and the runner to a folder.
 pub(super) fn install(folder: &Path) -> Result<(), String> {
     let (home, library) = (home()?, library()?);
     let failed = |what: &Path, error: &std::io::Error| format!("{}: {error}", what.display());

@@ -1,4 +1,4 @@
-//! The runner: its command line, the programs, their processes, the world that they share, and the report.
+//! The runner: command line, programs, their processes, their shared world, and the report.
 
 mod children;
 mod host;
@@ -17,11 +17,11 @@ use clap::Parser;
 use options::{Command, Options};
 use verdict::Summary;
 
-/// The command line or an input file is wrong.
+/// Exit status for a wrong command line or input file.
 const WRONG: u8 = 2;
 
-/// Reads the command line, runs the programs and prints the report. 0: every program has ended as it should; 1: one has
-/// not, or touched something; 2: the command line or a file is wrong.
+/// Parses the command line, runs the programs and prints the report. Exit status 0: every program ended
+/// properly; 1: one did not, or touched something; 2: the command line or a file is wrong.
 pub(crate) fn main() -> ExitCode {
     let options = match Options::try_parse() {
         Ok(options) => options,
@@ -40,7 +40,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Run => match run(&options, &mut warnings) {
             Ok(summary) => {
                 let text = if options.json { summary.json() } else { summary.words() };
-                // A reader that had enough is no failure.
+                // A reader that has closed the pipe is not a failure.
                 let _ = writeln!(std::io::stdout(), "{text}");
                 ExitCode::from(summary.status())
             }
@@ -55,19 +55,19 @@ pub(crate) fn main() -> ExitCode {
 }
 
 fn refuse(message: &str) -> ExitCode {
-    // Without standard error there is nobody left to tell; the status still does.
+    // Without standard error nobody can be informed; the status remains.
     let _ = writeln!(std::io::stderr(), "{message}");
     ExitCode::from(WRONG)
 }
 
-/// What is wrong with a command line, in one line.
+/// The error of a command line in one line.
 fn in_one_line(error: &clap::Error) -> String {
     let text = error.render().to_string();
     let lines = text.lines().map(str::trim).take_while(|line| !line.is_empty());
     lines.collect::<Vec<_>>().join(" ").trim_start_matches("error: ").to_owned()
 }
 
-/// Adds what a run has to say to its report and to standard error, each of it once.
+/// Adds warnings to the report and to standard error, each once.
 fn warn(warnings: &mut Vec<String>, more: impl IntoIterator<Item = String>) {
     for warning in more {
         if !warnings.contains(&warning) {
@@ -77,7 +77,7 @@ fn warn(warnings: &mut Vec<String>, more: impl IntoIterator<Item = String>) {
     }
 }
 
-/// Runs the programs, and collects what is odd about the files.
+/// Runs the programs, and collects warnings about the files.
 fn run(options: &Options, warnings: &mut Vec<String>) -> Result<Summary, String> {
     let stopwatch = verdict::Stopwatch::start();
     let plan = options.plan()?;

@@ -100,14 +100,14 @@ pub(crate) struct Options {
     pub(crate) arguments: Vec<String>,
 }
 
-/// What the runner is to do.
+/// Task of the runner.
 pub(crate) enum Command {
     Run,
     Install(PathBuf),
 }
 
 impl Options {
-    /// What is to be done.
+    /// The task given by the arguments.
     pub(crate) fn command(&self) -> Command {
         match self.arguments.as_slice() {
             [folder] if self.program == Path::new("install") => Command::Install(folder.into()),
@@ -115,7 +115,7 @@ impl Options {
         }
     }
 
-    /// Whether somebody types the keys.
+    /// Whether a user types the keys.
     pub(crate) fn is_live(&self) -> bool {
         self.keys.parse() == Ok(KeyPlan::Terminal)
     }
@@ -125,14 +125,14 @@ impl Options {
         ends_in(&self.program, "sim")
     }
 
-    /// The world, with files by their whole names.
+    /// The world, with absolute file names.
     pub(crate) fn plan(&self) -> Result<Plan, String> {
         if self.is_script() && self.world.is_some() {
             return Err("--world and a script; expected one of them, a script names its world".into());
         }
         let world = if self.is_script() { Some(&self.program) } else { self.world.as_ref() };
         let robot = self.robot.clone().map(|robot| {
-            // The name of a built-in robot is no file.
+            // The name of a built-in robot is not a file.
             if ends_in(Path::new(&robot), "robi") {
                 whole(Path::new(&robot)).display().to_string()
             } else {
@@ -154,7 +154,7 @@ impl Options {
         })
     }
 
-    /// What calls take, a file by its whole name: programs run elsewhere.
+    /// The call costs, with a file by its absolute name: programs run elsewhere.
     pub(crate) fn costs_by_whole_name(&self) -> String {
         match self.call_costs.as_str() {
             known @ ("eyesim" | "free") => known.to_owned(),
@@ -163,12 +163,12 @@ impl Options {
     }
 }
 
-/// Whether a file's name has an ending, in any case.
+/// Whether a file has an extension, ignoring case.
 pub(crate) fn ends_in(file: &Path, ending: &str) -> bool {
     file.extension().is_some_and(|found| found.to_string_lossy().eq_ignore_ascii_case(ending))
 }
 
-/// The name of a file from the root on; as it was if there is no such file.
+/// The absolute name of a file; unchanged on failure.
 pub(crate) fn whole(file: &Path) -> PathBuf {
     std::path::absolute(file).unwrap_or_else(|_| file.to_owned())
 }
@@ -193,7 +193,7 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
     seconds.ok_or_else(|| "expected a number of seconds above 0, at most a million".into())
 }
 
-/// Checks the plan here; the library reads it again.
+/// Validates the plan here; the library parses it again.
 fn parse_keys(text: &str) -> Result<String, String> {
     text.parse::<KeyPlan>().map(|_| text.to_owned())
 }

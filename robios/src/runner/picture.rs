@@ -5,7 +5,7 @@ use roverlab::io::sim::Truth;
 use roverlab::picture::{Picture, SERIES, Style};
 use roverlab::world::Scene;
 
-/// Draws the world and where its robots have been.
+/// Draws the world and the paths of its robots.
 pub(super) fn draw(scene: &Scene, world: &Truth, file: &Path) -> Result<(), String> {
     let mut picture = Picture::new(&scene.world);
     picture.title("RoBIOS programs");

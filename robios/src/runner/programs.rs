@@ -9,23 +9,23 @@ use roverlab::world::formats::in_any_case;
 use super::options::{Options, ends_in, whole};
 use super::work_folder::WorkFolder;
 
-/// A program and the robot that it drives.
+/// A program and the robot it drives.
 #[derive(Debug)]
 pub(crate) struct Program {
-    /// As it was named.
+    /// Name as given.
     pub(crate) name: String,
-    /// The robot's index in the scene.
+    /// Index of the robot in the scene.
     pub(crate) robot: usize,
-    /// The file that is executed, or why there is none.
+    /// The executable file, or the reason why there is none.
     pub(crate) file: Result<PathBuf, String>,
-    /// Where it runs: in its own folder.
+    /// Working folder: the program's own.
     pub(crate) folder: PathBuf,
     pub(crate) arguments: Vec<String>,
-    /// Whether it gets the keys that somebody types.
+    /// Whether it gets the typed keys.
     pub(crate) is_first: bool,
 }
 
-/// The programs of a run.
+/// The programs of a run. Fails if a file is missing.
 pub(crate) fn of(options: &Options, scene: &Scene, folder: &WorkFolder) -> Result<Vec<Program>, String> {
     if !options.is_script() {
         let program = &options.program;
@@ -54,8 +54,8 @@ pub(crate) fn of(options: &Options, scene: &Scene, folder: &WorkFolder) -> Resul
     Ok(programs)
 }
 
-/// The file of a program that a script in some folder names: what stands there, or in the script's own folder, or else
-/// the only source text of that folder.
+/// The file of a program named in a script: relative to the script, in the script's own folder, or else the
+/// only source text of that folder.
 fn find(base: &Path, name: &str) -> Result<PathBuf, String> {
     let path = base.join(name.replace('\\', "/"));
     let beside = path.file_name().map(|file| base.join(file));
@@ -104,9 +104,9 @@ fn first_line(file: &Path) -> std::io::Result<String> {
     Ok(String::from_utf8_lossy(&start[..count]).lines().next().unwrap_or_default().to_owned())
 }
 
-/// The file of a program: what its name says, if this system can run it, or what stands beside it under the name with
-/// another ending, built first and then as source text, C before C++ and Python: a program may be named with the ending of
-/// another system, or with none, or may not be compiled. Letters may differ in their case.
+/// The file of a program: the named one if this system can run it, or one beside it with another extension:
+/// executable first, then C, C++ and Python source text. The name may have another system's extension, or
+/// none, or the program may not be compiled. Case is ignored.
 fn source(path: &Path) -> Option<PathBuf> {
     let endings = || ["x"].iter().chain(&C).chain(&CPP).chain(&["py"]);
     let instead = endings().map(|ending| path.with_extension(ending));
@@ -121,7 +121,7 @@ fn runs(file: &Path) -> bool {
     is_source(file) || ends_in(file, "py") || starts_here(file)
 }
 
-/// A file of a name, whatever the case of its letters.
+/// A file by name, ignoring case.
 fn usable(path: &Path) -> Option<PathBuf> {
     if path.is_file() {
         Some(path.to_owned())
@@ -130,7 +130,7 @@ fn usable(path: &Path) -> Option<PathBuf> {
     }
 }
 
-/// The source text of a folder that has only one: programs are often named otherwise than what they are made of.
+/// The source text of a folder with only one: programs are often named differently from their source.
 fn only_source(folder: &Path) -> Option<PathBuf> {
     let files = std::fs::read_dir(folder).ok()?.filter_map(Result::ok).map(|entry| entry.path());
     let is_module =
@@ -144,21 +144,21 @@ fn only_source(folder: &Path) -> Option<PathBuf> {
     }
 }
 
-/// Whether this system can start a file: it is a program of its own format, or a script that says by what.
+/// Whether this system can start a file: a program of its own format, or a script with an interpreter line.
 fn starts_here(path: &Path) -> bool {
     let mut magic = [0; 4];
     let read = File::open(path).and_then(|mut file| file.read(&mut magic));
     read.is_ok() && (magic == *b"\x7fELF" || magic[..2] == *b"#!" || !cfg!(target_os = "linux"))
 }
 
-/// Compiles a program with the script that is meant for it, with the other source texts that it needs.
+/// Compiles a program with the appropriate script, including other necessary source texts.
 fn compile(source: &Path, folder: &WorkFolder, robot: usize) -> Result<PathBuf, String> {
     let program = folder.file(&format!("program{robot}.x"));
     let Some(mut message) = compile_files(&[source.to_owned()], &program)? else { return Ok(program) };
     let mut files = vec![source.to_owned()];
     companions(source, &mut files, MOST_HEADERS);
     if files.len() > 1 && message.contains("undefined reference") {
-        // With the rest of the program, what is wrong is something else.
+        // If the complete program fails as well, its error is the relevant one.
         match compile_files(&files, &program)? {
             Some(with_companions) => message = with_companions,
             None => return Ok(program),
@@ -173,7 +173,7 @@ fn compile(source: &Path, folder: &WorkFolder, robot: usize) -> Result<PathBuf, 
     Err(format!("{}: does not compile: {}", source.display(), first.unwrap_or("the compiler says nothing")))
 }
 
-/// Compiles files into a program. Returns what the compiler says if it fails.
+/// Compiles files into a program. Returns the compiler's message on failure.
 fn compile_files(files: &[PathBuf], program: &Path) -> Result<Option<String>, String> {
     let is_cpp = files.iter().any(|file| CPP.iter().any(|ending| ends_in(file, ending)));
     let script = if is_cpp { "g++sim" } else { "gccsim" };
@@ -186,10 +186,10 @@ fn compile_files(files: &[PathBuf], program: &Path) -> Result<Option<String>, St
     Ok((!output.status.success()).then_some(message))
 }
 
-/// Headers within headers that are looked into.
+/// Maximum nesting depth of headers searched.
 const MOST_HEADERS: usize = 3;
 
-/// Adds the source texts that stand beside the headers which a file includes, under the same names.
+/// Adds the source texts beside the headers that a file includes, with the same names.
 fn companions(file: &Path, found: &mut Vec<PathBuf>, depth: usize) {
     let (Ok(text), Some(folder)) = (std::fs::read(file), file.parent()) else { return };
     for line in String::from_utf8_lossy(&text).lines() {
@@ -210,7 +210,7 @@ fn companions(file: &Path, found: &mut Vec<PathBuf>, depth: usize) {
     }
 }
 
-/// Headers, scripts and Python modules: beside this program's folder, or where the project was built.
+/// Headers, scripts and Python modules: beside this program's folder, or in the project's.
 pub(crate) fn home() -> Result<PathBuf, String> {
     let installed = std::env::current_exe().ok().and_then(|file| Some(file.parent()?.parent()?.to_owned()));
     let built = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
@@ -222,8 +222,8 @@ pub(crate) fn home() -> Result<PathBuf, String> {
     })
 }
 
-/// The library: beside this program, or where the project or an installation has it. Of several it is the newest:
-/// `cargo test` builds one without replacing what `cargo build` has put beside this program.
+/// The library: beside this program, in the project or in an installation. The newest one is used: `cargo
+/// test` builds one without replacing that of `cargo build`.
 pub(crate) fn library() -> Result<PathBuf, String> {
     let name = if cfg!(target_os = "macos") { "libeyesim.dylib" } else { "libeyesim.so" };
     let program = std::env::current_exe().map_err(|error| error.to_string())?;

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::programs::Program;
 
-/// Measures time on the wall clock.
+/// Measures wall-clock time.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stopwatch(Instant);
 
@@ -27,7 +27,7 @@ impl Stopwatch {
 /// How a program's process ended.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Ending {
-    /// The status, and what it has said last if it has failed.
+    /// Exit status, and its last words on failure.
     Exit(i32, Option<String>),
     Signal(i32),
     OutOfTime(String),
@@ -35,21 +35,21 @@ pub(crate) enum Ending {
     NotStarted(String),
 }
 
-/// What is true about a robot at the end.
+/// Ground truth of a robot at the end.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Truth {
-    /// Seconds that its program took.
+    /// Time taken by its program (s).
     pub(crate) time: f64,
     pub(crate) pose: Pose,
     pub(crate) stance: Stance,
     pub(crate) odometry: Pose,
     pub(crate) path_length: f64,
-    /// Until its program ended, and since.
+    /// Until its program ended, and after.
     pub(crate) contacts: u64,
     pub(crate) later_contacts: u64,
 }
 
-/// What became of a program and its robot.
+/// Result of a program and its robot.
 #[derive(Debug)]
 pub(crate) struct Verdict {
     program: String,
@@ -59,7 +59,7 @@ pub(crate) struct Verdict {
     lcd_text: String,
     sounds: u64,
     notes: Vec<String>,
-    /// Since when it had waited for a radio message, at its end.
+    /// Time since which it had been waiting for a radio message at its end (s).
     listening_since: Option<f64>,
 }
 
@@ -77,22 +77,22 @@ impl Verdict {
         }
     }
 
-    /// The robot as messages name it.
+    /// Name of the robot in messages.
     fn name(&self) -> String {
         format!("robot {}, {}", self.robot + 1, self.program)
     }
 
-    /// What the run has to say about the program, beyond how it ended.
+    /// Warnings about the program.
     pub(crate) fn warnings(&self) -> impl Iterator<Item = String> {
         self.notes.iter().map(|note| format!("{}: {note}", self.name()))
     }
 
-    /// Whether a limit has ended it while it waited for a radio message.
+    /// Whether a limit ended it while it waited for a radio message.
     fn listens(&self) -> bool {
         self.listening_since.is_some() && matches!(self.ending, Ending::OutOfTime(_))
     }
 
-    /// How it went, in a word.
+    /// Outcome in one word.
     fn outcome(&self) -> &'static str {
         match self.ending {
             Ending::Signal(_) => "crashed",
@@ -144,7 +144,7 @@ impl Verdict {
     }
 }
 
-/// Says of programs that a limit has ended while they waited for radio messages for whom they did.
+/// Adds to programs that a limit ended while waiting for radio messages which others waited too.
 pub(crate) fn name_deadlocks(verdicts: &mut [Verdict]) {
     let waits: Vec<_> = verdicts
         .iter()
@@ -170,25 +170,25 @@ pub(crate) fn name_deadlocks(verdicts: &mut [Verdict]) {
     }
 }
 
-/// What became of all programs of a run.
+/// Results of all programs of a run.
 #[derive(Debug)]
 pub(crate) struct Summary {
     pub(crate) verdicts: Vec<Verdict>,
-    /// What was odd about the files and the programs.
+    /// Warnings about files and programs.
     pub(crate) warnings: Vec<String>,
     pub(crate) seed: u64,
     pub(crate) noise: f64,
-    /// Seconds on the wall clock, if somebody asks.
+    /// Wall-clock time (s), if requested.
     pub(crate) wall_time: Option<f64>,
 }
 
 impl Summary {
-    /// 0 if every program has ended as it should, without a contact.
+    /// 0 if every program ended properly, without a contact.
     pub(crate) fn status(&self) -> u8 {
         u8::from(self.verdicts.iter().any(|verdict| verdict.outcome() != "finished"))
     }
 
-    /// One JSON object in one line: the first robot's fields, and all robots in a list.
+    /// One JSON object on one line: the first robot's fields, and all robots in a list.
     pub(crate) fn json(&self) -> String {
         let robots: Vec<Value> = self.verdicts.iter().map(Verdict::value).collect();
         let worst = ["crashed", "failed", "timed_out", "collided"];
@@ -208,7 +208,7 @@ impl Summary {
         value.to_string()
     }
 
-    /// The same for people.
+    /// The same as readable text.
     pub(crate) fn words(&self) -> String {
         let mut lines = Vec::new();
         for verdict in &self.verdicts {
@@ -233,7 +233,7 @@ impl Summary {
     }
 }
 
-/// The report of a run that could not begin.
+/// Report of a run that could not start.
 pub(crate) fn refusal(message: &str, warnings: &[String]) -> String {
     let value = json!({
         "example": "robios",
@@ -245,7 +245,7 @@ pub(crate) fn refusal(message: &str, warnings: &[String]) -> String {
     value.to_string()
 }
 
-/// A pose in space: the angles are turns about the axes forward, left and up, in this order.
+/// A pose in space: the angles are rotations about the forward, left and up axes, in this order.
 fn place(at: Pose, stance: &Stance) -> Value {
     let mut value = pose(at);
     value["z_mm"] = rounded(units::to_mm(stance.elevation)).into();
@@ -269,7 +269,7 @@ fn pose(pose: Pose) -> Value {
     })
 }
 
-/// Without the tail of digits that a change of unit leaves, and without the sign of zero.
+/// Without spurious digits from unit conversion, and without negative zero.
 fn rounded(value: f64) -> f64 {
     (value * 1e6).round() / 1e6 + 0.0
 }

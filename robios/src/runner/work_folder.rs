@@ -1,7 +1,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A folder of this run's own, which goes with it.
+/// A temporary folder of this run, removed at its end.
 #[derive(Debug)]
 pub(crate) struct WorkFolder(PathBuf);
 
@@ -21,12 +21,12 @@ impl WorkFolder {
         Err(format!("{}: no name is free for a folder", base.display()))
     }
 
-    /// The name of a file in it.
+    /// Path of a file in it.
     pub(crate) fn file(&self, name: &str) -> PathBuf {
         self.0.join(name)
     }
 
-    /// Where it is.
+    /// Path of the folder.
     pub(crate) fn path(&self) -> &Path {
         &self.0
     }
@@ -34,7 +34,7 @@ impl WorkFolder {
 
 impl Drop for WorkFolder {
     fn drop(&mut self) {
-        // What cannot be removed stays for the system to clean up.
+        // If removal fails, the system cleans up later.
         let _ = fs::remove_dir_all(&self.0);
     }
 }

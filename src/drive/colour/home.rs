@@ -14,28 +14,28 @@ use crate::parameter::{require_finite, require_not_negative, require_positive};
 use crate::scan::ScanMatcher;
 use crate::vision::ColourFinder;
 
-/// How a [`PushHome`] drives.
+/// Parameters of [`PushHome`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PushHomeParameters {
-    /// How it finds the object and drives to it.
+    /// Search for the object and approach.
     pub tracker: ColourTrackerParameters,
-    /// Metres from the object's middle at which the robot goes round it.
+    /// Distance from the object's centre at which the robot goes round it (m).
     pub round: f64,
-    /// Metres per second while it pushes.
+    /// Pushing speed (m/s).
     pub push_speed: f64,
-    /// How fast a wrong direction of the push is to fall, in 1/s.
+    /// Decay rate of an error in the pushing direction (1/s).
     pub correction: f64,
-    /// The object is home when its middle is so near, in metres.
+    /// Distance of the object's centre from home at which it has arrived (m).
     pub near: f64,
-    /// Metres that are kept free beside robot and object while it pushes.
+    /// Clearance kept beside robot and object while pushing (m).
     pub clearance: f64,
-    /// Metres ahead of the object that are looked at for what is in the way.
+    /// Distance ahead of the object checked for obstacles (m).
     pub foresight: f64,
 }
 
 impl Default for PushHomeParameters {
     fn default() -> Self {
-        // Farther from the object than for reaching it alone: there has to be room to go round.
+        // A larger gap than for reaching the object alone leaves room to go round it.
         let tracker = ColourTrackerParameters { gap: 0.14, ..ColourTrackerParameters::default() };
         Self {
             tracker,
@@ -50,7 +50,7 @@ impl Default for PushHomeParameters {
 }
 
 impl PushHomeParameters {
-    /// Fails with the name of the parameter that is out of range.
+    /// Checks every parameter; the error names the one out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         self.tracker.validate().map_err(|error| error.of("tracker"))?;
         require_positive("round", self.round)?;
@@ -62,60 +62,80 @@ impl PushHomeParameters {
     }
 }
 
-/// What a [`PushHome`] is doing.
+/// Phase of a [`PushHome`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum HomePhase {
-    /// It looks for the object and drives to it.
+    /// Searching for the object and approaching it.
     Finding,
-    /// It drives round to the far side.
+    /// Driving round to the far side.
     Rounding,
-    /// It turns to the object.
+    /// Turning to the object.
     Turning,
-    /// It pushes.
+    /// Pushing.
     Pushing,
 }
 
-/// How pushing something home ended.
+/// Outcome of pushing an object home.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PushOutcome {
     /// The object is home.
     Home,
-    /// Time was over.
+    /// The time limit came first.
     TimedOut,
-    /// Who watched had seen enough.
+    /// The observer stopped the run.
     Stopped,
     /// The drive stalled.
     Blocked,
 }
 
-/// Finds what has a taught colour, drives round it and pushes it home (book, section 11.6).
+/// Finds an object of a taught colour, drives round it and pushes it home (book, section 11.6).
 ///
-/// A round robot that pushes a round thing turns it out of the way as soon as the push goes past its middle. The lidar
-/// keeps the thing where the push needs it: with `r` metres from the robot's middle to the thing's and the heading `e`
-/// to the left of the line between them, that line turns by `-v sin(e) / r` radians a second, so a wrong direction
-/// `d` falls as `-k d` where `sin(e) = r k d / v`.
+/// A round robot turns a round object away as soon as it pushes off-centre. The lidar keeps the object
+/// centred: with `r` the distance between both centres (m) and `e` the heading to the left of the line
+/// between them, that line turns by `-v sin(e) / r` (rad/s). A direction error `d` therefore decays as `-k d`
+/// if `sin(e) = r k d / v`.
 ///
-/// What stands in the way is passed, also while the thing hides it: what the lidar has met is remembered. Where home is, is
-/// told by matching scans, since odometry is lost on a robot that turns and pushes so much.
+/// Obstacles are avoided even while the object hides them: lidar points are remembered. Scan matching
+/// localises the robot, since odometry drifts too far with so much turning and pushing.
+///
+/// ```
+/// use roverlab::drive::colour::{PushHome, PushHomeParameters, PushOutcome};
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::io::control::run;
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod};
+/// use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, World};
+/// let (mut world, robot) = (World::walled(3.0, 3.0), RobotSpec::s4());
+/// let red = ObjectKind { colour: Colour::RED, mass: 0.4, ..ObjectKind::predefined("can").expect("a can") };
+/// world.objects.push(Object::new(red.into(), Pose::new(1.6, 1.5, 0.0)));
+/// let camera = CameraGeometry::from(robot.camera.as_ref().expect("a camera"));
+/// let finder = ColourFinder::new(42, 10, FindMethod::Blob, camera)?;
+/// let mut push = PushHome::new(finder, Point::origin(), PushHomeParameters::default())?;
+/// let scene = Scene::with_robot(world, robot, Pose::new(0.5, 0.5, 0.8));
+/// let simulation = Simulation::new(&scene, SimOptions { pushing: true, ..SimOptions::with_noise(1.0, 1) })?;
+/// let outcome = run(&mut simulation.robot(0)?, &mut push, 240.0, |_, _, _| {})?;
+/// assert_eq!(outcome, PushOutcome::Home, "the can is where the robot started");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct PushHome {
     parameters: PushHomeParameters,
     tracker: ColourTracker,
     home: Point,
     phase: HomePhase,
-    /// Where the object is, in odometry's frame of the beginning.
+    /// Object's position in the initial odometry frame.
     object: Point,
-    /// Metres from the object's middle to what the lidar meets.
+    /// Distance from the object's centre to the surface the lidar meets (m).
     size: f64,
     lost: f64,
     memory: ScanMemory,
-    /// What knows better than odometry where the robot is.
+    /// Corrects odometry by matching scans.
     matcher: ScanMatcher,
     points: Vec<Point>,
 }
 
 impl PushHome {
-    /// A behaviour that brings what `finder` finds to a place in odometry's frame.
+    /// A behaviour that brings the object found by `finder` to `home`, a point in the odometry frame.
     pub fn new(
         finder: ColourFinder,
         home: Point,
@@ -137,17 +157,17 @@ impl PushHome {
         })
     }
 
-    /// What it is doing.
+    /// Current phase.
     pub fn phase(&self) -> HomePhase {
         self.phase
     }
 
-    /// Where it takes the object to be, in the frame that odometry began with, once it has found it.
+    /// Estimated position of the object in the initial odometry frame, once it has been found.
     pub fn object(&self) -> Option<Point> {
         (self.phase != HomePhase::Finding).then_some(self.object)
     }
 
-    /// The speed for an observation; `None` when the object is home.
+    /// The velocity for an observation; `None` when the object is home.
     pub(super) fn steer(&mut self, seen: &Sight<'_>) -> Result<Option<Twist>, crate::vision::ImageError> {
         let seen = &Sight { pose: self.localise(seen), ..*seen };
         if self.phase == HomePhase::Finding {
@@ -173,7 +193,7 @@ impl PushHome {
         }))
     }
 
-    /// Where the robot is by odometry and by what stands still around it.
+    /// The robot's pose by odometry, corrected by the static surroundings.
     fn localise(&mut self, seen: &Sight<'_>) -> Pose {
         let place = self.matcher.corrected(seen.pose).to_local(self.object);
         let moves = (self.phase != HomePhase::Finding).then_some(Exempt { place, reach: OBJECT });
@@ -183,12 +203,12 @@ impl PushHome {
         pose
     }
 
-    /// Looks by lidar where the object is now. `false` when it has not been there for a second.
+    /// Locates the object by lidar. `false` when it has been missing for a second.
     fn look(&mut self, seen: &Sight<'_>) -> bool {
         let place = seen.pose.to_local(self.object);
         let bearing = math::atan2(place.y, place.x);
         let half = math::asin((0.06 / place.coords.norm()).min(1.0));
-        // Noise may put what is touched right into the robot's middle, which is in no direction.
+        // Noise may place a touching point at the robot's centre, which has no direction.
         let unit = |point: Point| point.coords.try_normalize(f64::MIN_POSITIVE);
         let cluster = |near: Point| {
             let points = seen.scan.points().filter(|point| (point - near).norm() < 0.05);
@@ -212,7 +232,7 @@ impl PushHome {
         Steering { radius, margin, speed, turn_speed }
     }
 
-    /// Where the object is to go next: home, or past what is in the way, and so that there is room for the robot behind it.
+    /// Direction to push the object: home, or past obstacles with room for the robot behind it.
     fn direction_home(&mut self) -> f64 {
         let way = self.home - self.object;
         let straight = math::atan2(way.y, way.x);
@@ -226,7 +246,7 @@ impl PushHome {
         free.next().unwrap_or(straight)
     }
 
-    /// Goes round the object to the side that is away from where it is to go.
+    /// Goes round the object to the side opposite to the pushing direction.
     fn round(&mut self, seen: &Sight<'_>) -> Twist {
         let wanted = normalize_angle(self.direction_home() + PI);
         let mine = seen.pose.position() - self.object;
@@ -257,7 +277,7 @@ impl PushHome {
         Twist::new(0.0, (3.0 * bearing).clamp(-fastest, fastest))
     }
 
-    /// Drives to the object and pushes it.
+    /// Drives up to the object and pushes it.
     fn push(&mut self, seen: &Sight<'_>) -> Twist {
         let PushHomeParameters { push_speed, correction, .. } = self.parameters;
         let place = seen.pose.to_local(self.object);

@@ -1,4 +1,4 @@
-//! Driving by colour (book, section 11.4 and the tasks of 11.6): driving to what a
+//! Driving by colour (book, section 11.4 and the tasks of 11.6): to an object that a
 //! [`ColourFinder`](crate::vision::ColourFinder) finds, and pushing it home.
 
 mod camera;

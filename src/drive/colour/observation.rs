@@ -3,16 +3,16 @@ use image::RgbImage;
 use crate::geometry::Pose;
 use crate::io::{Camera, Lidar, LidarScan, Odometry, Result, StallDetector};
 
-/// What a colour-driven behaviour is told at each step.
+/// Observation of the colour-driven behaviours.
 #[derive(Debug, Clone, Default)]
 pub struct ColourObservation {
-    /// What the camera sees, straight ahead and level.
+    /// Camera image; the camera points straight ahead and level.
     pub image: RgbImage,
-    /// What the lidar sees at the same time.
+    /// Lidar scan of the same moment.
     pub scan: LidarScan,
-    /// Where odometry takes the robot to be.
+    /// Pose by odometry.
     pub pose: Pose,
-    /// Whether something holds it.
+    /// Whether the drive has stalled.
     pub stalled: bool,
 }
 
@@ -35,12 +35,12 @@ impl ColourObservation {
     }
 }
 
-/// An observation at a time.
+/// An observation with its time.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sight<'a> {
     pub(super) time: f64,
     pub(super) image: &'a RgbImage,
     pub(super) scan: &'a LidarScan,
-    /// Where the robot is taken to be.
+    /// Estimated pose of the robot.
     pub(super) pose: Pose,
 }

@@ -4,11 +4,10 @@ use super::steering::Exempt;
 use crate::geometry::{Point, Pose};
 use crate::io::LidarScan;
 
-/// What the lidar has met of late, also where something hides it now: whoever pushes a thing sees little of what is behind
-/// it.
+/// Recent lidar points, including those hidden now: a pushed object hides most of what is behind it.
 #[derive(Debug, Clone, Default)]
 pub(super) struct ScanMemory {
-    /// One point a cell, in odometry's frame, and when it was seen last.
+    /// One point per cell in the odometry frame, with the time it was last seen (s).
     cells: BTreeMap<(i32, i32), (Point, f64)>,
 }
 
@@ -18,7 +17,7 @@ const CELL: f64 = 0.03;
 const MEMORY: f64 = 60.0;
 
 impl ScanMemory {
-    /// Takes in a scan, without what is exempt in odometry's frame, and forgets what is old or belongs to that.
+    /// Adds a scan without the exempt points, and forgets old and exempt ones.
     pub(super) fn see(&mut self, scan: &LidarScan, pose: Pose, time: f64, exempt: Exempt) {
         for point in scan.points().map(|point| pose.to_world(point)) {
             let cell = [point.x, point.y].map(|along| (along / CELL).floor() as i32);
@@ -27,7 +26,7 @@ impl ScanMemory {
         self.cells.retain(|_, (point, seen)| time - *seen < MEMORY && !exempt.contains(point));
     }
 
-    /// All that is remembered, from a place, along odometry's axes.
+    /// All remembered points relative to a place, along the odometry axes.
     pub(super) fn from(&self, place: Point, points: &mut Vec<Point>) {
         points.clear();
         points.extend(self.cells.values().map(|(point, _)| point - place.coords));

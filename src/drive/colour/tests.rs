@@ -92,7 +92,7 @@ fn what_is_gone_is_searched_for() {
         }
     }
     assert_ne!(behaviour.phase(), HomePhase::Finding);
-    // Nothing is there any more, for the lidar and for the camera.
+    // Neither lidar nor camera sees anything any more.
     let image = RgbImage::from_pixel(160, 120, Rgb([90; 3]));
     let nothing = ColourObservation { image, pose: robot.pose().unwrap(), ..ColourObservation::default() };
     let mut step = |i: u32| {

@@ -10,24 +10,24 @@ use crate::io::{self, Camera, Lidar, LidarScan, Odometry, Resolution, StallDetec
 use crate::parameter::{require_not_negative, require_positive};
 use crate::vision::{ColourFinder, Sighting};
 
-/// How a [`ColourTracker`] drives.
+/// Parameters of [`ColourTracker`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ColourTrackerParameters {
-    /// Metres per second.
+    /// Driving speed (m/s).
     pub speed: f64,
-    /// Radians per second.
+    /// Turn rate (rad/s).
     pub turn_speed: f64,
-    /// Metres from the robot's middle to its rim.
+    /// Radius of the robot (m).
     pub radius: f64,
-    /// Metres that it keeps free beside it.
+    /// Clearance kept beside the robot (m).
     pub margin: f64,
-    /// Metres between the robot's rim and the object when it is reached.
+    /// Distance between the robot's rim and the object on arrival (m).
     pub gap: f64,
-    /// Seconds for which an object is driven to that is out of sight.
+    /// Time for which the robot keeps driving to an object out of sight (s).
     pub memory: f64,
-    /// Metres driven to look from elsewhere.
+    /// Distance driven to search from another place (m).
     pub leg: f64,
-    /// Seconds between two steps.
+    /// Control period (s).
     pub period: f64,
 }
 
@@ -47,7 +47,7 @@ impl Default for ColourTrackerParameters {
 }
 
 impl ColourTrackerParameters {
-    /// Fails with the name of the parameter that is out of range.
+    /// Checks every parameter; the error names the one out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         require_positive("speed", self.speed)?;
         require_positive("turn speed", self.turn_speed)?;
@@ -60,47 +60,68 @@ impl ColourTrackerParameters {
     }
 }
 
-/// What a [`ColourTracker`] is doing.
+/// Phase of a [`ColourTracker`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ColourPhase {
-    /// It turns on the spot and looks for the colour.
+    /// Turning on the spot in search of the colour.
     Searching,
-    /// It drives elsewhere to look from there.
+    /// Driving elsewhere to search from there.
     Roaming,
-    /// It drives to the object.
+    /// Driving to the object.
     Approaching,
 }
 
-/// How driving to a colour ended.
+/// Outcome of driving to a colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ColourOutcome {
-    /// The robot stands before the object.
+    /// The robot stands in front of the object.
     Reached,
-    /// Time was over.
+    /// The time limit came first.
     TimedOut,
-    /// Who watched had seen enough.
+    /// The observer stopped the run.
     Stopped,
     /// The drive stalled.
     Blocked,
 }
 
-/// Drives to what has a taught colour, and searches for it when it is not in sight (book, Programs 11.9 to 11.11).
+/// Drives to an object of a taught colour, and searches for it while it is out of sight (book, Programs 11.9
+/// to 11.11).
 ///
-/// The camera finds the object; the lidar tells how far it is and keeps the robot from touching anything else. Where the
-/// object is lost behind something, the robot goes on to where it was; where it is nowhere, the robot turns once and
-/// then looks from another place, the freest that it has not been to.
+/// The camera finds the object; the lidar measures its distance and keeps the robot away from everything
+/// else. If the object is hidden, the robot drives on to its last position. If it is nowhere in sight, the
+/// robot turns once and then searches from the freest place not yet visited.
+///
+/// ```
+/// use roverlab::drive::colour::{ColourOutcome, ColourTracker, ColourTrackerParameters};
+/// use roverlab::geometry::Pose;
+/// use roverlab::io::control::run;
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod};
+/// use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, World};
+/// let (mut world, robot) = (World::walled(2.0, 2.0), RobotSpec::s4());
+/// let red = ObjectKind { colour: Colour::RED, ..ObjectKind::predefined("can").expect("a can") };
+/// world.objects.push(Object::new(red.into(), Pose::new(1.5, 1.2, 0.0)));
+/// let camera = CameraGeometry::from(robot.camera.as_ref().expect("a camera"));
+/// let finder = ColourFinder::new(42, 10, FindMethod::Blob, camera)?;
+/// let mut tracker = ColourTracker::new(finder, ColourTrackerParameters::default())?;
+/// let scene = Scene::with_robot(world, robot, Pose::new(0.4, 0.4, 2.0));
+/// let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
+/// let outcome = run(&mut simulation.robot(0)?, &mut tracker, 60.0, |_, _, _| {})?;
+/// assert_eq!((outcome, simulation.truth().robot(0)?.contacts), (ColourOutcome::Reached, 0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct ColourTracker {
     finder: ColourFinder,
     parameters: ColourTrackerParameters,
     phase: ColourPhase,
-    /// Where the object is, in odometry's frame, and when it was seen last.
+    /// Object's position in the odometry frame, and the time it was last seen (s).
     target: Option<(Point, f64)>,
     sighting: Option<Sighting>,
-    /// How far the robot has turned in this search, and its heading before.
+    /// Angle turned in this search (rad), and the heading at the previous step.
     turned: f64,
     heading: Option<f64>,
-    /// Where it has looked from, and where it goes to look.
+    /// Places searched from, and the next one.
     places: Vec<Point>,
     goal: Option<Point>,
     leg_start: f64,
@@ -111,7 +132,8 @@ pub struct ColourTracker {
 pub(super) const OBJECT: f64 = 0.09;
 
 impl ColourTracker {
-    /// A tracker that begins with a search. Fails with the name of the parameter that is out of range.
+    /// Creates a tracker that begins with a search. Fails with the name of the parameter that is out of
+    /// range.
     pub fn new(finder: ColourFinder, parameters: ColourTrackerParameters) -> Result<Self, ParameterError> {
         parameters.validate()?;
         Ok(Self::searching(finder, parameters))
@@ -139,22 +161,22 @@ impl ColourTracker {
         Self::searching(self.finder.clone(), self.parameters)
     }
 
-    /// What it is doing.
+    /// Current phase.
     pub fn phase(&self) -> ColourPhase {
         self.phase
     }
 
-    /// Where in the last image the object was.
+    /// Object's position in the last image.
     pub fn sighting(&self) -> Option<Sighting> {
         self.sighting
     }
 
-    /// Where it takes the object to be, in odometry's frame.
+    /// Estimated position of the object in the odometry frame.
     pub fn target(&self) -> Option<Point> {
         self.target.map(|(place, _)| place)
     }
 
-    /// The speed for an observation; `None` when the object is reached.
+    /// The velocity for an observation; `None` when the object is reached.
     pub(super) fn steer(&mut self, seen: &Sight<'_>) -> Result<Option<Twist>, crate::vision::ImageError> {
         self.sighting = self.finder.find(seen.image)?;
         if let Some(sighting) = self.sighting {
@@ -169,13 +191,13 @@ impl ColourTracker {
         })
     }
 
-    /// Where something is, in the robot's frame: on the floor, or where the lidar meets it.
+    /// Position of a detection in the robot's frame, from its foot on the floor or from the lidar.
     fn place_of(&self, sighting: &Sighting, scan: &LidarScan) -> Point {
         let camera = self.finder.camera;
         if let Some(place) = sighting.place
             && place.coords.norm() < 2.5
         {
-            // The lidar knows the distance better where it sees the same thing.
+            // The lidar's distance is more accurate if it meets the same object.
             let bearing = math::atan2(place.y, place.x);
             let met = nearest(scan, bearing, 0.06);
             return met.filter(|met| (met - place).norm() < 0.3 * place.coords.norm()).unwrap_or(place);
@@ -191,7 +213,7 @@ impl ColourTracker {
         let place = seen.pose.to_local(target);
         let (distance, bearing) = (place.coords.norm(), math::atan2(place.y, place.x));
         let unseen = seen.time - last;
-        // Where it should be in sight and is not, it is gone.
+        // An object that should be in view but is not seen is gone.
         let in_view = bearing.abs() < 0.4 * self.finder.camera.field_of_view;
         if unseen > p.memory || (in_view && unseen > 0.8) {
             self.begin_search();
@@ -230,7 +252,7 @@ impl ColourTracker {
         self.turned += self.heading.map_or(0.0, |before| angle_difference(heading, before).abs());
         self.heading = Some(heading);
         if self.turned < TAU + 0.2 {
-            // Slower than it drives, so that images show enough of everything.
+            // Slower than elsewhere, so that the images cover every direction often enough.
             return Twist::new(0.0, 0.8 * self.parameters.turn_speed);
         }
         self.places.push(seen.pose.position());
@@ -240,7 +262,7 @@ impl ColourTracker {
         self.roam(seen)
     }
 
-    /// The end of the longest free way, with places preferred that are far from those looked from before.
+    /// The end of the longest free way, with a preference for places far from those already searched.
     fn freest(&mut self, seen: &Sight<'_>) -> Point {
         obstacles(seen.scan, None, &mut self.points);
         let steering = self.steering();

@@ -1,13 +1,13 @@
 use super::CoverageMap;
 use crate::geometry::Point;
 
-/// A part of the floor that is driven in lanes, one beside the other without a gap: of each lane its two ends.
+/// A part of the floor covered by adjacent lanes, each given by its two ends.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Block {
     pub(super) lanes: Vec<[Point; 2]>,
 }
 
-/// A lane's free run: its first and last column, or row.
+/// Free run of a lane: its first and last column, or row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Run {
     first: usize,
@@ -15,9 +15,9 @@ struct Run {
     block: usize,
 }
 
-/// Parts the places of a map into blocks (boustrophedon decomposition after H. Choset and P. Pignon, "Coverage path planning:
-/// the boustrophedon cellular decomposition", 1997): lanes along x or along y, which begin a new block where an obstacle parts
-/// or joins them.
+/// Divides the reachable cells into blocks of lanes along x or y (boustrophedon decomposition, H. Choset and
+/// P. Pignon, "Coverage path planning: the boustrophedon cellular decomposition", 1997). A new block begins
+/// where an obstacle splits or joins lanes.
 pub(super) fn blocks(map: &CoverageMap, along_x: bool) -> Vec<Block> {
     let raster = map.raster();
     let (length, count) =
@@ -40,7 +40,7 @@ pub(super) fn blocks(map: &CoverageMap, along_x: bool) -> Vec<Block> {
             let meets = |run: &Run, other: &Run| run.first <= other.last && other.first <= run.last;
             let run = runs[at];
             let above: Vec<&Run> = before.iter().filter(|other| meets(&run, other)).collect();
-            // One run that continues one other stays in its block.
+            // A run that continues exactly one other stays in its block.
             let alone = above.len() == 1 && runs.iter().filter(|other| meets(other, above[0])).count() == 1;
             let block = if alone {
                 above[0].block
@@ -57,7 +57,7 @@ pub(super) fn blocks(map: &CoverageMap, along_x: bool) -> Vec<Block> {
     blocks
 }
 
-/// The rows, or columns, of the lanes: evenly spaced between the first and the last one where the robot may be.
+/// Rows, or columns, of the lanes, evenly spaced between the first and the last one the robot can reach.
 fn lanes(count: usize, is_used: impl Fn(usize) -> bool, spacing: f64) -> Vec<usize> {
     let used: Vec<usize> = (0..count).filter(|&lane| is_used(lane)).collect();
     let [first, .., last] = used.as_slice() else { return used };

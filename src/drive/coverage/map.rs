@@ -4,16 +4,16 @@ use crate::io::{Error, ErrorKind, Result};
 use crate::parameter::{require, require_positive, require_up_to};
 use crate::world::{Clearance, Raster, World};
 
-/// What a robot covers, and how near it may come to things.
+/// Parameters of a [`CoverageMap`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CoverageMapParameters {
-    /// The radius of the robot in metres. It covers the floor under it.
+    /// Radius of the robot (m). It covers the floor beneath it.
     pub radius: f64,
-    /// Metres that it keeps away from everything.
+    /// Clearance kept from everything (m).
     pub margin: f64,
-    /// Metres by which neighbouring lanes overlap.
+    /// Overlap of neighbouring lanes (m).
     pub overlap: f64,
-    /// Metres along the edges of the map's cells.
+    /// Cell size of the map (m).
     pub resolution: f64,
 }
 
@@ -25,7 +25,7 @@ impl Default for CoverageMapParameters {
 }
 
 impl CoverageMapParameters {
-    /// Fails with the name of the parameter that is out of range.
+    /// Checks every parameter; the error names the one out of range.
     pub fn validate(&self) -> std::result::Result<(), ParameterError> {
         require_up_to("radius", self.radius, 1000.0)?;
         require_up_to("margin", self.margin, 1000.0)?;
@@ -37,22 +37,36 @@ impl CoverageMapParameters {
     }
 }
 
-/// Which part of the floor a robot can cover, and which it has covered.
+/// The floor that a robot can cover, and the part already covered.
 ///
-/// It can cover what is under it wherever it can get from its start while it keeps its margin.
+/// Coverable floor is everything beneath the robot at any place reachable from its start with the clearance
+/// kept.
+///
+/// ```
+/// use roverlab::drive::{CoverageMap, CoverageMapParameters, CoveragePlan};
+/// use roverlab::geometry::Point;
+/// use roverlab::world::World;
+/// let start = Point::new(0.4, 0.4);
+/// let mut map = CoverageMap::new(&World::walled(2.0, 1.5), start, CoverageMapParameters::default())?;
+/// let plan = CoveragePlan::new(&map, start)?;
+/// for leg in plan.points().windows(2) {
+///     map.cover_line(leg[0], leg[1], 0.0);
+/// }
+/// assert!(map.share() > 0.97, "a robot that drives the plan covers the floor");
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct CoverageMap {
     raster: Raster,
-    /// Where the robot's middle may be.
+    /// Cells that the robot's centre may occupy.
     pub(super) places: Vec<bool>,
     floor: Vec<bool>,
     covered: Vec<bool>,
     parameters: CoverageMapParameters,
-    /// Cells of the floor, and those that are covered.
+    /// Number of floor cells, and of covered ones.
     cells: usize,
     done: usize,
-    /// How many cells of the floor are not covered in each square of [`TILE`] cells: where there are none nobody needs to
-    /// look.
+    /// Number of uncovered floor cells in each square of [`TILE`] cells; finished tiles are skipped.
     tiles: Vec<u32>,
 }
 
@@ -60,8 +74,8 @@ pub struct CoverageMap {
 const TILE: usize = 16;
 
 impl CoverageMap {
-    /// The map of a world for a robot at a start. Fails for a start where the robot cannot be, and for a world that is too
-    /// large.
+    /// The map of a world for a robot at a start. Fails for a start without the clearance and for a world
+    /// that is too large.
     pub fn new(world: &World, start: Point, parameters: CoverageMapParameters) -> Result<Self> {
         parameters.validate()?;
         let CoverageMapParameters { radius, margin, resolution, .. } = parameters;
@@ -119,7 +133,7 @@ impl CoverageMap {
         row / TILE * self.raster.columns().div_ceil(TILE) + column / TILE
     }
 
-    /// Whether all is covered in the tiles about a cell that lie within so many cells.
+    /// Whether all tiles within `reach` cells of a cell are fully covered.
     fn is_done_about(&self, cell: usize, reach: usize) -> bool {
         let (columns, rows) = (self.raster.columns(), self.raster.rows());
         let (column, row) = (cell % columns, cell / columns);
@@ -131,7 +145,7 @@ impl CoverageMap {
         })
     }
 
-    /// Steps in columns and rows from a cell to those whose middles lie within a radius.
+    /// Offsets in columns and rows of the cells with centres within a radius.
     fn disc(&self, radius: f64) -> Vec<(i64, i64)> {
         let cells = radius / self.raster.resolution();
         let reach = cells.ceil() as i64;
@@ -148,7 +162,7 @@ impl CoverageMap {
         })
     }
 
-    /// Covers the floor under a robot at a place.
+    /// Marks the floor beneath a robot at a place as covered.
     pub fn cover(&mut self, place: Point) {
         let disc = self.disc(self.parameters.radius);
         self.cover_by(place, &disc);
@@ -166,7 +180,7 @@ impl CoverageMap {
         }
     }
 
-    /// Covers the floor along a line that a robot's middle drives, which errs by so many metres to either side.
+    /// Marks the floor along a line as covered by a robot with a cross-track error of up to `error` metres.
     pub fn cover_line(&mut self, from: Point, to: Point, error: f64) {
         let disc = self.disc((self.parameters.radius - error).max(0.0));
         let length = (to - from).norm();
@@ -176,32 +190,32 @@ impl CoverageMap {
         }
     }
 
-    /// The share of the floor that is covered, 0 to 1.
+    /// Fraction of the floor covered, 0 to 1.
     pub fn share(&self) -> f64 {
         self.done as f64 / self.cells.max(1) as f64
     }
 
-    /// Square metres of the floor that the robot can cover.
+    /// Area of the coverable floor (m²).
     pub fn area(&self) -> f64 {
         self.cells as f64 * self.raster.resolution() * self.raster.resolution()
     }
 
-    /// The cells.
+    /// Raster of the map's cells.
     pub fn raster(&self) -> &Raster {
         &self.raster
     }
 
-    /// What it was made for.
+    /// Parameters of the map.
     pub fn parameters(&self) -> &CoverageMapParameters {
         &self.parameters
     }
 
-    /// Whether the robot's middle may be at a place.
+    /// Whether the robot's centre may be at a place.
     pub fn is_place(&self, place: Point) -> bool {
         self.raster.cell_at(place).is_some_and(|cell| self.places[cell])
     }
 
-    /// The middles of the floor's cells that are covered, or those that are not.
+    /// Centres of the floor's covered, or uncovered, cells.
     pub fn cells(&self, covered: bool) -> impl Iterator<Item = Point> + '_ {
         let wanted = move |&cell: &usize| self.floor[cell] && self.covered[cell] == covered;
         (0..self.floor.len()).filter(wanted).map(|cell| self.raster.centre(cell))
@@ -215,7 +229,7 @@ impl CoverageMap {
         self
     }
 
-    /// How many cells that are not covered yet a robot at a cell would cover.
+    /// Number of uncovered cells that a robot at a cell would cover.
     pub(super) fn gain(&self, cell: usize, disc: &[(i64, i64)]) -> usize {
         let reach = (self.parameters.radius / self.raster.resolution()).ceil() as usize;
         if self.is_done_about(cell, reach) {
@@ -224,7 +238,7 @@ impl CoverageMap {
         self.under(cell, disc).filter(|&under| self.floor[under] && !self.covered[under]).count()
     }
 
-    /// The cells under a robot, as steps.
+    /// The cells beneath a robot, as offsets.
     pub(super) fn robot(&self) -> Vec<(i64, i64)> {
         self.disc(0.9 * self.parameters.radius)
     }

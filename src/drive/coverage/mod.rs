@@ -1,4 +1,5 @@
-//! Driving over the whole floor (book, sections 3.1 and 6.3): a plan in lanes, and a map of what has been covered.
+//! Driving over the whole floor (book, sections 3.1 and 6.3): a plan in lanes, and a map of the floor
+//! covered.
 
 mod lanes;
 mod map;

@@ -6,7 +6,8 @@ use super::route::{Routes, is_free};
 use crate::geometry::Point;
 use crate::io::Result;
 
-/// A way over the whole floor, in lanes as a lawn mower's (book, sections 3.1 and 6.3), and to what the lanes leave out.
+/// A path over the whole floor in parallel lanes, like a lawn mower's (book, sections 3.1 and 6.3), with
+/// visits to the places left out.
 ///
 /// ```
 /// use roverlab::drive::{CoverageMap, CoverageMapParameters, CoveragePlan};
@@ -27,8 +28,9 @@ pub struct CoveragePlan {
 
 /// Metres by which the robot may miss its way without leaving a gap that the plan does not know of.
 const ERROR: f64 = 0.004;
-/// Of the cells under the robot, the share that has to be gained for a place to be worth a visit, and the share of the floor
-/// at which no more such visits are made: small gains count where the floor is small or has many corners.
+/// Of the cells under the robot, the share that has to be gained for a place to be worth a visit, and the
+/// share of the floor at which no more such visits are made: small gains count where the floor is small or
+/// has many corners.
 const WORTH: [(f64, f64); 3] = [(0.12, 0.995), (0.05, 0.92), (0.02, 0.9)];
 /// The share of the floor below which a plan is worse than another one, however short.
 const ENOUGH: f64 = 0.98;
@@ -36,12 +38,12 @@ const ENOUGH: f64 = 0.98;
 const VISITS: usize = 2000;
 
 impl CoveragePlan {
-    /// A plan for a robot at a start, in lanes along the one side of the floor or along the other, whichever is shorter. What
-    /// the map says to be covered is not looked at. Takes time in proportion to the cells times, at worst, the blocks and
-    /// the visits beside them.
+    /// Plans for a robot at a start, with lanes along either side of the floor, whichever is shorter. Ignores
+    /// what the map marks as covered. Time is proportional to the number of cells times, at worst, the number
+    /// of blocks and extra visits.
     pub fn new(map: &CoverageMap, start: Point) -> Result<Self> {
         let [one, other] = [true, false].map(|along_x| Self::in_lanes(map, start, along_x));
-        // A plan that leaves out more is no better for being shorter.
+        // A plan that leaves out more floor is no better for being shorter.
         let is_better = match (one.share < ENOUGH, other.share < ENOUGH) {
             (false, true) => true,
             (true, false) => false,
@@ -67,23 +69,23 @@ impl CoveragePlan {
         Self { points, share: planned.share() }
     }
 
-    /// The corners of the way, from the start on.
+    /// Corners of the path, including the start.
     pub fn points(&self) -> &[Point] {
         &self.points
     }
 
-    /// Metres.
+    /// Length of the path (m).
     pub fn length(&self) -> f64 {
         self.points.windows(2).map(|two| (two[1] - two[0]).norm()).sum()
     }
 
-    /// The share of the floor that it covers if it is driven to within a few millimetres.
+    /// Fraction of the floor covered if the path is driven to within a few millimetres.
     pub fn share(&self) -> f64 {
         self.share
     }
 }
 
-/// Takes the block that begins nearest: its lanes in the order and in the directions in which they are to be driven.
+/// Takes the block with the nearest entry: its lanes in the order and directions to be driven.
 fn take_nearest(
     map: &CoverageMap,
     routes: &mut Routes,
@@ -115,7 +117,7 @@ fn take_nearest(
     Some(lanes)
 }
 
-/// Adds a place to a way, straight or round what is between.
+/// Extends a path to a place, straight or round obstacles.
 fn connect(map: &CoverageMap, routes: &mut Routes, points: &mut Vec<Point>, place: Point) {
     let here = points[points.len() - 1];
     if is_free(map, here, place) {
@@ -128,7 +130,7 @@ fn connect(map: &CoverageMap, routes: &mut Routes, points: &mut Vec<Point>, plac
     }
 }
 
-/// Drives to the nearest places that are worth it, until the floor is covered.
+/// Drives to the nearest worthwhile places until the floor is covered.
 fn visit_the_rest(
     map: &CoverageMap,
     routes: &mut Routes,
@@ -176,7 +178,7 @@ mod tests {
             world.objects.push(Object::new(kind, Pose::new(x * width, y * depth, turn)));
             let Ok(mut map) = CoverageMap::new(&world, START, CoverageMapParameters::default()) else { return Ok(()) };
             let plan = CoveragePlan::new(&map, START).unwrap();
-            // The plan itself takes the robot to err by some millimetres.
+            // The plan assumes a cross-track error of a few millimetres.
             prop_assert!(plan.share() >= 0.94, "{}", plan.share());
             prop_assert!(plan.length() < 1.7 * map.area() / 0.12, "{} m for {} m2", plan.length(), map.area());
             for two in plan.points().windows(2) {
@@ -196,9 +198,9 @@ mod tests {
         let disc = std::f64::consts::PI * 0.06 * 0.06;
         assert!((map.share() * map.area() - disc).abs() < 0.1 * disc);
         map.cover_line(Point::new(0.2, 0.5), Point::new(0.8, 0.5), 0.0);
-        // A row of cells more or less on either side.
+        // The cells at either edge may or may not count.
         assert!((map.share() * map.area() - disc - 0.6 * 0.12).abs() < 0.6 * 0.02);
-        // Walls leave 15 mm and the robot's round corners.
+        // The clearance of 15 mm and the robot's round corners stay uncovered.
         assert!((map.area() - 0.96 * 0.96).abs() < 0.04, "{}", map.area());
     }
 

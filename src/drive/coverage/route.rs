@@ -3,14 +3,14 @@ use std::collections::BinaryHeap;
 use super::CoverageMap;
 use crate::geometry::Point;
 
-/// Shortest ways of a robot's middle over the cells where it may be, from one cell to others.
+/// Shortest paths of a robot's centre over the free cells, from one cell to others.
 #[derive(Debug, Clone)]
 pub(super) struct Routes {
-    /// The cell before each on the way from the start.
+    /// Predecessor of each cell on the path from the start.
     before: Vec<u32>,
-    /// The length of the way in cells; infinite where none is known.
+    /// Path length to each cell (cells); infinite if unknown.
     lengths: Vec<f32>,
-    /// Cells that the last search came to.
+    /// Cells reached by the last search.
     touched: Vec<u32>,
     start: usize,
 }
@@ -27,21 +27,21 @@ impl PartialOrd for Open {
 }
 
 impl Ord for Open {
-    /// The nearest comes first.
+    /// Reversed for a min-heap.
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {
         other.0.total_cmp(&self.0).then(other.1.cmp(&self.1))
     }
 }
 
 impl Routes {
-    /// No ways yet over a map.
+    /// No paths yet over a map.
     pub(super) fn new(map: &CoverageMap) -> Self {
         let cells = map.places.len();
         let (before, lengths) = (vec![u32::MAX; cells], vec![f32::INFINITY; cells]);
         Self { before, lengths, touched: Vec::new(), start: 0 }
     }
 
-    /// Finds ways from a cell until it comes to the nearest one that `is_goal` accepts, and returns that.
+    /// Searches from a cell and returns the nearest cell accepted by `is_goal`.
     pub(super) fn search(
         &mut self,
         map: &CoverageMap,
@@ -68,7 +68,7 @@ impl Routes {
             }
             for (x, y, step) in STEPS {
                 let next = here as i64 + y * columns + x;
-                // Places keep away from the raster's edge, so that no step leaves it.
+                // Free cells keep away from the raster's edge, so no step leaves it.
                 let Some(next) = usize::try_from(next).ok().filter(|&next| next < cells && map.places[next])
                 else {
                     continue;
@@ -86,7 +86,7 @@ impl Routes {
         None
     }
 
-    /// The way to a cell as few straight lines, both ends included.
+    /// The path to a cell as few straight lines, both ends included.
     pub(super) fn to(&self, map: &CoverageMap, goal: usize) -> Vec<Point> {
         let mut cells = vec![goal];
         let mut cell = goal;
@@ -114,19 +114,19 @@ const STEPS: [(i64, i64, f32); 8] = [
     (-1, -1, DIAGONAL),
 ];
 
-/// Whether the robot's middle may be all along a line.
+/// Whether the robot's centre may be anywhere along a line.
 pub(super) fn is_free(map: &CoverageMap, from: Point, to: Point) -> bool {
     let steps = (2.0 * (to - from).norm() / map.raster().resolution()).ceil().max(1.0) as usize;
     (0..=steps).all(|step| map.is_place(from + (to - from) * (step as f64 / steps as f64)))
 }
 
-/// Leaves out the points of a way that straight lines do without.
+/// Removes the points of a path that straight lines can skip.
 fn straightened(map: &CoverageMap, points: &[Point]) -> Vec<Point> {
     let Some(&first) = points.first() else { return Vec::new() };
     let mut line = vec![first];
     let mut from = 0;
     while from + 1 < points.len() {
-        // The farthest point in sight, looked for in steps that double.
+        // Finds the farthest visible point by doubling steps.
         let (mut seen, mut step) = (from + 1, 1);
         while step > 0 {
             let next = (seen + step).min(points.len() - 1);

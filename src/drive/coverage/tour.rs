@@ -6,20 +6,20 @@ use crate::io::control::{Behaviour, Decision, Senses, halts};
 use crate::io::{Error, Odometry, Result};
 use crate::parameter::require_positive;
 
-/// What [`Tour`] goes by.
+/// Parameters of [`Tour`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TourParameters {
-    /// The fastest speed in m/s.
+    /// Maximum speed (m/s).
     pub speed: f64,
-    /// The fastest turn in rad/s.
+    /// Maximum turn rate (rad/s).
     pub turn_rate: f64,
-    /// Metres to a corner at which the next leg begins.
+    /// Distance to a corner at which the next leg begins (m).
     pub arrival: f64,
-    /// Metres of way in which a distance from the line dies away.
+    /// Decay length of the cross-track error (m).
     pub reach: f64,
-    /// The seconds by which the robot does later what it is told.
+    /// Delay of the robot's response to commands (s).
     pub lag: f64,
-    /// Seconds from one step to the next.
+    /// Control period (s).
     pub period: f64,
 }
 
@@ -30,12 +30,26 @@ impl Default for TourParameters {
     }
 }
 
-/// Drives along straight legs with sharp corners: on the spot towards the next corner, then straight on, with feedback.
+/// Drives straight legs with sharp corners: turns on the spot to the next corner, then drives straight, with
+/// feedback.
+///
+/// ```
+/// use roverlab::drive::{Tour, TourParameters};
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::kinematics::{Displacement, advance};
+/// let corners = [Point::new(0.0, 0.0), Point::new(1.0, 0.0), Point::new(1.0, 1.0)];
+/// let (mut tour, mut pose) = (Tour::new(&corners, TourParameters::default())?, Pose::default());
+/// while let Some(twist) = tour.step(pose) {
+///     pose = advance(pose, Displacement { length: 0.05 * twist.linear, angle: 0.05 * twist.angular });
+/// }
+/// assert!(pose.distance_to(corners[2]) < 0.05 && tour.progress() > 0.99);
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tour {
     parameters: TourParameters,
     corners: Vec<Point>,
-    /// The corner that is driven to.
+    /// Index of the corner driven to.
     next: usize,
     turning: bool,
 }
@@ -44,7 +58,7 @@ pub struct Tour {
 const ASTRAY: f64 = 0.5;
 
 impl Tour {
-    /// A tour along a line through some points, the first of which is the start.
+    /// Creates a tour through points, the first of which is the start. Fails for points that are not finite.
     pub fn new(points: &[Point], parameters: TourParameters) -> Result<Self> {
         require_positive("speed", parameters.speed)?;
         require_positive("turn rate", parameters.turn_rate)?;
@@ -62,13 +76,13 @@ impl Tour {
         Ok(Self { parameters, corners, next: 1, turning: true })
     }
 
-    /// The share of the corners that have been passed, 0 to 1.
+    /// Fraction of the corners passed, 0 to 1.
     pub fn progress(&self) -> f64 {
         let legs = self.corners.len().saturating_sub(1).max(1);
         ((self.next - 1) as f64 / legs as f64).min(1.0)
     }
 
-    /// The next speed; `None` at the end.
+    /// The next velocity; `None` at the end.
     pub fn step(&mut self, pose: Pose) -> Option<Twist> {
         let TourParameters { speed, turn_rate, arrival, reach, lag, .. } = self.parameters;
         loop {
@@ -77,7 +91,7 @@ impl Tour {
             let heading = math::atan2(along.y, along.x);
             let leg = Pose::new(to.x, to.y, heading);
             let place = leg.to_local(pose.position());
-            // What is left of the leg, and how far to the left of it the robot is.
+            // Remaining length of the leg, and cross-track error to the left.
             let (rest, aside) = (-place.x, place.y);
             if rest < arrival {
                 self.next += 1;
@@ -96,22 +110,22 @@ impl Tour {
     }
 }
 
-/// How a tour ended.
+/// Outcome of a tour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TourOutcome {
-    /// The robot takes itself to be at the last corner.
+    /// The estimated pose is at the last corner.
     Finished,
-    /// The time was over first.
+    /// The time limit came first.
     TimedOut,
-    /// Who watched had seen enough.
+    /// The observer stopped the run.
     Stopped,
 }
 
 halts!(TourOutcome { Finished: "the tour is finished" });
 
 impl Behaviour for Tour {
-    /// Where the robot takes itself to be; it stands as long as it does not know.
+    /// Estimated pose; the robot stands while it is unknown.
     type Observation = Option<Pose>;
     type Command = Twist;
     type Outcome = TourOutcome;
@@ -126,7 +140,7 @@ impl Behaviour for Tour {
     }
 }
 
-/// By odometry.
+/// Reads odometry.
 impl<R: Odometry + ?Sized> Senses<R> for Tour {
     fn sense(&mut self, robot: &mut R, _time: f64, place: &mut Option<Pose>) -> Result<()> {
         *place = Some(robot.pose()?);

@@ -1,4 +1,4 @@
-//! Turning to what moves (book, section 11.5), and seeing it while turning (section 11.6).
+//! Turning towards motion (book, section 11.5), and detecting it while turning (section 11.6).
 
 #[cfg(test)]
 mod tests;

@@ -15,7 +15,7 @@ fn view(image: &GrayImage) -> GrayView<'_> {
     image.try_into().unwrap()
 }
 
-/// A room with things, an observer in it, and another robot before it.
+/// A room with objects, an observer, and another robot in front of it.
 fn scene() -> Scene {
     let mut world = World::walled(3.0, 3.0);
     for (name, x, y) in [("can", 2.0, 1.1), ("crate", 2.5, 2.0), ("soccer", 1.8, 1.9)] {
@@ -50,25 +50,25 @@ fn a_turn_is_taken_out_of_the_image() {
     assert!(with < 0.4 * without, "{with} {without}");
 }
 
-/// The robot that watches a room, in which another one drives or stands.
+/// A robot that watches a room in which another one drives or stands.
 fn watcher(options: SimOptions, other: Twist) -> SimRobot {
     let simulation = Simulation::new(&scene(), options).unwrap();
-    // Whose program has ended keeps its speed.
+    // A robot whose program has ended keeps its speed.
     simulation.robot(1).unwrap().set_speed(other).unwrap();
     let mut robot = simulation.robot(0).unwrap();
     robot.set_resolution(Resolution::Qqvga).unwrap();
     robot
 }
 
-/// How many of the images of one run are alarms while the robot turns, and how many there are. The watched
-/// room is still or has another robot that drives across; odometry jumps in the midst of a turn.
+/// Number of alarms, and of images, while the robot turns. The room is still or another robot drives across;
+/// odometry jumps in the middle of a turn.
 fn alarms_while_turning(moves: bool, noise: f64, light: f64, seed: u64) -> (usize, usize) {
     let options = SimOptions { light, ..SimOptions::with_noise(noise, seed) };
     let mut robot = watcher(options, if moves { Twist::new(0.25, 2.0) } else { Twist::STOP });
     let parameters = MotionWatchParameters::new(RobotSpec::s4().camera.unwrap().field_of_view);
     let mut watch = MotionWatch::new(parameters).unwrap();
     let (mut alarms, mut images) = (0, 0);
-    // To and fro with pauses, in radians per second, each for half a second.
+    // Turn rates to and fro with pauses (rad/s), half a second each.
     for (part, speed) in [0.0, 0.4, 0.0, -0.4, -0.4, 0.0, 0.4, -0.2].into_iter().enumerate() {
         for i in 0..5 {
             let image = robot.gray_image().unwrap();
@@ -105,7 +105,7 @@ fn what_moves_is_seen_while_the_robot_turns() {
     }
 }
 
-/// Pairs of images with an alarm, of twenty of a room by a standing robot, under some light and noise.
+/// Number of alarms among twenty image pairs from a standing robot.
 fn alarms_standing(moves: bool, light: f64, noise: f64) -> usize {
     let options = SimOptions { light, ..SimOptions::with_noise(noise, 5) };
     let mut robot = watcher(options, if moves { Twist::new(0.15, 2.2) } else { Twist::STOP });

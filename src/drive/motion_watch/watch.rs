@@ -9,28 +9,28 @@ use crate::parameter::{require_not_negative, require_positive};
 use crate::vision::motion::{Motion, MotionDetector, MotionParameters, TurnCompensator};
 use crate::vision::{GrayView, ImageError};
 
-/// How a [`MotionWatch`] looks and turns.
+/// Parameters of a [`MotionWatch`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotionWatchParameters {
-    /// What makes motion while the robot stands.
+    /// Motion detection while the robot stands.
     pub standing: MotionParameters,
-    /// What makes motion while it turns.
+    /// Motion detection while the robot turns.
     pub turning: MotionParameters,
-    /// The camera's horizontal field of view in radians.
+    /// Horizontal field of view of the camera (rad).
     pub field_of_view: f64,
-    /// Radians per second at which the robot turns towards motion.
+    /// Turn rate towards motion (rad/s).
     pub turn_speed: f64,
-    /// Seconds between two images, as in Program 11.14.
+    /// Time between two images (s), as in Program 11.14.
     pub period: f64,
-    /// Pixels by which edges of near things may be off for each pixel of a turn, as the camera is not on the robot's
-    /// axis: its distance from there over that of the nearest things.
+    /// Parallax of near edges per pixel of image shift, as the camera is off the robot's axis: its distance
+    /// from the axis divided by that of the nearest things.
     pub parallax: f64,
-    /// Seconds for which it turns on after the last motion to a side.
+    /// Time for which the robot keeps turning after the last motion on a side (s).
     pub patience: f64,
 }
 
 impl MotionWatchParameters {
-    /// For a camera with a horizontal field of view in radians.
+    /// Parameters for a camera with this horizontal field of view (rad).
     pub fn new(field_of_view: f64) -> Self {
         let turning = MotionParameters { threshold: 8.0, least_noise: 4.0, ..MotionParameters::default() };
         Self {
@@ -45,7 +45,21 @@ impl MotionWatchParameters {
     }
 }
 
-/// Turns to where something moves (book, section 11.5), and sees motion while it turns as well (section 11.6).
+/// Turns towards motion (book, section 11.5), and detects it while turning as well (section 11.6).
+///
+/// ```
+/// use image::{GrayImage, Luma};
+/// use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
+/// use roverlab::geometry::{Pose, Twist};
+/// let room = GrayImage::from_fn(160, 120, |x, y| Luma([80 + ((x * 7 + y * 13) % 50) as u8]));
+/// let mut watch = MotionWatch::new(MotionWatchParameters::new(1.0))?;
+/// for step in 0..10 {
+///     let twist = watch.step(0.1 * f64::from(step), &room, Pose::default())?;
+///     assert_eq!(twist, Twist::default(), "nothing moves, and the robot stands");
+/// }
+/// assert!(!watch.motion().expect("two images").is_moving());
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct MotionWatch {
     parameters: MotionWatchParameters,
@@ -54,7 +68,7 @@ pub struct MotionWatch {
     compensator: TurnCompensator,
     before: Option<(GrayImage, Pose)>,
     motion: Option<Motion>,
-    /// Whether it did not turn from the image before the last one to the last one, and whether it is told to now.
+    /// Whether the robot stood between the previous two images, and whether it is commanded to turn now.
     settled: bool,
     turns: bool,
     side: f64,
@@ -62,7 +76,7 @@ pub struct MotionWatch {
 }
 
 impl MotionWatch {
-    /// A watch that has seen nothing yet.
+    /// Creates a watch that has seen no image. Fails for parameters out of range.
     pub fn new(parameters: MotionWatchParameters) -> Result<Self, ImageError> {
         require_positive("turn speed", parameters.turn_speed)?;
         require_positive("control period", parameters.period)?;
@@ -82,12 +96,12 @@ impl MotionWatch {
         })
     }
 
-    /// What moved between the last two images.
+    /// Motion between the last two images.
     pub fn motion(&self) -> Option<Motion> {
         self.motion
     }
 
-    /// The speed for an image that was taken at a pose of odometry.
+    /// The velocity after an image taken at an odometry pose. Fails for an image that differs in size.
     pub fn step(&mut self, time: f64, image: &GrayImage, pose: Pose) -> Result<Twist, ImageError> {
         self.motion = match self.before.take() {
             Some((before, at)) => {
@@ -97,7 +111,7 @@ impl MotionWatch {
         };
         self.before = Some((image.clone(), pose));
         if let Some(sector) = self.motion.and_then(|motion| motion.strongest) {
-            // Left, on, right.
+            // Left, ahead, right.
             self.side = 1.0 - sector as f64;
             self.until = time + self.parameters.patience;
         }
@@ -112,17 +126,17 @@ impl MotionWatch {
         /// What whole pixels and the registration may put edges off by.
         const PIXELS: f64 = 1.25;
         let (first, second): (GrayView<'_>, GrayView<'_>) = (before.try_into()?, image.try_into()?);
-        // Encoders count whole ticks: a robot that has not turned for one image only may not stand yet.
+        // Encoders count whole ticks: a robot that has not turned for one image may still be moving.
         let settled = self.settled;
         self.settled = turned.abs() < STILL && !self.turns;
         if settled && self.settled {
             return self.standing.compare(first, second);
         }
         let seen = self.compensator.turn(first, second, turned)?;
-        // Half of what edges may be off by is granted to each of the images.
+        // Each image gets half of the edge error as slack.
         let off = PIXELS + self.parameters.parallax * seen.shift;
         let slack = (0.5 * off + 0.5).min(first.width() as f64) as usize;
-        // What was beyond the edge of one image may be in the other by as much.
+        // Content beyond the edge of one image may appear in the other by the same amount.
         let (from, to) = (seen.from + 2 * slack, seen.to.saturating_sub(2 * slack));
         if to < from + self.parameters.turning.block {
             return self.standing.compare(second, second);
@@ -133,12 +147,12 @@ impl MotionWatch {
     }
 }
 
-/// What a [`MotionWatch`] sees at a step.
+/// Observation of a [`MotionWatch`].
 #[derive(Debug, Clone, Default)]
 pub struct MotionWatchObservation {
-    /// The camera's image.
+    /// Camera image.
     pub image: GrayImage,
-    /// Where odometry takes the robot to be.
+    /// Pose by odometry.
     pub pose: Pose,
 }
 

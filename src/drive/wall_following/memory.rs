@@ -2,7 +2,7 @@ use std::collections::VecDeque;
 
 use crate::geometry::{FittedLine, Point, Pose, Vector, direction};
 
-/// The last points that a sensor has seen, in the frame of odometry, in order.
+/// Recent points of a sensor in the odometry frame, in order.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Memory {
     points: VecDeque<Point>,
@@ -33,8 +33,8 @@ impl Memory {
         self.points.iter().copied()
     }
 
-    /// The mean of a few points in a row that is nearest to a place. Points farther from each other than `spread` metres are
-    /// not of one surface, and are not averaged.
+    /// The mean of a few consecutive points nearest to a place. Points more than `spread` metres apart belong
+    /// to different surfaces and are not averaged.
     pub(super) fn nearest(&self, to: Point, spread: f64) -> Option<Point> {
         /// Points in a row whose middle is taken.
         const FEW: usize = 5;
@@ -46,7 +46,7 @@ impl Memory {
             .min_by(|a, b| (a - to).norm().total_cmp(&(b - to).norm()))
     }
 
-    /// The line through some points and the last ones, as seen from a pose.
+    /// The line through `first` and the last `count` points, in the frame of a pose.
     pub(super) fn last_line(&self, count: usize, first: &[Point], pose: &Pose) -> Option<FittedLine> {
         let skipped = self.points.len().checked_sub(count)?;
         let points = first.iter().copied().chain(self.iter().skip(skipped));
@@ -54,12 +54,12 @@ impl Memory {
     }
 }
 
-/// The point that a sensor sees, in the frame of odometry.
+/// The point hit by a sensor, in the odometry frame; `None` without a return.
 pub(super) fn hit(pose: &Pose, mount: &Pose, range: f64) -> Option<Point> {
     range.is_finite().then(|| pose.to_world(mount.position() + direction(mount.heading) * range))
 }
 
-/// The middle one of the last readings of a sensor: a single wrong one does not show.
+/// Median of a sensor's last readings, which suppresses single outliers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Median {
     last: [f64; Self::WIDTH],

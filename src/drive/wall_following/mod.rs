@@ -1,4 +1,4 @@
-//! Following walls (book, chapter 6): by distance sensors alone, by a PID controller, by a lidar, and the book's own
+//! Wall following (book, chapter 6): by distance sensors, by a PID controller, by a lidar, and the book's own
 //! program.
 
 mod memory;

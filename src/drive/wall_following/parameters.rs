@@ -6,19 +6,28 @@ use crate::io::{Error, Result};
 use crate::parameter::{require, require_finite, require_positive};
 use crate::world::RobotSpec;
 
-/// Where the distance sensors sit on the robot and where they point.
+/// Mounting poses of the distance sensors.
+///
+/// ```
+/// use roverlab::drive::WallSensors;
+/// use roverlab::world::RobotSpec;
+/// let sensors = WallSensors::of(&RobotSpec::s4())?;
+/// assert!((sensors.left.heading - std::f64::consts::FRAC_PI_2).abs() < 0.1);
+/// assert!(WallSensors::of(&RobotSpec::race_car()).is_err(), "a car without distance sensors");
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WallSensors {
-    /// The one ahead.
+    /// Front sensor.
     pub front: Pose,
-    /// The one to the left.
+    /// Left sensor.
     pub left: Pose,
-    /// The one to the right.
+    /// Right sensor.
     pub right: Pose,
 }
 
 impl Default for WallSensors {
-    /// Those of an S4.
+    /// Sensors of an S4.
     fn default() -> Self {
         Self {
             front: Pose::new(0.060, 0.0, 0.0),
@@ -29,7 +38,7 @@ impl Default for WallSensors {
 }
 
 impl WallSensors {
-    /// The sensors 1 to 3 of a robot. Fails if it lacks one, or one points elsewhere than ahead, to the left and to the
+    /// Sensors 1 to 3 of a robot. Fails if one is missing, or does not point ahead, to the left or to the
     /// right.
     pub fn of(spec: &RobotSpec) -> Result<Self> {
         let find = |id: u8, name: &str| -> Result<Pose> {
@@ -42,7 +51,7 @@ impl WallSensors {
         Ok(sensors)
     }
 
-    /// Fails unless the sensors sit somewhere, and point ahead, to the left and to the right, each within 0.1 rad.
+    /// Fails unless all poses are finite and point ahead, left and right to within 0.1 rad.
     pub fn validate(&self) -> std::result::Result<(), ParameterError> {
         for (name, pose, yaw) in [
             ("front PSD", self.front, 0.0),
@@ -59,39 +68,39 @@ impl WallSensors {
         Ok(())
     }
 
-    /// The sensors of the mirrored robot.
+    /// Sensors of the mirrored robot.
     pub(super) fn mirrored(&self) -> Self {
         Self { front: mirror(self.front), left: mirror(self.right), right: mirror(self.left) }
     }
 }
 
-/// A pose as a mirror along the x axis shows it.
+/// A pose mirrored at the x axis.
 pub(super) fn mirror(pose: Pose) -> Pose {
     Pose::new(pose.x, -pose.y, -pose.heading)
 }
 
-/// What [`WallFollower`](super::WallFollower) goes by.
+/// Parameters of [`WallFollower`](super::WallFollower).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WallFollowerParameters {
-    /// On which side the wall is to be; `None`: on that to which the robot has to turn less.
+    /// Side of the wall; `None` chooses the side that takes less turning.
     pub side: Option<WallSide>,
-    /// Metres between the wall and the robot's middle.
+    /// Distance from the wall to the robot's centre (m).
     pub distance: f64,
-    /// Metres per second along the wall.
+    /// Speed along the wall (m/s).
     pub speed: f64,
-    /// Radians per second on the spot.
+    /// Turn rate on the spot (rad/s).
     pub turn_rate: f64,
-    /// The standard deviation of a range reading, in metres.
+    /// Standard deviation of a range reading (m).
     pub range_error: f64,
-    /// Metres along the wall in which an error of distance dies away.
+    /// Decay length of a distance error (m).
     pub reach: f64,
-    /// The seconds by which the robot turns later than it is told.
+    /// Delay of the robot's turn after a command (s).
     pub lag: f64,
-    /// The distance from the robot's middle to its outline, in metres.
+    /// Distance from the robot's centre to its outline (m).
     pub radius: f64,
-    /// Where the sensors sit.
+    /// Mounting poses of the sensors.
     pub sensors: WallSensors,
-    /// Seconds from one step to the next.
+    /// Control period (s).
     pub period: f64,
 }
 
@@ -114,7 +123,7 @@ impl Default for WallFollowerParameters {
 }
 
 impl WallFollowerParameters {
-    /// Fails with the name of the parameter that is out of range.
+    /// Checks every parameter; the error names the one out of range.
     pub fn validate(&self) -> std::result::Result<(), ParameterError> {
         require_positive("speed", self.speed)?;
         require_positive("turn rate", self.turn_rate)?;
@@ -131,16 +140,16 @@ impl WallFollowerParameters {
     }
 }
 
-/// What a wall follower sees at a step.
+/// Observation of a wall follower.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct WallObservation {
-    /// Where odometry takes the robot to be.
+    /// Pose by odometry.
     pub pose: Pose,
-    /// Metres from the front sensor to what is ahead; infinite if there is nothing.
+    /// Range of the front sensor (m); infinite without a return.
     pub front: f64,
-    /// The same to the left.
+    /// Range of the left sensor (m).
     pub left: f64,
-    /// The same to the right.
+    /// Range of the right sensor (m).
     pub right: f64,
 }
 
@@ -159,7 +168,7 @@ impl WallObservation {
         Err(Error::invalid_input("observed pose", format!("{:?}", self.pose), "finite numbers"))
     }
 
-    /// What the mirrored robot sees.
+    /// Observation of the mirrored robot.
     pub(super) fn mirrored(&self) -> Self {
         Self { pose: mirror(self.pose), front: self.front, left: self.right, right: self.left }
     }

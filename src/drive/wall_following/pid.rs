@@ -5,22 +5,22 @@ use crate::geometry::Twist;
 use crate::io::Result;
 use crate::parameter::{require, require_positive};
 
-/// What [`PidWallFollower`] goes by.
+/// Parameters of [`PidWallFollower`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PidWallFollowerParameters {
-    /// On which side the wall is to be.
+    /// Side of the wall.
     pub side: WallSide,
-    /// Metres between the wall and the robot's middle.
+    /// Distance from the wall to the robot's centre (m).
     pub distance: f64,
-    /// Metres per second along the wall.
+    /// Speed along the wall (m/s).
     pub speed: f64,
-    /// Radians per second on the spot.
+    /// Turn rate on the spot (rad/s).
     pub turn_rate: f64,
-    /// Gains from metres off the line to radians per second towards the wall.
+    /// Gains from distance error (m) to turn rate towards the wall (rad/s).
     pub gains: PidParameters,
-    /// Where the sensors sit.
+    /// Mounting poses of the sensors.
     pub sensors: WallSensors,
-    /// Seconds from one step to the next.
+    /// Control period (s).
     pub period: f64,
 }
 
@@ -45,9 +45,24 @@ impl Default for PidWallFollowerParameters {
     }
 }
 
-/// Follows a wall by a [`Pid`] controller on the range to one side alone: what chapter 6 leaves as an exercise, and section
-/// 9.3 hints at. At corners it does as the book does: it turns on the spot until the way ahead is free; where the wall ends
-/// it drives an arc.
+/// Follows a wall by a [`Pid`] controller on one side range: an exercise of chapter 6, suggested again in
+/// section 9.3. At inner corners it turns on the spot until the way ahead is free, as the book does; at the
+/// wall's end it drives an arc.
+///
+/// ```
+/// use roverlab::drive::{AlongWall, PidWallFollower, PidWallFollowerParameters};
+/// use roverlab::geometry::Pose;
+/// use roverlab::io::control::run;
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::world::{RobotSpec, Scene, World};
+/// let scene = Scene::with_robot(World::walled(2.0, 2.0), RobotSpec::s4(), Pose::new(0.5, 1.7, 0.0));
+/// let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
+/// let mut drive = AlongWall::new(PidWallFollower::new(PidWallFollowerParameters::default())?);
+/// run(&mut simulation.robot(0)?, &mut drive, 30.0, |_, _, _| {})?;
+/// let truth = simulation.truth().robot(0)?;
+/// assert!(truth.contacts == 0 && truth.path_length > 3.0);
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct PidWallFollower {
     parameters: PidWallFollowerParameters,
@@ -63,7 +78,7 @@ const GONE: f64 = 1.6;
 const LAG: f64 = 0.2;
 
 impl PidWallFollower {
-    /// A follower that has not met a wall.
+    /// Creates a follower that has not met a wall. Fails for parameters out of range.
     pub fn new(parameters: PidWallFollowerParameters) -> Result<Self> {
         require_positive("speed", parameters.speed)?;
         require_positive("turn rate", parameters.turn_rate)?;
@@ -77,7 +92,8 @@ impl PidWallFollower {
         Ok(Self { parameters, pid, front: Median::new(), turning: false, met: false })
     }
 
-    /// The next speed, `seconds` after the last one.
+    /// The next velocity, `seconds` after the last step. Fails for a NaN range or a pose
+    /// that is not finite.
     pub fn step(&mut self, observation: &WallObservation, seconds: f64) -> Result<Twist> {
         observation.check()?;
         let PidWallFollowerParameters { side, distance, speed, turn_rate, sensors, .. } = self.parameters;
@@ -101,7 +117,7 @@ impl PidWallFollower {
             self.pid.reset();
             return Ok(Twist::new(speed, towards * speed / distance));
         }
-        // The output turns towards the wall if the robot is too far from it.
+        // A positive output turns towards the wall.
         let output = self.pid.step(-distance, -beside, seconds.max(1e-3))?;
         Ok(Twist::new(speed, towards * output))
     }

@@ -9,13 +9,13 @@ use super::{WallFollowerParameters, WallObservation, WallSensors, WallSide};
 use crate::geometry::{FittedLine, Point, Pose, Twist, angle_difference, math, normalize_angle};
 use crate::io::Result;
 
-/// What a [`WallFollower`] is doing.
+/// Phase of a [`WallFollower`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum WallPhase {
     /// Driving straight on until a wall is near (the book's step 1).
     Searching,
-    /// Turning until the wall lies beside it (steps 2 and 4).
+    /// Turning until the wall is beside the robot (steps 2 and 4).
     Turning,
     /// Driving along the wall (step 3).
     Following,
@@ -23,14 +23,15 @@ pub enum WallPhase {
     Rounding,
 }
 
-/// Follows walls with three distance sensors, one ahead and one on either side (book, chapter 6, done properly).
+/// Follows walls with three distance sensors: ahead, left and right (an improved version of the book's
+/// chapter 6).
 ///
-/// Every reading is a point in the frame of odometry, and walls are known by lines and curves through points. The robot
-/// drives until something is near, swaying a little, so that one ray ahead covers its whole width. Then it turns on the spot
-/// while the ray ahead sweeps over what stands there; the line through these points, not a fixed angle, says where the wall
-/// is, in corners too, where the ranges to the left and to the right belong to different walls. Along the wall a Kalman
-/// filter knows its distance, direction and curvature. Where the wall ends the robot drives round the end at the same
-/// distance until it sees the next wall.
+/// Every reading becomes a point in the odometry frame; walls are lines and curves fitted to these points.
+/// The robot drives until something is near, swaying a little so that the front ray covers its whole width.
+/// Then it turns on the spot while the front ray sweeps over the obstacle. A line fit through these points,
+/// not a fixed angle, gives the wall's direction; this works in corners too, where the left and right ranges
+/// belong to different walls. Along the wall a Kalman filter estimates distance, direction and curvature.
+/// Where the wall ends, the robot drives round the end at the same distance until it sees the next wall.
 ///
 /// ```
 /// use roverlab::drive::{AlongWall, WallFollower, WallFollowerParameters};
@@ -52,43 +53,43 @@ pub enum WallPhase {
 #[derive(Debug, Clone, PartialEq)]
 pub struct WallFollower {
     parameters: WallFollowerParameters,
-    /// The sensors of the robot or of its mirror image: inside, the wall is always to the left.
+    /// Sensors of the robot or of its mirror image: internally the wall is always on the left.
     sensors: WallSensors,
     side: Option<WallSide>,
     state: State,
     last: Option<Pose>,
-    /// Metres and radians since the start.
+    /// Distance driven (m) and angle turned (rad) since the start.
     driven: f64,
     turned: f64,
     front: Median,
-    /// What the side sensor saw of the wall, and what the one ahead swept over.
+    /// Wall points from the side sensor, and points swept by the front sensor.
     beside: Memory,
     swept: Memory,
-    /// What was seen last while searching.
+    /// Observations of the approach to a wall.
     approach: VecDeque<WallObservation>,
-    /// How many readings in a row were not of the wall.
+    /// Number of consecutive readings off the wall.
     strays: u32,
 }
 
 #[derive(Debug, Clone, PartialEq)]
 enum State {
     Searching {
-        /// The heading of the straight line, and where on it the robot began.
+        /// Heading of the straight line, and its start.
         heading: f64,
         since: f64,
     },
     Turning {
-        /// How much has been turned since the wall was met.
+        /// Angle turned since the wall was met.
         since: f64,
-        /// The heading along the wall, as known so far.
+        /// Estimated heading along the wall.
         target: Option<f64>,
     },
     Following(WallTracker),
     Rounding {
-        /// The end of the wall, and its direction there.
+        /// End of the wall, and its direction there.
         corner: Point,
         along: f64,
-        /// When it was lost.
+        /// Distance driven when it was lost.
         since: f64,
     },
 }
@@ -115,7 +116,7 @@ const NEW_WALL_ANGLE: f64 = 0.3;
 const SAME_WALL: f64 = 0.13;
 
 impl WallFollower {
-    /// A follower that knows of no wall yet.
+    /// Creates a follower that knows no wall yet. Fails for parameters out of range.
     pub fn new(parameters: WallFollowerParameters) -> Result<Self> {
         parameters.validate()?;
         let side = parameters.side;
@@ -145,19 +146,19 @@ impl WallFollower {
             WallSide::Left => self.parameters.sensors,
             WallSide::Right => self.parameters.sensors.mirrored(),
         };
-        // What is remembered was seen by the other image.
+        // Remembered points belong to the other mirror image.
         if side == WallSide::Right {
             self.last = self.last.map(mirror);
             self.approach.iter_mut().for_each(|seen| *seen = seen.mirrored());
         }
     }
 
-    /// On which side the wall is, once that is decided.
+    /// Side of the wall, once decided.
     pub fn side(&self) -> Option<WallSide> {
         self.side
     }
 
-    /// What the robot is doing.
+    /// Current phase.
     pub fn phase(&self) -> WallPhase {
         match self.state {
             State::Searching { .. } => WallPhase::Searching,
@@ -167,12 +168,12 @@ impl WallFollower {
         }
     }
 
-    /// What it goes by.
+    /// Its parameters.
     pub fn parameters(&self) -> &WallFollowerParameters {
         &self.parameters
     }
 
-    /// The next speed.
+    /// The next velocity. Fails for a NaN range or a pose that is not finite.
     pub fn step(&mut self, observation: &WallObservation) -> Result<Twist> {
         observation.check()?;
         if self.side == Some(WallSide::Right) {
@@ -182,7 +183,7 @@ impl WallFollower {
         Ok(self.step_left(observation))
     }
 
-    /// The speed of the robot or of its mirror image, whose wall is to the left.
+    /// The velocity of the robot, or of its mirror image, with the wall on the left.
     fn step_left(&mut self, seen: &WallObservation) -> Twist {
         let pose = seen.pose;
         let motion = self.last.map_or(Pose::default(), |last| last.inverse().compose(&pose));
@@ -203,7 +204,7 @@ impl WallFollower {
         }
     }
 
-    /// Step 1: straight on, swaying.
+    /// Step 1: drives straight on, swaying.
     fn search(&mut self, seen: &WallObservation, ahead: f64, heading: f64, since: f64) -> Twist {
         let WallFollowerParameters { distance, speed, lag, .. } = self.parameters;
         let pose = seen.pose;
@@ -227,12 +228,12 @@ impl WallFollower {
     /// Something is near for the first time.
     fn meet(&mut self, left: f64, right: f64, ahead: f64) -> Twist {
         let nearer = if right < left { WallSide::Right } else { WallSide::Left };
-        // The robot turns less if the wall, which is nearer on one side, gets to that side.
+        // The robot turns less if the wall goes to the side where it is nearer.
         let undecided = self.side.is_none();
         if undecided {
             self.choose(nearer);
         }
-        // From here on the wall is to be to the left: of the robot or of its mirror image.
+        // From here on the wall is to be on the left of the robot or of its mirror image.
         let beside = if undecided { left.min(right) } else { left };
         let distance = self.parameters.distance;
         let line = self.approached_wall().filter(|_| beside < distance && beside < ahead);
@@ -244,8 +245,8 @@ impl WallFollower {
         Twist::STOP
     }
 
-    /// The wall's line, in the robot's frame, by what was seen ahead and to the left on the way to it (the book's figure
-    /// 6.2), if both belong to one wall.
+    /// Line of the wall in the robot's frame, from the front and left readings of the approach (the book's
+    /// figure 6.2), if both belong to one wall.
     fn approached_wall(&self) -> Option<FittedLine> {
         let pose = self.approach.back()?.pose;
         let front = self.approach.iter().filter_map(|seen| hit(&seen.pose, &self.sensors.front, seen.front));
@@ -257,7 +258,7 @@ impl WallFollower {
         (ahead && line.rms < error && line.length > 0.05).then_some(line)
     }
 
-    /// Steps 2 and 4: clockwise on the spot until the wall that is swept over lies to the left.
+    /// Steps 2 and 4: turns clockwise on the spot until the swept wall is on the left.
     fn turn(
         &mut self,
         seen: &WallObservation,
@@ -289,8 +290,8 @@ impl WallFollower {
         Twist::new(0.0, -(TURN_GAIN * rest).clamp(-rate, rate))
     }
 
-    /// The line through the points that were swept over near to the nearest one, in the robot's frame, its direction that
-    /// in which the robot is to drive.
+    /// The line through the swept points around the nearest one, in the robot's frame, directed along the
+    /// robot's way.
     fn swept_wall(&self, pose: &Pose) -> Option<FittedLine> {
         /// Points that a line needs.
         const LEAST: usize = 15;
@@ -300,13 +301,13 @@ impl WallFollower {
         let nearest = self.swept.nearest(pose.position(), f64::INFINITY)?;
         let near = self.swept.iter().filter(|point| (point - nearest).norm() < SAME_WALL);
         let line = FittedLine::through(near.map(|point| pose.to_local(point)))?;
-        // Seen from inside, a wall to the left runs the way in which the robot drives.
+        // Seen from inside, a wall on the left runs in the driving direction.
         let left_of_robot = line.distance_to(Point::origin()) < 0.0;
         let direction = if left_of_robot { line.direction } else { -line.direction };
         (line.length > 0.4 * SAME_WALL && line.points >= LEAST).then_some(FittedLine { direction, ..line })
     }
 
-    /// The wall that was swept over, with its curvature.
+    /// A tracker of the swept wall, with its curvature.
     fn swept_tracker(&self, line: &FittedLine, pose: &Pose) -> WallTracker {
         let error = self.parameters.range_error;
         let mut tracker = WallTracker::like_line(line);
@@ -323,7 +324,7 @@ impl WallFollower {
         self.strays = 0;
     }
 
-    /// Step 3: along the wall.
+    /// Step 3: drives along the wall.
     fn follow(
         &mut self,
         mut tracker: WallTracker,
@@ -360,7 +361,8 @@ impl WallFollower {
         self.steer(error, tracker.angle(), self.path_curvature(tracker.curvature()))
     }
 
-    /// The wall anew by its last points: a parabola in the robot's frame is no good for one that runs across it.
+    /// Refits the wall to its last points: a parabola in the robot's frame fails for a wall that runs across
+    /// it.
     fn renewed(&mut self, tracker: WallTracker, pose: &Pose) -> WallTracker {
         let error = self.parameters.range_error;
         let line = self.beside.last_line(RENEWAL_POINTS, &[], pose);
@@ -370,13 +372,13 @@ impl WallFollower {
         self.beside.clear();
         match (line, beside) {
             (Some(line), _) => WallTracker::of_line(&line, error),
-            // What so few points say of the direction is not to be believed then.
+            // So few points say too little about the direction.
             (None, Some(distance)) => WallTracker::beside(distance, error),
             (None, None) => tracker,
         }
     }
 
-    /// Whether the wall ahead is as near as the robot can stop.
+    /// Whether the wall ahead is within the stopping distance.
     fn meets_wall(&self, ahead: f64) -> bool {
         ahead < self.parameters.distance + 0.9 * self.parameters.lag * self.parameters.speed
     }
@@ -387,13 +389,13 @@ impl WallFollower {
         Twist::new(0.0, -self.parameters.turn_rate)
     }
 
-    /// The curvature of the path beside a wall of some curvature.
+    /// Curvature of the path beside a wall of this curvature (1/m).
     fn path_curvature(&self, wall: f64) -> f64 {
         wall / (1.0 + wall * self.parameters.distance).max(0.25)
     }
 
-    /// The speed for an error of the distance (positive: too far from the wall), the wall's direction and the path's
-    /// curvature.
+    /// The velocity for a distance error (m, positive too far from the wall), the wall's direction (rad) and
+    /// the path's curvature (1/m).
     fn steer(&self, error: f64, angle: f64, curvature: f64) -> Twist {
         let WallFollowerParameters { distance, speed, turn_rate, reach, .. } = self.parameters;
         // Far from its line the robot approaches at an angle of at most a radian.
@@ -404,9 +406,9 @@ impl WallFollower {
         Twist::new(speed, (speed * bend).clamp(-1.6 * turn_rate, 1.6 * turn_rate))
     }
 
-    /// The side sensor no longer sees the wall.
+    /// Handles the loss of the wall by the side sensor.
     fn lose(&mut self, tracker: &WallTracker, pose: &Pose, ahead: f64) -> Twist {
-        // The last point of the wall is where the sensor was some readings ago.
+        // The wall's last point is where the sensor was a few readings ago.
         let back = f64::from(STRAYS) * self.parameters.speed * self.parameters.period;
         let corner = pose.to_world(tracker.point_at(self.sensors.left.x - back));
         let along = normalize_angle(pose.heading + tracker.angle());
@@ -415,7 +417,7 @@ impl WallFollower {
         self.round(pose, ahead, None, corner, along, self.driven)
     }
 
-    /// Round the end of the wall, until the next one is beside the robot.
+    /// Drives round the end of the wall until the next one is beside the robot.
     fn round(
         &mut self,
         pose: &Pose,
@@ -438,7 +440,7 @@ impl WallFollower {
             self.state = State::Searching { heading: pose.heading, since: self.driven };
         }
         let beside = Pose::new(corner.x, corner.y, along).to_local(pose.position());
-        // Before the corner the robot keeps to the wall that it knows, behind it to a circle.
+        // Before the corner the robot keeps to the known wall, beyond it to a circle.
         if beside.x < 0.0 {
             let curvature = if beside.x + lag * speed > 0.0 { 1.0 / distance } else { 0.0 };
             return self.steer(-beside.y - distance, angle_difference(along, pose.heading), curvature);
@@ -449,13 +451,13 @@ impl WallFollower {
         self.steer(away.norm() - distance, angle_difference(direction, pose.heading), curvature)
     }
 
-    /// What the robot drives round, and the curvature of its path: the end of the wall, or whatever it has seen behind that and
-    /// is nearer now. The end of a wall may be thick, with another corner before a new wall is known.
+    /// Pivot of the robot's path, and the path's curvature: the end of the wall, or a nearer point seen
+    /// behind it. The end may be thick, with another corner before the next wall is known.
     fn pivot(&self, pose: &Pose, corner: Point) -> (Point, f64) {
         let round = 1.0 / self.parameters.distance;
         let gap = |point: Point| (point - pose.position()).norm();
         let seen = self.beside.nearest(pose.position(), ONE_SURFACE);
-        // Along a surface the path is straight, round its end it is not: which of the two is not known.
+        // Along a surface the path is straight, round its end curved; here either is possible.
         seen.filter(|&seen| gap(seen) < gap(corner)).map_or((corner, round), |seen| (seen, 0.5 * round))
     }
 

@@ -10,25 +10,25 @@ use crate::kinematics::{Displacement, advance};
 /// A controller that steers along walls.
 #[auto_impl::auto_impl(&mut)]
 pub trait FollowsWalls {
-    /// What it goes by.
+    /// Input of the controller.
     type Observation: Default;
 
-    /// How to drive. `seconds` have passed since the last step.
+    /// The velocity for an observation, `seconds` after the last step.
     fn steer(&mut self, seen: &Self::Observation, seconds: f64) -> Result<Twist>;
 
-    /// Seconds from one step to the next.
+    /// Control period (s).
     fn period(&self) -> f64;
 
-    /// Whether the robot drives along a wall that it has found.
+    /// Whether the robot drives along a wall.
     fn is_beside_wall(&self) -> bool;
 
-    /// On which side of the robot the wall is, once that is decided.
+    /// Side of the wall, once decided.
     fn wall_side(&self) -> Option<WallSide>;
 }
 
-/// What a controller that steers along walls can read from a robot.
+/// Observation that a wall-following controller reads from a robot.
 pub trait WallReading<R: ?Sized> {
-    /// Reads it.
+    /// Reads the sensors into the observation.
     fn read(&mut self, robot: &mut R) -> Result<()>;
 }
 
@@ -50,35 +50,50 @@ impl<R: Lidar + ?Sized> WallReading<R> for LidarScan {
     }
 }
 
-/// How a drive along walls ended.
+/// Outcome of a drive along walls.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum WallOutcome {
-    /// The watcher has seen enough.
+    /// The observer stopped the run.
     Stopped,
-    /// The time was over.
+    /// The time limit came first.
     TimedOut,
-    /// Something holds the robot, or it has no room: it turns round and round on the spot.
+    /// The drive has stalled, or the robot keeps turning on the spot for lack of room.
     Blocked,
 }
 
 halts!(WallOutcome { Blocked: "something holds the robot, or it has no room" });
 
 /// A drive along walls by a controller.
+///
+/// ```
+/// use roverlab::drive::{AlongWall, WallFollower, WallFollowerParameters};
+/// use roverlab::geometry::Pose;
+/// use roverlab::io::control::run;
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::world::{RobotSpec, Scene, World};
+/// let scene = Scene::with_robot(World::walled(2.0, 2.0), RobotSpec::s4(), Pose::new(0.5, 1.7, 0.0));
+/// let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
+/// let mut drive = AlongWall::new(WallFollower::new(WallFollowerParameters::default())?);
+/// run(&mut simulation.robot(0)?, &mut drive, 30.0, |_, _, _| {})?;
+/// let truth = simulation.truth().robot(0)?;
+/// assert!(truth.contacts == 0 && truth.path_length > 3.0);
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct AlongWall<C> {
     /// The controller.
     pub controller: C,
-    /// When the last step was, and when the wheels were free last.
+    /// Time of the last step, and of the last one without a stall (s).
     last: Option<f64>,
     free: f64,
     spot: Spot,
 }
 
-/// How far a robot that goes as it is told has come from a place, and how far it has turned since.
+/// Dead reckoning by commands since a place: displacement and total turn.
 #[derive(Debug, Clone, Copy, Default)]
 struct Spot {
-    /// In the frame of the place.
+    /// Pose in the frame of the place.
     pose: Pose,
     turned: f64,
     told: Twist,
@@ -86,11 +101,12 @@ struct Spot {
 
 /// Metres from a place within which a robot is still there.
 const HERE: f64 = 0.2;
-/// Radians that a robot turns in one place before it counts as blocked: round what it follows the wall of, it gets about.
+/// Radians that a robot turns in one place before it counts as blocked: round what it follows the wall of, it
+/// gets about.
 const ROUND: f64 = 3.0 * std::f64::consts::TAU;
 
 impl Spot {
-    /// Goes as told for some seconds. Whether the robot only turns round.
+    /// Integrates the commanded velocity. Returns whether the robot only turns round.
     fn advance(&mut self, seconds: f64) -> bool {
         let angle = self.told.angular * seconds;
         self.pose = advance(self.pose, Displacement { length: self.told.linear * seconds, angle });
@@ -103,18 +119,18 @@ impl Spot {
 }
 
 impl<C: FollowsWalls> AlongWall<C> {
-    /// A drive that begins.
+    /// Creates a drive by a controller.
     pub fn new(controller: C) -> Self {
         Self { controller, last: None, free: 0.0, spot: Spot::default() }
     }
 }
 
-/// What is seen at a step of a drive along walls.
+/// Observation of a drive along walls.
 #[derive(Debug, Clone, Default)]
 pub struct AlongWallObservation<O> {
-    /// Whether something holds the robot.
+    /// Whether the drive has stalled.
     pub stalled: bool,
-    /// What the controller goes by.
+    /// Input of the controller.
     pub seen: O,
 }
 

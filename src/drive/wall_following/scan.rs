@@ -5,22 +5,22 @@ use crate::geometry::{FittedLine, Point, Twist, math};
 use crate::io::{Error, LidarScan, Result};
 use crate::parameter::require_positive;
 
-/// What [`LidarWallFollower`] goes by.
+/// Parameters of [`LidarWallFollower`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LidarWallFollowerParameters {
-    /// On which side the wall is to be.
+    /// Side of the wall.
     pub side: WallSide,
-    /// Metres between the wall and the robot's middle.
+    /// Distance from the wall to the robot's centre (m).
     pub distance: f64,
-    /// Metres per second along the wall.
+    /// Speed along the wall (m/s).
     pub speed: f64,
-    /// The fastest turn in radians per second.
+    /// Maximum turn rate (rad/s).
     pub turn_rate: f64,
-    /// Metres along the wall in which an error of distance dies away: the two gains of the book's controller.
+    /// Decay length of a distance error (m); it stands for the two gains of the book's controller.
     pub reach: f64,
-    /// The seconds by which the robot does later what it is told.
+    /// Delay of the robot's response to commands (s).
     pub lag: f64,
-    /// Seconds from one step to the next.
+    /// Control period (s).
     pub period: f64,
 }
 
@@ -39,10 +39,25 @@ impl Default for LidarWallFollowerParameters {
     }
 }
 
-/// Follows a wall with a lidar: the direction and the length of the shortest beam steer (book, section 9.4).
+/// Follows a wall with a lidar, steered by direction and length of the shortest beam (book, section 9.4).
 ///
-/// The shortest of noisy beams is too short, and in a random direction; so the line through the points around it takes its
-/// place. A wall ahead counts as nearer by the way that the robot needs to stop.
+/// The shortest of noisy beams is biased and its direction random, so a line through the points around it
+/// takes its place. A wall ahead counts as nearer by the stopping distance.
+///
+/// ```
+/// use roverlab::drive::{AlongWall, LidarWallFollower, LidarWallFollowerParameters};
+/// use roverlab::geometry::Pose;
+/// use roverlab::io::control::run;
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::world::{RobotSpec, Scene, World};
+/// let scene = Scene::with_robot(World::walled(2.0, 2.0), RobotSpec::s4(), Pose::new(0.5, 1.7, 0.0));
+/// let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
+/// let mut drive = AlongWall::new(LidarWallFollower::new(LidarWallFollowerParameters::default())?);
+/// run(&mut simulation.robot(0)?, &mut drive, 30.0, |_, _, _| {})?;
+/// let truth = simulation.truth().robot(0)?;
+/// assert!(truth.contacts == 0 && truth.path_length > 3.0);
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct LidarWallFollower {
     parameters: LidarWallFollowerParameters,
@@ -54,12 +69,12 @@ pub struct LidarWallFollower {
 const SECTOR: f64 = 0.3;
 /// Beams over which ranges are averaged to find the shortest.
 const WINDOW: usize = 7;
-/// The directions, from straight ahead towards the wall, in which it may be. Away from it they reach as far as the robot's
-/// width demands.
+/// The directions, from straight ahead towards the wall, in which it may be. Away from it they reach as far
+/// as the robot's width demands.
 const DIRECTIONS: [f64; 2] = [-0.35, 2.6];
 
 impl LidarWallFollower {
-    /// A follower that has not met a wall.
+    /// Creates a follower that has not met a wall. Fails for parameters out of range.
     pub fn new(parameters: LidarWallFollowerParameters) -> Result<Self> {
         require_positive("distance", parameters.distance)?;
         require_positive("speed", parameters.speed)?;
@@ -70,7 +85,7 @@ impl LidarWallFollower {
         Ok(Self { parameters, met: false, aligned: false })
     }
 
-    /// The next speed. Fails for a scan that does not reach from ahead to the wall's side.
+    /// The next velocity. Fails for a scan of fewer than 60 beams or less than half a turn.
     pub fn step(&mut self, scan: &LidarScan) -> Result<Twist> {
         let LidarWallFollowerParameters { side, distance, speed, .. } = self.parameters;
         let span = scan.angle_increment * scan.ranges.len() as f64;
@@ -83,7 +98,7 @@ impl LidarWallFollower {
             ));
         }
         let towards = if side == WallSide::Left { 1.0 } else { -1.0 };
-        // In the mirror, if need be, the wall is to the left.
+        // Mirrored if necessary, so that the wall is on the left.
         let points: Vec<Option<Point>> = hits(scan, towards);
         let Some((gap, bearing)) = self.nearest(&points) else {
             return Ok(Twist::new(speed, 0.0));
@@ -98,7 +113,7 @@ impl LidarWallFollower {
         Ok(Twist::new(twist.linear, towards * twist.angular))
     }
 
-    /// Distance and direction of the wall.
+    /// Distance (m) and direction (rad) of the wall.
     fn nearest(&self, points: &[Option<Point>]) -> Option<(f64, f64)> {
         let LidarWallFollowerParameters { speed, lag, .. } = self.parameters;
         let stop = lag * speed;
@@ -121,7 +136,7 @@ impl LidarWallFollower {
         });
         let line = FittedLine::through(around)?;
         let foot = line.foot(Point::origin());
-        // The foot of a line through few points may lie far off.
+        // The foot of the perpendicular on a line through few points may be far off.
         let foot = if (foot - nearest).norm() < 0.5 * nearest.coords.norm() { foot } else { *nearest };
         let bearing = direction(&foot);
         Some((foot.coords.norm() - stop * math::cos(bearing).max(0.0), bearing))
@@ -134,13 +149,13 @@ impl LidarWallFollower {
         let bend = (2.0 * math::sin(angle.clamp(-FRAC_PI_2, FRAC_PI_2)) + pull) / reach;
         let slow = math::cos(angle).max(0.0);
         let along = (speed * slow).min(turn_rate / bend.abs().max(1e-9));
-        // On the spot the robot turns as fast as it may, and slows down when it is nearly there.
+        // On the spot the robot turns at the maximum rate, and slows down near the end.
         let turn = if slow < 0.5 { (3.0 * angle).clamp(-turn_rate, turn_rate) } else { along * bend };
         Twist::new(if slow < 0.5 { 0.0 } else { along }, turn)
     }
 }
 
-/// The points of a scan in the robot's frame, or in that of its mirror image, counter-clockwise from the back.
+/// Points of a scan in the robot's frame, or in that of its mirror image, counter-clockwise from the back.
 fn hits(scan: &LidarScan, towards: f64) -> Vec<Option<Point>> {
     let point = |index: usize| {
         let range = scan.ranges[index];

@@ -8,8 +8,8 @@ use crate::random::Stream;
 use crate::world::generate::{RoomOptions, room};
 use crate::world::{RobotSpec, Scene, Wall, World};
 
-/// What became of a drive: contacts, metres, and the errors of the distance once the robot has been along the wall for a
-/// metre.
+/// Result of a drive: contacts, path length (m), and distance errors after the first metre along the wall
+/// (m).
 struct Drive {
     contacts: u32,
     length: f64,
@@ -169,7 +169,7 @@ fn nonsense_is_refused() {
     assert_eq!(WallSensors::of(&RobotSpec::s4()).unwrap(), WallSensors::default());
 }
 
-/// In a box in which a robot can but turn on the spot it says so, rather than turn until its time is over.
+/// In a box with room only for turning on the spot, the drive ends as blocked before the time limit.
 #[test]
 fn without_room_a_robot_is_blocked() {
     let world = World::walled(0.3, 0.3);

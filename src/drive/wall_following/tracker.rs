@@ -3,24 +3,24 @@ use nalgebra::{Matrix3, RowVector3, Vector3};
 use crate::geometry::{FittedLine, Point, Pose, math};
 use crate::kinematics::OUTLIER;
 
-/// A wall to the left as a parabola in the robot's frame, `y = a + b x + c x² / 2`, kept up to date by a Kalman filter: it
-/// moves on with odometry and is corrected by the points that the side sensor sees.
+/// A wall on the left as a parabola in the robot's frame, `y = a + b x + c x² / 2`, estimated by a Kalman
+/// filter: odometry predicts it, points of the side sensor correct it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct WallTracker {
     state: Vector3<f64>,
     covariance: Matrix3<f64>,
-    /// The last innovations in standard deviations, as a running mean: a wall that bends shows in it.
+    /// Running mean of the normalised innovations; reveals a bend of the wall.
     bias: f64,
 }
 
-/// What a reading is to the tracked wall.
+/// Relation of a reading to the tracked wall.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Reading {
     /// A point of the wall.
     Wall,
-    /// Farther away: the wall seems to have ended.
+    /// Farther away: the wall may have ended.
     Beyond,
-    /// Nearer: something stands before the wall.
+    /// Nearer: something stands in front of the wall.
     Before,
 }
 
@@ -40,7 +40,7 @@ const BEND_SPREAD: [f64; 2] = [0.12, 1.0];
 const MEMORY: f64 = 0.12;
 
 impl WallTracker {
-    /// A wall of which a line is known in the robot's frame.
+    /// A wall along a known line in the robot's frame.
     pub(super) fn of_line(line: &FittedLine, range_error: f64) -> Self {
         let slope = line.direction.y / line.direction.x.max(0.1);
         let distance = line.middle.y - slope * line.middle.x;
@@ -51,13 +51,13 @@ impl WallTracker {
         Self::with_spread(distance, slope, [of_distance, of_slope.min(0.5), TIGHTEST])
     }
 
-    /// A wall about where a line is, whose points are still to be taken into account.
+    /// A wall roughly along a line, with its points still to be added.
     pub(super) fn like_line(line: &FittedLine) -> Self {
         let slope = line.direction.y / line.direction.x.max(0.1);
         Self::with_spread(line.middle.y - slope * line.middle.x, slope, [0.05, 0.3, TIGHTEST])
     }
 
-    /// A wall at a distance along which the robot seems to drive.
+    /// A wall at a distance (m), assumed parallel to the robot.
     pub(super) fn beside(distance: f64, range_error: f64) -> Self {
         Self::with_spread(distance, 0.0, [range_error.max(1e-3), 0.3, TIGHTEST])
     }
@@ -70,7 +70,7 @@ impl WallTracker {
         }
     }
 
-    /// Moves on with the robot, by its motion in its former frame.
+    /// Predicts the wall after the robot's motion, given in the previous robot frame.
     pub(super) fn predict(&mut self, motion: &Pose) {
         let [a, b, c] = self.state.into();
         let (x, turn) = (motion.x, motion.heading);
@@ -82,7 +82,7 @@ impl WallTracker {
         self.covariance = carried * self.covariance * carried.transpose() + Matrix3::from_diagonal(&added);
     }
 
-    /// Takes a point of the side sensor into account, if it is of the wall.
+    /// Updates the wall with a point of the side sensor, if it belongs to the wall.
     pub(super) fn update(&mut self, point: Point, range_error: f64) -> Reading {
         let measured = RowVector3::new(1.0, point.x, 0.5 * point.x * point.x);
         let innovation = point.y - (measured * self.state)[0];
@@ -116,18 +116,18 @@ impl WallTracker {
         math::atan(self.state.y)
     }
 
-    /// Metres from the robot's middle to the wall.
+    /// Distance from the robot's centre to the wall (m).
     pub(super) fn distance(&self) -> f64 {
         self.state.x * math::cos(self.angle())
     }
 
-    /// The wall's curvature in 1/m; positive where it recedes to the left.
+    /// Curvature of the wall (1/m); positive where it recedes to the left.
     pub(super) fn curvature(&self) -> f64 {
         let stretch = 1.0 + self.state.y * self.state.y;
         self.state.z / (stretch * stretch.sqrt())
     }
 
-    /// The wall's point beside a place ahead in the robot's frame.
+    /// The wall's point at a forward coordinate in the robot's frame (m).
     pub(super) fn point_at(&self, x: f64) -> Point {
         let [a, b, c] = self.state.into();
         Point::new(x, a + b * x + 0.5 * c * x * x)

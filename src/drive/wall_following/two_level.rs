@@ -4,21 +4,31 @@ use crate::geometry::{Twist, units};
 use crate::io::Result;
 use crate::parameter::require_positive;
 
-/// The book's own wall follower (program 6.1): along a wall to the left it steers a little to the one side or the other,
-/// by whether the left range is below a limit, and turns right on the spot where the range ahead gets below it.
+/// The book's own wall follower (program 6.1), for comparison: along a wall on the left it steers slightly
+/// left or right, depending on whether the left range is below a limit, and turns right on the spot when the
+/// front range is.
 ///
-/// It is here to be compared with.
+/// ```
+/// use roverlab::drive::{TwoLevelWallFollower, WallObservation};
+/// use roverlab::geometry::Pose;
+/// let mut follower = TwoLevelWallFollower::new(0.2, 0.2)?;
+/// let seen = |front, left| WallObservation { pose: Pose::default(), front, left, right: f64::INFINITY };
+/// assert!(follower.step(&seen(1.0, 0.1)).angular < 0.0, "too near: to the right");
+/// assert!(follower.step(&seen(1.0, 0.3)).angular > 0.0, "too far: to the left");
+/// assert_eq!(follower.step(&seen(0.1, 0.2)).linear, 0.0, "a wall ahead: on the spot");
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TwoLevelWallFollower {
-    /// The limit in metres.
+    /// Range limit (m).
     pub safe: f64,
-    /// Metres per second along the wall.
+    /// Speed along the wall (m/s).
     pub speed: f64,
-    /// Radians per second to either side.
+    /// Turn rate along the wall, to either side (rad/s).
     pub bend: f64,
-    /// Radians per second on the spot.
+    /// Turn rate on the spot (rad/s).
     pub turn_rate: f64,
-    /// Seconds from one step to the next.
+    /// Control period (s).
     pub period: f64,
     turning: bool,
     /// Whether a wall has been met.
@@ -41,14 +51,14 @@ impl Default for TwoLevelWallFollower {
 }
 
 impl TwoLevelWallFollower {
-    /// The book's program for a limit in metres and a speed in m/s of its own.
+    /// The book's program with its own limit (m) and speed (m/s). Fails unless both are positive and finite.
     pub fn new(safe: f64, speed: f64) -> std::result::Result<Self, ParameterError> {
         require_positive("safe distance", safe)?;
         require_positive("speed", speed)?;
         Ok(Self { safe, speed, ..Self::default() })
     }
 
-    /// The next speed.
+    /// The next velocity.
     pub fn step(&mut self, observation: &WallObservation) -> Twist {
         let WallObservation { front, left, .. } = *observation;
         self.turning = if self.turning { front < 2.0 * left } else { front <= self.safe };
@@ -92,7 +102,7 @@ mod tests {
         let mut step =
             |front, left| follower.step(&WallObservation { pose: Pose::default(), front, left, right: 9.0 });
         assert!(step(1.0, 0.2).angular < 0.0 && step(1.0, 0.3).angular > 0.0);
-        // At a corner it turns until there is twice as much room ahead as beside it.
+        // At a corner it turns until the way ahead is twice as long as the side range.
         assert_eq!(step(0.24, 0.3).linear, 0.0);
         assert_eq!(step(0.5, 0.3).linear, 0.0);
         assert!(step(0.7, 0.3).linear > 0.0);

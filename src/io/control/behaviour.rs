@@ -2,62 +2,62 @@ use std::ops::ControlFlow;
 
 use crate::io::Result;
 
-/// What decides how a robot moves, step by step.
+/// Decides how a robot moves, step by step.
 ///
-/// `time` is the robot's clock, in seconds; a step later shows more.
+/// `time` is the robot's clock (s); it increases from step to step.
 pub trait Behaviour {
-    /// What a step is given, in a buffer that is used again.
+    /// Input of a step, in a reused buffer.
     type Observation: Default;
-    /// What a step tells the robot to do until the next one.
+    /// Command that applies until the next step.
     type Command;
-    /// How it may end; by the time limit and by who watches it, too.
+    /// Outcome of a run, including the time limit and a stop by the observer.
     type Outcome: From<Halt>;
 
-    /// Seconds from one step to the next.
+    /// Control period (s).
     fn period(&self) -> f64;
 
-    /// What to do now: a command, or an outcome, after which the robot stops.
+    /// The next command, or an outcome, after which the robot stops.
     fn step(&mut self, time: f64, seen: &Self::Observation) -> Decision<Self>;
 
-    /// Takes an end from outside.
+    /// The outcome of a run ended from outside.
     fn halt(&mut self, halt: Halt) -> Self::Outcome {
         halt.into()
     }
 }
 
-/// The answer of a [`Behaviour`]'s step.
+/// Result of a [`Behaviour`]'s step.
 pub type Decision<B> = Result<ControlFlow<<B as Behaviour>::Outcome, <B as Behaviour>::Command>>;
 
-/// A behaviour that reads its observations from a robot of a kind.
+/// A behaviour that reads its observations from robots of type `R`.
 pub trait Senses<R: ?Sized>: Behaviour {
     /// Sets up the robot before the first step, such as its camera's resolution.
     fn prepare(&mut self, _robot: &mut R) -> Result<()> {
         Ok(())
     }
 
-    /// Reads what the next step is given.
+    /// Reads the observation for the next step.
     fn sense(&mut self, robot: &mut R, time: f64, seen: &mut Self::Observation) -> Result<()>;
 }
 
-/// What a robot of a kind can be told.
+/// A command for robots of type `R`.
 pub trait Command<R: ?Sized> {
-    /// Tells it.
+    /// Applies the command.
     fn apply(&self, robot: &mut R) -> Result<()>;
 
-    /// Stops what commands of this kind move.
+    /// Stops whatever commands of this type move.
     fn stop(robot: &mut R) -> Result<()>;
 }
 
-/// An end that comes from outside of a behaviour. It is the outcome of those that have no end of their own.
+/// End of a run from outside its behaviour. Behaviours without an end of their own use it as outcome.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Halt {
-    /// The time was over.
+    /// The time limit came first.
     TimedOut,
-    /// Who watches has seen enough.
+    /// The observer stopped the run.
     Stopped,
 }
 
-/// Makes ends from outside outcomes of an enum with variants of their names.
+/// Implements `From<Halt>` and `Display` for an outcome with the variants `TimedOut` and `Stopped`.
 macro_rules! halts {
     ($outcome:ident { $($variant:ident: $sentence:literal),* $(,)? }) => {
         impl From<crate::io::control::Halt> for $outcome {
@@ -82,9 +82,9 @@ macro_rules! halts {
 }
 pub(crate) use halts;
 
-/// What who watches a run says after a step: nothing, to go on or not, or that something is wrong.
+/// Return value of an observer after a step: nothing, whether to continue, or an error.
 pub trait Verdict {
-    /// Whether to go on.
+    /// Whether to continue.
     fn verdict(self) -> Result<ControlFlow<()>>;
 }
 
@@ -106,7 +106,21 @@ impl<V: Verdict> Verdict for Result<V> {
     }
 }
 
-/// The verdict of who watches until something is so.
+/// Verdict of an observer that stops a run once a condition holds.
+///
+/// ```
+/// use roverlab::drive::{AToB, AToBOutcome, AToBParameters, Goal, Method};
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::io::control::{run, until};
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::world::{RobotSpec, Scene, World};
+/// let scene = Scene::with_robot(World::empty(3.0, 3.0), RobotSpec::s4(), Pose::default());
+/// let simulation = Simulation::new(&scene, SimOptions::ideal())?;
+/// let mut drive = AToB::new(Method::Arc, Goal::point(Point::new(2.0, 1.0)), AToBParameters::default())?;
+/// let outcome = run(&mut simulation.robot(0)?, &mut drive, 60.0, |_, _, step| until(step.time > 2.0))?;
+/// assert_eq!(outcome, AToBOutcome::Stopped, "who watches had seen enough after two seconds");
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 pub fn until(enough: bool) -> ControlFlow<()> {
     if enough { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }

@@ -1,10 +1,10 @@
 use crate::io::{Clock, Error, ErrorKind, Result};
 
-/// A robot's clock as a run reads it: time goes on from step to step, up to a limit.
+/// A robot's clock during a run: strictly increasing from step to step, with a time limit.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stopwatch {
     end: f64,
-    /// What the clock showed last, and at the last step.
+    /// Last reading, and reading at the last step (s).
     last: f64,
     step: f64,
 }
@@ -13,7 +13,7 @@ pub(crate) struct Stopwatch {
 const RESOLUTION: f64 = 1e-9;
 
 impl Stopwatch {
-    /// Starts now, for at most so many seconds.
+    /// Starts now, with a time limit (s).
     pub(crate) fn start<R: Clock + ?Sized>(robot: &mut R, limit: f64) -> Result<Self> {
         Self::check_limit(limit)?;
         let mut clock = Self { end: f64::INFINITY, last: f64::NEG_INFINITY, step: f64::NEG_INFINITY };
@@ -21,7 +21,7 @@ impl Stopwatch {
         Ok(clock)
     }
 
-    /// Fails for a time limit that is no number.
+    /// Fails if the time limit is NaN.
     pub(crate) fn check_limit(limit: f64) -> Result<()> {
         if limit.is_nan() {
             return Err(Error::invalid_input("time limit", limit, "seconds, or infinity for none"));
@@ -29,7 +29,7 @@ impl Stopwatch {
         Ok(())
     }
 
-    /// What the clock shows. Fails if it runs backwards or shows no number.
+    /// Reads the clock. Fails if it runs backwards or is not finite.
     pub(crate) fn now<R: Clock + ?Sized>(&mut self, robot: &mut R) -> Result<f64> {
         let now = robot.now()?;
         if !now.is_finite() {
@@ -42,8 +42,8 @@ impl Stopwatch {
         Ok(now)
     }
 
-    /// The same at a new step: fails, too, if no time has passed since the last one. Such a run would not
-    /// end.
+    /// Reads the clock at a new step. Also fails if no time has passed since the last one, as such a run
+    /// would never end.
     pub(crate) fn step<R: Clock + ?Sized>(&mut self, robot: &mut R) -> Result<f64> {
         let now = self.now(robot)?;
         if now <= self.step {
@@ -53,18 +53,18 @@ impl Stopwatch {
         Ok(now)
     }
 
-    /// What the clock showed last.
+    /// Last reading (s).
     pub(crate) fn time(&self) -> f64 {
         self.last
     }
 
-    /// Whether the time is over.
+    /// Whether the time limit is reached.
     pub(crate) fn is_over(&self) -> bool {
         self.last >= self.end - RESOLUTION
     }
 
-    /// Waits until a time, or until the time is over, if one of these is still to come. Returns when that was
-    /// due: now, if it is late.
+    /// Waits until `due` or the time limit, whichever comes first, unless it is past. Returns `due`, or the
+    /// current time if late.
     pub(crate) fn wait_until<R: Clock + ?Sized>(&mut self, robot: &mut R, due: f64) -> Result<f64> {
         let now = self.now(robot)?;
         let due = due.max(now);

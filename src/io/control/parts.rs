@@ -2,19 +2,19 @@ use super::behaviour::{Behaviour, Command, Decision, Halt, Senses};
 use crate::geometry::{Pose, Twist};
 use crate::io::{Drive, Lidar, LidarScan, Manoeuvres, Odometry, Result};
 
-/// A scan, and where the robot is and how it moves by odometry: what navigation and racing go by.
+/// A scan with the pose and speed by odometry: the observation of navigation and racing.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LidarObservation {
-    /// The scan.
+    /// Lidar scan.
     pub scan: LidarScan,
-    /// The pose at which it was made.
+    /// Pose by odometry at the time of the scan.
     pub odometry: Pose,
-    /// The speed.
+    /// Velocity by odometry.
     pub speed: Twist,
 }
 
 impl LidarObservation {
-    /// Reads it from a robot.
+    /// Reads the sensors of a robot.
     pub fn read<R: Odometry + Lidar + ?Sized>(&mut self, robot: &mut R) -> Result<()> {
         robot.scan_into(&mut self.scan)?;
         self.odometry = robot.pose()?;
@@ -33,16 +33,16 @@ impl<R: Drive + ?Sized> Command<R> for Twist {
     }
 }
 
-/// A speed, or a short manoeuvre that the drive carries out by itself.
+/// A velocity, or a short manoeuvre executed by the drive itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Manoeuvre {
     /// Drive at this speed.
     Speed(Twist),
-    /// Drive so many metres straight on, at a speed in m/s.
+    /// Drive straight for a distance (m) at a speed (m/s).
     Straight(f64, f64),
-    /// Turn on the spot by so many radians, at a speed in rad/s.
+    /// Turn on the spot by an angle (rad) at a rate (rad/s).
     Turn(f64, f64),
-    /// Go on with what was told before.
+    /// Continue with the previous command.
     Continue,
 }
 
@@ -61,9 +61,30 @@ impl<R: Drive + Manoeuvres + ?Sized> Command<R> for Manoeuvre {
     }
 }
 
-/// A behaviour whose observations a function reads, given the robot and the time: by other sensors, or by an
-/// estimate that is better than odometry. The function also [prepares](Senses::prepare) the robot, if that is
-/// needed.
+/// A behaviour with a function that reads its observations from the robot at a time: from other sensors, or
+/// with a better pose estimate than odometry. The function also [prepares](Senses::prepare) the robot if
+/// necessary.
+///
+/// ```
+/// use roverlab::drive::{AToB, AToBObservation, AToBOutcome, AToBParameters, Goal, Method};
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::io::Manoeuvres;
+/// use roverlab::io::control::{SensedBy, run};
+/// use roverlab::io::sim::{SimOptions, SimRobot, Simulation};
+/// use roverlab::world::{RobotSpec, Scene, World};
+/// let scene = Scene::with_robot(World::empty(2.0, 2.0), RobotSpec::s4(), Pose::new(0.5, 0.5, 0.0));
+/// let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
+/// let truth = simulation.truth();
+/// // Another pose estimate than odometry: here the ground truth, relative to the start.
+/// let mut drive = AToB::new(Method::Turn, Goal::point(Point::new(1.0, 0.5)), AToBParameters::default())?;
+/// let mut sensed = SensedBy::new(&mut drive, |robot: &mut SimRobot, _, seen: &mut AToBObservation| {
+///     seen.done = robot.is_done()?;
+///     seen.pose = scene.robots[0].pose.inverse().compose(&truth.pose(0)?);
+///     Ok(())
+/// });
+/// assert_eq!(run(&mut simulation.robot(0)?, &mut sensed, 60.0, |_, _, _| {})?, AToBOutcome::Reached);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct SensedBy<'b, B: ?Sized, F> {
     behaviour: &'b mut B,
@@ -71,9 +92,14 @@ pub struct SensedBy<'b, B: ?Sized, F> {
 }
 
 impl<'b, B: ?Sized, F> SensedBy<'b, B, F> {
-    /// A behaviour that sees by a function.
+    /// Binds a behaviour to a sensing function.
     pub fn new(behaviour: &'b mut B, sense: F) -> Self {
         Self { behaviour, sense }
+    }
+
+    /// Who decides.
+    pub fn behaviour(&self) -> &B {
+        self.behaviour
     }
 }
 

@@ -5,25 +5,23 @@ use super::clock::Stopwatch;
 use crate::io::{Clock, Result};
 use crate::parameter::require_positive;
 
-/// A step as who watches a run sees it.
+/// A step of a run, as seen by its observer.
 #[derive(Debug)]
 pub struct Step<'a, O> {
-    /// When it began, by the robot's clock.
+    /// Start of the step by the robot's clock (s).
     pub time: f64,
-    /// What it was given: at a halt, the last observation before.
+    /// Observation of the step; at a halt, the last one.
     pub seen: &'a O,
 }
 
-/// Runs a behaviour on a robot for at most `time_limit` seconds, infinity for any time. `watch` is called at
-/// each step, before the robot is told what was decided, and at the end; if it breaks or fails, that ends the
-/// run.
+/// Runs a behaviour on a robot for at most `time_limit` seconds; infinity disables the limit. `watch` is
+/// called at each step, before the command is applied, and at the end; if it breaks or fails, the run ends.
 ///
-/// Steps are a period apart. One that is late begins the next one at once, and what was missed is not made up
-/// for. At the end, however it comes, the robot is stopped; an error while it stops does not hide an earlier
-/// one.
+/// Steps are one period apart. After a late step the next one starts at once; missed steps are not made up
+/// for. The robot is stopped at every kind of end; an error while stopping does not hide an earlier one.
 ///
-/// Fails if the robot does, or if its clock stands still, runs backwards or shows no number. A clock that
-/// jumps ahead is time that has passed.
+/// Fails if the robot does, or if its clock stands still, runs backwards or is not finite. A clock that jumps
+/// ahead counts as elapsed time.
 pub fn run<R, B, V>(
     robot: &mut R,
     behaviour: &mut B,
@@ -57,13 +55,13 @@ where
     stopping::<_, B::Command, _>(robot, ended)
 }
 
-/// Stops a robot with what has come of its run.
+/// Stops a robot after its run, and returns the run's result.
 pub(crate) fn stopping<R: ?Sized, C: Command<R>, T>(robot: &mut R, result: Result<T>) -> Result<T> {
     let stopped = C::stop(robot);
     result.and_then(|value| stopped.map(|()| value))
 }
 
-/// A run of a behaviour whose steps someone else paces, such as a [`Fleet`](crate::io::sim::Fleet):
+/// A behaviour's run with steps paced from outside, such as by a [`Fleet`](crate::io::sim::Fleet):
 ///
 /// ```
 /// use roverlab::drive::{RandomDrive, RandomDriveParameters};
@@ -89,14 +87,14 @@ pub struct Run<B: Behaviour + ?Sized> {
     seen: B::Observation,
     period: f64,
     limit: f64,
-    /// From the first step on.
+    /// Set at the first step.
     clock: Option<Stopwatch>,
     due: f64,
 }
 
 impl<B: Behaviour + ?Sized> Run<B> {
-    /// A run that begins at its first step and takes at most `time_limit` seconds. Fails unless both that and
-    /// the behaviour's period make sense.
+    /// Creates a run that starts with its first step and takes at most `time_limit` seconds. Fails for a
+    /// limit that is NaN and a period that is not positive.
     pub fn new(behaviour: &B, time_limit: f64) -> Result<Self> {
         let period = behaviour.period();
         require_positive("control period", period)?;
@@ -104,7 +102,7 @@ impl<B: Behaviour + ?Sized> Run<B> {
         Ok(Self { seen: B::Observation::default(), period, limit: time_limit, clock: None, due: 0.0 })
     }
 
-    /// Makes one step: reads, decides, and tells the robot. The robot is stopped at the end and at an error.
+    /// Makes one step: reads, decides, and applies the command. Stops the robot at the end and at an error.
     pub fn step<R>(&mut self, robot: &mut R, behaviour: &mut B) -> Result<ControlFlow<B::Outcome>>
     where
         R: Clock + ?Sized,
@@ -121,7 +119,7 @@ impl<B: Behaviour + ?Sized> Run<B> {
         }
     }
 
-    /// Reads and decides, unless the time is over.
+    /// Reads and decides, unless the time limit is reached.
     fn decide<R>(&mut self, robot: &mut R, behaviour: &mut B) -> Decision<B>
     where
         R: Clock + ?Sized,
@@ -144,7 +142,7 @@ impl<B: Behaviour + ?Sized> Run<B> {
         behaviour.step(time, &self.seen)
     }
 
-    /// Waits until the next step is due or the time is over.
+    /// Waits until the next step is due or the time limit is reached.
     fn rest<R: Clock + ?Sized>(&mut self, robot: &mut R) -> Result<()> {
         if let Some(clock) = &mut self.clock {
             self.due = clock.wait_until(robot, self.due + self.period)?;

@@ -10,11 +10,11 @@ use image::{Rgb, RgbImage};
 use crate::io::{DisplayImage, Fill, Pixel, Viewport};
 use crate::world::Colour;
 
-/// Lines are cut to this many pixels around the origin before they are drawn, which bounds the time that a line
-/// takes. The cut moves the visible part of a line by less than a pixel.
+/// Lines are clipped to this many pixels around the origin before drawing, which bounds the time per line.
+/// Clipping shifts the visible part by less than a pixel.
 const GUARD: f64 = 4096.0;
 
-/// Pixels, and the shapes that can be drawn into them. Everything clips.
+/// A pixel buffer with drawing primitives. All drawing is clipped.
 #[derive(Debug, Clone)]
 pub(super) struct Canvas {
     image: RgbImage,
@@ -50,7 +50,7 @@ impl Canvas {
         self.image.get_pixel_checked(x, y).map(|&Rgb([red, green, blue])| Colour::new(red, green, blue))
     }
 
-    /// Fills the pixels of a box that lie on the canvas.
+    /// Fills the visible pixels of a box.
     pub(super) fn fill(&mut self, columns: Range<i32>, rows: Range<i32>, colour: Colour) {
         let columns = clip(&columns, self.width());
         let line = rgb(colour).0.repeat(columns.len());
@@ -60,7 +60,7 @@ impl Canvas {
         }
     }
 
-    /// Moves a band of rows up by some pixels and fills what becomes free.
+    /// Scrolls a band of rows up by `by` pixels and fills the freed rows.
     pub(super) fn scroll_up(&mut self, rows: Range<i32>, by: i32, colour: Colour) {
         let rows = clip(&rows, self.height());
         let by = by.clamp(0, (rows.end - rows.start).max(0));
@@ -77,7 +77,7 @@ impl Canvas {
     }
 
     pub(super) fn rectangle(&mut self, a: Pixel, b: Pixel, colour: Colour, fill: Fill) {
-        // One pixel beyond an edge is as invisible as any number of them.
+        // Any position beyond an edge is equally invisible.
         let column = |x: i32| x.clamp(-1, self.width());
         let row = |y: i32| y.clamp(-1, self.height());
         let (left, right) = (column(a.0.min(b.0)), column(a.0.max(b.0)));
@@ -92,8 +92,8 @@ impl Canvas {
         self.fill(right..right + 1, top..bottom + 1, colour);
     }
 
-    /// The same pixels as `embedded_graphics::primitives::Circle`, which overflows for large ones and visits the
-    /// rows off the display too.
+    /// Draws the same pixels as `embedded_graphics::primitives::Circle`, which overflows for large circles
+    /// and visits invisible rows.
     pub(super) fn circle(&mut self, centre: Pixel, diameter: i32, colour: Colour, fill: Fill) {
         let outer = Disc::new(centre, diameter);
         let inner = Disc::inside(centre, diameter);
@@ -161,7 +161,7 @@ fn clip(range: &Range<i32>, limit: i32) -> Range<i32> {
     range.start.clamp(0, limit)..range.end.clamp(0, limit)
 }
 
-/// The source pixel that a pixel of a window `length` pixels long shows.
+/// Source pixel of a pixel in a window `length` pixels long.
 fn nearest(position: i32, start: i32, length: i32, source: u32) -> u32 {
     let offset = i64::from(position) - i64::from(start);
     (offset * i64::from(source) / i64::from(length)) as u32
@@ -187,18 +187,18 @@ fn cut_line(from: Pixel, to: Pixel) -> Option<(Point, Point)> {
     (first <= last).then(|| (at(first), at(last)))
 }
 
-/// A round set of pixels, in half pixels so that centres between pixels are whole numbers.
+/// A round set of pixels, in half pixels so that centres between pixels are integers.
 struct Disc {
     x2: i128,
     y2: i128,
-    /// Squared distances from the centre below this one belong to the disc.
+    /// Limit of the squared distance from the centre, exclusive.
     threshold: i128,
 }
 
 impl Disc {
     fn new((x, y): Pixel, diameter: i32) -> Self {
         let diameter = i128::from(diameter.max(0));
-        // An even diameter's true centre is half a pixel right of and below the centre pixel.
+        // With an even diameter the true centre is half a pixel right of and below the centre pixel.
         let half = i128::from(diameter % 2 == 0);
         // Tiny circles look square without a correction.
         let correction = if diameter <= 4 { diameter / 2 } else { 0 };
@@ -209,12 +209,12 @@ impl Disc {
         }
     }
 
-    /// What the outline of the circle of a diameter encloses.
+    /// The area enclosed by the outline of a circle.
     fn inside(centre: Pixel, diameter: i32) -> Self {
         Self::new(centre, diameter.saturating_sub(2))
     }
 
-    /// The columns of a row that belong to the disc.
+    /// The columns of a row within the disc.
     fn span(&self, y: i32) -> Option<Range<i32>> {
         let dy = 2 * i128::from(y) - self.y2;
         let room = self.threshold - dy * dy;
@@ -310,7 +310,7 @@ mod tests {
     #[test]
     fn a_giant_circle_still_crosses_the_canvas() {
         let mut drawn = canvas();
-        // Its right edge lies on column 20.
+        // The circle's right edge lies on column 20.
         drawn.circle((20 - 1_000_000_000, 24), 2_000_000_001, Colour::WHITE, Fill::Outline);
         let lit: Vec<_> = drawn.image().enumerate_pixels().filter(|(.., p)| p.0 != [0; 3]).collect();
         assert_eq!(lit.len(), 48);

@@ -2,8 +2,8 @@ use embedded_graphics::mono_font::{MonoFont, iso_8859_1 as latin};
 
 use crate::io::{Font, FontStyle};
 
-/// The sizes that RoBIOS names, each with its normal, bold and italic face. Where a size has no such face, the
-/// normal one takes its place, so that rows keep their height.
+/// RoBIOS's font sizes with their normal, bold and italic faces. Where a size lacks a face, the normal one
+/// replaces it, so that rows keep their height.
 const FACES: [(i32, [&MonoFont<'static>; 3]); 6] = [
     (8, [&latin::FONT_5X8, &latin::FONT_5X8, &latin::FONT_5X8]),
     (10, [&latin::FONT_6X10, &latin::FONT_6X10, &latin::FONT_6X10]),
@@ -25,7 +25,7 @@ pub(super) fn face(font: Font) -> &'static MonoFont<'static> {
     }
 }
 
-/// Pixels across and down that a letter takes.
+/// Width and height of a letter in pixels.
 pub(super) fn cell(face: &MonoFont<'_>) -> (i32, i32) {
     ((face.character_size.width + face.character_spacing) as i32, face.character_size.height as i32)
 }

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::io::{FontFamily, FontStyle};
 
-/// The bounding box of all pixels of a colour: left, top, right, bottom.
+/// Bounding box of all pixels of a colour: left, top, right, bottom.
 fn bounds(lcd: &Lcd, colour: [u8; 3]) -> Option<(u32, u32, u32, u32)> {
     lcd.frame().enumerate_pixels().filter(|(.., p)| p.0 == colour).fold(None, |b, (x, y, _)| match b {
         None => Some((x, y, x, y)),
@@ -12,7 +12,7 @@ fn bounds(lcd: &Lcd, colour: [u8; 3]) -> Option<(u32, u32, u32, u32)> {
     })
 }
 
-/// A coordinate that is ordinary, far out, or as far out as it gets.
+/// A coordinate: ordinary, far out, or extreme.
 fn wild() -> impl Strategy<Value = i32> {
     prop_oneof![-50..550i32, -20_000..20_000i32, any::<i32>(), Just(i32::MAX), Just(i32::MIN)]
 }
@@ -106,7 +106,7 @@ fn without_auto_refresh_drawing_waits_for_refresh() {
     lcd.set_pixel((3, 4), Colour::RED).unwrap();
     assert_eq!(lcd.pixel((3, 4)).unwrap(), Some(Colour::RED));
     assert_eq!(lcd.screenshot().unwrap().get_pixel(3, 4).0, [0; 3]);
-    // Switching off what is off already does not refresh.
+    // Switching off what is already off does not refresh.
     lcd.set_display_option(DisplayOption::AutoRefresh, false).unwrap();
     assert_eq!(lcd.frame().get_pixel(3, 4).0, [0; 3]);
     lcd.refresh().unwrap();

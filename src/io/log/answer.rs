@@ -1,9 +1,9 @@
 use super::values::Values;
 use crate::io::Result;
 
-/// What a recording answers to a call of a robot's.
+/// A recording that answers a robot's calls.
 pub(super) trait Answers {
-    /// `take` makes the answer of the recorded result and of the bulk before it.
+    /// `take` builds the answer from the recorded result and its bulk data.
     fn answer<T>(
         &mut self,
         method: &str,

@@ -1,4 +1,4 @@
-//! Robots that answer from a recording: what all of them share.
+//! Code shared by the robots that answer from a recording.
 
 use image::RgbImage;
 
@@ -8,15 +8,15 @@ use super::parts::{ScanHead, Size};
 use super::replay::Replay;
 use super::values::{self, Put, Values};
 use super::wire;
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::{
-    Camera, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key, Keys,
-    Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio, RadioMessage,
-    Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font,
+    Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio,
+    RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
-/// The ranges or the pixels in a recorded scan or image.
+/// The ranges or pixels of a recorded scan or image.
 fn bulk_of(message: &[u8]) -> &[u8] {
     wire::bytes_of(message, 6).unwrap_or_default()
 }
@@ -54,7 +54,7 @@ macro_rules! answered {
     }};
 }
 
-/// All capabilities but the clock.
+/// Implements every capability except the clock.
 macro_rules! answering {
     ($($robot:ident),*) => { $(
         signatures! { Drive => answered!($robot) }
@@ -70,6 +70,7 @@ macro_rules! answering {
         signatures! { Motors => answered!($robot) }
         signatures! { Servos => answered!($robot) }
         signatures! { Encoders => answered!($robot) }
+        signatures! { Inertial => answered!($robot) }
     )* };
 }
 

@@ -10,7 +10,7 @@ pub(super) struct Call<'a> {
     pub(super) result: std::result::Result<Values, Failure>,
 }
 
-/// A recorded error with what caused it.
+/// A recorded error with its causes.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct Failure {
     kind: String,
@@ -18,7 +18,7 @@ pub(super) struct Failure {
     causes: Vec<String>,
 }
 
-/// Writes a call from its parts.
+/// Writes a call.
 pub(super) fn write(
     out: &mut Vec<u8>,
     method: &str,
@@ -43,7 +43,7 @@ pub(super) fn write(
 }
 
 impl<'a> Call<'a> {
-    /// `None` if the message is no call.
+    /// `None` if the message is not a call.
     pub(super) fn read(message: &'a [u8]) -> Option<Self> {
         let mut call = Self { method: "", arguments: Values::default(), result: Ok(Values::default()) };
         let mut reading = Reading::new(message);
@@ -60,7 +60,7 @@ impl<'a> Call<'a> {
     }
 }
 
-/// A call in words, for messages.
+/// Text of a call, for messages.
 pub(super) fn shown(method: &str, arguments: &Values) -> String {
     format!("{method}({})", arguments.shown())
 }
@@ -82,7 +82,7 @@ impl Failure {
         (!reading.broken).then_some(failure)
     }
 
-    /// The error as it was.
+    /// Restores the error.
     pub(super) fn error(&self) -> Error {
         let kinds = [
             ErrorKind::Unsupported,
@@ -106,7 +106,7 @@ impl Failure {
     }
 }
 
-/// What caused a recorded error.
+/// Cause of a recorded error.
 #[derive(Debug)]
 struct Cause {
     message: String,

@@ -6,26 +6,26 @@ use crate::io::{Error, Result, RobotIo};
 use crate::parameter::debug_as_sentence;
 use crate::world::Scene;
 
-/// Why a behaviour is not deterministic.
+/// Reason why a behaviour is not deterministic.
 #[non_exhaustive]
 pub enum Indeterminate {
-    /// Two runs with one seed differ.
+    /// Two runs with the same seed differ.
     Runs {
-        /// The seed.
+        /// Seed of the runs.
         seed: u64,
-        /// Where they differ.
+        /// First difference.
         difference: Box<Difference>,
     },
-    /// A run on what another one recorded differs from it.
+    /// The replay of a run differs from it.
     Replay {
-        /// The seed.
+        /// Seed of the run.
         seed: u64,
-        /// Where they differ.
+        /// First difference.
         difference: Box<Difference>,
     },
     /// The scene cannot be simulated.
     Simulation(Error),
-    /// A recording cannot be made or read.
+    /// A recording cannot be written or read.
     Recording(LogError),
 }
 
@@ -66,10 +66,11 @@ impl From<std::io::Error> for Indeterminate {
     }
 }
 
-/// Checks that a behaviour is deterministic: for each seed, two recordings of its runs in a world are the same byte for
-/// byte, and so is the recording of its run on what the first one recorded.
+/// Checks that a behaviour is deterministic: for each seed, two recordings of its runs in a world are equal
+/// byte for byte, and so is the recording of a replay.
 ///
-/// The behaviour drives the first robot of the scene. How a run ends does not matter, as long as it always ends so.
+/// The behaviour drives the first robot of the scene. Any outcome is accepted, as long as it is always the
+/// same.
 ///
 /// ```
 /// use roverlab::geometry::{Pose, Twist};
@@ -125,7 +126,7 @@ fn recorded<R: RobotIo>(
     let header = Header { seed: Some(seed), ..Header::new("check_determinism", [""; 0]) };
     let writer = LogWriter::new(Vec::new(), &header)?;
     let mut robot = writer.recorder(robot, 0);
-    // The recording holds the error that ended the run, if one of the robot's did.
+    // If a robot's error ended the run, the recording contains it.
     let _ = behaviour(&mut robot);
     drop(robot);
     Ok(Log::read(writer.finish()?)?)

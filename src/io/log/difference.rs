@@ -5,16 +5,16 @@ use super::call::{self, Call};
 use super::recording::Kind;
 use super::stamp::seconds;
 
-/// Where two recordings part.
+/// The first difference between two recordings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Difference {
-    /// The robot's index; `None` if the robots are alike and something else differs.
+    /// Index of the robot; `None` if the robots' calls are equal and something else differs.
     pub robot: Option<usize>,
-    /// Seconds of the robot's time.
+    /// Time by the robot's clock (s).
     pub time: f64,
-    /// What the second recording holds there.
+    /// Content of the second recording.
     pub found: String,
-    /// What the first one holds.
+    /// Content of the first recording.
     pub expected: String,
 }
 
@@ -29,9 +29,9 @@ impl fmt::Display for Difference {
 }
 
 impl Difference {
-    /// The first difference between two recordings, if there is any.
+    /// The first difference between two recordings, if any.
     ///
-    /// The calls come first, in the order of their time; what else a file holds is compared byte for byte.
+    /// Calls are compared first, in the order of their time; the rest of the file is compared byte by byte.
     pub fn between(expected: &Log, found: &Log) -> Option<Self> {
         if expected.bytes() == found.bytes() {
             return None;
@@ -73,7 +73,7 @@ impl Difference {
     }
 }
 
-/// What a message says.
+/// Text of a message.
 fn words(kind: Kind, data: &[u8]) -> String {
     if kind == Kind::Bulk {
         return format!("a reading of {} bytes {:08x}", data.len(), crc32fast::hash(data));

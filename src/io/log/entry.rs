@@ -3,25 +3,25 @@ use super::call::Call;
 use super::recording::Kind;
 use super::stamp::seconds;
 
-/// A recorded call in plain form, for tables and pictures.
+/// A recorded call in readable form, for tables and pictures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Entry {
-    /// Seconds of the robot's time when the call began.
+    /// Start of the call by the robot's clock (s).
     pub time: f64,
-    /// Whether it was asked of the world's truth, not of the robot.
+    /// Whether it queried the ground truth rather than the robot.
     pub truth: bool,
-    /// The call's name: `set_speed`, say.
+    /// Name of the call, such as `set_speed`.
     pub method: String,
-    /// The arguments in words.
+    /// Arguments as text.
     pub arguments: String,
-    /// The result in words, or the error.
+    /// Result as text, or the error.
     pub result: Result<String, String>,
-    /// The numbers of the result: metres, radians, seconds. Of a pose x, y and heading.
+    /// Numbers of the result, in metres, radians and seconds; x, y and heading for a pose.
     pub numbers: Vec<f64>,
 }
 
 impl Log {
-    /// The calls of a robot in the order in which they were made; none for a robot that there is not.
+    /// The calls of a robot in order; none for an unknown robot.
     pub fn entries(&self, robot: usize) -> impl Iterator<Item = Entry> + '_ {
         let events = (0..).map_while(move |index| self.event(robot, index));
         events.filter(|event| event.kind != Kind::Bulk).filter_map(|event| {

@@ -4,73 +4,73 @@ use thiserror::Error;
 
 use crate::parameter::debug_as_sentence;
 
-/// Why a file cannot be used as a recording.
+/// Reason why a file is not a usable recording.
 #[derive(Error)]
 #[non_exhaustive]
 pub enum LogError {
-    /// It is no MCAP file.
+    /// It is not an MCAP file.
     #[error("found no MCAP file; expected a recording, which begins with the bytes of one")]
     NoMcap,
-    /// It is an MCAP file of some other program.
+    /// It is another program's MCAP file.
     #[error(
         "found an MCAP file of another program (library `{library}`); expected a recording made by roverlab"
     )]
     Foreign {
-        /// What wrote it, as it says itself.
+        /// Name of the writing library, as stated in the file.
         library: String,
     },
-    /// Its header is lost, so that nobody knows which program it is of.
+    /// Its header is lost, so its program is unknown.
     #[error("found a recording without its header; expected one that says which program it is of")]
     NoHeader,
-    /// It ends too early, as after a crash.
+    /// It is truncated, as after a crash.
     #[error(
         "found the end of the file at byte {at}; expected more: the recording was cut off, and `recover` gives back its complete chunks"
     )]
     Truncated {
-        /// Bytes in the file.
+        /// Size of the file (bytes).
         at: u64,
     },
-    /// Its bytes are not those that were written.
+    /// Its content is corrupted.
     #[error(
         "found damage: {what}; expected a recording as it was written; `recover` gives back its intact chunks"
     )]
     Damaged {
-        /// What is wrong.
+        /// What is damaged.
         what: String,
     },
-    /// A later version of this crate made it.
+    /// It was made by a later version of this crate.
     #[error(
         "found a recording of schema {found}; expected schema {supported} or older: a newer version made it"
     )]
     Newer {
-        /// Its schema.
+        /// Its schema version.
         found: u32,
-        /// The newest schema that this version knows.
+        /// The newest supported schema version.
         supported: u32,
     },
-    /// It holds several recordings.
+    /// It contains several recordings.
     #[error("found {runs} runs in one file; expected a file for each")]
     SeveralRuns {
-        /// How many.
+        /// Number of recordings.
         runs: usize,
     },
-    /// Its chunks are compressed.
+    /// Its chunks are compressed, and this build lacks the decompressor.
     #[error(
         "found chunks compressed by `{compression}`; expected uncompressed ones, or a build with the feature `{compression}`"
     )]
     Compressed {
-        /// The name of the compression.
+        /// Name of the compression.
         compression: String,
     },
-    /// It has no such robot.
+    /// It contains no such robot.
     #[error("found {robots} robots in the recording; expected one of index {index}")]
     NoRobot {
-        /// The index that was asked for.
+        /// Requested index.
         index: usize,
-        /// How many robots there are.
+        /// Number of robots.
         robots: usize,
     },
-    /// It cannot be read or written.
+    /// Reading or writing failed.
     #[error("the recording cannot be read or written: {0}")]
     Io(#[from] io::Error),
 }

@@ -14,8 +14,8 @@ use crate::geometry::Pose;
 use crate::io::fleet::no_robot;
 use crate::io::{Error, ErrorKind, FleetIo, FleetStep, GroundTruth, Result, RobotIo, RobotTruth};
 
-/// A fleet that is recorded, made by [`LogWriter::fleet`]: each robot's calls as those of a
-/// [`Recorder`], with the ends of the runs among them.
+/// A recorded fleet, made by [`LogWriter::fleet`]. Each robot's calls are recorded as by a [`Recorder`],
+/// along with the ends of the runs.
 #[derive(Debug)]
 pub struct RecordedFleet<T, W: Write> {
     inner: T,
@@ -24,7 +24,7 @@ pub struct RecordedFleet<T, W: Write> {
 }
 
 impl<W: Write> LogWriter<W> {
-    /// Records robots that are stepped in one thread, under the indices that they have.
+    /// Records robots stepped in one thread, under their own indices.
     pub fn fleet<'a, T: FleetIo<'a>>(&self, fleet: T) -> RecordedFleet<T, W> {
         RecordedFleet::new(fleet, self.clone())
     }
@@ -70,7 +70,7 @@ impl<'a, T: FleetIo<'a>, W: Write + 'a> FleetIo<'a> for RecordedFleet<T, W> {
     fn run_for(&mut self, seconds: f64) -> Result<()> {
         self.inner.run_for(seconds)?;
         let time = self.inner.time();
-        // No call that follows is earlier.
+        // No later call has an earlier time.
         let now = time.as_ref().ok().copied().map(nanoseconds);
         for notes in &mut self.notes {
             notes.note_at(now, RUN, &seconds, &time);
@@ -95,13 +95,13 @@ impl<'a, T: FleetIo<'a>, W: Write + 'a> FleetIo<'a> for RecordedFleet<T, W> {
     }
 }
 
-/// How a recording names the call that gives a robot its behaviour.
+/// Recorded name of the call that assigns a behaviour to a robot.
 const CONTROL: &str = "control";
-/// How a recording names the call that steps all behaviours.
+/// Recorded name of the call that steps all behaviours.
 const RUN: &str = "run_for";
 
-/// A fleet made of a recording, made by [`Player::fleet`]. Each behaviour is stepped as often as it was in the recorded
-/// run, whose periods and durations must be the same; what a robot is asked must be, too, as with [`Replay`].
+/// A fleet replayed from a recording, made by [`Player::fleet`]. Each behaviour is stepped as often as in the
+/// recorded run. Periods, durations and the robots' calls must match the recording, as with [`Replay`].
 pub struct ReplayFleet<'a> {
     members: Vec<Member<'a>>,
     time: f64,
@@ -123,15 +123,15 @@ impl std::fmt::Debug for ReplayFleet<'_> {
     }
 }
 
-/// What a recorded robot's fleet was told, in order.
+/// The recorded fleet calls of a robot, in order.
 struct Orders {
     position: Position,
-    /// The first event that has not been looked at.
+    /// The first event not yet examined.
     next: usize,
 }
 
 impl Orders {
-    /// The next order before the robot's next call, if there is one.
+    /// The next fleet call before the robot's next call, if any.
     fn next(&mut self) -> Option<Call<'_>> {
         let end = self.position.next_call();
         while self.next < end {
@@ -145,7 +145,7 @@ impl Orders {
         None
     }
 
-    /// Takes an order that must be the next one. Returns its answer.
+    /// Consumes a fleet call, which must be the next one. Returns its answer.
     fn take(&mut self, method: &str, argument: f64) -> Result<Option<Values>> {
         let Some(order) = self.next() else { return Ok(None) };
         let argument = Values::of(&argument);
@@ -158,7 +158,7 @@ impl Orders {
         order.result.map(Some).map_err(|failure| failure.error())
     }
 
-    /// Where the robot's next call is, if there is one.
+    /// Index of the robot's next call, if any.
     fn next_call(&self) -> Option<usize> {
         Some(self.position.next_call()).filter(|&index| self.position.event(index).is_some())
     }
@@ -169,7 +169,7 @@ fn ended(what: &str) -> Error {
 }
 
 impl Player {
-    /// The robots of a recorded fleet, which are stepped in one thread.
+    /// The robots of a recorded fleet, stepped in one thread.
     pub fn fleet<'a>(&self) -> ReplayFleet<'a> {
         ReplayFleet::new(self)
     }
@@ -193,7 +193,8 @@ impl<'a> ReplayFleet<'a> {
 }
 
 impl Member<'_> {
-    /// Steps the behaviour up to the end of the recorded run, which it returns, or to the end of what was recorded.
+    /// Steps the behaviour to the end of the recorded run and returns its time, or to the end of the
+    /// recording.
     fn run_for(&mut self, seconds: f64) -> Result<Option<f64>> {
         loop {
             if let Some(time) = self.orders.take(RUN, seconds)? {
@@ -213,7 +214,7 @@ impl Member<'_> {
         }
     }
 
-    /// The error of a robot that does not make its next call.
+    /// The error of a robot that omits its next recorded call.
     fn unasked(&self, found: &str) -> Error {
         let position = &self.orders.position;
         let call = position.event(position.next_call());
@@ -245,7 +246,7 @@ impl<'a> FleetIo<'a> for ReplayFleet<'a> {
             match member.run_for(seconds) {
                 Ok(Some(time)) => self.time = time,
                 Ok(None) => whole = false,
-                // What ended the recorded run: the other robots come as far as they did then.
+                // An error ended the recorded run: the other robots continue as far as they did then.
                 Err(error) => first = first.or(Some(error)),
             }
         }

@@ -1,46 +1,46 @@
 use std::collections::BTreeMap;
 use std::io;
 
-/// The version of what recordings hold. A recording of a newer one is refused.
+/// Schema version of recordings. Newer recordings are rejected.
 pub const SCHEMA_VERSION: u32 = 1;
 
-/// The name of the MCAP metadata record that makes a file a recording of this project.
+/// Name of the MCAP metadata record that identifies a recording of this project.
 pub(super) const METADATA: &str = "roverlab";
-/// How files of ours name what wrote them.
+/// Library name in this project's files.
 pub(super) const LIBRARY: &str = "roverlab";
 
-/// The name of the field that guards the others: MCAP has checksums of chunks and attachments, but none of metadata.
+/// Field with the checksum of the others: MCAP has checksums of chunks and attachments, but not of metadata.
 const CHECKSUM: &str = "checksum";
 
-/// What a recording says about the run: enough to run the program again.
+/// Description of a run, sufficient to run the program again.
 ///
-/// It holds nothing about where and when a run took place: no names of files, no dates.
+/// It contains nothing about place and date of a run: no file names, no dates.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Header {
-    /// The program's name.
+    /// Name of the program.
     pub program: String,
-    /// The options that affect the run, as on a command line.
+    /// Command-line options that affect the run.
     pub options: Vec<String>,
-    /// The seed of every random stream.
+    /// Seed of all random streams.
     pub seed: Option<u64>,
-    /// The version of this crate that made the recording; a new header has the present one.
+    /// Version of this crate that made the recording; the current one in a new header.
     pub version: String,
-    /// How the file's chunks are packed.
+    /// Compression of the file's chunks.
     pub compression: Compression,
-    /// Files that belong to the run, such as its world, with their whole contents.
+    /// Files that belong to the run, such as its world, with their full content.
     pub attachments: Vec<Attachment>,
 }
 
-/// How the chunks of a recording are packed. Files are many times smaller so, and are written more slowly.
+/// Compression of a recording's chunks. Compressed files are many times smaller and slower to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Compression {
-    /// Not at all.
+    /// No compression.
     #[default]
     None,
-    /// By LZ4, which is fast. For builds with the feature `lz4`.
+    /// LZ4, which is fast. Needs the feature `lz4`.
     Lz4,
-    /// By Zstandard, which packs more densely. For builds with the feature `zstd`.
+    /// Zstandard, which compresses more. Needs the feature `zstd`.
     Zstd,
 }
 
@@ -48,7 +48,7 @@ impl Compression {
     /// Each compression with its name in MCAP files.
     const ALL: [(Self, &'static str); 3] = [(Self::None, ""), (Self::Lz4, "lz4"), (Self::Zstd, "zstd")];
 
-    /// Its name in files; empty for none.
+    /// Name in files; empty for none.
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(kind, _)| *kind == self).map_or("", |(_, name)| *name)
     }
@@ -57,7 +57,7 @@ impl Compression {
         Self::ALL.iter().find(|(_, other)| *other == name).map(|(kind, _)| *kind)
     }
 
-    /// What the writer of files calls it. Fails if this build cannot pack so.
+    /// The writer's setting. Fails if this build lacks the compression.
     pub(super) fn method(self) -> io::Result<Option<mcap::Compression>> {
         match self {
             Self::None => Ok(None),
@@ -74,29 +74,29 @@ impl Compression {
     }
 }
 
-/// A file in a recording.
+/// A file attached to a recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Attachment {
-    /// What it is: `world.wld`, say.
+    /// Name, such as `world.wld`.
     pub name: String,
-    /// Its type, as on the web: `text/plain`, say.
+    /// Media type, such as `text/plain`.
     pub media_type: String,
-    /// What it holds.
+    /// Content.
     pub data: Vec<u8>,
 }
 
-/// What the metadata record of a file says.
+/// Content of a file's metadata record.
 pub(super) struct Written {
-    /// The header without its attachments.
+    /// Header without its attachments.
     pub(super) header: Header,
-    /// The version of its schema.
+    /// Schema version.
     pub(super) schema: u32,
-    /// The digest of the attachments.
+    /// Digest of the attachments.
     pub(super) digest: u64,
 }
 
 impl Header {
-    /// The header of a program's run with some options.
+    /// Creates the header of a program's run with its options.
     pub fn new(program: impl Into<String>, options: impl IntoIterator<Item = impl Into<String>>) -> Self {
         Self {
             program: program.into(),
@@ -106,12 +106,12 @@ impl Header {
         }
     }
 
-    /// A digest of all attachments, their names included: of the world and the robots.
+    /// Digest of all attachments and their names, which identifies world and robots.
     pub fn digest(&self) -> u64 {
         digest(self.attachments.iter().flat_map(|file| [file.name.as_bytes(), &file.data]))
     }
 
-    /// The text of the MCAP metadata record.
+    /// Fields of the MCAP metadata record.
     pub(super) fn metadata(&self) -> BTreeMap<String, String> {
         let mut fields = BTreeMap::from([
             ("schema".to_owned(), SCHEMA_VERSION.to_string()),
@@ -132,12 +132,12 @@ impl Header {
         fields
     }
 
-    /// What a metadata record says; `None` if it is not as it was written.
+    /// Parses a metadata record; `None` if it is damaged.
     pub(super) fn read(fields: &BTreeMap<String, String>) -> Option<Written> {
         let schema = fields.get("schema")?.parse().ok()?;
         match fields.get(CHECKSUM) {
             Some(written) if *written != checksum(fields) => return None,
-            // Newer schemas may do without.
+            // Newer schemas may lack it.
             None if schema <= SCHEMA_VERSION => return None,
             _ => {}
         }
@@ -158,13 +158,13 @@ impl Header {
         Some(Written { header, schema, digest: digest.unwrap_or_default() })
     }
 
-    /// An attachment by its name.
+    /// The attachment with this name.
     pub fn attachment(&self, name: &str) -> Option<&Attachment> {
         self.attachments.iter().find(|attachment| attachment.name == name)
     }
 }
 
-/// The 64-bit FNV-1a digest (Fowler, Noll and Vo) of some parts, with the length ahead of each.
+/// The 64-bit FNV-1a digest (Fowler, Noll and Vo) of several parts, each preceded by its length.
 fn digest<'a>(parts: impl Iterator<Item = &'a [u8]>) -> u64 {
     let with_length =
         parts.flat_map(|part| (part.len() as u64).to_le_bytes().into_iter().chain(part.iter().copied()));
@@ -173,7 +173,7 @@ fn digest<'a>(parts: impl Iterator<Item = &'a [u8]>) -> u64 {
     })
 }
 
-/// What the field [`CHECKSUM`] says of all others.
+/// Value of the field [`CHECKSUM`] for all other fields.
 fn checksum(fields: &BTreeMap<String, String>) -> String {
     let others = fields.iter().filter(|(name, _)| *name != CHECKSUM);
     format!("{:016x}", digest(others.flat_map(|(name, value)| [name.as_bytes(), value.as_bytes()])))

@@ -1,4 +1,4 @@
-//! What viewers show of a robot: messages in Foxglove's schemas.
+//! Messages for viewers, in Foxglove's schemas.
 
 use image::RgbImage;
 
@@ -7,7 +7,7 @@ use super::wire::Fields;
 use crate::geometry::Pose;
 use crate::io::LidarScan;
 
-/// What the messages of a robot refer to.
+/// Time and frames of a robot's messages.
 #[derive(Debug)]
 pub(super) struct Frames<'a> {
     pub(super) time: Nanoseconds,
@@ -26,7 +26,7 @@ pub(super) fn laser_scan(out: &mut Fields<'_>, frames: &Frames<'_>, scan: &Lidar
     out.doubles(6, &scan.ranges);
 }
 
-/// A `foxglove.RawImage` of 8 bits a channel.
+/// A `foxglove.RawImage` with 8 bits per channel.
 pub(super) fn raw_image(out: &mut Fields<'_>, frames: &Frames<'_>, image: &RgbImage) {
     let (width, height) = image.dimensions();
     out.time(1, frames.time);
@@ -45,7 +45,7 @@ pub(super) fn pose_in_frame(out: &mut Fields<'_>, frames: &Frames<'_>, pose: &Po
     out.message(3, |message| write_pose(message, pose, 0.0));
 }
 
-/// A `foxglove.FrameTransform` from odometry's frame to the robot's.
+/// A `foxglove.FrameTransform` from the odometry frame to the robot's.
 pub(super) fn frame_transform(out: &mut Fields<'_>, frames: &Frames<'_>, pose: &Pose) {
     transform(out, frames.time, frames.odometry, frames.robot, pose);
 }
@@ -59,7 +59,7 @@ pub(super) fn transform(out: &mut Fields<'_>, time: Nanoseconds, parent: &str, c
     out.heading(5, pose.heading);
 }
 
-/// A `foxglove.Pose` at a height.
+/// A `foxglove.Pose` at a height (m).
 pub(super) fn write_pose(out: &mut Fields<'_>, pose: &Pose, height: f64) {
     out.vector(1, pose.x, pose.y, height);
     out.heading(2, pose.heading);

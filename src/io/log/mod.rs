@@ -1,25 +1,48 @@
-//! Recordings: any run becomes an MCAP file, which viewers open and which plays back to the bit.
+//! Recordings: every run can be saved as an MCAP file, which viewers open and which replays bit for bit.
 //!
-//! A [`LogWriter`] writes the file; its [`recorder`](LogWriter::recorder) wraps any robot. [`Log`] reads it, and
-//! [`Replay`] is a robot made of it: a program that does what the recorded one did sees what that one saw, and the
-//! first call that differs is an error that names it.
+//! A [`LogWriter`] writes the file; its [`recorder`](LogWriter::recorder) wraps any robot. [`Log`] reads it,
+//! and [`Replay`] is a robot that answers from it: a program that makes the recorded calls gets the recorded
+//! answers, and the first deviating call fails with an error that names it.
 //!
-//! The same run gives the same file, byte for byte: it holds the robots' time, never that of the machine, and no names
-//! of files. What it holds is in the open schemas of [MCAP](https://mcap.dev) and Foxglove, so that viewers and other
-//! programs read it too:
+//! Equal runs give equal files, byte for byte: times are those of the robots, never of the machine, and file
+//! names are not stored. The schemas are the open ones of [MCAP](https://mcap.dev) and Foxglove, so that
+//! viewers and other programs can read the files:
 //!
-//! | topic | schema | what |
+//! | topic | schema | content |
 //! |---|---|---|
 //! | `/robot1/calls` | `roverlab.Call` | every call with its arguments, and its result or error |
 //! | `/robot1/lidar` | `foxglove.LaserScan` | scans |
 //! | `/robot1/camera` | `foxglove.RawImage` | camera images |
-//! | `/robot1/lcd` | `foxglove.RawImage` | the display, once a second when it has changed |
-//! | `/robot1/odometry` | `foxglove.PoseInFrame` | where odometry takes the robot to be |
-//! | `/robot1/transforms` | `foxglove.FrameTransform` | the same for the viewer's frames |
+//! | `/robot1/lcd` | `foxglove.RawImage` | the display, at most once a second, after changes |
+//! | `/robot1/odometry` | `foxglove.PoseInFrame` | pose by odometry |
+//! | `/robot1/transforms` | `foxglove.FrameTransform` | the same as a transform for viewers |
 //! | `/scene` | `foxglove.SceneUpdate` | walls, objects and marks |
-//! | `/robot1/truth` | `roverlab.Call` | what a simulator was asked about the truth |
+//! | `/robot1/truth` | `roverlab.Call` | queries of the ground truth |
 //!
-//! Robots are numbered from 1 in topics. A metadata record named `roverlab` holds the [`Header`].
+//! Topics number robots from 1. A metadata record named `roverlab` contains the [`Header`].
+//!
+//! ```
+//! use roverlab::geometry::{Pose, Twist};
+//! use roverlab::io::log::{Difference, Header, Log, LogWriter, Replay};
+//! use roverlab::io::sim::{SimOptions, Simulation};
+//! use roverlab::io::{Clock, Drive, Odometry, Result};
+//! use roverlab::world::{RobotSpec, Scene, World};
+//! fn program(robot: &mut (impl Clock + Drive + Odometry)) -> Result<Pose> {
+//!     robot.set_speed(Twist::new(0.2, 0.5))?;
+//!     robot.wait(1.0)?;
+//!     robot.pose()
+//! }
+//! let scene = Scene::with_robot(World::empty(2.0, 2.0), RobotSpec::s4(), Pose::default());
+//! let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
+//! let writer = LogWriter::new(Vec::new(), &Header::new("circle", ["--seed 1"]))?;
+//! let mut robot = writer.recorder(simulation.robot(0)?, 0);
+//! let end = program(&mut robot)?;
+//! drop(robot);
+//! let log = Log::read(writer.finish()?)?;
+//! assert_eq!(program(&mut Replay::new(&log, 0)?)?, end, "to the bit");
+//! assert_eq!(Difference::between(&log, &log), None);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod answer;
 mod answers;
@@ -30,6 +53,7 @@ mod entry;
 mod error;
 mod fleet;
 mod header;
+mod lengths;
 mod messages;
 mod open_loop;
 mod parts;

@@ -8,27 +8,51 @@ use super::values::Values;
 use super::{Log, LogError};
 use crate::io::{Clock, Error, ErrorKind, Key, Result};
 
-/// A robot made of a recording that answers by time, whatever the program does: for trying another algorithm on
+/// A robot that answers from a recording by time, whatever the program does: for trying another algorithm on
 /// recorded inputs.
 ///
-/// Its clock is its own: waiting moves it, and each call takes a little time. A sensor reads what the recorded one read
-/// last at that time, or what it read first if that was later; a sensor that was never read is an error. Commands are
-/// written down and have no effect; [`report`](OpenLoop::report) compares them with the recorded ones. Behind the end
-/// of the recording every call fails with [`EndOfLog`](ErrorKind::EndOfLog).
+/// It has its own clock: waiting advances it, and each call takes some time. A sensor returns its last
+/// recorded reading up to that time, or its first one if that is later; a sensor that was never read returns
+/// an error. Commands are recorded without effect; [`report`](OpenLoop::report) compares them with the
+/// original ones. After the end of the recording every call fails with [`EndOfLog`](ErrorKind::EndOfLog).
+///
+/// ```
+/// use roverlab::geometry::{Pose, Twist};
+/// use roverlab::io::log::{Header, Log, LogWriter, OpenLoop};
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::io::{Clock, Drive, Odometry};
+/// use roverlab::world::{RobotSpec, Scene, World};
+/// let scene = Scene::with_robot(World::empty(2.0, 2.0), RobotSpec::s4(), Pose::default());
+/// let simulation = Simulation::new(&scene, SimOptions::ideal())?;
+/// let writer = LogWriter::new(Vec::new(), &Header::new("straight", ["--speed 0.2"]))?;
+/// let mut robot = writer.recorder(simulation.robot(0)?, 0);
+/// robot.set_speed(Twist::new(0.2, 0.0))?;
+/// robot.wait(2.0)?;
+/// let end = robot.pose()?;
+/// drop(robot);
+/// // Another program: it gets the recorded readings, whatever it commands.
+/// let mut again = OpenLoop::new(&Log::read(writer.finish()?)?, 0)?;
+/// again.set_speed(Twist::new(0.3, 0.0))?;
+/// again.wait(1.0)?;
+/// assert_eq!(again.pose()?, end, "the only pose that was asked for");
+/// let report = again.report();
+/// assert_eq!((report.recorded, report.given, report.same), (1, 1, 0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct OpenLoop {
     log: Log,
     robot: usize,
-    /// The clock, and when the recording ends, in nanoseconds.
+    /// Clock, and end of the recording (ns).
     time: u64,
     end: u64,
-    /// The recorded answers to each question: where they are, in the order of their time.
+    /// Recorded answers to each query, ordered by time.
     answers: BTreeMap<String, Vec<Answer>>,
     recorded: Vec<RecordedCommand>,
     commands: Vec<RecordedCommand>,
 }
 
-/// A recorded answer: its event and the one that holds its bulk.
+/// A recorded answer: its event and the event of its bulk data.
 #[derive(Debug, Clone, Copy)]
 struct Answer {
     time: u64,
@@ -36,39 +60,39 @@ struct Answer {
     bulk: Option<usize>,
 }
 
-/// A command that a program gave.
+/// A command of a program.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordedCommand {
-    /// Seconds of the robot's time.
+    /// Time by the robot's clock (s).
     pub time: f64,
-    /// The call: `set_speed`, say.
+    /// Name of the call, such as `set_speed`.
     pub method: String,
-    /// Its numbers: metres, radians, seconds.
+    /// Its numbers, in metres, radians and seconds.
     pub numbers: Vec<f64>,
-    /// All of its arguments in words.
+    /// All arguments as text.
     pub arguments: String,
 }
 
-/// How a program's commands compare with the recorded ones.
+/// Comparison of a program's commands with the recorded ones.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OpenLoopReport {
-    /// How many commands were recorded, and how many the program gave.
+    /// Number of recorded commands.
     pub recorded: usize,
-    /// How many commands the program gave.
+    /// Number of the program's commands.
     pub given: usize,
-    /// How many commands at the beginning are the same to the bit, whatever their time.
+    /// Number of leading commands equal to the bit, whatever their time.
     pub same: usize,
-    /// The first two commands that differ, as recorded and as given; one may be missing.
+    /// The first differing pair of commands, recorded and new; either may be missing.
     pub first_difference: Option<(Option<RecordedCommand>, Option<RecordedCommand>)>,
-    /// The largest difference of a number between commands of the same kind at the same place in the order, by method.
+    /// Largest difference of a number between corresponding commands, by method.
     pub largest: BTreeMap<String, f64>,
 }
 
-/// Nanoseconds that a call takes, as in the simulator.
+/// Duration of a call (ns), as in the simulator.
 const CALL: u64 = 100_000;
 
-/// Calls that are questions; all others are commands.
-const QUESTIONS: [&str; 18] = [
+/// Calls that are queries; all others are commands.
+const QUESTIONS: [&str; 21] = [
     "speed",
     "pose",
     "remaining",
@@ -84,16 +108,20 @@ const QUESTIONS: [&str; 18] = [
     "radio_id",
     "radio_peers",
     "encoder",
+    "attitude",
+    "turn_rates",
+    "acceleration",
     "resolution",
     "image_into",
     "wait_done",
 ];
 
-/// Questions whose answers are there once: a key press that was read is gone.
+/// Queries with events as answers: a key press is gone once read.
 const EVENTS: [&str; 3] = ["read_key", "wait_key", "receive"];
 
 impl OpenLoop {
-    /// A robot of a recording, by its index, at the time of its first call.
+    /// Creates a robot from a recording, by its index, at the time of its first call. Fails if the recording
+    /// has no such robot.
     pub fn new(log: &Log, robot: usize) -> std::result::Result<Self, LogError> {
         if robot >= log.robots() {
             return Err(LogError::NoRobot { index: robot, robots: log.robots() });
@@ -111,12 +139,12 @@ impl OpenLoop {
         Ok(new)
     }
 
-    /// Puts the clock to a time of the recording, in seconds.
+    /// Sets the clock to a time of the recording (s).
     pub fn seek(&mut self, time: f64) {
         self.time = nanoseconds(time);
     }
 
-    /// How the commands so far compare with those that were recorded.
+    /// Compares the commands so far with the recorded ones.
     pub fn report(&self) -> OpenLoopReport {
         let alike = |a: &RecordedCommand, b: &RecordedCommand| {
             let bits =
@@ -141,7 +169,7 @@ impl OpenLoop {
         }
     }
 
-    /// The commands that the program has given.
+    /// The program's commands so far.
     pub fn commands(&self) -> &[RecordedCommand] {
         &self.commands
     }
@@ -163,7 +191,7 @@ impl OpenLoop {
                     let nothing =
                         call.result.as_ref().is_ok_and(|result| result.integers.first() == Some(&0));
                     if nothing && matches!(call.method, "read_key" | "receive") {
-                        // That nothing came is no event.
+                        // The absence of an event is not an event.
                     } else if is_command(call.method) {
                         self.recorded.push(command(event.time, call.method, &call.arguments));
                     } else {
@@ -177,7 +205,7 @@ impl OpenLoop {
         self.time = first.unwrap_or(0);
     }
 
-    /// Lets a call's time pass; fails behind the end of the recording.
+    /// Advances the clock by a call; fails after the end of the recording.
     fn pass(&mut self, method: &str) -> Result<()> {
         if self.time > self.end {
             let message = format!("the recording has ended before the call {method}");
@@ -187,7 +215,7 @@ impl OpenLoop {
         Ok(())
     }
 
-    /// Writes a command down.
+    /// Records a command.
     fn obey(&mut self, method: &str, arguments: &Values) -> Result<()> {
         let time = self.time;
         self.pass(method)?;
@@ -195,7 +223,7 @@ impl OpenLoop {
         Ok(())
     }
 
-    /// What a sensor read at this time.
+    /// Reading of a sensor at the current time.
     fn ask<T>(
         &mut self,
         method: &str,
@@ -211,7 +239,7 @@ impl OpenLoop {
         let answer =
             if happens { self.next_event(&question, now, method) } else { self.reading(&question, now) };
         let Some(answer) = answer else {
-            // No key was pressed yet, no message came.
+            // No key was pressed and no message came so far.
             return if happens {
                 take(&Values::of(&None::<Key>), &[]).ok_or_else(unread)
             } else {
@@ -232,14 +260,14 @@ impl OpenLoop {
         }
     }
 
-    /// The last answer up to a time; the first one if all are later.
+    /// The last answer up to a time, or the first one if all are later.
     fn reading(&self, question: &str, now: u64) -> Option<Answer> {
         let answers = self.answers.get(question)?;
         let later = answers.partition_point(|answer| answer.time <= now);
         answers.get(later.saturating_sub(1)).copied()
     }
 
-    /// The oldest event that nobody has seen, if it has happened by now or the program waits for it.
+    /// The oldest unread event, if it has happened by now or the program waits for it.
     fn next_event(&mut self, question: &str, now: u64, method: &str) -> Option<Answer> {
         let events = self.answers.get_mut(question)?;
         events.first().filter(|event| event.time <= now || method == "wait_key")?;

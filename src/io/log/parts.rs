@@ -4,7 +4,7 @@ use super::values::{Put, Take, Taking, Values};
 use crate::geometry::Pose;
 use crate::io::LidarScan;
 
-/// A scan without its ranges, which are on the lidar's topic.
+/// A scan without its ranges, which are stored on the lidar's topic.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ScanHead {
     angle_min: f64,
@@ -19,7 +19,7 @@ impl ScanHead {
         Self { angle_min, angle_increment, range_max, mount }
     }
 
-    /// Makes a scan of the head and the ranges, in the scan's own memory.
+    /// Fills a scan from head and ranges; reuses its memory.
     pub(super) fn fill(self, scan: &mut LidarScan, ranges: impl Iterator<Item = f64>) {
         let Self { angle_min, angle_increment, range_max, mount } = self;
         (scan.angle_min, scan.angle_increment, scan.range_max) = (angle_min, angle_increment, range_max);
@@ -47,7 +47,7 @@ impl Take for ScanHead {
     }
 }
 
-/// An image without its pixels, which are on the camera's topic.
+/// An image without its pixels, which are stored on the camera's topic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Size(pub(super) u32, pub(super) u32);
 

@@ -2,7 +2,27 @@ use super::position::Position;
 use super::stamp::nanoseconds;
 use super::{Log, LogError};
 
-/// Plays a recording: hands out its robots, and what was true about them.
+/// Replays a recording: provides its robots and their ground truth.
+///
+/// ```
+/// use roverlab::geometry::Pose;
+/// use roverlab::io::Clock;
+/// use roverlab::io::log::{Header, Log, LogWriter, Player};
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::world::{RobotSpec, Scene, World};
+/// let scene = Scene::with_robot(World::empty(2.0, 2.0), RobotSpec::s4(), Pose::default());
+/// let simulation = Simulation::new(&scene, SimOptions::default())?;
+/// let writer = LogWriter::new(Vec::new(), &Header::new("waiting", [""]))?;
+/// let mut robot = writer.recorder(simulation.robot(0)?, 0);
+/// robot.wait(0.5)?;
+/// robot.wait(0.5)?;
+/// drop(robot);
+/// let player = Player::new(&Log::read(writer.finish()?)?);
+/// player.robot(0)?.wait(0.5)?;
+/// let (time, call) = player.rest().expect("one call is left");
+/// assert!(time >= 0.5 && call.contains("wait"), "{time}: {call}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Player {
     positions: Vec<Position>,
@@ -10,29 +30,29 @@ pub struct Player {
 }
 
 impl Player {
-    /// A player of a recording, at its beginning.
+    /// Creates a player at the beginning of a recording.
     pub fn new(log: &Log) -> Self {
         let positions = (0..log.robots()).map(|robot| Position::new(log, robot)).collect();
         Self { positions, log: log.clone() }
     }
 
-    /// What is played.
+    /// The recording.
     pub fn log(&self) -> &Log {
         &self.log
     }
 
-    /// How far each robot has come.
+    /// Current position of each robot.
     pub(super) fn positions(&self) -> impl Iterator<Item = Position> + '_ {
         self.positions.iter().cloned()
     }
 
-    /// Goes to a time of the recording, in seconds: the next call of each robot is its first one from then on.
+    /// Moves to a time of the recording (s): each robot continues with its first call at or after that time.
     pub fn seek(&self, time: f64) {
         self.positions.iter().for_each(|position| position.seek(nanoseconds(time)));
     }
 
-    /// The first recorded call, of the robot of the lowest index, that no program has made: its time in seconds, and
-    /// the call. `None` when the recording has been played to its end.
+    /// The first recorded call not made yet, of the robot with the lowest index: its time (s) and text.
+    /// `None` once the recording has been replayed to its end.
     pub fn rest(&self) -> Option<(f64, String)> {
         self.positions.iter().find_map(Position::rest)
     }

@@ -11,7 +11,7 @@ use super::wire::Fields;
 use super::writer::LogWriter;
 use crate::io::{Error, Lcd, Result};
 
-/// A robot's way into a recording: it makes messages of calls and of what they show.
+/// A robot's access to a recording: writes its calls and the messages for viewers.
 pub(super) struct Port<W: Write> {
     writer: LogWriter<W>,
     track: usize,
@@ -22,7 +22,7 @@ pub(super) struct Port<W: Write> {
     result: Values,
     message: Vec<u8>,
     shadow: Shadow,
-    /// Whether the robot drives no more when this is gone.
+    /// Whether dropping it ends the robot's track.
     closes: bool,
 }
 
@@ -57,14 +57,14 @@ impl<W: Write> Port<W> {
         }
     }
 
-    /// Another way into the recording of the same robot, which may outlive it.
+    /// A further access for the same robot, which may outlive the first.
     pub(super) fn beside(writer: LogWriter<W>, track: usize) -> Self {
         let mut port = Self::new(writer, track);
         port.closes = false;
         port
     }
 
-    /// Begins a call at a time; one that nobody can tell is that of the message before.
+    /// Starts a call at a time; without one the time of the previous message applies.
     pub(super) fn begin(&mut self, time: Option<Nanoseconds>) {
         self.time = time;
         self.arguments.clear();
@@ -73,12 +73,12 @@ impl<W: Write> Port<W> {
         }
     }
 
-    /// Draws what the robot has drawn in the call that has begun.
+    /// Repeats the robot's drawing in the current call.
     pub(super) fn draw(&mut self, drawing: impl FnOnce(&mut Lcd) -> Result<()>) {
         self.shadow.draw(self.time.unwrap_or(0), drawing);
     }
 
-    /// Writes what the display shows, if something has been drawn since the last time.
+    /// Writes the display if something was drawn since the last time.
     fn show_display(&mut self) {
         let mut shadow = std::mem::take(&mut self.shadow);
         if let Some(image) = shadow.take() {
@@ -91,7 +91,7 @@ impl<W: Write> Port<W> {
         argument.put(&mut self.arguments);
     }
 
-    /// Writes the call that has begun.
+    /// Writes the current call.
     pub(super) fn end<T: Put>(&mut self, channel: Channel, method: &str, result: &Result<T>) {
         self.end_with(channel, method, result.as_ref().map(|value| value as &dyn Put));
     }
@@ -110,7 +110,7 @@ impl<W: Write> Port<W> {
         self.writer.push(self.track, self.time, channel, &self.message);
     }
 
-    /// Writes a message on a channel that is there to be seen.
+    /// Writes a message for viewers.
     pub(super) fn show(&mut self, channel: Channel, fill: impl FnOnce(&mut Fields<'_>, &Frames<'_>)) {
         self.message.clear();
         let frames =
@@ -121,7 +121,7 @@ impl<W: Write> Port<W> {
 }
 
 impl<W: Write> LogWriter<W> {
-    /// A way into the recording for a robot that drives from now on.
+    /// Opens an access to the recording for a robot that starts driving.
     pub(super) fn port(&self, index: usize) -> Port<W> {
         self.open(index);
         Port::new(self.clone(), index)

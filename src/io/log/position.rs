@@ -6,7 +6,7 @@ use super::call::{self, Call};
 use super::recording::{Event, Kind};
 use super::stamp::{Nanoseconds, seconds};
 
-/// How far a robot's part of a recording has been played. The copies move together.
+/// Replay position of a robot's part of a recording, shared by all its copies.
 #[derive(Debug, Clone)]
 pub(super) struct Position {
     log: Log,
@@ -27,7 +27,7 @@ impl Position {
         self.log.event(self.robot, index)
     }
 
-    /// The first event behind the calls made so far.
+    /// The first event after the calls made so far.
     pub(super) fn here(&self) -> usize {
         self.next.load(Ordering::Relaxed)
     }
@@ -36,13 +36,13 @@ impl Position {
         self.next.store(index, Ordering::Relaxed);
     }
 
-    /// Goes to the first event from a time on.
+    /// Moves to the first event at or after a time.
     pub(super) fn seek(&self, time: Nanoseconds) {
         let earlier = (0..).take_while(|&index| self.event(index).is_some_and(|event| event.time < time));
         self.move_to(earlier.count());
     }
 
-    /// The next call, or the end of the recording.
+    /// Index of the next call, or the end of the recording.
     pub(super) fn next_call(&self) -> usize {
         let mut index = self.here();
         while self.event(index).is_some_and(|event| event.kind != Kind::Call) {

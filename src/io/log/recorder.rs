@@ -10,20 +10,20 @@ use super::topics::{CALLS, CAMERA, Channel, LIDAR, ODOMETRY, TRANSFORMS};
 use super::values::Put;
 use super::wire::Fields;
 use super::writer::LogWriter;
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::{
-    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key,
-    Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio, RadioMessage,
-    Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill,
+    Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd,
+    Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
-/// A robot that records what it is asked and what it answers, made by
+/// A robot that records its calls and their results, made by
 /// [`LogWriter::recorder`](super::LogWriter::recorder).
 ///
-/// Every call is a message of the robot's topic `calls`, at the robot's time when it began. Scans, camera images and
-/// odometry are on topics of their own besides, in schemas that viewers show; the calls do not repeat their bulk. The
-/// program sees nothing of it: recording takes no time of the robot's.
+/// Every call is a message on the robot's topic `calls`, at the robot's time when it started. Scans, camera
+/// images and odometry also have topics of their own in schemas for viewers; their bulk data is not repeated
+/// in the calls. The program does not notice: recording takes no robot time.
 #[derive(Debug)]
 pub struct Recorder<R, W: Write> {
     inner: R,
@@ -31,8 +31,8 @@ pub struct Recorder<R, W: Write> {
 }
 
 impl<W: Write> LogWriter<W> {
-    /// Records a robot under an index of its own, from 0. When several robots drive at once, call this for
-    /// all of them before the first one does.
+    /// Records a robot under its index, from 0. If several robots drive concurrently, call this for all of
+    /// them before the first one starts.
     pub fn recorder<R>(&self, robot: R, index: usize) -> Recorder<R, W> {
         Recorder::new(robot, self.port(index))
     }
@@ -43,24 +43,24 @@ impl<R, W: Write> Recorder<R, W> {
         Self { inner, port }
     }
 
-    /// The robot inside.
+    /// The wrapped robot.
     pub fn inner(&self) -> &R {
         &self.inner
     }
 
-    /// The robot inside. Nothing more of it is recorded.
+    /// The wrapped robot. Nothing more of it is recorded.
     pub fn into_inner(self) -> R {
         self.inner
     }
 
-    /// The way into the recording, for the robot's next recorder.
+    /// The access to the recording, for the robot's next recorder.
     pub(super) fn into_port(self) -> Port<W> {
         self.port
     }
 }
 
 impl<R: Clock, W: Write> Recorder<R, W> {
-    /// Asks the robot inside, and writes down what it was asked and what it answered.
+    /// Makes a call and records it with its result.
     fn record<T: Put>(
         &mut self,
         method: &str,
@@ -73,7 +73,7 @@ impl<R: Clock, W: Write> Recorder<R, W> {
         result
     }
 
-    /// The same for an answer whose bulk is on a channel of its own, before the call, which holds the rest of it.
+    /// The same for a result with bulk data, which is written on its own channel before the call.
     fn record_bulk<B, T: Put>(
         &mut self,
         (method, channel): (&str, Channel),
@@ -139,7 +139,7 @@ macro_rules! recorded {
         }
         result
     }};
-    // What changes nothing on the display.
+    // Calls that change nothing on the display.
     (@Display $self:ident cursor()) => { recorded!(@ $self cursor()) };
     (@Display $self:ident display_size()) => { recorded!(@ $self display_size()) };
     (@Display $self:ident pixel($at:ident)) => { recorded!(@ $self pixel($at)) };
@@ -172,3 +172,4 @@ signatures! { Radio => recorded!() }
 signatures! { Motors => recorded!() }
 signatures! { Servos => recorded!() }
 signatures! { Encoders => recorded!() }
+signatures! { Inertial => recorded!() }

@@ -8,7 +8,7 @@ use mcap::records::{Record, op};
 
 use super::header::LIBRARY;
 use super::header::{METADATA, Written};
-use super::reader::{self, Framed};
+use super::reader::{self, Budget, Framed};
 use super::stamp::Nanoseconds;
 use super::stamp::seconds;
 use super::topics::WORLD;
@@ -16,9 +16,9 @@ use super::wire::{self, Field};
 use super::{Attachment, Header, LogError, SCHEMA_VERSION};
 use crate::geometry::{Pose, math};
 
-/// A recording in memory, checked.
+/// A verified recording in memory.
 ///
-/// It is cheap to clone: the copies share the memory.
+/// Cheap to clone: copies share the memory.
 #[derive(Clone)]
 pub struct Log {
     contents: Arc<Contents>,
@@ -26,42 +26,42 @@ pub struct Log {
 
 struct Contents {
     bytes: Vec<u8>,
-    /// What is in the chunks, one after the other, if some are compressed; else it is in place.
+    /// Concatenated content of the chunks if some are compressed; otherwise it is used in place.
     unpacked: Option<Vec<u8>>,
     header: Header,
-    /// What each robot recorded, in the order in which it did.
+    /// Events of each robot, in order.
     tracks: Vec<Vec<Event>>,
     facts: Facts,
 }
 
-/// What is to be said about a recording as a whole.
+/// Facts about a recording as a whole.
 #[derive(Debug, Clone, Default)]
 struct Facts {
-    /// How many messages there are on each topic.
+    /// Number of messages on each topic.
     topics: BTreeMap<String, u64>,
     chunks: usize,
-    /// The times of the first and the last message.
+    /// Times of the first and the last message.
     span: Option<(Nanoseconds, Nanoseconds)>,
-    /// Where each robot starts in the world.
+    /// Start pose of each robot in the world.
     starts: BTreeMap<usize, Pose>,
-    /// Whether attachments are other than when the recording was made.
+    /// Whether attachments differ from those of the original recording.
     attachments_lost: bool,
 }
 
-/// What a message of a robot is to a replay.
+/// Role of a robot's message in a replay.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// A call of the robot.
+    /// A call to the robot.
     Call,
-    /// A question about the truth.
+    /// A query of the ground truth.
     Truth,
-    /// The ranges or the pixels that the next call answers with.
+    /// Ranges or pixels of the next call's answer.
     Bulk,
-    /// Where odometry begins, the first of a topic's transforms.
+    /// Origin of odometry: the first transform of a topic.
     Start,
 }
 
-/// A message of a robot and where it is in the file.
+/// A message of a robot and its position in the file.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Event {
     pub(super) kind: Kind,
@@ -79,50 +79,50 @@ impl fmt::Debug for Log {
 }
 
 impl Log {
-    /// Reads a recording from the bytes of its file. Takes time in proportion to them, and a few bytes of memory for
-    /// each message besides.
+    /// Reads a recording from the bytes of its file. Time is proportional to its size; memory is a few bytes
+    /// per message in addition. Fails for a file that is not an intact recording.
     pub fn read(bytes: Vec<u8>) -> Result<Self, LogError> {
         let (header, tracks, facts, unpacked) = Contents::read(&bytes)?;
         Ok(Self { contents: Arc::new(Contents { bytes, unpacked, header, tracks, facts }) })
     }
 
-    /// What the recording says about its run.
+    /// Header of the recording.
     pub fn header(&self) -> &Header {
         &self.contents.header
     }
 
-    /// How many robots were recorded.
+    /// Number of recorded robots.
     pub fn robots(&self) -> usize {
         self.contents.tracks.len()
     }
 
-    /// How many messages there are on each topic.
+    /// Number of messages on each topic.
     pub fn topics(&self) -> &BTreeMap<String, u64> {
         &self.contents.facts.topics
     }
 
-    /// How many chunks the file has.
+    /// Number of chunks of the file.
     pub fn chunks(&self) -> usize {
         self.contents.facts.chunks
     }
 
-    /// The times of the first and the last message, in seconds; `None` if there is none.
+    /// Times of the first and the last message (s); `None` without messages.
     pub fn span(&self) -> Option<(f64, f64)> {
         self.contents.facts.span.map(|(first, last)| (seconds(first), seconds(last)))
     }
 
-    /// Where a robot starts in the world, if the recording says so.
+    /// Start pose of a robot in the world, if recorded.
     pub fn start(&self, robot: usize) -> Option<Pose> {
         self.contents.facts.starts.get(&robot).copied()
     }
 
-    /// Whether attachments are missing that the recording was made with, as may be after
+    /// Whether attachments of the original recording are missing, as may happen after
     /// [`recover`](super::recover).
     pub fn lacks_attachments(&self) -> bool {
         self.contents.facts.attachments_lost
     }
 
-    /// The bytes of the file.
+    /// Bytes of the file.
     pub fn bytes(&self) -> &[u8] {
         &self.contents.bytes
     }
@@ -131,7 +131,7 @@ impl Log {
         self.contents.tracks.get(robot)?.get(index)
     }
 
-    /// What a message holds.
+    /// Content of a message.
     pub(super) fn data(&self, event: &Event) -> &[u8] {
         let contents = &*self.contents;
         &contents.unpacked.as_ref().unwrap_or(&contents.bytes)[event.place.clone()]
@@ -158,7 +158,7 @@ impl Contents {
             facts: Facts::default(),
             tracks: Vec::new(),
         };
-        // The header decides whether the rest can be understood.
+        // The header determines whether the rest can be read.
         for record in records.iter().filter(|record| !matches!(record.opcode, op::CHUNK | op::MESSAGE)) {
             reading.add(record)?;
         }
@@ -166,21 +166,17 @@ impl Contents {
         if let Some(message) = records.iter().find(|record| record.opcode == op::MESSAGE) {
             return Err(LogError::damaged(format!("a message outside of chunks at byte {}", message.start)));
         }
-        let chunks = records.iter().filter(|record| record.opcode == op::CHUNK);
-        let chunks = chunks.map(reader::contents).collect::<Result<Vec<_>, _>>()?;
-        reading.facts.chunks = chunks.len();
-        let packed = chunks.iter().any(|contents| matches!(contents, Cow::Owned(_)));
-        let unpacked = packed.then(|| chunks.concat());
-        let parts: Vec<&[u8]> = match &unpacked {
-            Some(all) => vec![all.as_slice()],
-            None => chunks.iter().map(AsRef::as_ref).collect(),
-        };
+        let chunks = || records.iter().filter(|record| record.opcode == op::CHUNK);
+        reading.facts.chunks = chunks().count();
+        let unpacked = unpacked(bytes, chunks())?;
         if let Some(all) = &unpacked {
             reading.start = all.as_ptr().addr();
-        }
-        for part in parts {
-            for inner in reader::inner(part)? {
-                reading.add(&inner)?;
+            reading.add_all(all)?;
+        } else {
+            let mut budget = Budget::of(bytes);
+            for chunk in chunks() {
+                let Cow::Borrowed(contents) = reader::contents(chunk, &mut budget)? else { continue };
+                reading.add_all(contents)?;
             }
         }
         let topics = std::mem::take(&mut reading.messages).into_iter();
@@ -189,23 +185,53 @@ impl Contents {
     }
 }
 
-/// A file while it is read.
+/// What chunks hold, one after the other, if some of them are compressed.
+fn unpacked<'a>(
+    bytes: &[u8],
+    chunks: impl Iterator<Item = &'a Framed<'a>> + Clone,
+) -> Result<Option<Vec<u8>>, LogError> {
+    let mut size = 0_u64;
+    let mut packed = false;
+    for chunk in chunks.clone() {
+        if let Record::Chunk { header, .. } = chunk.parse()? {
+            packed |= !header.compression.is_empty();
+            size = size.saturating_add(header.uncompressed_size);
+        }
+    }
+    if !packed {
+        return Ok(None);
+    }
+    let mut budget = Budget::of(bytes);
+    budget.allows(size)?;
+    let mut all = reader::room(size)?;
+    for chunk in chunks {
+        all.extend_from_slice(&reader::contents(chunk, &mut budget)?);
+    }
+    Ok(Some(all))
+}
+
+/// State while reading a file.
 struct Reading {
-    /// The address of the bytes that messages are in.
+    /// Address of the bytes that contain the messages.
     start: usize,
     library: String,
     headers: Vec<Written>,
     attachments: Vec<Attachment>,
-    /// What is known about the channels that a replay needs: their robots, and what their messages are.
+    /// Robot and kind of message of each channel needed for a replay.
     channels: BTreeMap<u16, (usize, Kind)>,
     topics: BTreeMap<u16, String>,
-    /// How many messages each channel has.
+    /// Number of messages on each channel.
     messages: BTreeMap<u16, u64>,
     facts: Facts,
     tracks: Vec<Vec<Event>>,
 }
 
 impl Reading {
+    /// Adds what is in chunks.
+    fn add_all(&mut self, contents: &[u8]) -> Result<(), LogError> {
+        reader::inner(contents).try_for_each(|inner| self.add(&inner?))
+    }
+
     fn add(&mut self, record: &Framed<'_>) -> Result<(), LogError> {
         if record.opcode == op::MESSAGE {
             return self.add_message(record);
@@ -250,7 +276,7 @@ impl Reading {
         if self.tracks.len() <= robot {
             self.tracks.resize(robot + 1, Vec::new());
         }
-        // The data is a part of those bytes, so its place is found by its address.
+        // The data is a slice of those bytes, so its address gives its position.
         let start = message.data.as_ptr().addr() - self.start;
         let place = start..start + message.data.len();
         self.tracks[robot].push(Event { kind, time: message.header.log_time, place });
@@ -261,7 +287,7 @@ impl Reading {
         self.topics.get(&id).cloned().unwrap_or_else(|| format!("channel {id}"))
     }
 
-    /// The one header of a recording that this version understands.
+    /// The single header of a recording supported by this version.
     fn header(&mut self) -> Result<Header, LogError> {
         if self.headers.len() > 1 {
             return Err(LogError::SeveralRuns { runs: self.headers.len() });
@@ -280,9 +306,9 @@ impl Reading {
     }
 }
 
-/// The robot and the kind of a topic; `None` if a replay does without it.
+/// Robot and kind of a topic; `None` if a replay does not need it.
 fn channel_of(topic: &str) -> Option<(usize, Kind)> {
-    /// More robots than this are no recording of ours.
+    /// Upper limit of the number of robots in a recording.
     const MOST: usize = 100_000;
     let (robot, name) = topic.strip_prefix("/robot")?.split_once('/')?;
     let robot = robot.parse::<usize>().ok()?.checked_sub(1).filter(|&robot| robot < MOST)?;
@@ -296,7 +322,7 @@ fn channel_of(topic: &str) -> Option<(usize, Kind)> {
     Some((robot, kind))
 }
 
-/// Where odometry begins, if a transform says so.
+/// Start of odometry, if a transform contains it.
 fn start_of(transform: &[u8]) -> Option<Pose> {
     let number = |field: u32, part: u32| {
         wire::Reading::new(wire::bytes_of(transform, field)?).find_map(|(number, value)| match value {

@@ -4,28 +4,29 @@ use mcap::{McapError, Writer};
 
 use super::header::LIBRARY;
 use super::header::METADATA;
-use super::reader::{self, Framed};
+use super::reader::{self, Budget, Framed};
 use super::writer::write_options;
 use super::{Compression, Header, LogError};
 
-/// What could be saved of a damaged recording.
+/// Result of recovering a damaged recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Recovery {
-    /// The bytes of a whole recording with what was saved.
+    /// Bytes of a valid recording with the recovered content.
     pub bytes: Vec<u8>,
-    /// Chunks that were saved.
+    /// Number of recovered chunks.
     pub chunks: usize,
-    /// Messages that were saved.
+    /// Number of recovered messages.
     pub messages: u64,
-    /// Whether the header was saved. Without it what is left can be looked at, but not replayed.
+    /// Whether the header was recovered. Without it the result can be viewed, but not replayed.
     pub header: bool,
-    /// Bytes of the damaged file that hold nothing of use: the incomplete last chunk, say.
+    /// Number of unusable bytes in the damaged file, such as an incomplete last chunk.
     pub lost: usize,
 }
 
-/// Gives back every complete and intact chunk of a recording that was cut off or damaged.
+/// Recovers every complete and intact chunk of a truncated or damaged recording.
 ///
-/// Of a file without damage comes the same file, byte for byte. Takes time in proportion to the file's length.
+/// An undamaged file is returned unchanged, byte for byte. Time is proportional to the file's size. Fails for
+/// several recordings in one file and for other kinds of files.
 ///
 /// ```
 /// use roverlab::io::log::{Header, Log, LogWriter, recover};
@@ -54,8 +55,9 @@ pub fn recover(bytes: &[u8]) -> Result<Recovery, LogError> {
     let mut at = mcap::MAGIC.len();
     let mut patience = PATIENCE * bytes.len();
     while at < bytes.len() {
-        let Some(record) = reader::record_at(bytes, at).filter(is_sound) else {
-            let next = next_guarded(bytes, at + 1, &mut patience);
+        let Some(record) = reader::record_at(bytes, at).filter(|record| is_sound(record, saving.budget))
+        else {
+            let next = next_guarded(bytes, at + 1, &mut patience, saving.budget);
             saving.lost += next - at;
             at = next;
             continue;
@@ -69,7 +71,8 @@ pub fn recover(bytes: &[u8]) -> Result<Recovery, LogError> {
     saving.finish()
 }
 
-/// An empty recording like a damaged one. Fails if that begins neither as an MCAP file nor with the record of one.
+/// An empty recording like a damaged one. Fails if the file begins neither as an MCAP file nor with a record
+/// of one.
 fn begin(bytes: &[u8]) -> Result<Saving<'_>, LogError> {
     let first = mcap::MAGIC.len();
     let named = reader::record_at(bytes, first).filter(|record| record.opcode == op::HEADER);
@@ -80,10 +83,12 @@ fn begin(bytes: &[u8]) -> Result<Saving<'_>, LogError> {
         _ if bytes.len() == first => return Err(LogError::Truncated { at: bytes.len() as u64 }),
         _ => (String::new(), LIBRARY.to_owned()),
     };
-    Saving::new(&profile, &library, compression(bytes, first), reader::declarations(bytes))
+    let mut saving = Saving::new(&profile, &library, compression(bytes, first), Budget::of(bytes))?;
+    saving.declarations = reader::declarations(bytes);
+    Ok(saving)
 }
 
-/// How the first chunk from a place on is compressed.
+/// Compression of the first chunk from a position on.
 fn compression(bytes: &[u8], start: usize) -> Compression {
     let records = reader::records(bytes, start).map_while(|record| record);
     let chunks = records.filter(|record| record.opcode == op::CHUNK);
@@ -94,16 +99,16 @@ fn compression(bytes: &[u8], start: usize) -> Compression {
     named.flatten().next().unwrap_or_default()
 }
 
-/// Whether a record can be read, a chunk with all that it holds, and is as long as what it says: one whose length is wrong
-/// would swallow those behind it.
-fn is_sound(record: &Framed<'_>) -> bool {
-    // Kinds that future formats or other programs add.
+/// Whether a record and all its content can be parsed, and its length matches the content: a wrong length
+/// would swallow the following records.
+fn is_sound(record: &Framed<'_>, budget: Budget) -> bool {
+    // Kinds added by future formats or other programs.
     if record.opcode >= 0x80 {
         return true;
     }
     let Ok(parsed) = record.parse() else { return false };
     let length = match &parsed {
-        Record::Chunk { .. } => return is_sound_chunk(record),
+        Record::Chunk { .. } => return is_sound_chunk(record, budget),
         Record::Header(header) => 4 + header.profile.len() + 4 + header.library.len(),
         Record::Metadata(metadata) => {
             if metadata.name == METADATA && Header::read(&metadata.metadata).is_none() {
@@ -122,30 +127,30 @@ fn is_sound(record: &Framed<'_>) -> bool {
     length == record.body.len()
 }
 
-fn is_sound_chunk(record: &Framed<'_>) -> bool {
-    let Ok(contents) = reader::contents(record) else { return false };
-    reader::inner(&contents).is_ok_and(|inner| inner.iter().all(|record| record.parse().is_ok()))
+fn is_sound_chunk(record: &Framed<'_>, mut budget: Budget) -> bool {
+    let Ok(contents) = reader::contents(record, &mut budget) else { return false };
+    reader::inner(&contents).all(|record| record.is_ok_and(|record| record.parse().is_ok()))
 }
 
-/// How many times over the bytes of a file are looked at: in one that is made for it, every place seems to be the beginning of
-/// a record that reaches to the end.
+/// Maximum number of passes over the bytes of a file: in a malicious file, every position seems to start a
+/// record that reaches to the end.
 const PATIENCE: usize = 100;
 
-/// Where the next record begins that has a checksum and agrees with it; the end of the file if there is none, or if more bytes
-/// were looked at than there is patience for.
-fn next_guarded(bytes: &[u8], start: usize, patience: &mut usize) -> usize {
+/// Position of the next record with a valid checksum; the end of the file if there is none or the limit on
+/// passes is exceeded.
+fn next_guarded(bytes: &[u8], start: usize, patience: &mut usize, budget: Budget) -> usize {
     for at in start..bytes.len() {
         let Some(record) = reader::record_at(bytes, at).filter(is_guarded) else { continue };
         let Some(rest) = patience.checked_sub(record.body.len()) else { break };
         *patience = rest;
-        if is_sound(&record) {
+        if is_sound(&record, budget) {
             return at;
         }
     }
     bytes.len()
 }
 
-/// Whether a record, if it is sound, cannot be so by chance.
+/// Whether a record that is sound cannot be so by chance.
 fn is_guarded(record: &Framed<'_>) -> bool {
     match record.opcode {
         op::CHUNK => reader::has_checksum(record),
@@ -157,27 +162,24 @@ fn is_guarded(record: &Framed<'_>) -> bool {
     }
 }
 
-/// A recording that is put together from what is intact.
+/// A recording assembled from the intact parts.
 struct Saving<'a> {
     file: Writer<NoSeek<Vec<u8>>>,
-    /// Schemas and channels as the file's summary repeats them, for messages whose own declaration is lost.
+    /// Schemas and channels from the file's summary, for messages whose own declaration is lost.
     declarations: Vec<Framed<'a>>,
+    /// What further chunks may hold.
+    budget: Budget,
     chunks: usize,
     messages: u64,
     header: bool,
     lost: usize,
 }
 
-impl<'a> Saving<'a> {
-    fn new(
-        profile: &str,
-        library: &str,
-        compression: Compression,
-        declarations: Vec<Framed<'a>>,
-    ) -> Result<Self, LogError> {
+impl Saving<'_> {
+    fn new(profile: &str, library: &str, compression: Compression, budget: Budget) -> Result<Self, LogError> {
         let options = write_options(compression)?.profile(profile).library(library);
         let file = options.create(NoSeek::new(Vec::new())).map_err(|error| damaged(&error))?;
-        Ok(Self { file, declarations, chunks: 0, messages: 0, header: false, lost: 0 })
+        Ok(Self { file, declarations: Vec::new(), budget, chunks: 0, messages: 0, header: false, lost: 0 })
     }
 
     fn add(&mut self, record: &Framed<'_>) -> Result<(), LogError> {
@@ -194,14 +196,14 @@ impl<'a> Saving<'a> {
                 data,
             }),
             Record::Chunk { .. } => {
-                let contents = reader::contents(record)?;
+                let contents = reader::contents(record, &mut self.budget)?;
                 let lost_before = self.lost;
-                reader::inner(&contents)?.iter().try_for_each(|inner| self.add_inner(inner))?;
+                reader::inner(&contents).try_for_each(|inner| self.add_inner(&inner?))?;
                 self.chunks += usize::from(self.lost == lost_before);
                 self.file.flush()
             }
             Record::Message { data, .. } => {
-                // Ours are in chunks.
+                // This project's messages are in chunks.
                 self.lost += data.len();
                 Ok(())
             }
@@ -214,7 +216,7 @@ impl<'a> Saving<'a> {
         match record.parse()? {
             Record::Message { header, data } => {
                 let mut written = self.file.write_to_known_channel(&header, &data);
-                // The chunk that declared it is lost.
+                // The chunk with its declaration is lost.
                 if matches!(written, Err(McapError::UnknownChannel(..))) && self.declare(header.channel_id)? {
                     written = self.file.write_to_known_channel(&header, &data);
                 }
@@ -229,7 +231,7 @@ impl<'a> Saving<'a> {
         }
     }
 
-    /// Writes a channel and its schema as the summary has them. Says whether it knows the channel.
+    /// Writes a channel and its schema from the summary. Returns whether the summary contains the channel.
     fn declare(&mut self, id: u16) -> Result<bool, LogError> {
         let declared: Vec<_> = self.declarations.iter().filter_map(|record| record.parse().ok()).collect();
         let channel =
@@ -256,7 +258,7 @@ impl<'a> Saving<'a> {
             _ => Ok(()),
         };
         match written {
-            // The chunk with the channel's schema is lost; so are its messages then.
+            // The chunk with the channel's schema is lost, and therefore its messages.
             Err(McapError::UnknownSchema(..)) => Ok(()),
             other => other.map_err(|error| damaged(&error)),
         }

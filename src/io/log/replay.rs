@@ -8,28 +8,28 @@ use super::values::Values;
 use super::{Log, LogError};
 use crate::io::{Clock, Error, ErrorKind, Result};
 
-/// A robot made of a recording: it answers as the recorded one did.
+/// A robot that answers from a recording.
 ///
-/// A program must ask the same questions in the same order, and give the same commands to the bit. The first
-/// difference is an error of the kind [`Diverged`](ErrorKind::Diverged) that names the time, the call and what was
-/// expected; so is every call after it. A call behind the end of the recording fails with
+/// A program must make the same calls in the same order, with arguments equal to the bit. The first deviation
+/// is an error of the kind [`Diverged`](ErrorKind::Diverged) that names the time, the call and what was
+/// expected; every later call fails alike. A call after the end of the recording fails with
 /// [`EndOfLog`](ErrorKind::EndOfLog).
 #[derive(Debug, Clone)]
 pub struct Replay {
     position: Position,
-    /// What differed.
+    /// The first deviation.
     difference: Option<String>,
 }
 
 impl Player {
-    /// A robot, by its index.
+    /// A robot, by its index. Fails if the recording has no such robot.
     pub fn robot(&self, robot: usize) -> std::result::Result<Replay, LogError> {
         self.position(robot).map(Replay::at)
     }
 }
 
 impl Replay {
-    /// A robot of a recording, by its index.
+    /// Creates a robot from a recording, by its index. Fails if the recording has no such robot.
     pub fn new(log: &Log, robot: usize) -> std::result::Result<Self, LogError> {
         Player::new(log).robot(robot)
     }

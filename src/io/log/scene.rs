@@ -1,4 +1,4 @@
-//! What of a world viewers show: `foxglove.SceneUpdate`.
+//! The world for viewers: `foxglove.SceneUpdate`.
 
 use std::io::Write;
 
@@ -9,16 +9,16 @@ use super::wire::Fields;
 use crate::geometry::{Pose, math};
 use crate::world::{Colour, Marker, Object, Scene, Shape, Wall};
 
-// Numbers of fields in a `foxglove.SceneEntity`.
-/// The field of `foxglove.SceneEntity` with its boxes.
+// Field numbers in `foxglove.SceneEntity`.
+/// Field for boxes.
 const CUBES: u32 = 8;
-/// The field with its balls.
+/// Field for balls.
 const SPHERES: u32 = 9;
-/// The field with its cylinders.
+/// Field for cylinders.
 const CYLINDERS: u32 = 10;
 
 impl<W: Write> LogWriter<W> {
-    /// Writes what stands in a scene, and where its robots start, for viewers. It belongs at the beginning.
+    /// Writes the content of a scene, and its robots' start poses, for viewers. Call it at the beginning.
     pub fn show(&self, scene: &Scene) {
         let mut message = Vec::new();
         scene_update(&mut Fields(&mut message), scene);
@@ -32,7 +32,7 @@ impl<W: Write> LogWriter<W> {
     }
 }
 
-/// Walls, objects and marks of a scene, as entities that stay.
+/// Walls, objects and marks of a scene, as permanent entities.
 fn scene_update(out: &mut Fields<'_>, scene: &Scene) {
     let world = &scene.world;
     entity(out, "floor", |entity| {
@@ -48,7 +48,7 @@ fn scene_update(out: &mut Fields<'_>, scene: &Scene) {
     }
 }
 
-/// Metres of what is flat on the floor.
+/// Thickness of flat things on the floor (m).
 const THIN: f64 = 0.002;
 
 /// A `foxglove.SceneEntity`.
@@ -67,13 +67,13 @@ fn wall(entity: &mut Fields<'_>, wall: &Wall) {
     let middle = wall.line.a + 0.5 * along;
     let pose = Pose::new(middle.x, middle.y, math::atan2(along.y, along.x));
     let size = [wall.line.length(), wall.thickness, wall.height];
-    // White walls would not be seen on a white ground.
+    // White walls would be invisible on a white ground.
     let colour = if wall.colour == Colour::WHITE { Colour::from_hex(0xb4_b4_b4) } else { wall.colour };
     solid(entity, CUBES, &pose, 0.5 * wall.height, size, colour, 1.0);
 }
 
 fn mark(entity: &mut Fields<'_>, mark: &Marker) {
-    /// Metres of a marker's width.
+    /// Width of a marker (m).
     const WIDTH: f64 = 0.1;
     let pose = Pose::new(mark.position.x, mark.position.y, 0.0);
     let opacity = f64::from(mark.alpha) / 255.0;
@@ -94,7 +94,7 @@ fn object(entity: &mut Fields<'_>, object: &Object) {
     solid(entity, field, &object.pose, middle, size, object.kind.colour, 1.0);
 }
 
-/// A cube, sphere or cylinder primitive about a height above the floor.
+/// A cube, sphere or cylinder primitive at a height above the floor.
 fn solid(
     entity: &mut Fields<'_>,
     field: u32,

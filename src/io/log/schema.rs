@@ -1,8 +1,8 @@
-//! The schemas of what is visible in a recording: descriptions of Protocol Buffers messages, as viewers want them.
+//! Schemas of the messages in a recording: Protocol Buffers descriptors for viewers.
 
 use super::wire::Fields;
 
-/// What a channel carries.
+/// Content of a channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Schema {
     Call,
@@ -25,7 +25,7 @@ impl Schema {
         }
     }
 
-    /// A `google.protobuf.FileDescriptorSet` with the message and all that it consists of.
+    /// A `google.protobuf.FileDescriptorSet` with the message and all its parts.
     pub(super) fn descriptor(self) -> Vec<u8> {
         let mut set = Vec::new();
         let mut needed = vec![self.name()];
@@ -55,11 +55,11 @@ impl Schema {
 /// The package of Protobuf's own messages.
 const GOOGLE: &str = "google.protobuf";
 
-/// A message's name, and a line for each field: its name, its number and its type, with a star if it is repeated.
-/// Enumerations list their alternatives, from 0.
+/// A message's name, and one line per field: name, number and type, with a star for a repeated one.
+/// Enumerations list their values, from 0.
 struct Message(&'static str, &'static str);
 
-/// The messages that recordings hold, of Foxglove's published schemas.
+/// Messages used in recordings, from Foxglove's published schemas.
 const MESSAGES: &[Message] = &[
     Message("google.protobuf.Timestamp", "seconds 1 int64\nnanos 2 int32"),
     Message("google.protobuf.Duration", "seconds 1 int64\nnanos 2 int32"),
@@ -157,7 +157,7 @@ const MESSAGES: &[Message] = &[
 ];
 
 impl Message {
-    /// The message of a name. All names in this file are in the table, as a test makes sure.
+    /// The message with a name. All names in this file are in the table, as a test verifies.
     fn named(name: &str) -> &'static Self {
         MESSAGES.iter().find(|message| message.0 == name).unwrap_or(&MESSAGES[0])
     }
@@ -171,7 +171,7 @@ impl Message {
     }
 }
 
-/// What stands before the last dot.
+/// The part before the last dot.
 fn package(name: &str) -> &str {
     name.rsplit_once('.').map_or("", |(package, _)| package)
 }
@@ -217,9 +217,9 @@ fn write_message(out: &mut Fields<'_>, message: &Message) {
 
 /// A `FieldDescriptorProto`.
 fn write_field(field: &mut Fields<'_>, message: &str, name: &str, number: u64, kind: &str) {
-    /// Protobuf's number of the type of fields that are messages.
+    /// Protobuf's type number of message fields.
     const MESSAGE: u64 = 11;
-    /// Protobuf's number of the type of fields that are enumerations.
+    /// Protobuf's type number of enumeration fields.
     const ENUMERATION: u64 = 14;
     let (label, kind) = kind.strip_prefix('*').map_or((1, kind), |kind| (3, kind));
     let (number_of_kind, type_name) = match kind {

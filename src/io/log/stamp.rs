@@ -1,13 +1,13 @@
-/// Nanoseconds of recorded time.
+/// Recorded time (ns).
 pub(super) type Nanoseconds = u64;
 
-/// Seconds as a recording holds them; what is no time is 0.
+/// Recorded time from seconds; NaN gives 0.
 pub(super) fn nanoseconds(seconds: f64) -> Nanoseconds {
-    // Casting clips what is out of range.
+    // The cast saturates.
     (seconds * 1e9).round() as u64
 }
 
-/// Recorded time in seconds.
+/// Recorded time (s).
 pub(super) fn seconds(time: Nanoseconds) -> f64 {
     time as f64 / 1e9
 }

@@ -1,4 +1,4 @@
-//! Recordings as wholes: what is written is read, and what is damaged is found out.
+//! Whole recordings: written content can be read back, and damage is detected.
 
 mod damage;
 mod fleets;
@@ -24,13 +24,13 @@ fn header() -> Header {
 }
 
 fn scene() -> Scene {
-    // Few beams, so that the files are small.
+    // Few beams keep the files small.
     let lidar = RobotSpec::s4().lidar.map(|lidar| LidarSpec { points: 12, ..lidar });
     let spec = RobotSpec { lidar, ..RobotSpec::s4() };
     Scene::with_robot(World::walled(2.0, 2.0), spec, Pose::new(1.0, 1.0, 0.3))
 }
 
-/// Some of everything.
+/// Calls of every kind.
 fn tour(robot: &mut (impl RobotIo + ?Sized), seconds: f64) -> Result<()> {
     robot.print("hello, \"world\"\n")?;
     robot.set_speed(Twist::new(0.2, 0.4))?;
@@ -186,7 +186,7 @@ fn files_that_are_no_recordings_are_named() {
     );
 }
 
-/// Takes so many bytes and then no more.
+/// Accepts a number of bytes and then fails.
 struct FullDisk(usize);
 
 impl Write for FullDisk {
@@ -225,7 +225,7 @@ fn errors_of_the_robot_are_replayed() {
     assert_eq!((first.kind(), first.to_string()), (second.kind(), second.to_string()));
 }
 
-/// A robot with a camera alone.
+/// A robot with only a camera.
 struct Eye(u8, Resolution);
 
 impl Clock for Eye {
@@ -324,7 +324,7 @@ fn the_open_loop_answers_by_time() {
     tour(&mut robot, 2.0).unwrap();
     let report = robot.report();
     assert_eq!((report.same, report.first_difference), (report.recorded, None));
-    // Another one sees the same readings at the same time.
+    // Another one gets the same readings at the same time.
     let mut robot = OpenLoop::new(&log, 0).unwrap();
     robot.seek(1.0);
     robot.set_speed(Twist::new(0.3, 0.4)).unwrap();

@@ -1,36 +1,36 @@
-//! The channels of a recording, and the frames that its messages name.
+//! The channels of a recording, and the frames named in its messages.
 
 use super::schema::Schema;
 
-/// A channel of a recording: the part of its topic behind the robot's name, and what it carries.
+/// A channel of a recording: the part of its topic after the robot's name, and its content.
 pub(super) type Channel = (&'static str, Schema);
 
-/// The calls that its program made, and the answers.
+/// Calls of the robot's program, with answers.
 pub(super) const CALLS: Channel = ("calls", Schema::Call);
-/// What was true about it, where somebody asked.
+/// Queries of the robot's ground truth.
 pub(super) const TRUTH: Channel = ("truth", Schema::Call);
-/// Its scans.
+/// Scans.
 pub(super) const LIDAR: Channel = ("lidar", Schema::LaserScan);
-/// Its images.
+/// Images.
 pub(super) const CAMERA: Channel = ("camera", Schema::RawImage);
-/// What its display showed.
+/// Display content.
 pub(super) const LCD: Channel = ("lcd", Schema::RawImage);
-/// Where odometry took it to be.
+/// Pose by odometry.
 pub(super) const ODOMETRY: Channel = ("odometry", Schema::PoseInFrame);
-/// Where its frames lie in each other.
+/// Transforms between its frames.
 pub(super) const TRANSFORMS: Channel = ("transforms", Schema::FrameTransform);
-/// What stands in the world.
+/// Static content of the world.
 pub(super) const SCENE: Channel = ("/scene", Schema::SceneUpdate);
 
-/// The frame of everything that stands.
+/// The fixed frame.
 pub(super) const WORLD: &str = "world";
 
-/// The name of a robot's own frame.
+/// Name of a robot's own frame.
 pub(super) fn frame(track: usize) -> String {
     format!("robot{}", track + 1)
 }
 
-/// The name of the frame in which a robot's odometry is.
+/// Name of a robot's odometry frame.
 pub(super) fn odometry_frame(track: usize) -> String {
     format!("{}/odometry", frame(track))
 }

@@ -13,7 +13,7 @@ use super::{LogError, LogWriter};
 use crate::geometry::{Point, Pose};
 use crate::io::{Error, ErrorKind, GroundTruth, Result, RobotTruth, TrailPoint};
 
-/// Ground truth that is recorded, made by [`LogWriter::truth`](super::LogWriter::truth).
+/// Recorded ground truth, made by [`LogWriter::truth`](super::LogWriter::truth).
 #[derive(Debug)]
 pub struct RecordedTruth<T, W: Write> {
     inner: T,
@@ -21,7 +21,7 @@ pub struct RecordedTruth<T, W: Write> {
 }
 
 impl<W: Write> LogWriter<W> {
-    /// Records what is true about a robot, by the robot's index.
+    /// Records queries of the ground truth along with a robot, by its index.
     pub fn truth<T: GroundTruth>(&self, truth: T, robot: usize) -> RecordedTruth<T, W> {
         RecordedTruth::new(truth, Port::beside(self.clone(), robot))
     }
@@ -59,11 +59,11 @@ impl<T: GroundTruth, W: Write> GroundTruth for RecordedTruth<T, W> {
     }
 }
 
-/// What is recorded beside the calls of a robot: questions about the truth, and their answers.
+/// Records made beside a robot's calls: queries of the ground truth, and their answers.
 #[derive(Debug)]
 pub(super) struct Notes<W: Write> {
     port: Port<W>,
-    /// How much of each robot's lists the recording holds already.
+    /// Recorded length of each robot's lists.
     known: BTreeMap<usize, (usize, usize)>,
 }
 
@@ -72,12 +72,12 @@ impl<W: Write> Notes<W> {
         Self { port, known: BTreeMap::new() }
     }
 
-    /// Writes a question and its answer, at the time of the robot's last call.
+    /// Writes a query and its answer at the time of the robot's last call.
     pub(super) fn note<T: Put>(&mut self, method: &str, argument: &impl Put, result: &Result<T>) {
         self.note_at(None, method, argument, result);
     }
 
-    /// The same at a time of its own.
+    /// The same at its own time.
     pub(super) fn note_at<T: Put>(
         &mut self,
         time: Option<Nanoseconds>,
@@ -90,7 +90,7 @@ impl<W: Write> Notes<W> {
         self.port.end(TRUTH, method, result);
     }
 
-    /// Writes what is true about a robot and was not written before.
+    /// Writes a robot's ground truth, as far as not yet written.
     pub(super) fn note_robot(&mut self, robot: usize, result: &Result<RobotTruth>) {
         let known = self.known.entry(robot).or_default();
         let news = result.as_ref().map(|truth| News::since(*known, truth)).map_err(copy);
@@ -101,23 +101,23 @@ impl<W: Write> Notes<W> {
     }
 }
 
-/// An error with the same kind and words.
+/// An error with the same kind and message.
 fn copy(error: &Error) -> Error {
     Error::new(error.kind(), error.to_string())
 }
 
-/// What is true about a robot, with the ends of its lists that are new.
+/// Ground truth of a robot, with only the new ends of its lists.
 #[derive(Debug, Clone, PartialEq)]
 struct News {
-    /// Places and trail hold what is new alone.
+    /// Contact places and trail contain only new entries.
     truth: RobotTruth,
-    /// How many places and trail points come before.
+    /// Number of contact places and trail points before.
     before: (usize, usize),
 }
 
 impl News {
     fn since((places, trail): (usize, usize), truth: &RobotTruth) -> Self {
-        // A list that is shorter than before is another one.
+        // A list shorter than before is a new one.
         let before = (places.min(truth.contact_places.len()), trail.min(truth.trail.len()));
         let truth = RobotTruth {
             contact_places: truth.contact_places[before.0..].to_vec(),
@@ -130,7 +130,7 @@ impl News {
         Self { truth, before }
     }
 
-    /// The whole truth, from the one before.
+    /// The complete truth, based on the previous one.
     fn after(self, old: Option<&RobotTruth>) -> RobotTruth {
         let places = old.map_or(&[][..], |old| &old.contact_places);
         let trail = old.map_or(&[][..], |old| &old.trail);
@@ -187,13 +187,13 @@ impl Take for News {
     }
 }
 
-/// Ground truth from a recording: it says what the recorded one said, as far as the replayed robot has come.
+/// Ground truth from a recording, up to the replayed robot's position.
 ///
-/// A question that was not recorded at this place is answered as the last one of its kind.
+/// A query that was not recorded at this position gets the last answer of its kind.
 #[derive(Debug, Clone)]
 pub struct ReplayTruth {
     position: Position,
-    /// The next event of the robot's to look at.
+    /// The robot's next event to examine.
     next: usize,
     time: Option<f64>,
     poses: BTreeMap<usize, Pose>,
@@ -202,13 +202,13 @@ pub struct ReplayTruth {
 }
 
 impl Player {
-    /// What was true while a robot drove, as somebody asked who watched it.
+    /// The recorded ground truth along with a robot.
     pub fn truth(&self, robot: usize) -> std::result::Result<ReplayTruth, LogError> {
         self.position(robot).map(ReplayTruth::new)
     }
 }
 
-/// A question about the truth.
+/// A query of the ground truth.
 type Question<'a> = (&'a str, Option<usize>);
 
 impl ReplayTruth {
@@ -217,8 +217,8 @@ impl ReplayTruth {
         Self { position, next: 0, time: None, poses, objects, robots }
     }
 
-    /// Takes in the recorded answers up to the next one to a question; all those before the robot's next call if there
-    /// is no such one.
+    /// Processes the recorded answers up to the next one to a query, or all before the robot's next call if
+    /// there is none.
     fn catch_up(&mut self, question: Question<'_>) {
         let position = self.position.clone();
         let end = position.next_call();
@@ -227,7 +227,7 @@ impl ReplayTruth {
                 Call::read(position.log().data(event)).is_some_and(|call| asked(&call) == question)
             })
         };
-        // Behind the robot's place, what was recorded there is looked at again in order.
+        // If the position was passed, the answers recorded there are read again in order.
         let behind = (self.next..end).find(|&index| is_asked(index));
         let last = behind.map_or(end, |index| index + 1);
         for index in self.next..last {
@@ -266,7 +266,7 @@ impl ReplayTruth {
     }
 }
 
-/// What a recorded question asks.
+/// The query of a recorded call.
 fn asked<'a>(call: &Call<'a>) -> Question<'a> {
     (call.method, call.arguments.take())
 }

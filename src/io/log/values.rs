@@ -1,17 +1,17 @@
 use image::RgbImage;
 
 use super::wire::{self, Field, Fields, Reading};
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::{
-    DisplayImage, DisplayOption, Fill, Font, FontFamily, FontStyle, Key, LidarSettings, Psd, RadioMessage,
-    Resolution, Viewport,
+    Attitude, DisplayImage, DisplayOption, Fill, Font, FontFamily, FontStyle, Key, LidarSettings, Psd,
+    RadioMessage, Resolution, Viewport,
 };
 use crate::world::Colour;
 
-/// Arguments or results of a call, sorted by their kind: the message `roverlab.Values`.
+/// Arguments or results of a call, sorted by type: the message `roverlab.Values`.
 ///
-/// A compound value is its parts, in the order in which the public types list them; an option is a 0, or a 1 and its
-/// value; the alternatives of an enumeration are numbered from 0.
+/// A compound value is stored as its parts, in the order of the public types' fields. An option is a 0, or a
+/// 1 and its value; the variants of an enumeration are numbered from 0.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Values {
     pub(super) numbers: Vec<f64>,
@@ -20,7 +20,7 @@ pub(super) struct Values {
     pub(super) data: Vec<u8>,
 }
 
-/// Compares bits, so that a number that is none equals itself, and the two zeros differ.
+/// Compares bits: NaN equals itself, and the two zeros differ.
 impl PartialEq for Values {
     fn eq(&self, other: &Self) -> bool {
         let bits = |values: &Self| values.numbers.iter().copied().map(wire::bits).collect::<Vec<_>>();
@@ -50,7 +50,7 @@ impl Values {
         values
     }
 
-    /// Appends the values as a field of a message; nothing if there are none.
+    /// Appends the values as a field of a message; nothing if empty.
     pub(super) fn write(&self, out: &mut Fields<'_>, field: u32) {
         if self.is_empty() {
             return;
@@ -67,7 +67,7 @@ impl Values {
         });
     }
 
-    /// `None` if the message is no such values.
+    /// `None` if the message contains no values.
     pub(super) fn read(message: &[u8]) -> Option<Self> {
         let mut values = Self::default();
         let mut reading = Reading::new(message);
@@ -83,7 +83,7 @@ impl Values {
         (!reading.broken).then_some(values)
     }
 
-    /// The values in words, for messages.
+    /// Text of the values, for messages.
     pub(super) fn shown(&self) -> String {
         let numbers = self.numbers.iter().map(|number| format!("{number:?}"));
         let integers = self.integers.iter().map(ToString::to_string);
@@ -97,7 +97,7 @@ impl Values {
         parts.join(", ")
     }
 
-    /// Takes the values back as what they were.
+    /// Converts the values back.
     pub(super) fn take<T: Take>(&self) -> Option<T> {
         T::take(&mut Taking {
             numbers: self.numbers.iter(),
@@ -108,17 +108,17 @@ impl Values {
     }
 }
 
-/// What can be an argument or a result.
+/// A possible argument or result.
 pub(super) trait Put {
     fn put(&self, out: &mut Values);
 }
 
-/// What can be read from the values of a result.
+/// A value that can be read back from a result.
 pub(super) trait Take: Sized {
     fn take(from: &mut Taking<'_>) -> Option<Self>;
 }
 
-/// Values on their way back.
+/// Iterators over values being read back.
 #[derive(Debug)]
 pub(super) struct Taking<'a> {
     numbers: std::slice::Iter<'a, f64>,
@@ -209,7 +209,7 @@ impl Put for &[u8] {
     }
 }
 
-/// A call has one block of bytes at most.
+/// A call has at most one block of bytes.
 struct Bytes(Vec<u8>);
 
 impl Take for Bytes {
@@ -242,7 +242,7 @@ impl Put for Vec<u32> {
 }
 
 impl Take for Vec<u32> {
-    /// All integers that are left.
+    /// All remaining integers.
     fn take(from: &mut Taking<'_>) -> Option<Self> {
         from.integers.by_ref().map(|&item| u32::try_from(item).ok()).collect()
     }
@@ -256,7 +256,7 @@ impl Put for [&str; 4] {
     }
 }
 
-/// Values that are their parts.
+/// Values stored as their parts.
 macro_rules! compounds {
     ($($type:ty: $value:ident => [$($part:expr),*], [$($taken:ident),*] => $made:expr;)*) => { $(
         impl Put for $type {
@@ -283,6 +283,8 @@ compounds! {
     (i32, i32): v => [v.0, v.1], [a, b] => (a, b);
     Twist: v => [v.linear, v.angular], [linear, angular] => Twist::new(linear, angular);
     Pose: v => [v.x, v.y, v.heading], [x, y, heading] => Pose::new(x, y, heading);
+    Vector3: v => [v.x, v.y, v.z], [x, y, z] => Vector3::new(x, y, z);
+    Attitude: v => [v.roll, v.pitch, v.yaw], [roll, pitch, yaw] => Attitude { roll, pitch, yaw };
     Psd: v => [v.0], [number] => Psd(number);
     Colour: v => [v.red, v.green, v.blue], [red, green, blue] => Colour::new(red, green, blue);
     LidarSettings: v => [v.field_of_view, v.tilt, v.points],
@@ -302,19 +304,19 @@ impl Bytes {
     }
 }
 
-/// An image from its bytes; `None` if they are not as many as its size asks for.
+/// An image from its bytes; `None` if their number does not match the size.
 pub(super) fn image(width: u32, height: u32, data: Vec<u8>) -> Option<RgbImage> {
     let expected = u64::from(width).checked_mul(u64::from(height))?.checked_mul(3)?;
     (data.len() as u64 == expected).then(|| RgbImage::from_raw(width, height, data))?
 }
 
-/// Enumerations, numbered in the order in which they are listed here.
+/// Enumerations, numbered in the order of this list.
 macro_rules! enumerations {
     ($($type:ty: [$($item:path),*];)*) => { $(
         impl Put for $type {
             fn put(&self, out: &mut Values) {
                 let items = [$($item),*];
-                // An alternative that the list lacks reads as an unknown one.
+                // A variant missing from the list is read as unknown.
                 out.integers.push(items.iter().position(|item| item == self).map_or(-1, |index| index as i64));
             }
         }
@@ -382,6 +384,8 @@ mod tests {
             survives(&peers);
             survives(&RadioMessage { from, data });
             survives(&Some(Pose::new(x, -x, 0.5 * x)));
+            survives(&Vector3::new(x, -x, 0.5 * x));
+            survives(&Attitude { roll: x, pitch: -x, yaw: 0.5 * x });
             survives(&LidarSettings { field_of_view: x, tilt: -x, points: from as usize });
         }
     }

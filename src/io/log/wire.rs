@@ -1,4 +1,4 @@
-//! The wire format of Protocol Buffers, as far as recordings need it.
+//! The wire format of Protocol Buffers, as far as needed.
 
 use crate::geometry::math;
 
@@ -6,16 +6,16 @@ use crate::geometry::math;
 #[derive(Debug)]
 pub(super) struct Fields<'a>(pub(super) &'a mut Vec<u8>);
 
-/// Protobuf's wire type of whole numbers.
+/// Protobuf's wire type of integers.
 const VARINT: u32 = 0;
-/// The wire type of numbers of eight bytes.
+/// Wire type of eight-byte numbers.
 const FIXED64: u32 = 1;
-/// The wire type of bytes with their number before them.
+/// Wire type of length-delimited bytes.
 const LENGTH: u32 = 2;
-/// The wire type of numbers of four bytes.
+/// Wire type of four-byte numbers.
 const FIXED32: u32 = 5;
 
-/// A number that is none has many bit patterns, which differ between processors; recordings hold one of them.
+/// The bit patterns of NaN differ between processors; recordings use this one.
 const NAN: u64 = 0x7ff8_0000_0000_0000;
 
 pub(super) fn bits(value: f64) -> u64 {
@@ -30,7 +30,7 @@ fn varint(out: &mut Vec<u8>, mut value: u64) {
     out.push(value as u8);
 }
 
-/// Small numbers of either sign become small numbers.
+/// Maps small numbers of either sign to small numbers.
 fn zigzag(value: i64) -> u64 {
     ((value << 1) ^ (value >> 63)) as u64
 }
@@ -69,7 +69,7 @@ impl Fields<'_> {
         self.0.extend_from_slice(value);
     }
 
-    /// A packed list of doubles; nothing for an empty one.
+    /// A packed list of doubles; omitted if empty.
     pub(super) fn doubles(&mut self, field: u32, values: &[f64]) {
         if values.is_empty() {
             return;
@@ -82,14 +82,14 @@ impl Fields<'_> {
         }
     }
 
-    /// A packed list of signed integers; nothing for an empty one.
+    /// A packed list of signed integers; omitted if empty.
     pub(super) fn integers(&mut self, field: u32, values: &[i64]) {
         if !values.is_empty() {
             self.message(field, |list| values.iter().for_each(|&value| varint(list.0, zigzag(value))));
         }
     }
 
-    /// A message within the message.
+    /// A nested message.
     pub(super) fn message(&mut self, field: u32, fill: impl FnOnce(&mut Fields<'_>)) {
         self.key(field, LENGTH);
         let start = self.0.len();
@@ -100,7 +100,7 @@ impl Fields<'_> {
             self.0[start] = short;
             return;
         }
-        // The length takes more than the one byte kept for it: the content moves up.
+        // The length takes more than the one byte reserved for it: the content moves up.
         let mut head = Vec::with_capacity(5);
         varint(&mut head, length as u64);
         self.0.splice(start..=start, head);
@@ -123,7 +123,7 @@ impl Fields<'_> {
         });
     }
 
-    /// A `foxglove.Quaternion` about the vertical.
+    /// A `foxglove.Quaternion` about the vertical axis.
     pub(super) fn heading(&mut self, field: u32, heading: f64) {
         let (sin, cos) = math::sin_cos(0.5 * heading);
         self.message(field, |quaternion| {
@@ -135,7 +135,7 @@ impl Fields<'_> {
     }
 }
 
-/// A field of a message that is read.
+/// A field of a message being read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Field<'a> {
     Integer(u64),
@@ -144,7 +144,7 @@ pub(super) enum Field<'a> {
     Bytes(&'a [u8]),
 }
 
-/// Reads the fields of a message one by one. Ends at the first byte that makes no sense, and says so.
+/// Reads the fields of a message one by one. Ends at the first invalid byte and reports it.
 #[derive(Debug, Clone)]
 pub(super) struct Reading<'a> {
     rest: &'a [u8],
@@ -204,7 +204,7 @@ impl<'a> Iterator for Reading<'a> {
     }
 }
 
-/// The first field of a number that holds bytes.
+/// Content of the first length-delimited field with a number.
 pub(super) fn bytes_of(message: &[u8], number: u32) -> Option<&[u8]> {
     Reading::new(message).find_map(|(found, field)| match field {
         Field::Bytes(bytes) if found == number => Some(bytes),

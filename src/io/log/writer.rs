@@ -13,15 +13,14 @@ use super::stamp::Nanoseconds;
 use super::topics::{Channel, frame};
 use super::{Compression, Header};
 
-/// A recording that is being written: an MCAP file, into anything that takes bytes.
+/// A recording being written: an MCAP file, into any byte sink.
 ///
-/// One or several robots write into it through [`recorder`](LogWriter::recorder); what they did is merged by its
-/// time, so that the file does not depend on how their programs' threads are scheduled. A chunk of the file ends with
-/// each second of the robots' time, or when it is full, and is flushed; [`Header::compression`] says whether chunks are
-/// packed.
+/// One or several robots write into it through [`recorder`](LogWriter::recorder). Their messages are merged
+/// by time, so the file does not depend on the scheduling of their threads. A chunk ends with each second of
+/// the robots' time, or when it is full, and is flushed; [`Header::compression`] selects its compression.
 ///
-/// A sink that fails does not disturb the run: the rest is not recorded, and [`finish`](LogWriter::finish) returns
-/// the first error. A file should be buffered.
+/// A failing sink does not disturb the run: the rest is not recorded, and [`finish`](LogWriter::finish)
+/// returns the first error. A file should be buffered.
 ///
 /// ```
 /// use roverlab::io::log::{Header, Log, LogWriter, Replay};
@@ -46,7 +45,7 @@ use super::{Compression, Header};
 /// ```
 pub struct LogWriter<W: Write> {
     shared: Arc<Mutex<Shared<W>>>,
-    /// Tells robots that are far ahead of others when something has been written.
+    /// Wakes robots far ahead of the others after a write.
     written: Arc<Condvar>,
 }
 
@@ -64,28 +63,28 @@ impl<W: Write> fmt::Debug for LogWriter<W> {
 }
 
 struct Shared<W: Write> {
-    /// Gone when the recording is finished.
+    /// `None` once the recording is finished.
     file: Option<Writer<NoSeek<W>>>,
     failure: Option<io::Error>,
     tracks: Vec<Track>,
-    /// How many bytes a robot may be ahead of the others.
+    /// Maximum number of bytes by which a robot may be ahead of the others.
     most_ahead: Option<usize>,
-    /// The number of each channel in the file and of its next message, by robot and topic.
+    /// Number of each channel in the file and of its next message, by robot and topic.
     channels: BTreeMap<(usize, &'static str), (u16, u32)>,
-    /// The second of the open chunk, and the bytes in it.
+    /// Second of the open chunk, and number of bytes in it.
     second: u64,
     bytes: usize,
 }
 
-/// What one robot has recorded and is not yet in the file.
+/// Messages of one robot that are not yet in the file.
 #[derive(Debug)]
 struct Track {
-    /// Whether the robot still drives, so that the others' messages wait for its.
+    /// Whether the robot is still driving, so that the others' messages wait for its.
     open: bool,
-    /// The time of its last message.
+    /// Time of its last message.
     last: Nanoseconds,
     queue: VecDeque<Message>,
-    /// The bytes in the queue.
+    /// Number of bytes in the queue.
     waiting: usize,
 }
 
@@ -96,13 +95,13 @@ struct Message {
     data: Vec<u8>,
 }
 
-/// A chunk that holds more bytes than this ends.
+/// Maximum size of a chunk (bytes).
 const CHUNK_BYTES: usize = 1 << 20;
-/// Nanoseconds of a second: a chunk that holds more of a run ends.
+/// Maximum duration of a chunk (ns): one second.
 const SECOND: u64 = 1_000_000_000;
 
-/// How recordings are written: to sinks that cannot seek, in one thread, and with chunks that end where the writer says
-/// so.
+/// Options of the MCAP writer: sinks that cannot seek, one thread, and chunks that end where this writer
+/// decides.
 pub(super) fn write_options(compression: Compression) -> io::Result<WriteOptions> {
     let options = WriteOptions::new().compression(compression.method()?);
     #[cfg(feature = "zstd")]
@@ -111,7 +110,7 @@ pub(super) fn write_options(compression: Compression) -> io::Result<WriteOptions
 }
 
 impl<W: Write> LogWriter<W> {
-    /// Begins a recording with its header.
+    /// Starts a recording with its header. Fails if the sink does or this build lacks the compression.
     pub fn new(sink: W, header: &Header) -> io::Result<Self> {
         // The version is in the header, which a replay copies.
         let options = write_options(header.compression)?.library(LIBRARY);
@@ -141,14 +140,14 @@ impl<W: Write> LogWriter<W> {
         Ok(Self { shared: Arc::new(Mutex::new(shared)), written: Arc::default() })
     }
 
-    /// Lets a robot that is more than so many bytes ahead of the others wait for them, so that no more are held than that
-    /// for each robot. For robots that drive in threads of their own and do not wait for each other in any other way.
+    /// Makes a robot more than `bytes` bytes ahead of the others wait for them, which bounds the buffered
+    /// bytes per robot. For robots that drive in their own threads without other synchronisation.
     pub fn hold_at_most(&self, bytes: usize) {
         self.lock().most_ahead = Some(bytes);
     }
 
-    /// Ends the recording, and returns the sink; or the first error that it gave. What recorders that still exist
-    /// are asked later is not recorded.
+    /// Ends the recording and returns the sink, or its first error. Later calls of remaining recorders are
+    /// not recorded.
     pub fn finish(self) -> io::Result<W> {
         let mut shared = self.lock();
         for index in 0..shared.tracks.len() {
@@ -167,12 +166,12 @@ impl<W: Write> LogWriter<W> {
     }
 
     fn lock(&self) -> MutexGuard<'_, Shared<W>> {
-        // A panic elsewhere leaves whole messages behind.
+        // A panic elsewhere leaves only whole messages behind.
         self.shared.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Writes a message of a robot, at the time of the one before if there is none or it is earlier. Its messages stay in
-    /// the order in which they come.
+    /// Writes a message of a robot. Without a time, or with one before the previous message, it takes that
+    /// message's time. A robot's messages keep their order.
     pub(super) fn push(&self, track: usize, time: Option<Nanoseconds>, channel: Channel, data: &[u8]) {
         let mut shared = self.lock();
         if !shared.is_recording() {
@@ -201,12 +200,12 @@ impl<W: Write> LogWriter<W> {
         }
     }
 
-    /// Notes that a robot drives: the others' messages wait for its.
+    /// Marks a robot as driving: the others' messages wait for its.
     pub(super) fn open(&self, track: usize) {
         self.lock().track(track).open = true;
     }
 
-    /// Notes that a robot drives no more: the others need not wait for it.
+    /// Marks a robot as finished: the others need not wait for it.
     pub(super) fn close(&self, track: usize) {
         let mut shared = self.lock();
         shared.tracks[track].open = false;
@@ -216,7 +215,7 @@ impl<W: Write> LogWriter<W> {
 }
 
 impl<W: Write> Shared<W> {
-    /// The track of a robot; one that nobody drives is closed.
+    /// Track of a robot; closed unless the robot drives.
     fn track(&mut self, index: usize) -> &mut Track {
         while self.tracks.len() <= index {
             self.tracks.push(Track { open: false, last: 0, queue: VecDeque::new(), waiting: 0 });
@@ -232,7 +231,8 @@ impl<W: Write> Shared<W> {
         self.most_ahead.is_some_and(|most| self.tracks[track].waiting > most)
     }
 
-    /// Writes what is certain to come next: the earliest message, once every robot that drives has one waiting.
+    /// Writes the messages whose order is certain: the earliest one, once every driving robot has one
+    /// waiting.
     fn drain(&mut self) {
         while !self.tracks.iter().any(|track| track.open && track.queue.is_empty()) {
             let heads = self.tracks.iter().enumerate();
@@ -281,7 +281,7 @@ impl<W: Write> Shared<W> {
     }
 }
 
-/// The topic of a robot; one that begins with a slash belongs to all.
+/// Topic of a robot; one that begins with a slash is shared.
 fn full_topic(track: usize, topic: &str) -> String {
     if topic.starts_with('/') { topic.to_owned() } else { format!("/{}/{topic}", frame(track)) }
 }

@@ -3,11 +3,11 @@ use image::RgbImage;
 use super::call::Call;
 use super::ideal::IdealDrive;
 use super::robot::{MockRobot, take_due, unscripted};
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::{
-    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind,
-    Fill, Font, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio,
-    RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error,
+    ErrorKind, Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors,
+    Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::kinematics::Displacement;
 use crate::parameter::require_finite;
@@ -156,6 +156,21 @@ impl Encoders for MockRobot {
     fn reset_encoder(&mut self, motor: u8) -> Result<()> {
         self.command(Call::ResetEncoder(motor));
         Ok(())
+    }
+}
+
+impl Inertial for MockRobot {
+    fn attitude(&mut self) -> Result<Attitude> {
+        self.read("attitude", |robot| robot.attitude.as_mut(), |robot| robot.or_quiet(Attitude::default()))
+    }
+
+    fn turn_rates(&mut self) -> Result<Vector3> {
+        self.read("turn rates", |robot| robot.turn_rates.as_mut(), |robot| robot.or_quiet(Vector3::zeros()))
+    }
+
+    fn acceleration(&mut self) -> Result<Vector3> {
+        let quiet = Vector3::new(0.0, 0.0, 9.81);
+        self.read("acceleration", |robot| robot.acceleration.as_mut(), |robot| robot.or_quiet(quiet))
     }
 }
 

@@ -4,7 +4,7 @@ use crate::geometry::{Pose, Twist};
 use crate::io::{DisplayOption, Fill, Font, Key, LidarSettings, Pixel, Resolution, Viewport};
 use crate::world::Colour;
 
-/// A command that a [`MockRobot`](super::MockRobot) was given, with its arguments. Readings are not commands.
+/// A command given to a [`MockRobot`](super::MockRobot), with its arguments. Readings are not commands.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Call {
@@ -66,7 +66,7 @@ pub enum Call {
     Refresh,
 }
 
-/// Expected and actual calls, one to a line, with the first difference marked; `None` if they are equal.
+/// Expected and actual calls, one per line, with the first difference marked; `None` if they are equal.
 pub(super) fn difference(expected: &[Call], actual: &[Call]) -> Option<String> {
     if expected == actual {
         return None;

@@ -3,7 +3,7 @@ use crate::io::Result;
 use crate::kinematics::{Displacement, advance};
 use crate::parameter::{require_finite, require_positive};
 
-/// A drive that does exactly what it is told, at once.
+/// A drive that executes commands exactly and at once.
 #[derive(Debug, Clone, Default)]
 pub(super) struct IdealDrive {
     pose: Pose,
@@ -15,7 +15,7 @@ enum Motion {
     #[default]
     Still,
     Speed(Twist),
-    /// What is left of a manoeuvre, and the seconds that it takes.
+    /// Remaining motion of a manoeuvre, and its remaining time (s).
     Manoeuvre(Displacement, f64),
 }
 
@@ -35,7 +35,7 @@ impl IdealDrive {
         Ok(())
     }
 
-    /// Begins a manoeuvre of which `extent` metres or radians pass at `speed` of them a second.
+    /// Starts a manoeuvre over `extent` (m or rad) at `speed` (1/s of the same unit).
     pub(super) fn start(&mut self, motion: Displacement, extent: f64, speed: f64) -> Result<()> {
         require_finite("length", motion.length)?;
         require_finite("angle", motion.angle)?;
@@ -55,7 +55,7 @@ impl IdealDrive {
         }
     }
 
-    /// Metres, or radians for a turn on the spot, that the manoeuvre has left.
+    /// Remaining distance (m), or angle for a turn on the spot (rad).
     pub(super) fn remaining(&self) -> f64 {
         match self.motion {
             Motion::Manoeuvre(left, _) if left.length == 0.0 => left.angle.abs(),
@@ -64,12 +64,12 @@ impl IdealDrive {
         }
     }
 
-    /// Seconds until the manoeuvre ends; 0 when none is running.
+    /// Remaining time of the manoeuvre (s); 0 when none is running.
     pub(super) fn seconds_left(&self) -> f64 {
         if let Motion::Manoeuvre(_, seconds) = self.motion { seconds } else { 0.0 }
     }
 
-    /// Lets time pass.
+    /// Advances time.
     pub(super) fn pass(&mut self, seconds: f64) {
         match self.motion {
             Motion::Still => {}

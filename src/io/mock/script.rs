@@ -3,9 +3,20 @@ use std::fmt;
 
 use crate::io::{Error, ErrorKind, Result};
 
-/// What a sensor of a [`MockRobot`](super::MockRobot) reads.
+/// The readings of a [`MockRobot`](super::MockRobot)'s sensor.
 ///
 /// A plain value converts to a constant, a vector or an array to a queue.
+///
+/// ```
+/// use roverlab::io::{DistanceSensors, MockRobot, Psd, Script};
+/// let mut robot = MockRobot::new()
+///     .with_distance(Psd::FRONT, Script::queue([0.5, 0.4]))
+///     .with_distance(Psd::LEFT, Script::function(|time| Ok(1.0 + time)));
+/// assert_eq!((robot.distance(Psd::FRONT)?, robot.distance(Psd::FRONT)?), (0.5, 0.4));
+/// assert!(robot.distance(Psd::FRONT).is_err(), "the script is over");
+/// assert_eq!(robot.distance(Psd::LEFT)?, 1.0);
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 pub struct Script<T>(Kind<T>);
 
 type Function<T> = Box<dyn FnMut(f64) -> Result<T> + Send>;
@@ -22,20 +33,20 @@ impl<T> Script<T> {
         Self(Kind::Constant(value))
     }
 
-    /// One reading after the other; when they are used up, reading is an error of the kind
+    /// Successive readings; after the last one, reading fails with the kind
     /// [`EndOfLog`](ErrorKind::EndOfLog).
     pub fn queue(readings: impl IntoIterator<Item = T>) -> Self {
         Self(Kind::Queue { left: readings.into_iter().collect(), given: 0 })
     }
 
-    /// What a function says, which is given the robot's time in seconds and may fail.
+    /// Readings from a function of the robot's time (s), which may fail.
     pub fn function(reading: impl FnMut(f64) -> Result<T> + Send + 'static) -> Self {
         Self(Kind::Function(Box::new(reading)))
     }
 }
 
 impl<T: Clone> Script<T> {
-    /// The next reading of the sensor of a name.
+    /// The next reading; `name` is the sensor's name for error messages.
     pub(super) fn next(&mut self, name: &str, time: f64) -> Result<T> {
         match &mut self.0 {
             Kind::Constant(value) => Ok(value.clone()),

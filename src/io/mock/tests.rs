@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use super::*;
 use crate::geometry::{Pose, Twist};
 use crate::io::{
-    Camera, Clock, Display, DistanceSensors, Drive, Encoders, Error, ErrorKind, Key, Keys, Lidar, LidarScan,
-    Manoeuvres, Odometry, Psd, Radio, RadioMessage, Resolution, StallDetector,
+    Camera, Clock, Display, DistanceSensors, Drive, Encoders, Error, ErrorKind, Inertial, Key, Keys, Lidar,
+    LidarScan, Manoeuvres, Odometry, Psd, Radio, RadioMessage, Resolution, StallDetector,
 };
 
 #[test]
@@ -22,6 +22,9 @@ fn unscripted_readings_are_errors_that_name_the_sensor() {
         ("rest of the manoeuvre", robot.is_done().unwrap_err()),
         ("stall detector", robot.is_stalled().unwrap_err()),
         ("encoder 2", robot.encoder(2).unwrap_err()),
+        ("attitude", robot.attitude().unwrap_err()),
+        ("turn rates", robot.turn_rates().unwrap_err()),
+        ("acceleration", robot.acceleration().unwrap_err()),
         ("keypad", robot.read_key().unwrap_err()),
         ("keypad", robot.wait_key().unwrap_err()),
         ("touch screen", robot.read_touch().unwrap_err()),
@@ -46,7 +49,7 @@ fn a_lenient_robot_reads_quiet_answers() {
     assert!(robot.is_done().unwrap() && !robot.is_stalled().unwrap());
     assert_eq!((robot.read_key().unwrap(), robot.read_touch().unwrap()), (None, None));
     assert_eq!((robot.radio_peers().unwrap(), robot.receive().unwrap()), (vec![1], None));
-    // There is no quiet answer to waiting for ever.
+    // Waiting for ever has no quiet answer.
     assert!(robot.wait_key().is_err());
 }
 

@@ -7,17 +7,17 @@ use libloading::Library;
 
 use crate::io::{Error, ErrorKind, LidarSettings, Result};
 
-/// Declares the functions that are called, and how they are found.
+/// Declares the functions used, and their lookup.
 macro_rules! functions {
     ($($name:ident: fn($($argument:ty),* $(; $more:tt)?) -> $result:ty;)*) => {
-        /// The functions of a library, as far as it has them.
+        /// The functions of a library, as far as present.
         #[allow(non_snake_case, reason = "RoBIOS's own names")]
         #[derive(Debug)]
         pub(super) struct Functions {
             $($name: Option<unsafe extern "C" fn($($argument),* $(, $more)?) -> $result>,)*
-            /// The variable that says how many distances `LIDARGet` writes.
+            /// The variable with the number of distances that `LIDARGet` writes.
             lidar_resolution: Option<NonNull<AtomicI32>>,
-            /// Keeps functions and variable where they are.
+            /// Keeps functions and variable loaded.
             _library: Library,
         }
 
@@ -29,8 +29,8 @@ macro_rules! functions {
                 Self {
                     lidar_resolution,
                     $(
-                        // SAFETY: RoBIOS's functions have these types; a library that calls itself so and has others
-                        // cannot be told from it.
+                        // SAFETY: RoBIOS's functions have these types; a library with other functions of the
+                        // same names cannot be detected.
                         $name: unsafe { library.get(concat!(stringify!($name), "\0").as_bytes()) }
                             .ok()
                             .map(|symbol| *symbol),
@@ -109,27 +109,28 @@ functions! {
     SERVOSet: fn(c_int, c_int) -> c_int;
     ENCODERRead: fn(c_int) -> c_int;
     ENCODERReset: fn(c_int) -> c_int;
+    ANALOGRead: fn(c_int) -> c_int;
     LCDPrintf: fn(*const c_char; ...) -> c_int;
     SIMGetRobot: fn(c_int, *mut c_int, *mut c_int, *mut c_int, *mut c_int) -> ();
 }
 
-// SAFETY: the variable is read as an atomic number alone, and everything else may be sent.
+// SAFETY: the variable is only read atomically, and everything else may be sent.
 unsafe impl Send for Functions {}
 
-// SAFETY: as above; who may call the functions at once is up to the library.
+// SAFETY: as above; concurrent calls are the library's responsibility.
 unsafe impl Sync for Functions {}
 
 impl Functions {
-    /// How many distances `LIDARGet` writes, if the library says so, at most as many as a scan may have.
+    /// Number of distances that `LIDARGet` writes, if the library reports a valid one.
     pub(super) fn lidar_points(&self) -> Option<usize> {
         // SAFETY: the variable lives as long as the library, which is loaded.
         let points = unsafe { self.lidar_resolution?.as_ref() }.load(Ordering::Relaxed);
         usize::try_from(points).ok().filter(|points| (1..=LidarSettings::MAX_POINTS).contains(points))
     }
 
-    /// Loads a library. Fails if it cannot be loaded, or is none that drives robots.
+    /// Loads a library. Fails if it cannot be loaded or has no driving functions.
     pub(super) fn load(path: &Path) -> Result<Self> {
-        // SAFETY: loading a library runs what it does at its beginning; the user has named this one to be run.
+        // SAFETY: loading a library runs its initialisation; the user has chosen this library.
         let library = unsafe { Library::new(path) }.map_err(|error| {
             let message = format!("{}: no library that can be loaded", path.display());
             Error::new(ErrorKind::InvalidInput, message).with_source(error)

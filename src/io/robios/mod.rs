@@ -1,9 +1,9 @@
-//! A real EyeBot, or anything else that speaks RoBIOS: a robot behind the traits of [`io`](crate::io) that calls a
-//! C library, loaded at run time.
+//! A real EyeBot, or any other RoBIOS system: a robot behind the traits of [`io`](crate::io) that calls a C
+//! library loaded at run time.
 //!
-//! RoBIOS knows whole millimetres, degrees, milliseconds and percent, scans clockwise from behind, and 9999 for nothing
-//! within range. All of that is converted here, so a behaviour that drives a simulated robot drives this one as it is.
-//! [`Quantised`](crate::io::wrappers::Quantised) is a simulated robot with the same numbers.
+//! RoBIOS uses whole millimetres, degrees, milliseconds and percent, scans clockwise from behind, and 9999
+//! for nothing in range. All of this is converted here, so a behaviour for a simulated robot drives this one
+//! unchanged. [`Quantised`](crate::io::wrappers::Quantised) is a simulated robot with the same numbers.
 //!
 //! ```no_run
 //! use roverlab::io::robios::RobiosRobot;
@@ -18,8 +18,8 @@
 //! # }
 //! ```
 //!
-//! Libraries differ in what they have. A function that is missing is an error that names it, when it is called; only
-//! a library that has none of those that drive is refused.
+//! Libraries differ in their functions. Calling a missing function is an error that names it; only a library
+//! without any driving function is rejected.
 
 #![allow(unsafe_code)]
 

@@ -1,14 +1,14 @@
-//! Numbers as RoBIOS has them: whole millimetres and degrees.
+//! RoBIOS's numbers: whole millimetres and degrees.
 
 use std::ffi::c_int;
 
 use crate::geometry::units;
 use crate::io::{Error, Result};
 
-/// What RoBIOS says where there is nothing within range.
+/// RoBIOS's reading for nothing in range.
 pub(super) const NOTHING: c_int = 9999;
 
-/// A number as RoBIOS takes it.
+/// A number rounded for RoBIOS.
 pub(super) fn whole(name: &str, value: f64) -> Result<c_int> {
     let rounded = value.round();
     if rounded.abs() <= f64::from(c_int::MAX) {

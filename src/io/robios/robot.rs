@@ -8,46 +8,48 @@ use image::RgbImage;
 use super::library::Functions;
 use super::numbers::{NOTHING, degrees, metres, millimetres, radians, range, whole};
 use super::truth::{RobiosTruth, Told};
-use crate::geometry::{Pose, Twist, normalize_angle};
+use crate::geometry::{Pose, Twist, Vector3, normalize_angle, units};
 use crate::io::{
-    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind,
-    Fill, Font, FontFamily, FontStyle, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors,
-    Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error,
+    ErrorKind, Fill, Font, FontFamily, FontStyle, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings,
+    Manoeuvres, Motors, Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector,
+    Viewport,
 };
-use crate::world::Colour;
+use crate::world::{Colour, InertialSpec};
 
 /// A robot behind a RoBIOS library.
 ///
-/// A library drives the one robot of its process: two of these with the same library are the same robot.
+/// A library drives the one robot of its process: two instances with the same library are the same robot.
 #[derive(Debug)]
 pub struct RobiosRobot {
     robios: Arc<Functions>,
     told: Arc<Mutex<Told>>,
     lidar: LidarSettings,
-    /// Room for a scan, whatever the scanner is like.
+    /// Buffer for a scan of any size.
     distances: Vec<c_int>,
     resolution: Resolution,
     camera_is_on: bool,
     radio_is_on: bool,
     turns: bool,
+    inertial: InertialSpec,
 }
 
-/// Bytes of the longest radio message that is received.
+/// Maximum length of a received radio message (bytes).
 const LONGEST_MESSAGE: usize = 1024;
 /// RoBIOS's numbers of the soft keys.
 const KEYS: [(c_int, Key); 4] = [(1, Key::Key1), (2, Key::Key2), (4, Key::Key3), (8, Key::Key4)];
 
-/// Calls a function of the library and returns what it returns.
+/// Calls a function of the library and returns its result.
 macro_rules! call {
     ($robot:expr, $name:ident($($argument:expr),*)) => {{
         let function = $robot.robios.$name()?;
-        // SAFETY: the library is loaded, the arguments have the types of its header, and what pointers point to lives
-        // until the function returns and is as large as the function may write.
+        // SAFETY: the library is loaded, the arguments have the types of its header, and pointers refer to
+        // memory that outlives the call and is as large as the function may write.
         unsafe { function($($argument),*) }
     }};
 }
 
-/// Calls a function that returns 0 when it has succeeded.
+/// Calls a function that returns 0 on success.
 macro_rules! order {
     ($robot:expr, $name:ident($($argument:expr),*)) => {{
         let code = call!($robot, $name($($argument),*));
@@ -62,7 +64,7 @@ fn succeeded(name: &str, code: c_int) -> Result<()> {
     Err(Error::new(ErrorKind::Other, format!("{name} returned {code}; expected 0, the code of success")))
 }
 
-/// A text as C takes it, up to its first zero byte.
+/// A text as a C string, up to its first zero byte.
 fn text(text: &str) -> CString {
     let end = text.find('\0').unwrap_or(text.len());
     CString::new(&text[..end]).unwrap_or_default()
@@ -77,8 +79,8 @@ fn fills(fill: Fill) -> c_int {
 }
 
 impl RobiosRobot {
-    /// Loads a library. Its scanner is taken to look all round at first, with 360 beams, unless the library says how
-    /// many it has.
+    /// Loads a library. Its scanner is assumed to have 360 beams all round, unless the library reports
+    /// another number.
     pub fn open(path: impl AsRef<Path>) -> Result<Self> {
         Ok(Self {
             robios: Arc::new(Functions::load(path.as_ref())?),
@@ -89,10 +91,24 @@ impl RobiosRobot {
             camera_is_on: false,
             radio_is_on: false,
             turns: false,
+            inertial: InertialSpec::default(),
         })
     }
 
-    /// What is known about the robot where somebody asks for the truth. It starts at a pose in the world.
+    /// Gives the robot an inertial unit, which the library reads on these channels: RoBIOS does not tell of any.
+    #[must_use]
+    pub fn with_inertial(self, inertial: InertialSpec) -> Self {
+        Self { inertial, ..self }
+    }
+
+    /// What three analog channels read.
+    fn channels(&mut self, name: &str, channels: Option<[u8; 3]>) -> Result<[f64; 3]> {
+        let [a, b, c] = channels.ok_or_else(|| Error::unsupported(name))?;
+        let read = |channel: u8| -> Result<f64> { Ok(call!(self, ANALOGRead(channel.into())).into()) };
+        Ok([read(a)?, read(b)?, read(c)?])
+    }
+
+    /// Access to the ground truth, as far as known, for a start pose in the world.
     pub fn truth(&self, start: Pose) -> RobiosTruth {
         RobiosTruth::new(Arc::clone(&self.robios), Arc::clone(&self.told), start)
     }
@@ -211,7 +227,7 @@ impl StallDetector for RobiosRobot {
 }
 
 impl DistanceSensors for RobiosRobot {
-    /// RoBIOS says 0, or less, of sensors that the robot lacks.
+    /// RoBIOS returns 0 or less for missing sensors.
     fn distance(&mut self, sensor: Psd) -> Result<f64> {
         match call!(self, PSDGet(sensor.0.into())) {
             ..=0 => Err(Error::unsupported(sensor)),
@@ -224,13 +240,13 @@ impl Lidar for RobiosRobot {
     fn scan_into(&mut self, scan: &mut LidarScan) -> Result<()> {
         let room = self.distances.as_mut_ptr();
         order!(self, LIDARGet(room))?;
-        // Known by now: the library has begun to work.
+        // Only known now that the library is running.
         if let Some(points) = self.robios.lidar_points() {
             self.lidar.points = points;
         }
         let distances = &mut self.distances[..self.lidar.points];
         if self.lidar.field_of_view > TAU - 1e-9 {
-            // The beam behind comes first, clockwise and counter-clockwise.
+            // The beam behind comes first in both directions of rotation.
             distances.rotate_left(1);
         }
         let (angle_min, angle_increment) = self.lidar.beams();
@@ -262,7 +278,7 @@ impl Camera for RobiosRobot {
         Ok(())
     }
 
-    /// As it was set last: RoBIOS does not tell.
+    /// The last value set: RoBIOS cannot read it.
     fn resolution(&mut self) -> Result<Resolution> {
         Ok(self.resolution)
     }
@@ -327,7 +343,7 @@ impl Display for RobiosRobot {
         order!(self, LCDPixel(x, y, number(colour)))
     }
 
-    /// RoBIOS calls what is off the display black.
+    /// RoBIOS returns black for pixels outside the display.
     fn pixel(&mut self, (x, y): Pixel) -> Result<Option<Colour>> {
         Ok(Some(Colour::from_hex(call!(self, LCDGetPixel(x, y)) as u32)))
     }
@@ -344,7 +360,7 @@ impl Display for RobiosRobot {
         order!(self, LCDCircle(middle.0, middle.1, diameter, number(colour), fills(fill)))
     }
 
-    /// Fails for images that have none of RoBIOS's sizes.
+    /// Fails for images of a size that RoBIOS lacks.
     fn draw_image(&mut self, picture: DisplayImage<'_>, viewport: Viewport) -> Result<()> {
         let resolution = Resolution::of(picture.dimensions())?;
         let size = Resolution::ALL.iter().position(|&r| r == resolution).unwrap_or_default();
@@ -429,7 +445,7 @@ impl Radio for RobiosRobot {
 
     fn radio_peers(&mut self) -> Result<Vec<u32>> {
         self.start_radio()?;
-        // RoBIOS's numbers are single bytes.
+        // RoBIOS's ids are single bytes.
         let mut ids = [0; 256];
         let count = call!(self, RADIOStatus(ids.as_mut_ptr()));
         let count = usize::try_from(count).unwrap_or_default().min(ids.len());
@@ -453,7 +469,7 @@ impl Radio for RobiosRobot {
             return Ok(None);
         }
         let mut buffer: [c_char; LONGEST_MESSAGE] = [0; LONGEST_MESSAGE];
-        // Some libraries return the length, others 0 for success; a message ends with a zero byte in both.
+        // Some libraries return the length, others 0 for success; a message always ends with a zero byte.
         call!(self, RADIOReceive(&raw mut from, buffer.as_mut_ptr(), LONGEST_MESSAGE as c_int));
         let data = buffer.iter().take_while(|&&byte| byte != 0).map(|&byte| byte as u8).collect();
         Ok(Some(RadioMessage { from: from as u32, data }))
@@ -484,5 +500,25 @@ impl Encoders for RobiosRobot {
 
     fn reset_encoder(&mut self, motor: u8) -> Result<()> {
         order!(self, ENCODERReset(motor.into()))
+    }
+}
+
+/// Tenths of degrees.
+fn from_tenths(tenths: f64) -> f64 {
+    units::from_deg(tenths / 10.0)
+}
+
+impl Inertial for RobiosRobot {
+    fn attitude(&mut self) -> Result<Attitude> {
+        let [roll, pitch, yaw] = self.channels("attitude", self.inertial.attitude)?.map(from_tenths);
+        Ok(Attitude { roll, pitch, yaw })
+    }
+
+    fn turn_rates(&mut self) -> Result<Vector3> {
+        Ok(self.channels("turn rates", self.inertial.turn_rates)?.map(from_tenths).into())
+    }
+
+    fn acceleration(&mut self) -> Result<Vector3> {
+        Ok(self.channels("acceleration", self.inertial.acceleration)?.map(units::from_mm).into())
     }
 }

@@ -5,18 +5,18 @@ use super::numbers::{metres, radians};
 use crate::geometry::Pose;
 use crate::io::{Error, ErrorKind, GroundTruth, Result, RobotTruth};
 
-/// What a library has said last.
+/// The latest readings from a library.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Told {
     pub(super) odometry: Pose,
     pub(super) time: f64,
 }
 
-/// What is known about the robot behind a library where a program asks for the truth: on a simulator, where the robot
-/// truly is, if the library tells it (`SIMGetRobot`); otherwise where its odometry said that it was, when the program
-/// asked last. Nothing of it takes the robot's time.
+/// Ground truth of the robot behind a library, as far as known: the true pose if the library is a simulator
+/// that reports it (`SIMGetRobot`), otherwise the last pose by odometry that the program read. Reading it
+/// takes no robot time.
 ///
-/// Nobody counts its contacts, and its path is as long as the way between the places where it was asked for.
+/// Contacts are not counted, and the path length is measured along the poses read.
 #[derive(Debug)]
 pub struct RobiosTruth {
     robios: Arc<Functions>,
@@ -43,7 +43,7 @@ impl RobiosTruth {
     }
 }
 
-/// Where a robot truly is, if its library is a simulator that tells it.
+/// The true pose of a robot, if its library is a simulator that reports it.
 fn simulated_pose(robios: &Functions) -> Option<Pose> {
     let (mut x, mut y, mut z, mut phi) = (0, 0, 0, 0);
     let function = robios.SIMGetRobot().ok()?;
@@ -57,7 +57,7 @@ fn only_one(robot: usize) -> Result<()> {
 }
 
 impl GroundTruth for RobiosTruth {
-    /// What the clock said when the program looked last.
+    /// Time of the program's last clock reading (s).
     fn time(&mut self) -> Result<f64> {
         Ok(self.told().time)
     }

@@ -4,12 +4,13 @@ use std::sync::Arc;
 use super::SimOptions;
 use super::camera::CameraDevice;
 use super::course::Course;
+use super::inertial_unit::InertialUnit;
 use super::mechanics::Powertrain;
-use crate::geometry::{Point, Pose, Vector, direction};
+use crate::geometry::{Point, Point3, Pose, Pose3, Vector3, direction, math};
 use crate::io::{Error, Key, Lcd, LidarSettings, Psd, RadioMessage, Result, TrailPoint};
 use crate::random::Stream;
 use crate::world::space::{Scanner, SolidId, Span};
-use crate::world::{Footprint, RobotPlacement, RobotSpec};
+use crate::world::{Footprint, Mount, PsdSpec, RobotPlacement, RobotSpec};
 
 /// One robot in the engine: its mechanics, its devices and what is true about it.
 #[derive(Debug)]
@@ -29,6 +30,7 @@ pub(super) struct Body {
     pub(super) psd_noise: Stream,
     pub(super) lidar: Option<Box<LidarDevice>>,
     pub(super) camera: Option<Box<CameraDevice>>,
+    pub(super) inertial: Option<Box<InertialUnit>>,
     pub(super) mailbox: VecDeque<RadioMessage>,
     pub(super) keys: VecDeque<KeyPress>,
     /// Made when the program first draws: most robots of a fleet never do.
@@ -101,11 +103,21 @@ impl Touch {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PsdDevice {
     id: u8,
-    pub(super) offset: Vector,
-    pub(super) direction: Vector,
-    /// Metres above the world's floor.
-    pub(super) height: f64,
+    pub(super) place: Point3,
+    pub(super) direction: Vector3,
+    /// Whether it is parallel to the robot's floor.
+    pub(super) level: bool,
     pub(super) max_range: f64,
+}
+
+impl PsdDevice {
+    fn new(spec: &PsdSpec) -> Self {
+        let (Mount { x, y, z, pitch, yaw, .. }, level) = (spec.mount, spec.mount.is_level());
+        let flat = direction(yaw);
+        let (sin, cos) = if level { (0.0, 1.0) } else { math::sin_cos(pitch) };
+        let direction = Vector3::new(flat.x * cos, flat.y * cos, -sin);
+        Self { id: spec.id, place: Point3::new(x, y, z), direction, level, max_range: spec.max_range }
+    }
 }
 
 /// A lidar with the settings that the program has given it.
@@ -113,6 +125,9 @@ pub(super) struct PsdDevice {
 pub(super) struct LidarDevice {
     /// Where it sits in the robot's frame.
     pub(super) mount: Pose,
+    /// The same in space, and whether its plane is parallel to the robot's floor.
+    pub(super) frame: Pose3,
+    pub(super) level: bool,
     /// Metres above the world's floor.
     height: f64,
     pub(super) max_range: f64,
@@ -150,19 +165,14 @@ impl Body {
             let height = placement.elevation + lidar.mount.z;
             Box::new(LidarDevice {
                 mount: Pose::new(lidar.mount.x, lidar.mount.y, lidar.mount.yaw),
+                frame: lidar.mount.frame(),
+                level: lidar.mount.is_level(),
                 height,
                 max_range: lidar.max_range,
                 settings,
                 scanner: scanner(height, lidar.max_range, &settings),
                 noise: streams.child("lidar", 0),
             })
-        });
-        let psds = spec.psds.iter().map(|psd| PsdDevice {
-            id: psd.id,
-            offset: Vector::new(psd.mount.x, psd.mount.y),
-            direction: direction(psd.mount.yaw),
-            height: placement.elevation + psd.mount.z,
-            max_range: psd.max_range,
         });
         Ok(Self {
             solid,
@@ -172,12 +182,13 @@ impl Body {
             radius: spec.footprint.bounding_radius(),
             stride: stride(&spec.footprint),
             drive,
-            psds: psds.collect(),
+            psds: spec.psds.iter().map(PsdDevice::new).collect(),
             psd_noise: streams.child("psd", 0),
             lidar,
             camera: spec.camera.map(|camera| {
                 Box::new(CameraDevice::new(camera, placement.elevation, streams.child("camera", 0)))
             }),
+            inertial: InertialUnit::of(spec.inertial, streams),
             mailbox: VecDeque::new(),
             keys: VecDeque::new(),
             lcd: None,

@@ -194,6 +194,7 @@ impl Engine {
         if let Some(hills) = &mut self.hills {
             hills.place(index, pose, z - hills.level(pose.position()));
         }
+        self.begin_inertial(index);
         self.look_around_again();
     }
 

@@ -2,14 +2,17 @@ use image::RgbImage;
 
 use super::body::Body;
 use super::camera::{CameraDevice, Moment, Studio};
+use super::inertial_unit::InertialUnit;
 use super::lockstep::{Ticking, no_robot};
 use super::movable::{Movable, movables};
 use super::options::ticks_in;
 use super::terrain::Hills;
 use super::watch::{Onlooking, Watcher};
 use super::{LONGEST, SimOptions, TICKS_PER_SECOND, TrailPoint};
-use crate::geometry::{Pose, Pose3, Twist, units};
-use crate::io::{Error, ErrorKind, Key, LidarScan, LidarSettings, Psd, RadioMessage, Resolution, Result};
+use crate::geometry::{Pose, Pose3, Twist, Vector3, units};
+use crate::io::{
+    Attitude, Error, ErrorKind, Key, LidarScan, LidarSettings, Psd, RadioMessage, Resolution, Result,
+};
 use crate::kinematics::{Displacement, PlanarMotion};
 use crate::parameter::{require_finite, require_positive};
 use crate::random::Stream;
@@ -110,6 +113,7 @@ impl Engine {
             watcher: None,
         };
         engine.stand_on_hills();
+        (0..engine.bodies.len()).for_each(|index| engine.begin_inertial(index));
         Ok(engine)
     }
 
@@ -134,10 +138,7 @@ impl Engine {
     /// Where a robot is in space.
     pub(super) fn pose_in_space(&self, robot: usize) -> Result<Pose3> {
         let body = self.body(robot)?;
-        Ok(match &self.hills {
-            Some(hills) => hills.pose(robot),
-            None => Pose3::level(body.pose(), body.span.bottom),
-        })
+        Ok(pose_in_space(self.hills.as_deref(), robot, body.pose(), body.span.bottom))
     }
 
     /// Seconds since the start, at the present tick.
@@ -224,10 +225,30 @@ impl Engine {
         if let Some(hills) = &mut self.hills {
             hills.yield_to(&mut self.bodies, &mut self.space);
         }
+        self.feel();
         self.deliver();
         self.tick += 1;
         self.extend_trails();
         self.show();
+    }
+
+    /// Begins the inertial unit of a robot anew, which has been put somewhere.
+    pub(super) fn begin_inertial(&mut self, index: usize) {
+        let body = &mut self.bodies[index];
+        if let Some(unit) = &mut body.inertial {
+            let (pose, elevation) = (body.course.pose(), body.span.bottom);
+            unit.begin(pose_in_space(self.hills.as_deref(), index, pose, elevation));
+        }
+    }
+
+    /// Lets inertial units feel how their robots have moved in this tick.
+    fn feel(&mut self) {
+        for (index, body) in self.bodies.iter_mut().enumerate() {
+            if let Some(unit) = &mut body.inertial {
+                let (pose, elevation) = (body.course.pose(), body.span.bottom);
+                unit.feel(pose_in_space(self.hills.as_deref(), index, pose, elevation));
+            }
+        }
     }
 
     fn extend_trails(&mut self) {
@@ -331,6 +352,25 @@ impl Engine {
         Ok(())
     }
 
+    fn inertial(&mut self, index: usize) -> Result<&mut InertialUnit> {
+        self.bodies[index].inertial.as_deref_mut().ok_or_else(|| Error::unsupported("inertial unit"))
+    }
+
+    pub(super) fn attitude(&mut self, index: usize) -> Result<Attitude> {
+        let (tick, noise) = (self.tick, self.options.noise);
+        self.inertial(index)?.attitude(tick, &noise)
+    }
+
+    pub(super) fn turn_rates(&mut self, index: usize) -> Result<Vector3> {
+        let (tick, noise) = (self.tick, self.options.noise);
+        self.inertial(index)?.turn_rates(tick, &noise)
+    }
+
+    pub(super) fn acceleration(&mut self, index: usize) -> Result<Vector3> {
+        let (tick, noise) = (self.tick, self.options.noise);
+        self.inertial(index)?.acceleration(tick, &noise)
+    }
+
     pub(super) fn set_odometry(&mut self, index: usize, pose: Pose) -> Result<()> {
         if !pose.is_finite() {
             return Err(Error::invalid_input("pose", format!("{pose:?}"), "finite numbers"));
@@ -343,15 +383,17 @@ impl Engine {
         let sigma = self.options.noise.range;
         let body = &mut self.bodies[index];
         let device = *body.psd(psd)?;
-        if let Some(hills) = &self.hills
-            && let Some(spec) = body.spec.psds.iter().find(|spec| spec.id == psd.0)
-        {
-            let range = hills.measure(&self.space, (index, body.solid), &spec.mount, device.max_range);
-            return Ok(noisy(range, sigma, device.max_range, &mut body.psd_noise));
-        }
-        let origin = body.pose().position() + body.course.turned(device.offset);
-        let direction = body.course.turned(device.direction);
-        let range = self.space.cast_ray(origin, direction, device.height, device.max_range, Some(body.solid));
+        let (place, ahead) = (device.place, device.direction);
+        let range = if device.level && self.hills.is_none() {
+            let origin = body.pose().position() + body.course.turned(place.xy().coords);
+            let (direction, height) = (body.course.turned(ahead.xy()), body.span.bottom + place.z);
+            self.space.cast_ray(origin, direction, height, device.max_range, Some(body.solid))
+        } else {
+            let pose = pose_in_space(self.hills.as_deref(), index, body.pose(), body.span.bottom);
+            let (origin, direction) = (pose.to_world(place), pose.rotate(ahead));
+            let ground = self.hills.as_deref().map(Hills::ground);
+            self.space.cast_ray_over(ground, origin, direction, device.max_range, Some(body.solid))
+        };
         let reading = noisy(range, sigma, device.max_range, &mut body.psd_noise);
         if let Some(watcher) = &mut self.watcher {
             watcher.distance(index, psd, reading);
@@ -363,21 +405,21 @@ impl Engine {
         let sigma = self.options.noise.range;
         let body = &mut self.bodies[index];
         let Some(device) = &mut body.lidar else { return Err(Error::unsupported("lidar")) };
-        let pose = body.course.mounted(&device.mount);
         let (angle_min, angle_increment) = device.settings.beams();
         scan.angle_min = angle_min;
         scan.angle_increment = angle_increment;
         scan.range_max = device.max_range;
         scan.mount = device.mount;
         scan.ranges.resize(device.settings.points, f64::INFINITY);
-        match (&self.hills, &body.spec.lidar) {
-            (Some(hills), Some(spec)) => {
-                let scanner = (&spec.mount, &device.settings, device.max_range);
-                hills.scan(&self.space, (index, body.solid), scanner, &mut scan.ranges);
-            }
-            _ => self.space.scan(&mut device.scanner, &pose, Some(body.solid), &mut scan.ranges),
+        if device.level && self.hills.is_none() {
+            let pose = body.course.mounted(&device.mount);
+            self.space.scan(&mut device.scanner, &pose, Some(body.solid), &mut scan.ranges);
+        } else {
+            let robot = pose_in_space(self.hills.as_deref(), index, body.course.pose(), body.span.bottom);
+            let (ground, pose) = (self.hills.as_deref().map(Hills::ground), robot.compose(&device.frame));
+            self.space.scan_over(ground, &device.scanner, &pose, Some(body.solid), &mut scan.ranges);
         }
-        for range in &mut scan.ranges {
+        for range in scan.ranges.iter_mut().filter(|range| range.is_finite()) {
             *range = noisy(*range, sigma, device.max_range, &mut device.noise);
         }
         if let Some(watcher) = &mut self.watcher {
@@ -403,6 +445,14 @@ impl Engine {
         }
         self.outbox.push(Letter { from: index as u32 + 1, to, data: data.to_vec() });
         Ok(())
+    }
+}
+
+/// Where a robot is in space: as the hills have it, or level above the floor.
+fn pose_in_space(hills: Option<&Hills>, robot: usize, pose: Pose, elevation: f64) -> Pose3 {
+    match hills {
+        Some(hills) => hills.pose(robot),
+        None => Pose3::level(pose, elevation),
     }
 }
 
@@ -442,6 +492,7 @@ fn check_placement(placement: &RobotPlacement) -> Result<()> {
 }
 
 /// A reading with its noise; no return stays no return.
+#[inline]
 fn noisy(range: f64, sigma: f64, max_range: f64, stream: &mut Stream) -> f64 {
     if sigma == 0.0 || range.is_infinite() {
         return range;

@@ -35,6 +35,7 @@ mod drive_mechanics;
 mod drivetrain;
 mod engine;
 mod fleet;
+mod inertial_unit;
 mod lockstep;
 mod mechanics;
 mod movable;

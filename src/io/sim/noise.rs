@@ -5,6 +5,12 @@ use crate::parameter::require;
 ///
 /// `NoiseModel::real()` is noise factor 1 of every example and campaign; [`scaled`](NoiseModel::scaled) multiplies
 /// all of it. Drive errors are drawn once for a robot, slip at every step, range errors at every reading.
+///
+/// ```
+/// use roverlab::io::sim::NoiseModel;
+/// assert_eq!(NoiseModel::real().scaled(0.0), NoiseModel::ideal());
+/// assert_eq!(NoiseModel::real().scaled(2.0).range, 2.0 * NoiseModel::real().range);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NoiseModel {
     /// Relative error of both wheels' diameters together.
@@ -25,6 +31,13 @@ pub struct NoiseModel {
     pub exposure: f64,
     /// Blur of the camera, in pixels of an image 320 pixels wide; in proportion for others.
     pub blur: f64,
+    /// Error of the inertial unit's roll, pitch and yaw, in radians: one is drawn once, and one for each reading. The
+    /// yaw's wanders besides, as much in a minute.
+    pub attitude: f64,
+    /// The same of its turn rates, in radians per second; all three wander.
+    pub turn_rate: f64,
+    /// The same of its accelerations, in metres per second squared; all three wander.
+    pub acceleration: f64,
 }
 
 impl NoiseModel {
@@ -40,6 +53,9 @@ impl NoiseModel {
             shot: 0.0,
             exposure: 0.0,
             blur: 0.0,
+            attitude: 0.0,
+            turn_rate: 0.0,
+            acceleration: 0.0,
         }
     }
 
@@ -55,6 +71,11 @@ impl NoiseModel {
             shot: 3.0,
             exposure: 0.03,
             blur: 0.5,
+            // As data sheets of small units state: Xsens MTi 1 (0.5 degrees), InvenSense MPU-6050 (0.05 degrees per
+            // second, and 4 mg in a band of 100 Hz).
+            attitude: 0.0087,
+            turn_rate: 0.000_87,
+            acceleration: 0.04,
         }
     }
 
@@ -76,6 +97,9 @@ impl NoiseModel {
             shot: self.shot * factor,
             exposure: self.exposure * factor,
             blur: self.blur * factor,
+            attitude: self.attitude * factor,
+            turn_rate: self.turn_rate * factor,
+            acceleration: self.acceleration * factor,
         }
     }
 
@@ -91,6 +115,9 @@ impl NoiseModel {
             ("shot noise", self.shot, 255.0),
             ("exposure error", self.exposure, 1.0),
             ("blur", self.blur, 10.0),
+            ("attitude error", self.attitude, 10.0),
+            ("turn rate error", self.turn_rate, 1000.0),
+            ("acceleration error", self.acceleration, 1000.0),
         ] {
             require(name, value, (0.0..=limit).contains(&value), format!("0 to {limit}"))?;
         }

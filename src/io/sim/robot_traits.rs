@@ -2,11 +2,11 @@
 
 use super::engine::Engine;
 use super::{FleetRobot, SimRobot};
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::{
-    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind,
-    Fill, Font, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio,
-    RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error,
+    ErrorKind, Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors,
+    Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::kinematics::Displacement;
 use crate::world::Colour;
@@ -276,6 +276,20 @@ macro_rules! robot_through_engine {
 
             fn reset_encoder(&mut self, motor: u8) -> Result<()> {
                 self.call(|engine, i| engine.bodies[i].reset_encoder(motor))
+            }
+        }
+
+        impl Inertial for $robot {
+            fn attitude(&mut self) -> Result<Attitude> {
+                self.call(|engine, i| engine.attitude(i))
+            }
+
+            fn turn_rates(&mut self) -> Result<Vector3> {
+                self.call(|engine, i| engine.turn_rates(i))
+            }
+
+            fn acceleration(&mut self) -> Result<Vector3> {
+                self.call(|engine, i| engine.acceleration(i))
             }
         }
     };

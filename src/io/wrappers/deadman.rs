@@ -1,18 +1,18 @@
 use image::RgbImage;
 
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::{
-    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key,
-    Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio, RadioMessage,
-    Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill,
+    Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd,
+    Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
-/// A robot that stops when nobody has talked to it for some time: the watchdog at its own end of a link, for programs that hang
-/// and radio that is gone.
+/// A robot that stops if it receives no call for some time: a watchdog on the robot's side of the link,
+/// against hanging programs and lost radio.
 ///
-/// Any call but those of the clock counts as talking. It keeps the curvature that it drives until it stands, and goes on with the
-/// next command.
+/// Every call except those of the clock counts. The robot keeps its curvature until it stands, and continues
+/// with the next command.
 ///
 /// ```
 /// use roverlab::geometry::Twist;
@@ -31,28 +31,28 @@ use crate::world::Colour;
 pub struct Deadman<R> {
     inner: R,
     limit: f64,
-    /// Seconds since somebody talked to it.
+    /// Time since the last call (s).
     quiet: f64,
 }
 
-/// The speed of a robot that stands but keeps its wheels turned, in metres per second.
+/// Speed of a standing robot that keeps its wheels turned (m/s).
 const CREEP: f64 = 1e-6;
 
 impl<R> Deadman<R> {
-    /// Stops a robot after so many seconds.
+    /// Stops a robot after `seconds` without a call.
     ///
-    /// Fails if the number is not positive.
+    /// Fails unless the number is positive.
     pub fn new(inner: R, seconds: f64) -> Result<Self> {
         crate::parameter::require_positive("seconds", seconds)?;
         Ok(Self { inner, limit: seconds, quiet: 0.0 })
     }
 
-    /// The robot inside.
+    /// The wrapped robot.
     pub fn inner(&self) -> &R {
         &self.inner
     }
 
-    /// The robot inside, which stops no more.
+    /// The wrapped robot, without the watchdog.
     pub fn into_inner(self) -> R {
         self.inner
     }
@@ -111,7 +111,8 @@ hooked!(
     Radio,
     Motors,
     Servos,
-    Encoders
+    Encoders,
+    Inertial
 );
 
 #[cfg(test)]

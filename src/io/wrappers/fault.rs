@@ -4,7 +4,7 @@ use std::str::FromStr;
 use crate::geometry::{Pose, units};
 use crate::io::{Error, ErrorKind, Psd, Result};
 
-/// What a fault is about.
+/// Device affected by a fault.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Sensor {
     /// One distance sensor.
@@ -13,52 +13,52 @@ pub enum Sensor {
     Lidar,
     /// The camera.
     Camera,
-    /// The pose and the speed that odometry measures.
+    /// Pose and velocity by odometry.
     Odometry,
-    /// All of them.
+    /// All sensors.
     All,
 }
 
 impl Sensor {
-    /// Whether a fault of this sensor is one of `other` too.
+    /// Whether a fault of this sensor affects `other`.
     pub(super) fn covers(self, other: Sensor) -> bool {
         self == Sensor::All || self == other
     }
 }
 
-/// What goes wrong.
+/// Kind of a fault.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum FaultKind {
-    /// The sensor repeats the last reading that it gave before, or its next one if it gave none.
+    /// The sensor repeats its last reading, or its next one if it had none.
     Stuck(Sensor),
-    /// The sensor is gone: an error of the kind [`Disconnected`](ErrorKind::Disconnected).
+    /// The sensor fails with the kind [`Disconnected`](ErrorKind::Disconnected).
     Lost(Sensor),
     /// The sensor reads NaN; a camera's image is black.
     Nan(Sensor),
-    /// Odometry jumps: from its first reading on it is off as if the robot had been shifted by this pose, given in
-    /// the robot's frame, without moving. Setting the pose cures it.
+    /// Odometry jumps: from its first reading on it is offset as if the robot had been shifted by this pose,
+    /// given in the robot's frame, without moving. Setting the pose corrects it.
     Jump(Pose),
-    /// The sensor's readings are this many seconds old. Readings exist where the program asked for them; before the
-    /// first of them is old enough, it is repeated.
+    /// Readings are delayed by this many seconds. Readings exist at the times when the program asked for
+    /// them; until the first one is old enough, it is repeated.
     Late(Sensor, f64),
-    /// The link to the robot is gone: every call fails with [`Disconnected`](ErrorKind::Disconnected). A wait still
-    /// takes its time before it fails, so that a program that tries again gets to see the link return.
+    /// The link to the robot is lost: every call fails with [`Disconnected`](ErrorKind::Disconnected). A wait
+    /// still takes its time before it fails, so that a program that retries sees the link return.
     Link,
-    /// The next call, whichever it is, takes this many seconds more.
+    /// The next call of any kind takes this much longer (s).
     Hang(f64),
-    /// The clock stands still at the time when the fault begins, while time goes on.
+    /// The clock stops at the start of the fault, while time continues.
     ClockStop,
-    /// The clock jumps by this many seconds, back if negative.
+    /// The clock jumps by this many seconds, backwards if negative.
     ClockJump(f64),
 }
 
-/// Something that goes wrong at a time.
+/// A fault at a set time.
 ///
-/// As text, a fault is `KIND@T`, `KIND:DEVICE@T`, `KIND@T-T2` or `KIND:DEVICE@T-T2` with times in seconds. The kinds
-/// are `stuck`, `lost`, `nan`, `jump`, `late`, `link`, `hang` and `clock`; the devices, for the first three and
-/// `late`, are `front`, `left`, `right`, `back`, `psdN`, `lidar`, `camera`, `odometry` and, if none is named, `all`. An amount
-/// may follow kind or device behind an equals sign:
+/// As text, a fault is `KIND@T`, `KIND:DEVICE@T`, `KIND@T-T2` or `KIND:DEVICE@T-T2` with times in seconds.
+/// The kinds are `stuck`, `lost`, `nan`, `jump`, `late`, `link`, `hang` and `clock`. The first three and
+/// `late` take a device: `front`, `left`, `right`, `back`, `psdN`, `lidar`, `camera`, `odometry` or, by
+/// default, `all`. An amount may follow kind or device after an equals sign:
 ///
 /// | text | means |
 /// |---|---|
@@ -77,35 +77,35 @@ pub enum FaultKind {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fault {
-    /// When it begins, in seconds of the robot's clock.
+    /// Start by the robot's clock (s).
     pub at: f64,
-    /// When it ends; `None` if it stays.
+    /// End (s); `None` if it lasts.
     pub until: Option<f64>,
-    /// What goes wrong.
+    /// Kind of the fault.
     pub kind: FaultKind,
 }
 
 impl Fault {
-    /// A fault that begins at a time and stays.
+    /// A fault that starts at a time and lasts.
     pub const fn new(at: f64, kind: FaultKind) -> Self {
         Self { at, until: None, kind }
     }
 
-    /// The same fault, which ends at a time.
+    /// The same fault with an end.
     #[must_use]
     pub const fn until(self, end: f64) -> Self {
         Self { until: Some(end), ..self }
     }
 
-    /// Whether the fault is there at a time.
+    /// Whether the fault is active at a time.
     pub fn is_active(&self, time: f64) -> bool {
         self.at <= time && self.until.is_none_or(|end| time < end)
     }
 }
 
-/// How the kinds of faults are written.
+/// Kinds of faults, for error messages.
 const KINDS: &str = "stuck, lost, nan, jump, late, link, hang or clock";
-/// How what they are about is written.
+/// Devices, for error messages.
 const DEVICES: &str = "front, left, right, back, psdN, lidar, camera, odometry or all";
 /// Seconds that late readings are old where no number says more.
 const LATE: f64 = 0.5;
@@ -126,7 +126,7 @@ impl FromStr for Fault {
     }
 }
 
-/// A fault from its text; fails with a sentence about the part that is wrong.
+/// Parses a fault; fails with a message about the wrong part.
 fn parse(text: &str) -> std::result::Result<Fault, String> {
     let (what, when) = text.split_once('@').ok_or("no time; expected KIND@T, such as stuck:front@2.5")?;
     let (at, until) = parse_times(when)?;
@@ -163,7 +163,7 @@ fn parse(text: &str) -> std::result::Result<Fault, String> {
             if seconds > LONGEST {
                 return Err(format!("duration is {seconds:?}; expected at most {LONGEST:?} s"));
             }
-            // The interval was the duration.
+            // The interval is the duration of the hang.
             return Ok(Fault::new(at, FaultKind::Hang(seconds)));
         }
         "clock" => seconds.transpose()?.map_or(FaultKind::ClockStop, FaultKind::ClockJump),
@@ -250,8 +250,8 @@ impl fmt::Display for Sensor {
 }
 
 impl fmt::Display for Fault {
-    /// The text that parses back to this fault (a jump, up to the rounding of its units; a hang's end, which means
-    /// nothing, is left out).
+    /// The text that parses back to this fault (a jump, to within the rounding of its units; the meaningless
+    /// end of a hang is omitted).
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.kind {
             FaultKind::Stuck(sensor) => write!(f, "stuck:{sensor}")?,

@@ -4,18 +4,18 @@ use image::RgbImage;
 
 use super::fault::{Fault, FaultKind, Sensor};
 use super::memory::{Disturbance, Memory};
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::{
-    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind,
-    Fill, Font, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio,
-    RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error,
+    ErrorKind, Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors,
+    Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
-/// A robot on which things go wrong at set times.
+/// A robot with faults injected at set times.
 ///
-/// Times are those of the clock inside. To know them, every call asks that clock once, which may take time on the
-/// robot inside; with an empty schedule, nothing is asked and nothing changes.
+/// Times are those of the wrapped robot's clock. Every call reads that clock once, which may take time on the
+/// wrapped robot; with an empty schedule the clock is not read and nothing changes.
 ///
 /// ```
 /// use roverlab::io::wrappers::Faulty;
@@ -34,7 +34,7 @@ use crate::world::Colour;
 pub struct Faulty<R> {
     inner: R,
     schedule: Vec<Scheduled>,
-    /// For how long readings are kept.
+    /// How long readings are kept (s).
     horizon: f64,
     distances: BTreeMap<Psd, Memory<f64>>,
     scans: Memory<LidarScan>,
@@ -49,20 +49,19 @@ struct Scheduled {
     progress: Progress,
 }
 
-/// How far a fault that has a beginning has come.
+/// Progress of a fault.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Progress {
-    /// It has had no effect yet.
+    /// No effect yet.
     Waiting,
-    /// Odometry's frame has moved to here.
+    /// The new frame of odometry.
     Jumped(Pose),
-    /// Its effect is over.
+    /// The effect is over.
     Spent,
 }
 
 impl<R> Faulty<R> {
-    /// Lets faults happen to a robot. Where several act on one reading, it is first late, then stuck, then off, then
-    /// NaN.
+    /// Injects faults into a robot. If several affect one reading, the order is delay, stuck, jump, NaN.
     pub fn new(inner: R, faults: Vec<Fault>) -> Self {
         let delay = |fault: &Fault| match fault.kind {
             FaultKind::Late(_, delay) => delay,
@@ -83,12 +82,12 @@ impl<R> Faulty<R> {
         }
     }
 
-    /// The robot inside.
+    /// The wrapped robot.
     pub fn inner(&self) -> &R {
         &self.inner
     }
 
-    /// The robot inside, without the faults.
+    /// The wrapped robot, without the faults.
     pub fn into_inner(self) -> R {
         self.inner
     }
@@ -118,7 +117,7 @@ impl<R> Faulty<R> {
         Disturbance { stuck, delay: delays.reduce(f64::max) }
     }
 
-    /// What odometry that has jumped says when the truth is `pose`.
+    /// The reading of odometry with its jumps, for the undisturbed reading `pose`.
     fn jumped(&mut self, time: f64, mut pose: Pose) -> Pose {
         for Scheduled { fault, progress } in &mut self.schedule {
             let FaultKind::Jump(jump) = fault.kind else { continue };
@@ -135,7 +134,7 @@ impl<R> Faulty<R> {
         pose
     }
 
-    /// Ends the jumps that have happened: odometry has been told where it is.
+    /// Ends past jumps, as odometry has been set.
     fn cure_jumps(&mut self, time: f64) {
         for Scheduled { fault, progress } in &mut self.schedule {
             if matches!(fault.kind, FaultKind::Jump(_)) && fault.at <= time {
@@ -144,7 +143,7 @@ impl<R> Faulty<R> {
         }
     }
 
-    /// What a faulty clock says when the truth is `time`.
+    /// The reading of a faulty clock at the true time `time`.
     fn shown(&self, time: f64) -> f64 {
         let active = self.schedule.iter().map(|s| s.fault).filter(|fault| fault.is_active(time));
         active.fold(time, |shown, fault| match fault.kind {
@@ -156,7 +155,7 @@ impl<R> Faulty<R> {
 }
 
 impl<R: Clock> Faulty<R> {
-    /// Lets a call begin: it hangs, or fails, or is told the time inside. `None` says that nothing is scheduled.
+    /// Starts a call: it hangs, fails, or gets the wrapped robot's time. `None` without a schedule.
     fn begin(&mut self) -> Result<Option<f64>> {
         if self.schedule.is_empty() {
             return Ok(None);
@@ -177,7 +176,7 @@ impl<R: Clock> Faulty<R> {
         self.begin().map(|_| ())
     }
 
-    /// The seconds that the next call takes more.
+    /// Extra duration of the next call (s).
     fn take_hang(&mut self, time: f64) -> f64 {
         let mut seconds = 0.0;
         for Scheduled { fault, progress } in &mut self.schedule {
@@ -307,5 +306,5 @@ impl<R: Odometry + Clock> Odometry for Faulty<R> {
 }
 
 hooked! {
-    Faulty, ready, [Clock], Drive, Manoeuvres, StallDetector, Display, Keys, Radio, Motors, Servos, Encoders
+    Faulty, ready, [Clock], Drive, Manoeuvres, StallDetector, Display, Keys, Radio, Motors, Servos, Encoders, Inertial
 }

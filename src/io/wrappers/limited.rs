@@ -1,42 +1,43 @@
 use image::RgbImage;
 
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::{
-    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, Fill, Font,
-    Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio,
-    RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error,
+    Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel,
+    Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
-/// Seconds between two speed commands while the wrapper brings a robot up to speed.
+/// Time between two speed commands of a gradual change of speed (s).
 const RAMP_STEP: f64 = 0.01;
 
-/// The most that a program may command. Infinity, the default, is no limit.
+/// Limits on a program's commands. Infinity, the default, is no limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
-    /// Forward and backward speed, in metres per second.
+    /// Forward and backward speed (m/s).
     pub linear: f64,
-    /// Turning speed either way, in radians per second.
+    /// Turn rate in either direction (rad/s).
     pub angular: f64,
-    /// Change of the forward speed, in metres per second squared; for [`Drive::set_speed`] alone.
+    /// Linear acceleration (m/s²); for [`Drive::set_speed`] alone.
     pub linear_acceleration: f64,
-    /// Change of the turning speed, in radians per second squared; for [`Drive::set_speed`] alone.
+    /// Angular acceleration (rad/s²); for [`Drive::set_speed`] alone.
     pub angular_acceleration: f64,
     /// Fraction of a single motor's full speed; for [`Motors::set_motor`] alone.
     pub motor: f64,
-    /// What happens to a command beyond the limits.
+    /// Treatment of a command beyond the limits.
     pub excess: Excess,
 }
 
-/// What happens to a command beyond the limits.
+/// Treatment of a command beyond the limits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Excess {
-    /// It is reduced to the limits: speeds at once, keeping the path's curvature, and changes of speed by reaching
-    /// the commanded speed later.
+    /// Reduces it to the limits: speeds at once, with the same curvature; changes of speed are spread over
+    /// time.
     #[default]
     Clamp,
-    /// It is an error of the kind [`InvalidInput`](crate::io::ErrorKind::InvalidInput), and the robot goes on as it
-    /// did. A change of speed is too large if the acceleration allows less since the last command.
+    /// Rejects it with the kind [`InvalidInput`](crate::io::ErrorKind::InvalidInput); the robot continues as
+    /// before. A change of speed is too large if it exceeds what the acceleration allows since the last
+    /// command.
     Refuse,
 }
 
@@ -54,7 +55,7 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// Fails with the name of the limit that is negative or not a number, or of an acceleration that is zero.
+    /// Fails with the name of a limit that is negative or NaN, or of an acceleration that is zero.
     pub fn validate(&self) -> Result<()> {
         for (name, limit) in
             [("speed limit", self.linear), ("turning limit", self.angular), ("motor limit", self.motor)]
@@ -79,41 +80,53 @@ impl Limits {
     }
 }
 
-/// A robot whose program cannot drive it faster, or change its speed more quickly, than some limits.
+/// A robot with limits on its speeds and accelerations.
 ///
-/// While a speed is being reached gradually, every call asks the robot's clock and moves the speed on, and a wait is
-/// cut into steps of 10 ms; at other times calls go straight through. A call that blocks in the robot inside, as
-/// waiting for a key does, keeps the speed that it finds.
+/// During a gradual change of speed, every call reads the robot's clock and updates the speed, and waits are
+/// split into steps of 10 ms; at other times calls go straight through. A call that blocks in the wrapped
+/// robot, such as waiting for a key, keeps the current speed.
+///
+/// ```
+/// use roverlab::geometry::Twist;
+/// use roverlab::io::wrappers::{Limited, Limits};
+/// use roverlab::io::{Call, Drive, MockRobot};
+/// let limits = Limits { linear: 0.2, ..Limits::default() };
+/// let mut robot = Limited::new(MockRobot::new(), limits)?;
+/// robot.set_speed(Twist::new(1.0, 0.5))?;
+/// let slower = Twist::new(0.2, 0.1);
+/// assert_eq!(robot.inner().calls(), [Call::SetSpeed(slower)], "on the same circle");
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Limited<R> {
     inner: R,
     limits: Limits,
-    /// The speed that the program wants and the robot has not been given yet.
+    /// The commanded speed, if not reached yet.
     target: Option<Twist>,
-    /// What the robot was last told, if the last command was a speed, and when.
+    /// Time and value of the last speed given to the robot, if its last command was a speed.
     told: Option<(f64, Twist)>,
 }
 
 impl<R> Limited<R> {
-    /// Limits a robot's speeds. Fails if a limit makes no sense.
+    /// Limits a robot's speeds. Fails for an invalid limit.
     pub fn new(inner: R, limits: Limits) -> Result<Self> {
         limits.validate()?;
         Ok(Self { inner, limits, target: None, told: None })
     }
 
-    /// The robot inside.
+    /// The wrapped robot.
     pub fn inner(&self) -> &R {
         &self.inner
     }
 
-    /// The robot inside, without the limits.
+    /// The wrapped robot, without the limits.
     pub fn into_inner(self) -> R {
         self.inner
     }
 
-    /// The value, or the limit with its sign, or an error, if the value is beyond the limit either way.
+    /// The value, reduced to the limit with its sign, or an error if it is beyond the limit.
     fn reduce(&self, name: &str, value: f64, limit: f64) -> Result<f64> {
-        // What is not a number is for the robot to refuse.
+        // NaN is for the robot to reject.
         if value.is_nan() || value.abs() <= limit {
             return Ok(value);
         }
@@ -123,7 +136,7 @@ impl<R> Limited<R> {
         }
     }
 
-    /// The speeds within the limits that drive the same curve.
+    /// The speeds within the limits, with the same curvature.
     fn reduce_twist(&self, twist: Twist) -> Result<Twist> {
         let linear = self.reduce("speed", twist.linear, self.limits.linear)?;
         let angular = self.reduce("turning speed", twist.angular, self.limits.angular)?;
@@ -132,14 +145,14 @@ impl<R> Limited<R> {
         }
         let share = |reduced: f64, wanted: f64| if wanted == 0.0 { 1.0 } else { reduced / wanted };
         let scale = share(linear, twist.linear).min(share(angular, twist.angular));
-        // The one that set the scale keeps its exact limit.
+        // The component that sets the scale keeps its exact limit.
         let scaled = |reduced: f64, wanted: f64| {
             if share(reduced, wanted) == scale { reduced } else { wanted * scale }
         };
         Ok(Twist::new(scaled(linear, twist.linear), scaled(angular, twist.angular)))
     }
 
-    /// A manoeuvre's speed within the limits, given how many radians it turns per metre.
+    /// A manoeuvre's speed within the limits, given its curvature (rad/m).
     fn reduce_curve(&self, speed: f64, curvature: f64) -> Result<f64> {
         let limit = if curvature == 0.0 {
             self.limits.linear
@@ -174,7 +187,7 @@ impl<R: Clock + Drive + Odometry> Limited<R> {
         Ok(())
     }
 
-    /// The speed nearest to `target` that can be reached from another within some seconds.
+    /// The speed nearest to `target` that can be reached within `seconds`.
     fn approach(&self, from: Twist, target: Twist, seconds: f64) -> Twist {
         let step = |from: f64, target: f64, acceleration: f64| {
             let room = if acceleration.is_finite() { acceleration * seconds.max(0.0) } else { acceleration };
@@ -186,7 +199,7 @@ impl<R: Clock + Drive + Odometry> Limited<R> {
         )
     }
 
-    /// Moves the speed on towards the one that the program wants.
+    /// Updates the speed towards the commanded one.
     fn keep_up(&mut self) -> Result<()> {
         match self.target {
             Some(target) => self.set_speed_gradually(target),
@@ -287,5 +300,6 @@ hooked!(
     Keys,
     Radio,
     Servos,
-    Encoders
+    Encoders,
+    Inertial
 );

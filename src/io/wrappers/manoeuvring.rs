@@ -1,53 +1,52 @@
 use image::RgbImage;
 
-use crate::geometry::{Pose, Twist, angle_difference, units};
+use crate::geometry::{Pose, Twist, Vector3, angle_difference, units};
 use crate::io::control::Stopwatch;
 use crate::io::{
-    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key,
-    Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio, RadioMessage,
-    Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill,
+    Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd,
+    Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::kinematics::{Displacement, arc_between};
 use crate::parameter::{ParameterError, require_finite, require_not_negative, require_positive};
 use crate::world::Colour;
 
-/// How manoeuvres are made of speeds.
+/// Parameters of [`Manoeuvring`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ManoeuvringParameters {
-    /// Seconds from one look at odometry to the next.
+    /// Period of the odometry readings (s).
     pub period: f64,
-    /// The time constant, in seconds, with which the robot takes up a speed: told to stop, it rolls on as far as its
-    /// speed takes it in that time.
+    /// Time constant of the robot's response (s): after a stop it rolls on for its speed times this constant.
     pub lag: f64,
 }
 
 impl Default for ManoeuvringParameters {
-    /// Twenty looks a second at a robot that does at once as it is told.
+    /// 20 Hz, for a robot without delay.
     fn default() -> Self {
         Self { period: 0.05, lag: 0.0 }
     }
 }
 
 impl ManoeuvringParameters {
-    /// Fails with the name of the parameter that makes no sense.
+    /// Checks every parameter; the error names the one out of range.
     pub fn validate(&self) -> std::result::Result<(), ParameterError> {
         require_positive("period", self.period)?;
         require_not_negative("lag", self.lag)
     }
 }
 
-/// A robot that has speeds and odometry, with manoeuvres and a stall detector that are made of these.
+/// A robot with velocity control and odometry, extended by manoeuvres and a stall detector.
 ///
-/// While it is told to move, it looks at odometry once in a period of the robot's clock: in waits, and at the first
-/// call after that. A manoeuvre is then given the speeds that share out what is left of its length and of its angle
-/// over the same time, so that what went wrong on the way is made up for. While the robot is not told to move, calls
-/// go straight through.
+/// While moving, it reads odometry once per period of the robot's clock: during waits, and at the first call
+/// after them. A manoeuvre commands the velocity that covers its remaining length and angle in the same time,
+/// which corrects errors on the way. While the robot is not commanded to move, calls go straight through.
 ///
-/// What is left is counted without the way that the robot rolls on by itself; so robots with a lag stop where the way
-/// ends, too. They are done when they stand.
+/// The remainder excludes the distance the robot still rolls by itself, so robots with a lag stop at the end,
+/// too. They are done when they stand.
 ///
-/// The robot stalls when it has been told to move for half a second and a centimetre, and odometry has not moved half
-/// as far. Wheels that slip while something holds the robot deceive odometry, and that detector with it.
+/// A stall is reported if the robot has been commanded to move for half a second and a centimetre, and
+/// odometry has moved less than half as far. Slipping wheels of a held robot deceive odometry, and therefore
+/// this detector.
 ///
 /// ```
 /// use ambassador::Delegate;
@@ -55,7 +54,7 @@ impl ManoeuvringParameters {
 /// use roverlab::io::wrappers::{Manoeuvring, ManoeuvringParameters};
 /// use roverlab::io::{Clock, Drive, Manoeuvres, MockRobot, Odometry};
 ///
-/// /// A robot that can do no more than this.
+/// /// A robot without further capabilities.
 /// #[derive(Delegate)]
 /// #[delegate(Clock, target = "inner")]
 /// #[delegate(Drive, target = "inner")]
@@ -78,17 +77,17 @@ impl ManoeuvringParameters {
 pub struct Manoeuvring<R> {
     inner: R,
     parameters: ManoeuvringParameters,
-    /// While it is told to move.
+    /// Present while the robot is commanded to move.
     motion: Option<Motion>,
 }
 
-/// What a robot that moves is doing.
+/// State of a moving robot.
 #[derive(Debug, Clone)]
 struct Motion {
     clock: Stopwatch,
-    /// When it looks next.
+    /// Time of the next reading (s).
     due: f64,
-    /// Where odometry was last.
+    /// Last pose by odometry.
     pose: Pose,
     told: Twist,
     way: Option<Way>,
@@ -98,31 +97,31 @@ struct Motion {
 /// A running manoeuvre.
 #[derive(Debug, Clone, Copy)]
 struct Way {
-    /// What is left of it.
+    /// Remaining motion.
     left: Displacement,
     /// Whether it turns on the spot.
     turns: bool,
     /// Whether it goes backwards or clockwise.
     back: bool,
-    /// Metres, or radians for a turn on the spot, per second.
+    /// Speed (m/s), or turn rate on the spot (rad/s).
     speed: f64,
     phase: Phase,
 }
 
-/// How far a manoeuvre has come.
+/// Phase of a manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Phase {
     Going,
-    /// It has the speed that takes it to its end in this period.
+    /// Its speed reaches the end within this period.
     Ending,
-    /// It was told to stop so many seconds ago.
+    /// Commanded to stop this many seconds ago.
     Rolling(f64),
 }
 
-/// Lags after which a robot that was told to stop stands: it has a hundredth of its speed.
+/// Number of lags after which a stopping robot counts as standing: at a hundredth of its speed.
 const STANDS: f64 = 5.0;
 
-/// How long a robot has been where it is, and how far it should have come since.
+/// How long a robot has been at a pose, and how far it should have moved since.
 #[derive(Debug, Clone, Copy)]
 struct Held {
     pose: Pose,
@@ -130,9 +129,9 @@ struct Held {
     told: f64,
 }
 
-/// Metres by which a robot that moves leaves its place.
+/// Distance within which a robot counts as not having moved (m).
 const PLACE: f64 = 0.005;
-/// Seconds for which a robot has to be held.
+/// Time for which a robot must be held (s).
 const PATIENCE: f64 = 0.5;
 
 impl Held {
@@ -165,13 +164,14 @@ impl Way {
         Ok(Self { left, turns, back, speed: speed.abs(), phase: Phase::Going })
     }
 
-    /// Metres or radians along the way.
+    /// Distance (m) or angle (rad) along the manoeuvre.
     fn along(&self, motion: Displacement) -> f64 {
         let along = if self.turns { motion.angle } else { motion.length };
         if self.back { -along } else { along }
     }
 
-    /// Goes a period further, with so much of the way to be told: the speed from now on, or `None` at the end.
+    /// Advances by a period. Returns the next velocity for the remainder not yet commanded, or `None` at the
+    /// end.
     fn next(&mut self, untold: Displacement, parameters: &ManoeuvringParameters) -> Option<Twist> {
         let rest = self.along(untold);
         self.phase = match self.phase {
@@ -192,18 +192,18 @@ impl Way {
 }
 
 impl<R> Manoeuvring<R> {
-    /// Gives manoeuvres to a robot. Fails if a parameter makes no sense.
+    /// Adds manoeuvres to a robot. Fails for parameters out of range.
     pub fn new(inner: R, parameters: ManoeuvringParameters) -> Result<Self> {
         parameters.validate()?;
         Ok(Self { inner, parameters, motion: None })
     }
 
-    /// The robot inside.
+    /// The wrapped robot.
     pub fn inner(&self) -> &R {
         &self.inner
     }
 
-    /// The robot inside, which goes on as it was told last.
+    /// The wrapped robot, which continues with its last command.
     pub fn into_inner(self) -> R {
         self.inner
     }
@@ -218,7 +218,7 @@ impl<R> Manoeuvring<R> {
 }
 
 impl<R: Clock + Drive + Odometry> Manoeuvring<R> {
-    /// Begins a motion, after another one or from rest. Who has been held still is.
+    /// Starts a motion, from another one or from rest. A held robot stays held.
     fn begin(&mut self, told: Twist, way: Option<Way>) -> Result<()> {
         let pose = self.inner.pose()?;
         let (mut clock, held) = match &self.motion {
@@ -235,7 +235,7 @@ impl<R: Clock + Drive + Odometry> Manoeuvring<R> {
         self.look()
     }
 
-    /// Looks at odometry if that is due.
+    /// Reads odometry if due.
     fn keep_up(&mut self) -> Result<()> {
         let Some(motion) = &mut self.motion else { return Ok(()) };
         let now = motion.clock.now(&mut self.inner);
@@ -246,15 +246,15 @@ impl<R: Clock + Drive + Odometry> Manoeuvring<R> {
         }
     }
 
-    /// Looks at odometry, and tells the robot how to go on: after a wait for that, even if the clock stands still.
-    /// The robot is stopped if that fails.
+    /// Reads odometry and updates the robot's velocity. After a wait it does so even if the clock stands
+    /// still. Stops the robot on failure.
     fn look(&mut self) -> Result<()> {
         self.try_to_look().or_else(|error| self.give_up(error))
     }
 
     fn give_up(&mut self, error: crate::io::Error) -> Result<()> {
         self.motion = None;
-        // The first error is the one to tell.
+        // The first error is the one to report.
         let _ = self.inner.stop();
         Err(error)
     }
@@ -336,7 +336,7 @@ impl<R: Clock + Drive + Odometry> Odometry for Manoeuvring<R> {
     }
 
     fn set_pose(&mut self, pose: Pose) -> Result<()> {
-        // What the robot has gone by then counts.
+        // Motion up to now counts.
         self.look()?;
         self.inner.set_pose(pose)?;
         if let Some(motion) = &mut self.motion {
@@ -402,5 +402,6 @@ hooked!(
     Keys,
     Radio,
     Servos,
-    Encoders
+    Encoders,
+    Inertial
 );

@@ -1,31 +1,31 @@
 use std::collections::VecDeque;
 
-/// What a sensor's faults do to a reading of a certain time.
+/// Effect of a sensor's faults on a reading.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Disturbance {
-    /// The reading before is repeated.
+    /// Repeats the previous reading.
     pub(super) stuck: bool,
-    /// Readings are this many seconds old.
+    /// Delay of the readings (s).
     pub(super) delay: Option<f64>,
 }
 
-/// The readings of one sensor that faults may bring back.
+/// Past readings of one sensor, for faults that repeat them.
 #[derive(Debug, Clone)]
 pub(super) struct Memory<T> {
     /// The last reading before the sensor got stuck.
     held: Option<T>,
     past: VecDeque<(f64, T)>,
-    /// Seconds for which readings are kept.
+    /// How long readings are kept (s).
     horizon: f64,
 }
 
 impl<T: Clone> Memory<T> {
-    /// A memory that serves delays up to `horizon` seconds.
+    /// A memory for delays up to `horizon` seconds.
     pub(super) fn new(horizon: f64) -> Self {
         Self { held: None, past: VecDeque::new(), horizon }
     }
 
-    /// Takes in a reading and gives the one that the program gets to see.
+    /// Stores a reading and returns the one visible to the program.
     pub(super) fn pass(&mut self, time: f64, fresh: T, disturbance: Disturbance) -> T {
         if self.horizon > 0.0 {
             self.past.push_back((time, fresh.clone()));
@@ -44,14 +44,14 @@ impl<T: Clone> Memory<T> {
         }
     }
 
-    /// Drops what is older than a time, but for the newest such reading, which is the one valid at that time.
+    /// Drops readings older than a time, except the newest of them, which is valid at that time.
     fn forget(&mut self, time: f64) {
         while self.past.get(1).is_some_and(|&(t, _)| t <= time) {
             self.past.pop_front();
         }
     }
 
-    /// The newest reading of a time or before, or else the oldest known.
+    /// The newest reading at or before a time, or else the oldest known.
     fn recall(&self, time: f64) -> Option<T> {
         let newest = self.past.iter().rev().find(|&&(t, _)| t <= time);
         newest.or_else(|| self.past.front()).map(|(_, reading)| reading.clone())

@@ -1,8 +1,8 @@
-//! Robots around robots: noise, faults, limits, whole numbers and a trace for whatever is inside.
+//! Wrappers around robots: noise, faults, limits, quantisation, tracing and more.
 //!
-//! A wrapper has the capabilities of the robot that it wraps, changes what it is for and passes on the rest, so
-//! wrappers stack, and work around simulated, recorded and real robots alike. The outermost one is the one that the
-//! program talks to: `Traced<Noisy<R>>` writes down the noisy readings, `Noisy<Traced<R>>` the clean ones.
+//! A wrapper has the capabilities of the wrapped robot, changes some and forwards the rest. So wrappers
+//! stack, and work on simulated, recorded and real robots alike. The program calls the outermost one:
+//! `Traced<Noisy<R>>` records the noisy readings, `Noisy<Traced<R>>` the clean ones.
 //!
 //! ```
 //! use roverlab::io::wrappers::{Fault, Faulty, Noise, Noisy, Traced};

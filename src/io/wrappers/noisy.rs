@@ -3,41 +3,41 @@ use std::collections::BTreeMap;
 use ambassador::Delegate;
 use image::RgbImage;
 
-use crate::geometry::{Pose, Twist, normalize_angle};
+use crate::geometry::{Pose, Twist, Vector3, normalize_angle};
 use crate::io::delegate::{
     ambassador_impl_Clock, ambassador_impl_Display, ambassador_impl_Drive, ambassador_impl_Encoders,
-    ambassador_impl_Keys, ambassador_impl_Manoeuvres, ambassador_impl_Motors, ambassador_impl_Radio,
-    ambassador_impl_Servos, ambassador_impl_StallDetector,
+    ambassador_impl_Inertial, ambassador_impl_Keys, ambassador_impl_Manoeuvres, ambassador_impl_Motors,
+    ambassador_impl_Radio, ambassador_impl_Servos, ambassador_impl_StallDetector,
 };
 use crate::io::{
-    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, Fill, Font,
-    Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio,
-    RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error,
+    Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel,
+    Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::random::Stream;
 use crate::world::Colour;
 
-/// Standard deviations of normally distributed noise; 0 leaves a reading as it is, bit for bit.
+/// Standard deviations of Gaussian noise; 0 leaves a reading unchanged, bit for bit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Noise {
-    /// Of distance sensors' readings, in metres.
+    /// Distance sensors (m).
     pub distance: f64,
-    /// Of each range of a lidar scan, in metres.
+    /// Lidar ranges (m).
     pub lidar: f64,
-    /// Of each channel of an image's pixels, in levels of 255.
+    /// Channels of an image's pixels (levels of 255).
     pub image: f64,
-    /// Of odometry's x and y, in metres.
+    /// Odometry's x and y (m).
     pub position: f64,
-    /// Of odometry's heading, in radians.
+    /// Odometry's heading (rad).
     pub heading: f64,
-    /// Of odometry's forward speed, in metres per second.
+    /// Odometry's forward speed (m/s).
     pub linear: f64,
-    /// Of odometry's turning speed, in radians per second.
+    /// Odometry's turn rate (rad/s).
     pub angular: f64,
 }
 
 impl Noise {
-    /// No noise at all.
+    /// No noise.
     pub const NONE: Noise = Noise {
         distance: 0.0,
         lidar: 0.0,
@@ -48,7 +48,7 @@ impl Noise {
         angular: 0.0,
     };
 
-    /// Fails with the name of the standard deviation that is negative or not finite.
+    /// Fails with the name of a standard deviation that is negative or not finite.
     pub fn validate(&self) -> Result<()> {
         for (name, sigma) in [
             ("noise of distances", self.distance),
@@ -68,8 +68,7 @@ impl Noise {
 }
 
 impl Default for Noise {
-    /// Ten millimetres on every distance, as EyeSim adds when its sensor noise is on, and a little on images and
-    /// odometry.
+    /// Ten millimetres on every distance, like EyeSim's sensor noise, and a little on images and odometry.
     fn default() -> Self {
         Self {
             distance: 0.01,
@@ -83,11 +82,11 @@ impl Default for Noise {
     }
 }
 
-/// A robot whose readings carry extra noise: distances, lidar scans, images and odometry.
+/// A robot with extra noise on distances, lidar scans, images and odometry.
 ///
-/// Each sensor has its own random stream, so reading one more often changes nothing for another. Noise never makes a
-/// distance negative, never turns "nothing in range" into a distance, and never carries a range beyond the lidar's
-/// reach.
+/// Each sensor has its own random stream, so the readings of one do not affect another. Noise never makes a
+/// distance negative, never turns "nothing in range" into a distance, and never moves a range beyond the
+/// lidar's maximum.
 #[derive(Debug, Clone, Delegate)]
 #[expect(clippy::duplicated_attributes, reason = "every capability has the same target")]
 #[delegate(Clock, target = "inner")]
@@ -100,6 +99,7 @@ impl Default for Noise {
 #[delegate(Motors, target = "inner")]
 #[delegate(Servos, target = "inner")]
 #[delegate(Encoders, target = "inner")]
+#[delegate(Inertial, target = "inner")]
 pub struct Noisy<R> {
     inner: R,
     noise: Noise,
@@ -112,8 +112,8 @@ pub struct Noisy<R> {
 }
 
 impl<R> Noisy<R> {
-    /// Adds noise to a robot's readings, drawn from children of `stream`. Fails if a standard deviation is negative
-    /// or not finite.
+    /// Adds noise to a robot's readings, from child streams of `stream`. Fails if a standard deviation is
+    /// negative or not finite.
     pub fn new(inner: R, noise: Noise, stream: &Stream) -> Result<Self> {
         noise.validate()?;
         Ok(Self {
@@ -128,18 +128,18 @@ impl<R> Noisy<R> {
         })
     }
 
-    /// The robot inside.
+    /// The wrapped robot.
     pub fn inner(&self) -> &R {
         &self.inner
     }
 
-    /// The robot inside, without the noise.
+    /// The wrapped robot, without the noise.
     pub fn into_inner(self) -> R {
         self.inner
     }
 }
 
-/// A value with noise; without noise, nothing is drawn and the bits stay.
+/// A value with noise. A deviation of 0 draws nothing and keeps the bits.
 fn add(value: f64, sigma: f64, stream: &mut Stream) -> f64 {
     if sigma == 0.0 { value } else { value + sigma * stream.normal() }
 }
@@ -164,7 +164,7 @@ impl<R: Lidar> Lidar for Noisy<R> {
             return Ok(());
         }
         for range in &mut scan.ranges {
-            // Drawn for every beam, so that one beam's noise does not depend on what another one hits.
+            // Drawn for every beam, so that one beam's noise does not depend on the hits of others.
             let noisy = add(*range, self.noise.lidar, &mut self.lidar);
             if range.is_finite() {
                 *range = noisy.min(scan.range_max.max(*range)).max(0.0);
@@ -193,7 +193,7 @@ impl<R: Camera> Camera for Noisy<R> {
             return Ok(());
         }
         for level in image.iter_mut() {
-            // Half a level more, since the conversion to whole ones cuts.
+            // Half a level is added because the conversion to integers truncates.
             *level = (add(f64::from(*level), self.noise.image, &mut self.image) + 0.5) as u8;
         }
         Ok(())

@@ -1,21 +1,21 @@
 use ambassador::Delegate;
 use image::RgbImage;
 
-use crate::geometry::{Pose, Twist, math, normalize_angle, units};
+use crate::geometry::{Pose, Twist, Vector3, math, normalize_angle, units};
 use crate::io::camera::FRAME_RATE;
 use crate::io::delegate::ambassador_impl_StallDetector;
 use crate::io::{
-    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, Fill, Font,
-    Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio,
-    RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error,
+    Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel,
+    Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::{Colour, PsdSpec};
 
-/// A robot whose numbers are those of RoBIOS: whole millimetres, degrees, milliseconds and percent, and no distance
-/// beyond 9.999 m.
+/// A robot with RoBIOS's numbers: whole millimetres, degrees, milliseconds and percent, and a maximum
+/// distance of 9.999 m.
 ///
-/// It answers as the same robot does through RoBIOS's C library, and takes as long for it: setting a font takes two calls,
-/// receiving a message two, looking at the clock one, and an image a thirtieth of a second.
+/// Values and timing match the same robot behind RoBIOS's C library: setting a font takes two calls,
+/// receiving a message two, reading the clock one, and an image a thirtieth of a second.
 ///
 /// ```
 /// use roverlab::io::wrappers::Quantised;
@@ -38,7 +38,7 @@ pub struct Quantised<R> {
     turns: bool,
 }
 
-/// In metres: 0 says that there is no such sensor.
+/// Minimum distance (m): 0 would mean a missing sensor.
 const NEAREST: f64 = 0.001;
 
 impl<R> Quantised<R> {
@@ -54,25 +54,25 @@ impl<R> Quantised<R> {
         }
     }
 
-    /// RoBIOS's 100 percent of a motor are this fraction of its full speed.
+    /// Sets the fraction of a motor's full speed that corresponds to RoBIOS's 100 percent.
     #[must_use]
     pub fn with_motor_scale(self, motor_scale: f64) -> Self {
         Self { motor_scale, ..self }
     }
 
-    /// The robot inside.
+    /// The wrapped robot.
     pub fn inner(&self) -> &R {
         &self.inner
     }
 
-    /// The robot inside, with all its digits.
+    /// The wrapped robot, without rounding.
     pub fn into_inner(self) -> R {
         self.inner
     }
 }
 
 impl<R: Clock> Quantised<R> {
-    /// RoBIOS's radio has to be started, which is a call.
+    /// Starting RoBIOS's radio takes a call.
     fn start_radio(&mut self) -> Result<()> {
         if !std::mem::replace(&mut self.radio_is_on, true) {
             self.inner.wait(0.0)?;
@@ -81,7 +81,7 @@ impl<R: Clock> Quantised<R> {
     }
 }
 
-/// The nearest whole number in a unit. Whole numbers have no negative zero.
+/// The nearest integer in a unit, without negative zero.
 fn whole(value: f64, unit: fn(f64) -> f64) -> f64 {
     unit(value.round() + 0.0)
 }
@@ -94,6 +94,11 @@ fn length(metres: f64) -> f64 {
 /// The nearest whole degree.
 fn angle(radians: f64) -> f64 {
     whole(units::to_deg(radians), units::from_deg)
+}
+
+/// The nearest tenth of a degree.
+fn tenths(radians: f64) -> f64 {
+    units::from_deg((10.0 * units::to_deg(radians)).round() / 10.0 + 0.0)
 }
 
 fn pose(pose: Pose) -> Pose {
@@ -117,7 +122,7 @@ impl<R: Clock> Clock for Quantised<R> {
         self.inner.wait((1000.0 * seconds).round() / 1000.0)
     }
 
-    // RoBIOS has no clock that costs nothing.
+    // RoBIOS has no clock without cost.
     fn peek_time(&mut self) -> Result<f64> {
         self.now()
     }
@@ -168,7 +173,7 @@ impl<R: Manoeuvres> Manoeuvres for Quantised<R> {
             return self.straight(forward, speed);
         }
         let half = math::atan2(y, x);
-        // RoBIOS cuts off what is beyond whole millimetres and degrees here.
+        // RoBIOS truncates to whole millimetres and degrees here.
         let distance = (math::hypot(x, y) * half / math::sin(half)).trunc();
         let turn = (2.0 * units::to_deg(half)).trunc();
         self.curve(units::from_mm(distance), units::from_deg(turn), speed)
@@ -189,7 +194,7 @@ impl<R: Manoeuvres> Manoeuvres for Quantised<R> {
 }
 
 impl<R: DistanceSensors> DistanceSensors for Quantised<R> {
-    /// As through RoBIOS, a distance of 0 is a sensor that the robot lacks.
+    /// In RoBIOS a distance of 0 means a missing sensor.
     fn distance(&mut self, sensor: Psd) -> Result<f64> {
         Ok(range(self.inner.distance(sensor)?).max(NEAREST))
     }
@@ -219,7 +224,7 @@ impl<R: Camera + Clock> Camera for Quantised<R> {
         Ok(())
     }
 
-    /// As it was set last: RoBIOS does not tell.
+    /// The last value set: RoBIOS cannot read it.
     fn resolution(&mut self) -> Result<Resolution> {
         Ok(self.resolution)
     }
@@ -267,7 +272,7 @@ impl<R: Display + Clock> Display for Quantised<R> {
         self.inner.set_pixel(at, colour)
     }
 
-    /// RoBIOS calls what is off the display black.
+    /// RoBIOS returns black for pixels outside the display.
     fn pixel(&mut self, at: Pixel) -> Result<Option<Colour>> {
         Ok(Some(self.inner.pixel(at)?.unwrap_or(Colour::BLACK)))
     }
@@ -284,7 +289,7 @@ impl<R: Display + Clock> Display for Quantised<R> {
         self.inner.draw_circle(centre, diameter, colour, fill)
     }
 
-    /// Fails for images that have none of RoBIOS's sizes. It takes three calls.
+    /// Fails for images of a size that RoBIOS lacks. Takes three calls.
     fn draw_image(&mut self, picture: DisplayImage<'_>, viewport: Viewport) -> Result<()> {
         Resolution::of(picture.dimensions())?;
         self.inner.wait(0.0)?;
@@ -371,7 +376,7 @@ impl<R: Motors> Motors for Quantised<R> {
 }
 
 impl<R: Servos> Servos for Quantised<R> {
-    /// RoBIOS has 256 positions, of which 128 is in the middle.
+    /// RoBIOS has 256 positions; 128 is the middle.
     fn set_servo(&mut self, servo: u8, position: f64) -> Result<()> {
         if !(-1.0..=1.0).contains(&position) {
             return Err(Error::invalid_input("servo position", position, "-1 to 1"));
@@ -388,6 +393,27 @@ impl<R: Encoders> Encoders for Quantised<R> {
 
     fn reset_encoder(&mut self, motor: u8) -> Result<()> {
         self.inner.reset_encoder(motor)
+    }
+}
+
+/// Each number is on a channel of its own, and is read at a time of its own.
+impl<R: Inertial> Inertial for Quantised<R> {
+    fn attitude(&mut self) -> Result<Attitude> {
+        let roll = tenths(self.inner.attitude()?.roll);
+        let pitch = tenths(self.inner.attitude()?.pitch);
+        Ok(Attitude { roll, pitch, yaw: tenths(self.inner.attitude()?.yaw) })
+    }
+
+    fn turn_rates(&mut self) -> Result<Vector3> {
+        let forward = tenths(self.inner.turn_rates()?.x);
+        let left = tenths(self.inner.turn_rates()?.y);
+        Ok(Vector3::new(forward, left, tenths(self.inner.turn_rates()?.z)))
+    }
+
+    fn acceleration(&mut self) -> Result<Vector3> {
+        let forward = length(self.inner.acceleration()?.x);
+        let left = length(self.inner.acceleration()?.y);
+        Ok(Vector3::new(forward, left, length(self.inner.acceleration()?.z)))
     }
 }
 

@@ -1,9 +1,9 @@
-/// Hands the methods of one capability to another macro, behind whatever context that macro wants to see again.
+/// Passes the methods of one capability to another macro, after a context to be passed through.
 ///
-/// A method that means the same by others of its capability, such as `stop`, is not listed: whoever gets such a call
-/// makes those.
+/// Methods implemented by others of their capability, such as `stop`, are not listed: their calls arrive as
+/// those.
 ///
-/// Arguments that implement `Copy` or are references go on to the robot inside as they are.
+/// Arguments that are `Copy` or references are forwarded to the wrapped robot unchanged.
 macro_rules! signatures {
     (Clock => $then:ident!($($context:tt)*)) => {
         $then! { $($context)* Clock {
@@ -111,10 +111,17 @@ macro_rules! signatures {
             fn reset_encoder(motor: u8) -> ();
         } }
     };
+    (Inertial => $then:ident!($($context:tt)*)) => {
+        $then! { $($context)* Inertial {
+            fn attitude() -> Attitude;
+            fn turn_rates() -> Vector3;
+            fn acceleration() -> Vector3;
+        } }
+    };
 }
 
-/// Implements capabilities for a wrapper by calling the wrapper's own method `hook` first, which may fail, and then
-/// the robot inside.
+/// Implements capabilities for a wrapper: calls the wrapper's method `hook`, which may fail, then the wrapped
+/// robot.
 macro_rules! hooked {
     ($wrapper:ident, $hook:ident, $bounds:tt, $($capability:ident),+) => {
         $( signatures! { $capability => hooked_impl!($wrapper $hook $bounds) } )+

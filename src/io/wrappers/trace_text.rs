@@ -2,19 +2,19 @@ use std::fmt::Write;
 
 use image::RgbImage;
 
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::{
-    DisplayImage, DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, Psd, RadioMessage, Resolution,
-    Viewport,
+    Attitude, DisplayImage, DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, Psd, RadioMessage,
+    Resolution, Viewport,
 };
 use crate::world::Colour;
 
-/// A running 64-bit FNV-1a digest (Fowler, Noll and Vo), which is the same on every platform.
+/// A running 64-bit FNV-1a digest (Fowler, Noll and Vo), equal on every platform.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Digest(pub(super) u64);
 
 impl Digest {
-    /// Of nothing: the offset basis of FNV-1a with 64 bits.
+    /// Empty digest: the 64-bit FNV-1a offset basis.
     pub(super) const EMPTY: Digest = Digest(0xcbf2_9ce4_8422_2325);
 
     pub(super) fn update(&mut self, bytes: impl IntoIterator<Item = u8>) {
@@ -24,8 +24,8 @@ impl Digest {
     }
 }
 
-/// How arguments and results are written. Equal values give equal text, floats the shortest that reads back as the
-/// same number.
+/// Text of arguments and results. Equal values give equal text; floats have the fewest digits that parse back
+/// to the same number.
 pub(super) trait Token {
     fn put(&self, out: &mut String);
 }
@@ -72,13 +72,15 @@ macro_rules! list_tokens {
 list_tokens! {
     Twist, t => [t.linear, t.angular];
     Pose, p => [p.x, p.y, p.heading];
+    Vector3, v => [v.x, v.y, v.z];
+    Attitude, a => [a.roll, a.pitch, a.yaw];
     LidarSettings, s => [s.field_of_view, s.tilt, Text(s.points)];
     Font, f => [Text(f.family), Text(f.style), f.size];
     Viewport, v => [v.corner, v.width, v.height];
     RadioMessage, m => [m.from, m.data.as_slice()];
 }
 
-/// A value in the words of its `Debug` implementation.
+/// A value in its `Debug` form.
 struct Text<T>(T);
 
 impl<T: std::fmt::Debug> Token for Text<T> {
@@ -87,7 +89,7 @@ impl<T: std::fmt::Debug> Token for Text<T> {
     }
 }
 
-/// Several values in parentheses, which keep the arguments of one call apart from the parts of one of them.
+/// Several values in parentheses, which separate the arguments of a call from the parts of one.
 fn put_list(out: &mut String, parts: &[&dyn Token]) {
     out.push('(');
     for (i, part) in parts.iter().enumerate() {
@@ -157,7 +159,7 @@ impl Token for DisplayImage<'_> {
     }
 }
 
-/// The number of a scan's beams and a digest of all that it holds; behind it, if asked for, the scan itself.
+/// The number of a scan's beams and a digest of its content, optionally followed by the whole scan.
 pub(super) fn put_scan(out: &mut String, scan: &LidarScan, whole: bool) {
     let LidarScan { angle_min, angle_increment, range_max, mount, ranges } = scan;
     let head = [*angle_min, *angle_increment, *range_max, mount.x, mount.y, mount.heading];

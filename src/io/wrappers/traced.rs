@@ -4,26 +4,26 @@ use std::io;
 use image::RgbImage;
 
 use super::trace_text::{Digest, Token, put_scan};
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::{
-    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key,
-    Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio, RadioMessage,
-    Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill,
+    Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd,
+    Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
-/// Which time stands at the head of a trace's lines.
+/// Source of the time stamps of a trace.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Stamp {
-    /// The robot's clock is asked before each call. Where asking takes time, as in the simulator, a traced run is not
-    /// the same as an untraced one.
+    /// Reads the robot's clock before each call. Where reading takes time, as in the simulator, a traced run
+    /// differs from an untraced one.
     #[default]
     EachCall,
-    /// The last time that the program itself asked for. The robot sees nothing of the trace.
+    /// The last time that the program itself read. The trace does not affect the robot.
     LastKnown,
 }
 
-/// A robot that writes down every call, one line each: the time, the call, its arguments, and its result or error.
+/// A robot that writes every call as one line: time, call, arguments, and result or error.
 ///
 /// ```text
 /// 0.5 set_speed((0.2, 0.0)) -> ok
@@ -32,12 +32,12 @@ pub enum Stamp {
 /// 0.6 distance(9) -> error Unsupported "the robot has no PSD 9"
 /// ```
 ///
-/// Floats are written with the fewest digits that read back as the same number, and text in quotes with escapes, so
-/// two equal runs write equal bytes, and [`digest`](Traced::digest) compares them in one number. A time that the
-/// robot could not tell is a question mark. Scans and images appear as a digest of their bits; scans in full if
-/// asked for with [`whole_scans`](Traced::whole_scans).
+/// Floats have the fewest digits that parse back to the same number, and text is quoted and escaped. So equal
+/// runs write equal bytes, and [`digest`](Traced::digest) compares them as one number. A time that the robot
+/// cannot read appears as a question mark. Scans and images appear as digests; scans in full with
+/// [`whole_scans`](Traced::whole_scans).
 ///
-/// A writer that fails does not disturb the run: the rest of the trace is not written, and
+/// A failing writer does not disturb the run: the rest of the trace is not written, and
 /// [`finish`](Traced::finish) returns the first error.
 ///
 /// ```
@@ -83,35 +83,35 @@ impl<R, W: io::Write> Traced<R, W> {
         }
     }
 
-    /// Chooses the times at the head of the lines.
+    /// Sets the source of the time stamps.
     #[must_use]
     pub fn with_stamp(self, stamp: Stamp) -> Self {
         Self { stamp, ..self }
     }
 
-    /// Writes scans in full, behind their digests.
+    /// Writes scans in full after their digests.
     #[must_use]
     pub fn whole_scans(self) -> Self {
         Self { whole_scans: true, ..self }
     }
 
-    /// The 64-bit FNV-1a digest of all bytes of the trace so far, those that a failed writer refused included.
+    /// The 64-bit FNV-1a digest of all bytes of the trace so far, including those not written.
     pub fn digest(&self) -> u64 {
         self.digest.0
     }
 
-    /// The robot inside.
+    /// The wrapped robot.
     pub fn inner(&self) -> &R {
         &self.inner
     }
 
-    /// The robot inside. The writer is flushed and dropped, and its error with it; [`finish`](Traced::finish)
-    /// returns both.
+    /// The wrapped robot. Flushes and drops the writer and its errors; [`finish`](Traced::finish) returns
+    /// them.
     pub fn into_inner(self) -> R {
         self.finish().0
     }
 
-    /// The robot inside, and the flushed writer or the first error that it gave.
+    /// The wrapped robot, and the flushed writer or its first error.
     pub fn finish(mut self) -> (R, io::Result<W>) {
         let written = match self.failure.take() {
             Some(error) => Err(error),
@@ -120,7 +120,7 @@ impl<R, W: io::Write> Traced<R, W> {
         (self.inner, written)
     }
 
-    /// Begins a line with the call's name.
+    /// Starts a line with the call's name.
     fn open(&mut self, time: Option<f64>, name: &str) {
         self.line.clear();
         // Writing to a string cannot fail.
@@ -155,7 +155,7 @@ impl<R, W: io::Write> Traced<R, W> {
 }
 
 impl<R: Clock, W: io::Write> Traced<R, W> {
-    /// The time for a line; `None` if the robot cannot tell.
+    /// Time stamp of a line; `None` if the robot cannot tell it.
     fn time(&mut self) -> Option<f64> {
         if self.stamp == Stamp::EachCall {
             return self.inner.now().ok();
@@ -260,3 +260,4 @@ signatures! { Radio => traced_impl!() }
 signatures! { Motors => traced_impl!() }
 signatures! { Servos => traced_impl!() }
 signatures! { Encoders => traced_impl!() }
+signatures! { Inertial => traced_impl!() }

@@ -30,7 +30,7 @@ fn there_and_back_undoes_systematic_errors() {
     assert!(odometry.covariance().norm() < 1e-20, "{}", odometry.covariance());
 }
 
-/// Robots with drawn errors against the prediction, over a turn on the spot, an arc and a line.
+/// Compares robots with random errors to the prediction: a turn on the spot, an arc and a line.
 #[test]
 fn drawn_errors_have_the_predicted_covariance() {
     let steps: Vec<Displacement> = [(0.0, 0.03, 30), (0.01, 0.02, 80), (0.01, 0.0, 100)]
@@ -58,7 +58,7 @@ fn drawn_errors_have_the_predicted_covariance() {
     }
 }
 
-/// Where a robot with errors of its own ends when its odometry measures these steps.
+/// End pose of a robot with random errors whose odometry measures these steps.
 fn drawn(steps: &[Displacement], stream: &mut Stream) -> Pose {
     let scale = ERRORS.wheel_scale * stream.normal();
     let mismatch = 0.5 * ERRORS.wheel_mismatch * stream.normal();

@@ -1,4 +1,4 @@
-//! Exploring a maze: what to look at next, until the maze, or all of it that matters, is known.
+//! Exploration of a maze, until the maze or all that matters of it is known.
 
 mod recursive;
 #[cfg(test)]
@@ -10,31 +10,32 @@ pub use two_phase::{Goals, TwoPhaseExplorer};
 
 use super::{Cell, Direction, Maze};
 
-/// A strategy of exploration: pure, so that it can be asked for a robot, for a simulator's mouse and in tests alike.
+/// An exploration strategy. It does no input or output, so robots, the simulator's mouse and tests can use it
+/// alike.
 pub trait Explorer {
-    /// The cell to go to next. It can be reached through walls that are known to be absent. The maze must say all that was
-    /// seen so far, and the robot must have looked around in the cell where it is.
+    /// Returns the cell to visit next, which is reachable through walls known to be absent. `maze` must
+    /// contain everything seen so far, including the walls around the present cell.
     fn next(&mut self, maze: &Maze, at: (Cell, Direction)) -> ExplorationStep;
 }
 
-/// What an explorer wants.
+/// Decision of an explorer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ExplorationStep {
-    /// Go there and look around.
+    /// Go to this cell and look around.
     Go(Cell),
-    /// Nothing that is unknown matters any more.
+    /// No unknown wall matters any more.
     Finished(ExplorationOutcome),
 }
 
 /// How an exploration ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ExplorationOutcome {
-    /// The best route is known, and no unknown wall can make it better.
+    /// The best route is known, and no unknown wall can improve it.
     Optimal,
     /// No route leads to the goal.
     Unreachable,
-    /// The maze is known as far as it can be reached.
+    /// Everything reachable is known.
     Explored,
-    /// The time of the run was over first.
+    /// The time limit was exceeded.
     TimedOut,
 }

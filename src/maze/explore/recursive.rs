@@ -1,11 +1,11 @@
 use super::{ExplorationOutcome, ExplorationStep, Explorer};
 use crate::maze::{Cell, Direction, Maze, Unknown};
 
-/// Recursive exploration (book, section 9.5): from each cell into every open and unmarked neighbour, straight on first, then
-/// left, then right, and back again.
+/// Recursive exploration (book, section 9.5): depth-first into every open, unmarked neighbour, straight on
+/// first, then left, then right, and back.
 ///
-/// A cell is marked when the robot has been in it, and with early marking also as soon as all of its walls are known and it
-/// leads to marked cells only: the robot need not go there any more. The end of the exploration is the start.
+/// A visited cell is marked. With early marking, a cell is also marked once all of its walls are known and it
+/// leads to marked cells only, so the robot need not visit it. The exploration ends at the start.
 ///
 /// ```
 /// use roverlab::maze::generate::competition;
@@ -26,27 +26,27 @@ use crate::maze::{Cell, Direction, Maze, Unknown};
 /// ```
 #[derive(Debug, Clone)]
 pub struct RecursiveExplorer {
-    /// Whether to mark cells that are known on all sides.
+    /// Whether cells with known walls are marked early.
     early: bool,
     marked: Vec<bool>,
-    /// The cells on the way here from the start, each with the heading in which the robot came.
+    /// Path from the start, each cell with the heading of arrival.
     stack: Vec<(Cell, Direction)>,
 }
 
 impl RecursiveExplorer {
-    /// An exploration with early marking, as the book has it.
+    /// An exploration with early marking, as in the book.
     pub fn new() -> Self {
         Self { early: true, marked: Vec::new(), stack: Vec::new() }
     }
 
-    /// An exploration that goes into every cell that it can reach.
+    /// An exploration that visits every reachable cell.
     pub fn without_early_marking() -> Self {
         Self { early: false, ..Self::new() }
     }
 }
 
 impl RecursiveExplorer {
-    /// Whether all that a cell leads to is marked.
+    /// Whether all accessible neighbours of a cell are marked.
     fn leads_nowhere(&self, maze: &Maze, cell: Cell) -> bool {
         Direction::ALL.into_iter().all(|direction| {
             maze.passage(cell, direction, Unknown::Closed).is_none_or(|next| self.marked[maze.index(next)])
@@ -70,7 +70,7 @@ impl Explorer for RecursiveExplorer {
         let Some(&(_, came)) = self.stack.last() else {
             return ExplorationStep::Finished(ExplorationOutcome::Explored);
         };
-        // What lies behind was left open or is the way back, except at the start.
+        // Behind is the way back, or at the start the remaining direction.
         for direction in [came, came.left(), came.right(), came.opposite()] {
             let Some(next) = maze.passage(cell, direction, Unknown::Closed) else { continue };
             let index = maze.index(next);

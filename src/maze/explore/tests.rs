@@ -6,7 +6,7 @@ use crate::maze::{
     FastPlanner, Preference, RunLimits, Scale, Unknown, WallState, distances_from_start, shortest_route,
 };
 
-/// What a robot knows that has not looked yet.
+/// The initial knowledge of a robot.
 fn knowledge(truth: &Maze) -> Maze {
     let mut maze = Maze::unexplored(truth.width(), truth.height()).unwrap();
     maze.set_start(truth.start(), truth.heading());
@@ -14,7 +14,7 @@ fn knowledge(truth: &Maze) -> Maze {
     maze
 }
 
-/// How an exploration by a robot that sees the walls of its cell went.
+/// Result of an exploration by a robot that sees the walls of its cell.
 struct Walk {
     known: Maze,
     verdict: ExplorationOutcome,
@@ -31,7 +31,7 @@ fn walk(truth: &Maze, explorer: &mut dyn Explorer) -> Walk {
             known.set_wall(cell, side, truth.wall(cell, side));
         }
         looks += 1;
-        assert!(looks <= 4 * truth.cell_count() + 4, "an exploration without end");
+        assert!(looks <= 4 * truth.cell_count() + 4, "the exploration does not end");
         match explorer.next(&known, (cell, heading)) {
             ExplorationStep::Finished(verdict) => return Walk { known, verdict, looks, steps },
             ExplorationStep::Go(next) => {
@@ -40,7 +40,7 @@ fn walk(truth: &Maze, explorer: &mut dyn Explorer) -> Walk {
                     flood.run(&crate::maze::Passages::new(&known, Unknown::Closed), [cell]);
                     flood.into_distances()
                 };
-                steps += from_here.get(next).expect("a cell that can be reached on known ways");
+                steps += from_here.get(next).expect("a cell that is reachable on known passages");
                 let side = Direction::ALL.into_iter().find(|&side| known.neighbour(cell, side) == Some(next));
                 heading = side.unwrap_or(heading);
                 cell = next;

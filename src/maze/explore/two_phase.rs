@@ -4,21 +4,21 @@ use crate::maze::{
     WallState, shortest_route,
 };
 
-/// What has to be proved.
+/// What the exploration has to prove.
 #[derive(Debug, Clone)]
 pub enum Goals {
     /// The route with the fewest steps.
     Steps,
-    /// The route with the fewest steps, and the one that takes a robot the shortest time.
+    /// The route with the fewest steps, and the fastest one for a robot.
     StepsAndTime(Box<FastPlanner>),
 }
 
-/// The search of modern mice, in two phases: to the goal by the shortest route that may exist, then only to such unknown
-/// walls as could make the best route better, and back to the start.
+/// Two-phase search, as used by modern micromice: first to the goal by the shortest possible route, then only
+/// to unknown walls that could improve the best route, and back to the start.
 ///
-/// The best route is proved once it is as good with every unknown wall standing as with none. Until then the best route that
-/// may exist leads through unknown walls, and the robot looks at the nearest of these. Each look makes at least one of them
-/// known, so the search ends.
+/// The best route is proved when it is equally good with all unknown walls present and with all absent. Until
+/// then, the best possible route crosses unknown walls, and the robot looks at the nearest of them. Each look
+/// reveals at least one of them, so the search ends.
 ///
 /// ```
 /// use roverlab::maze::generate::competition;
@@ -37,7 +37,7 @@ pub enum Goals {
 ///     }
 /// };
 /// assert_eq!(outcome, ExplorationOutcome::Optimal);
-/// assert!(known.unknown_walls() > 0, "not every wall had to be seen");
+/// assert!(known.unknown_walls() > 0, "some walls need not be seen");
 /// # Ok::<(), roverlab::ParameterError>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -49,17 +49,17 @@ pub struct TwoPhaseExplorer {
 }
 
 impl TwoPhaseExplorer {
-    /// A search for a proof.
+    /// A search that proves `goals`.
     pub fn new(goals: Goals) -> Self {
         Self { goals, reached: false, verdict: None, flood: FloodFill::default() }
     }
 
-    /// What is proved so far.
+    /// Result proved so far.
     pub fn verdict(&self) -> Option<ExplorationOutcome> {
         self.verdict
     }
 
-    /// The first phase: the next cell to look around in on the shortest way that may lead to the goal.
+    /// First phase: the next cell to look around in, on the shortest possible route to the goal.
     fn seek(&mut self, maze: &Maze, cell: Cell) -> Option<ExplorationStep> {
         if maze.is_goal(cell) {
             self.reached = true;
@@ -74,12 +74,12 @@ impl TwoPhaseExplorer {
         Some(ExplorationStep::Go(descend(maze, &to_goal, cell)))
     }
 
-    /// Steps to some cells, with unknown walls taken for open.
+    /// Steps to a set of cells; unknown walls count as open.
     fn distances(&mut self, maze: &Maze, cells: Vec<Cell>) -> Distances {
         self.flood.run(&Passages::new(maze, Unknown::Open), cells).clone()
     }
 
-    /// The routes that may exist and are better than the best that is sure; none when all is proved.
+    /// A possible route that is better than the best certain one; `None` if the best is proved.
     fn doubtful(&mut self, maze: &Maze) -> Option<Route> {
         let route = |unknown| shortest_route(maze, unknown, Preference::Steps);
         let steps = |route: &Option<Route>| route.as_ref().map(Route::steps);
@@ -94,7 +94,7 @@ impl TwoPhaseExplorer {
         if proved { None } else { Some(possible.route) }
     }
 
-    /// The second phase: the nearest cell from which an unknown wall of a doubtful route can be seen.
+    /// Second phase: the nearest cell from which an unknown wall of an unproved route is visible.
     fn prove(&mut self, maze: &Maze, cell: Cell) -> Option<ExplorationStep> {
         let Some(route) = self.doubtful(maze) else {
             let sure = shortest_route(maze, Unknown::Closed, Preference::Steps);
@@ -108,22 +108,22 @@ impl TwoPhaseExplorer {
         let mut flood = FloodFill::default();
         let near = flood.run(&Passages::new(maze, Unknown::Closed), [cell]);
         let nearest = vantages(maze, &route).filter_map(|cell| Some((near.get(cell)?, cell))).min();
-        // The first unknown wall of the route can always be reached.
+        // The first unknown wall of the route is always reachable.
         nearest.map(|(_, cell)| ExplorationStep::Go(cell))
     }
 }
 
-/// Seconds by which two runs may differ and count as equally fast: what is rounded off in planning.
+/// Difference below which two runs count as equally fast (s): the rounding error of planning.
 const TIE: f64 = 5e-4;
 
-/// The cells on either side of the unknown walls on a route.
+/// Cells on either side of the unknown walls of a route.
 fn vantages<'a>(maze: &'a Maze, route: &'a Route) -> impl Iterator<Item = Cell> + 'a {
     let unknown = move |&(cell, side): &(Cell, Direction)| maze.wall(cell, side) == WallState::Unknown;
     let walls = route.cells().zip(route.moves().iter().copied()).filter(unknown);
     walls.flat_map(move |(cell, side)| [Some(cell), maze.neighbour(cell, side)]).flatten()
 }
 
-/// Follows distances downwards through walls that are known to be absent, up to the first cell with an unknown wall.
+/// Descends along distances through walls known to be absent, up to the first cell with an unknown wall.
 fn descend(maze: &Maze, distances: &Distances, from: Cell) -> Cell {
     let mut cell = from;
     loop {

@@ -1,31 +1,32 @@
-//! The least time that the rest of a run can take, which leads the search to the goal.
+//! Lower bounds of the remaining time of a run: the heuristic of the search.
 
 use super::search::{ENDS, Tables};
 
-/// Steps from which on the bound grows no more.
+/// Number of steps beyond which the bound no longer grows.
 const STEPS: usize = 256;
-/// Cells or edges of a straight behind which every further one counts as driven at top speed.
+/// Length of a straight (cells or edges) beyond which every further one counts as driven at top speed.
 const LONG: usize = 16;
 
-/// The least microseconds from the end of each turn to a stand that is so many steps away, were there no walls.
+/// Minimum time (µs) from the end of each turn to a stop that is a number of steps away, in a maze without
+/// walls.
 ///
-/// Walls can only make the way longer, and a way of more steps takes no less time; so that no run is faster than the bound of
-/// the steps that flood fill counts. Along a hop it never falls by more than the hop takes.
+/// Walls only lengthen the way, and more steps never take less time. So no run is faster than the bound for
+/// the steps counted by flood fill. Along a hop, the bound falls by at most the time of the hop.
 #[derive(Debug, Clone)]
 pub(super) struct Bounds {
-    /// By steps, and by the turn's number among the ends.
+    /// By steps, and by the index of the turn.
     times: Vec<[u32; ENDS]>,
 }
 
-/// A straight and the turn behind it, or the stand.
+/// A straight and the turn after it, or a stop.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Hop {
-    /// Cells or edges that the straight passes.
+    /// Cells or edges passed by the straight.
     pub(super) count: usize,
-    /// The steps from the cell of one end to that of the next.
+    /// Steps from the cell of one end to that of the next.
     pub(super) steps: usize,
     pub(super) time: u32,
-    /// The number of the turn among the ends; none for a stand.
+    /// Index of the turn; `None` for a stop.
     pub(super) to: Option<usize>,
 }
 
@@ -34,10 +35,10 @@ impl Bounds {
         let hops: [Vec<Hop>; ENDS] = std::array::from_fn(|end| tables.hops(end, LONG));
         let (per_step, before_turn) = tables.least_per_step();
         let mut times = vec![[u32::MAX; ENDS]; STEPS + 1];
-        // The same with any number of cells or edges at top speed before the turn.
+        // The same, with any number of cells or edges at top speed before the turn.
         let mut cruising = times.clone();
         for steps in 0..=STEPS {
-            // A hop within a cell leads to where as many steps are left.
+            // A hop within a cell leaves the number of remaining steps unchanged.
             loop {
                 let before = times[steps];
                 for end in 0..ENDS {
@@ -55,20 +56,20 @@ impl Bounds {
         Self { times }
     }
 
-    /// Bounds that say nothing.
+    /// Trivial bounds, for a search without heuristic.
     #[cfg(test)]
     pub(super) fn none() -> Self {
         Self { times: vec![[0; ENDS]] }
     }
 
-    /// The bound for so many steps behind a turn.
+    /// Bound for a number of steps after a turn.
     #[inline]
     pub(super) fn get(&self, steps: u32, end: usize) -> u32 {
         self.times[(steps as usize).min(self.times.len() - 1)][end]
     }
 }
 
-/// The least time of a way of so many steps that begins with a hop, or with one that is longer if this one is long.
+/// Minimum time of a way that begins with this hop; if the hop is a long one, also with longer ones.
 fn bound(hop: &Hop, steps: usize, times: &[[u32; ENDS]], cruising: &[[u32; ENDS]], per_step: u32) -> u32 {
     let rest = steps.saturating_sub(hop.steps);
     let onward = match hop.to {
@@ -122,7 +123,7 @@ mod tests {
     #[test]
     fn a_straight_from_standstill_meets_the_bound() {
         let tables = Tables::new(&Repertoire::new(Scale::MICROMOUSE, RunLimits::MICROMOUSE).unwrap());
-        // Of one step nothing is faster than the straight.
+        // For one step, nothing is faster than the straight.
         assert_eq!(Bounds::new(&tables).get(1, 0), tables.row(None)[1].stop);
     }
 }

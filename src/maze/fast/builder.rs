@@ -5,17 +5,17 @@ use super::turn::TurnKind;
 use crate::geometry::normalize_angle;
 use crate::maze::{Cell, Direction, Route, Scale};
 
-/// Puts a plan together from the hops of a search.
+/// Assembles a plan from the hops of a search.
 pub(super) struct Builder<'a> {
     repertoire: &'a Repertoire,
     scale: Scale,
     start: (Cell, Direction),
-    /// Where the moves so far lead.
+    /// End of the moves so far.
     cell: Cell,
     pieces: Vec<Piece>,
     moves: Vec<Direction>,
     time: f64,
-    /// The turn that the last hop ended with.
+    /// Turn at the end of the last hop.
     last: Option<TurnKind>,
 }
 
@@ -25,7 +25,7 @@ impl<'a> Builder<'a> {
         Self { repertoire, scale, start, cell: start.0, pieces, moves, time: 0.0, last: None }
     }
 
-    /// Turns on the spot towards a direction at the start.
+    /// Turns on the spot at the start.
     pub(super) fn face(&mut self, direction: Direction) {
         self.pivot(self.start.1, direction);
     }
@@ -44,7 +44,8 @@ impl<'a> Builder<'a> {
         self.moves.push(direction);
     }
 
-    /// A straight from one node, and the turn at its end into the next, which lies in a cell; none at the goal.
+    /// Adds a straight from one node and the turn at its end into the next, which lies in a cell; `None` at
+    /// the goal.
     pub(super) fn hop(&mut self, from: Node, count: u16, to: Option<(Node, Cell)>) {
         let (via, then) = from.heading();
         let kind = to.and_then(|(node, _)| node.kind());

@@ -5,25 +5,25 @@ use crate::ParameterError;
 use crate::maze::Scale;
 use crate::parameter::require;
 
-/// What a robot can do on a fast run.
+/// Limits of a robot on a fast run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RunLimits {
-    /// The highest speed along rows and columns, in m/s.
+    /// Maximum speed along rows and columns (m/s).
     pub speed: f64,
-    /// The highest speed along diagonals, in m/s: the corridors are narrower there.
+    /// Maximum speed along diagonals, where the corridors are narrower (m/s).
     pub diagonal_speed: f64,
-    /// The largest change of speed along the path, in m/s².
+    /// Maximum acceleration along the path (m/s²).
     pub acceleration: f64,
-    /// The largest sideways acceleration in a turn, in m/s².
+    /// Maximum lateral acceleration in turns (m/s²).
     pub lateral_acceleration: f64,
-    /// The highest turning speed on the spot, in rad/s.
+    /// Maximum angular velocity on the spot (rad/s).
     pub pivot_speed: f64,
-    /// The largest change of the turning speed, on the spot and in turns, in rad/s².
+    /// Maximum angular acceleration, on the spot and in turns (rad/s²).
     pub angular_acceleration: f64,
 }
 
 impl RunLimits {
-    /// For a small robot with quick motors in a competition maze.
+    /// A small robot with fast motors in a competition maze.
     pub const MICROMOUSE: Self = Self {
         speed: 2.0,
         diagonal_speed: 1.5,
@@ -33,7 +33,7 @@ impl RunLimits {
         angular_acceleration: 150.0,
     };
 
-    /// For an EyeBot S4 in the book's maze, whose motors are slow to follow.
+    /// An EyeBot S4, whose motors respond slowly, in the book's maze.
     pub const EYEBOT: Self = Self {
         speed: 0.7,
         diagonal_speed: 0.6,
@@ -58,17 +58,17 @@ impl RunLimits {
     }
 }
 
-/// A turn as it is driven: always with the same shape and at the same speed.
+/// A turn as it is driven: fixed shape and speed.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct DrivenTurn {
     pub(super) shape: Shape,
-    /// Metres from the corner of the two straights to either end of the curve.
+    /// Distance from the corner of the two straights to either end of the curve (m).
     pub(super) tangent: f64,
     pub(super) speed: f64,
     pub(super) time: f64,
 }
 
-/// The turns of a robot, and how long it takes for straights between them.
+/// The turns of a robot, and the times of straights between them.
 #[derive(Debug, Clone)]
 pub(super) struct Repertoire {
     pub(super) limits: RunLimits,
@@ -89,29 +89,29 @@ impl Repertoire {
         &self.turns[kind as usize]
     }
 
-    /// Metres from the corner of a turn, 0 for one on the spot.
+    /// Tangent length of a turn (m); 0 for one on the spot.
     pub(super) fn tangent(&self, kind: Option<TurnKind>) -> f64 {
         kind.map_or(0.0, |kind| self.turn(kind).tangent)
     }
 
-    /// The speed at both ends of a turn, 0 for one on the spot.
+    /// Speed at both ends of a turn (m/s); 0 for one on the spot.
     pub(super) fn speed(&self, kind: Option<TurnKind>) -> f64 {
         kind.map_or(0.0, |kind| self.turn(kind).speed)
     }
 
-    /// Seconds for a turn by an angle, on the spot if it has no kind.
+    /// Time of a turn on the spot (s).
     pub(super) fn pivot_time(&self, angle: f64) -> f64 {
         let RunLimits { pivot_speed, angular_acceleration, .. } = self.limits;
         profile::time(angle.abs(), 0.0, 0.0, pivot_speed, angular_acceleration).unwrap_or(0.0)
     }
 
-    /// The highest speed on a straight.
+    /// Maximum speed on a straight (m/s).
     pub(super) fn top_speed(&self, diagonal: bool) -> f64 {
         if diagonal { self.limits.diagonal_speed } else { self.limits.speed }
     }
 
-    /// Seconds between two turns whose corners are `distance` apart; `None` where they overlap, or where the robot cannot
-    /// change its speed so soon.
+    /// Time between two turns whose corners are `distance` (m) apart (s). `None` if they overlap, or the
+    /// robot cannot change its speed in time.
     pub(super) fn straight_time(
         &self,
         from: Option<TurnKind>,
@@ -136,7 +136,7 @@ fn driven(kind: TurnKind, cell: f64, limits: &RunLimits) -> Result<DrivenTurn, P
         .sqrt()
         .min((limits.angular_acceleration * ramp / shape.peak).sqrt())
         .min(limits.speed.min(limits.diagonal_speed));
-    // A turn that begins at the edge of a cell can be driven from standstill in its middle.
+    // A turn at the edge of a cell must be reachable from standstill in its centre.
     let reachable = (2.0 * limits.acceleration * 0.45 * cell).sqrt();
     let speed = speed.min(reachable);
     let time = shape.length / speed;

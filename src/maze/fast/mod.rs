@@ -1,4 +1,4 @@
-//! Fast runs: the time-optimal way through a known maze, and its speed profile (book, section 9.8).
+//! Fast runs: the time-optimal path through a known maze, and its speed profile (book, section 9.8).
 
 mod bound;
 mod builder;

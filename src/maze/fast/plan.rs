@@ -7,21 +7,21 @@ use crate::maze::Route;
 pub enum Piece {
     /// A turn on the spot.
     Pivot {
-        /// Radians to the left.
+        /// Angle to the left (rad).
         angle: f64,
     },
     /// A straight.
     Straight {
-        /// Metres.
+        /// Length (m).
         length: f64,
-        /// The speed at its beginning, in m/s.
+        /// Speed at its start (m/s).
         entry: f64,
-        /// The speed at its end, in m/s.
+        /// Speed at its end (m/s).
         exit: f64,
         /// Whether it runs along a diagonal.
         diagonal: bool,
     },
-    /// A smooth turn, at constant speed.
+    /// A smooth turn at constant speed.
     Turn {
         /// Its shape and speed.
         kind: TurnKind,
@@ -33,12 +33,12 @@ pub enum Piece {
 /// A fast run through a maze.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FastPlan {
-    /// Seconds from standstill to standstill.
+    /// Duration from standstill to standstill (s).
     pub time: f64,
-    /// The cells that it passes.
+    /// Cells that it passes.
     pub route: Route,
-    /// Where it begins, in the frame whose origin is the lower left corner of the maze.
+    /// Start pose; the origin is the lower left corner of the maze.
     pub start: Pose,
-    /// What it is made of.
+    /// Its pieces.
     pub pieces: Vec<Piece>,
 }

@@ -9,17 +9,18 @@ use crate::maze::{Cell, Direction, FloodFill, Maze, Passages, Scale, Unknown};
 
 /// Plans time-optimal runs.
 ///
-/// A run is made of straights along rows, columns and diagonals, of smooth turns between them ([`TurnKind`]), each with its
-/// own shape and speed, and of turns on the spot in the middles of cells. It begins and ends standing in the middle of a
-/// cell. Of all such runs the planner finds one that takes the shortest time, by A* over the ends of turns; every straight in
-/// between is driven with full acceleration, top speed and full braking. The search is led by the time that the robot would
-/// take without walls for as many steps as flood fill counts to the goal.
+/// A run consists of straights along rows, columns and diagonals, of smooth turns between them
+/// ([`TurnKind`]), each with a fixed shape and speed, and of turns on the spot in cell centres. It starts and
+/// ends at rest in a cell centre. The planner finds the fastest such run by A* over the ends of turns; every
+/// straight is driven with full acceleration, top speed and full braking. The heuristic is the minimum time,
+/// without walls, for the steps that flood fill counts to the goal.
 ///
 /// # Complexity
 ///
-/// For n cells there are at most 60 n ends of turns, each with as many ways on as its straight passes cells.
+/// For n cells there are at most 60 n ends of turns, each with as many successors as its straight passes
+/// cells.
 ///
-/// Times are counted in microseconds up to 4294 s: a run that takes longer is not found.
+/// Times are in microseconds up to 4294 s; longer runs are not found.
 ///
 /// ```
 /// use roverlab::maze::{FastPlanner, Maze, RunLimits, Scale, Unknown};
@@ -38,37 +39,37 @@ pub struct FastPlanner {
     memory: Memory,
 }
 
-/// What is kept between searches, so that they need not allocate it anew.
+/// Buffers kept between searches.
 #[derive(Debug, Clone)]
 struct Memory {
     bounds: Bounds,
     grid: Grid,
     /// Steps from each cell to the goal.
     flood: FloodFill,
-    /// Microseconds to each node.
+    /// Cost of each node (µs).
     costs: Vec<u32>,
     parents: Vec<Parent>,
-    /// Costs and nodes, by the least time of a run through the node in multiples of `width`.
+    /// Costs and nodes, bucketed by the minimum time of a run through the node, in multiples of `width`.
     buckets: Vec<Vec<(u32, u32)>>,
     width: u32,
-    /// The bucket that is being emptied.
+    /// Index of the bucket being processed.
     bucket: usize,
     touched: Vec<u32>,
 }
 
-/// The node before, and how many cells or edges the straight from there passes.
+/// Predecessor of a node, and number of cells or edges that the straight between passes.
 #[derive(Debug, Clone, Copy, Default)]
 struct Parent {
     node: u32,
     count: u16,
 }
 
-/// The parent of the start.
+/// Predecessor of the start.
 const NO_PARENT: u32 = u32::MAX;
-/// How finely runs are ordered by their least time: so many buckets for the time of the shortest turn.
+/// Number of buckets for the duration of the shortest turn.
 const BUCKETS_PER_TURN: u32 = 8;
 
-/// The best way to a goal so far.
+/// Best arrival at a goal so far.
 #[derive(Debug, Clone, Copy)]
 struct Arrival {
     cost: u32,
@@ -78,6 +79,10 @@ struct Arrival {
 
 impl FastPlanner {
     /// A planner for one robot in mazes of one scale.
+    ///
+    /// # Errors
+    ///
+    /// If a limit or the cell size is out of range.
     pub fn new(scale: Scale, limits: RunLimits) -> Result<Self, ParameterError> {
         let repertoire = Repertoire::new(scale, limits)?;
         let tables = Tables::new(&repertoire);
@@ -85,19 +90,20 @@ impl FastPlanner {
         Ok(Self { repertoire, scale, tables, memory })
     }
 
-    /// The same, which searches in all directions alike.
+    /// The same planner without heuristic.
     #[cfg(test)]
     pub(super) fn unled(mut self) -> Self {
         self.memory.bounds = Bounds::none();
         self
     }
 
-    /// The fastest run from the start of a maze to its goal, with unknown walls taken as said; `None` if no way leads there.
+    /// The fastest run from the start to the goal, with `unknown` for unknown walls; `None` if the goal is
+    /// unreachable.
     pub fn plan(&mut self, maze: &Maze, unknown: Unknown) -> Option<FastPlan> {
         self.plan_from(maze, unknown, (maze.start(), maze.heading()), |cell| maze.is_goal(cell))
     }
 
-    /// The fastest run from a cell and a heading to any cell that is a goal.
+    /// The fastest run from a cell and heading to any cell that satisfies `goal`.
     pub fn plan_from(
         &mut self,
         maze: &Maze,
@@ -127,11 +133,11 @@ impl FastPlanner {
         }
         let mut best: Option<Arrival> = None;
         while memory.bucket < memory.buckets.len() {
-            // No run through what is left is faster than the beginning of its bucket.
+            // No remaining run is faster than the lower end of its bucket.
             if best.is_some_and(|best| best.cost / memory.width < memory.bucket as u32) {
                 break;
             }
-            // The bucket may grow while it is emptied.
+            // The bucket may grow while it is processed.
             let mut open = std::mem::take(&mut memory.buckets[memory.bucket]);
             for &(cost, id) in &open {
                 if memory.costs[id as usize] != cost {
@@ -227,7 +233,7 @@ impl Memory {
         self.parents[id as usize] = Parent { node: parent, count };
         let steps = self.flood.distances().as_slice()[node.cell() as usize];
         let least = cost.saturating_add(self.bounds.get(steps, node.end()));
-        // What is rounded may lead back by a microsecond.
+        // Rounding may reduce the bound by a microsecond.
         let bucket = ((least / self.width) as usize).max(self.bucket);
         if bucket >= self.buckets.len() {
             self.buckets.resize(bucket + 1, Vec::new());
@@ -235,7 +241,7 @@ impl Memory {
         self.buckets[bucket].push((cost, id));
     }
 
-    /// All ways on from the end of a turn into a row or column.
+    /// All continuations from the end of a turn into a row or column.
     fn expand_row(
         &mut self,
         tables: &Tables,
@@ -285,7 +291,7 @@ impl Memory {
         }
     }
 
-    /// All ways on from the end of a turn into a diagonal.
+    /// All continuations from the end of a turn into a diagonal.
     fn expand_diagonal(&mut self, tables: &Tables, cost: u32, node: Node) {
         let (id, (mut via, mut then)) = (node.id(), node.heading());
         let Some(kind) = node.kind() else { return };

@@ -1,19 +1,19 @@
-//! The fastest way along a straight: full acceleration, top speed, full braking.
+//! Time-optimal speed profile of a straight: full acceleration, top speed, full braking.
 
-/// A stretch of constant acceleration.
+/// A phase of constant acceleration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Phase {
-    /// Seconds.
+    /// Duration (s).
     pub(super) time: f64,
-    /// The speed at its beginning.
+    /// Speed at its start (m/s).
     pub(super) speed: f64,
     pub(super) acceleration: f64,
 }
 
-/// A length that rounding may lose.
+/// Length that may be lost by rounding (m).
 const SLACK: f64 = 1e-9;
 
-/// The highest speed on the way; `None` if the length is negative or too short for the change of speed.
+/// Highest speed on the way; `None` if the length is negative or too short for the change of speed.
 fn peak(length: f64, entry: f64, exit: f64, top: f64, acceleration: f64) -> Option<f64> {
     let change = 0.5 * (entry * entry - exit * exit).abs() / acceleration;
     if length < change - SLACK {
@@ -23,13 +23,13 @@ fn peak(length: f64, entry: f64, exit: f64, top: f64, acceleration: f64) -> Opti
     Some(reachable.min(top).max(entry).max(exit))
 }
 
-/// Seconds for a length between two speeds, neither above the top speed.
+/// Time for a length between two speeds (s); neither may exceed the top speed.
 pub(super) fn time(length: f64, entry: f64, exit: f64, top: f64, acceleration: f64) -> Option<f64> {
     peak(length, entry, exit, top, acceleration)?;
     Some(phases(length, entry, exit, top, acceleration).iter().map(|phase| phase.time).sum())
 }
 
-/// The phases of the way; none has a negative time.
+/// The three phases; no duration is negative.
 pub(super) fn phases(length: f64, entry: f64, exit: f64, top: f64, acceleration: f64) -> [Phase; 3] {
     let peak = peak(length, entry, exit, top, acceleration).unwrap_or(entry.max(exit));
     let (up, down) = ((peak - entry) / acceleration, (peak - exit) / acceleration);

@@ -1,4 +1,4 @@
-//! What the search of the planner is made of: nodes, costs of straights and turns, and a compact maze.
+//! Components of the planner's search: nodes, costs of straights and turns, and a compact maze.
 
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI};
 
@@ -7,18 +7,18 @@ use super::limits::Repertoire;
 use super::turn::TurnKind;
 use crate::maze::{Cell, Direction, Maze, Unknown};
 
-/// The end of a turn: the cell that the robot is in, where it goes, and which turn it was.
+/// The end of a turn: the robot's cell, its heading, and the kind of turn.
 ///
-/// After a turn into a row or column the cell is the one of its middle, or for those out of a diagonal the one whose edge it
-/// ends at; on a diagonal, the robot leaves the cell through the edge of its first heading, and the next through that of the
-/// second.
+/// After a turn into a row or column, the cell is the one whose centre the turn ends at, or, out of a
+/// diagonal, whose edge. On a diagonal, the robot leaves the cell across the edge of its first heading, and
+/// the next cell across that of the second.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Node {
     cell: u32,
     local: u8,
 }
 
-/// Kinds of turns that end in a row or column, after those on the spot.
+/// Turns that end in a row or column; `None` is a turn on the spot.
 const ROW_KINDS: [Option<TurnKind>; 7] = [
     None,
     Some(TurnKind::Short90),
@@ -28,21 +28,21 @@ const ROW_KINDS: [Option<TurnKind>; 7] = [
     Some(TurnKind::Out135),
     Some(TurnKind::TightOut45),
 ];
-/// Kinds of turns that end in a diagonal.
+/// Turns that end in a diagonal.
 const DIAGONAL_KINDS: [TurnKind; 4] =
     [TurnKind::In45, TurnKind::In135, TurnKind::Diagonal90, TurnKind::TightIn45];
-/// Pieces that begin along a row of cells.
+/// Number of kinds that end in a row or column.
 const ROWS: u8 = ROW_KINDS.len() as u8;
-/// Pieces that begin on a diagonal.
+/// Number of kinds that end in a diagonal.
 const DIAGONALS: u8 = DIAGONAL_KINDS.len() as u8;
-/// Kinds of turns, one on the spot included.
+/// Number of kinds of turns, including one on the spot.
 pub(super) const ENDS: usize = ROW_KINDS.len() + DIAGONAL_KINDS.len();
-/// Of a cell's nodes, the first on a diagonal: there are 4 headings before.
+/// Index of a cell's first diagonal node; 4 headings come before.
 const FIRST_DIAGONAL: u8 = 4 * ROWS;
-/// Nodes of a cell: on diagonals there are 8 pairs of headings.
+/// Number of nodes per cell; diagonals have 8 pairs of headings.
 const PER_CELL: u32 = FIRST_DIAGONAL as u32 + 8 * DIAGONALS as u32;
 
-/// The place of a kind among those that end alike.
+/// Index of a kind among those that end alike.
 #[inline]
 fn place(kind: Option<TurnKind>) -> u8 {
     match kind {
@@ -102,7 +102,7 @@ impl Node {
         }
     }
 
-    /// The number of the turn among all kinds: first those into rows and columns, then those into diagonals.
+    /// Index of the turn among all kinds: first those into rows and columns, then those into diagonals.
     #[inline]
     pub(super) fn end(self) -> usize {
         if self.is_diagonal() {
@@ -112,7 +112,7 @@ impl Node {
         }
     }
 
-    /// The direction of the row or column twice, or the two directions that a diagonal alternates between.
+    /// The heading of the row or column, twice, or the two headings that a diagonal alternates between.
     #[inline]
     pub(super) fn heading(self) -> (Direction, Direction) {
         if self.is_diagonal() {
@@ -125,7 +125,7 @@ impl Node {
         }
     }
 
-    /// Eighths of a full turn to the right from north.
+    /// Heading in eighths of a full turn, clockwise from north.
     pub(super) fn eighths(self) -> usize {
         let (via, then) = self.heading();
         match via.quarters_to(then) {
@@ -136,7 +136,7 @@ impl Node {
     }
 }
 
-/// The openings of every cell of a maze, in one byte each.
+/// Open sides of every cell, one byte each.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Grid {
     width: u32,
@@ -158,7 +158,7 @@ impl Grid {
         self.openings[index as usize] >> direction as u8 & 1 != 0
     }
 
-    /// The neighbour in a direction, if one can go there.
+    /// The neighbour in a direction, if it is accessible.
     #[inline]
     pub(super) fn next(&self, index: u32, direction: Direction) -> Option<u32> {
         if !self.is_open(index, direction) {
@@ -183,8 +183,8 @@ impl Grid {
     }
 }
 
-/// Microseconds from the end of a turn along a row or column, and through the next turn; `u32::MAX` where a turn does not
-/// fit.
+/// Times (µs) from the end of a turn along a row or column and through the next turn; `u32::MAX` if the turn
+/// does not fit.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RowTimes {
     pub(super) stop: u32,
@@ -206,20 +206,20 @@ pub(super) struct DiagonalTimes {
     pub(super) out_135: u32,
 }
 
-/// The times of all straights with the turns behind them, by the number of cells or edges that they pass.
+/// Times of all straights with the turns after them, by the number of cells or edges passed.
 #[derive(Debug, Clone)]
 pub(super) struct Tables {
     rows: [Vec<RowTimes>; ROW_KINDS.len()],
     diagonals: [Vec<DiagonalTimes>; DIAGONAL_KINDS.len()],
-    /// Microseconds for turns on the spot, by quarters of a full turn.
+    /// Times of turns on the spot, by quarter turns (µs).
     pub(super) pivots: [u32; 4],
-    /// Microseconds of the shortest turn.
+    /// Time of the shortest turn (µs).
     pub(super) shortest: u32,
-    /// Microseconds for a cell of a row or column, and for an edge of a diagonal, at top speed; rounded down.
+    /// Time per cell of a row or column, and per edge of a diagonal, at top speed, rounded down (µs).
     top_speed: [u32; 2],
 }
 
-/// Straights and turns are counted in whole microseconds.
+/// Time in whole microseconds.
 fn micros(seconds: Option<f64>) -> u32 {
     seconds.map_or(u32::MAX, |seconds| (seconds * 1e6).round().min(4e9) as u32)
 }
@@ -241,7 +241,8 @@ impl Tables {
         Self { rows, diagonals, pivots, shortest, top_speed }
     }
 
-    /// All straights of up to `most` cells or edges behind one kind of turn, with what may follow each of them.
+    /// All straights of up to `most` cells or edges after one kind of turn, with the possible turns after
+    /// each.
     pub(super) fn hops(&self, end: usize, most: usize) -> Vec<Hop> {
         let mut hops = Vec::new();
         let mut add = |count, list: &[(u32, usize, Option<usize>)]| {
@@ -284,7 +285,7 @@ impl Tables {
         hops
     }
 
-    /// For each kind of turn the least time for a step on the straight behind it, and on the one before it.
+    /// For each kind of turn, the minimum time per step on the straight after it and on the one before it.
     pub(super) fn least_per_step(&self) -> ([u32; ENDS], [u32; ENDS]) {
         let [row, diagonal] = self.top_speed;
         let behind = |end: usize| if end < ROW_KINDS.len() { row } else { diagonal };
@@ -296,7 +297,7 @@ impl Tables {
         (std::array::from_fn(behind), std::array::from_fn(before))
     }
 
-    /// One more than the most cells or edges that a straight passes.
+    /// One more than the maximum number of cells or edges of a straight.
     pub(super) fn reach(&self) -> usize {
         self.rows[0].len()
     }
@@ -311,15 +312,16 @@ impl Tables {
         &self.diagonals[usize::from(place(Some(from)))]
     }
 
-    /// Cells from the corner of one turn to that of the next along a row or column, whose straight passes `count` middles of
-    /// cells after the first.
+    /// Distance between the corners of two turns along a row or column (cells); the straight passes `count`
+    /// cell centres after the first.
     pub(super) fn row_distance(from: Option<TurnKind>, count: u16, to: Option<TurnKind>) -> f64 {
         let from_edge = matches!(from, Some(TurnKind::Out45 | TurnKind::TightOut45 | TurnKind::Out135));
         let to_edge = matches!(to, Some(TurnKind::In45 | TurnKind::TightIn45 | TurnKind::In135));
         f64::from(count) + if from_edge { 0.5 } else { 0.0 } + if to_edge { 0.5 } else { 0.0 }
     }
 
-    /// Cells from the corner of one turn to that of the next along a diagonal, whose straight crosses `count` edges.
+    /// Distance between the corners of two turns along a diagonal (cells); the straight crosses `count`
+    /// edges.
     pub(super) fn diagonal_distance(count: u16, to: Option<TurnKind>) -> f64 {
         let edges = count + u16::from(to == Some(TurnKind::Out135));
         f64::from(edges) * FRAC_1_SQRT_2

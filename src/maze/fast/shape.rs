@@ -4,36 +4,36 @@ use std::f64::consts::PI;
 
 use crate::geometry::{Pose, math};
 
-/// A curve whose curvature grows steadily from 0, stays, and goes back to 0 in the same way: half of its angle is turned in
-/// the two ramps together. It begins at the origin along x and turns left.
+/// A curve whose curvature rises linearly from 0, stays constant, and falls back symmetrically; the two ramps
+/// account for half of its angle. It starts at the origin along x and turns left.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Shape {
-    /// Metres along the curve.
+    /// Arc length (m).
     pub(super) length: f64,
-    /// Metres of either ramp.
+    /// Length of either ramp (m).
     pub(super) ramp: f64,
-    /// The largest curvature, in 1/m.
+    /// Maximum curvature (1/m).
     pub(super) peak: f64,
-    /// Poses at even distances.
+    /// Poses at equal distances.
     poses: Vec<Pose>,
 }
 
-/// What turns take their size from.
+/// Name of the parameter that determines the size of turns.
 pub(super) const CELL: &str = "size of a cell";
 
-/// The part of the angle that is turned in the ramps.
+/// Fraction of the angle that is turned in the two ramps.
 const RAMPS: f64 = 0.5;
-/// Intervals between poses.
+/// Number of intervals between the poses.
 const INTERVALS: usize = 256;
 
 impl Shape {
-    /// A turn by an angle below a half turn, between two lines that meet `tangent` metres from either end.
+    /// A turn by less than half a turn, between two lines that meet `tangent` (m) from either end.
     pub(super) fn turn(angle: f64, tangent: f64) -> Result<Self, ParameterError> {
         let unit = Self::with_peak(angle, 1.0);
         Self::scaled(angle, tangent, unit.end().y / math::sin(angle))
     }
 
-    /// A half turn that ends `width` metres aside.
+    /// A half turn that ends `width` (m) to the side.
     pub(super) fn u_turn(width: f64) -> Result<Self, ParameterError> {
         let unit = Self::with_peak(PI, 1.0);
         Self::scaled(PI, width, unit.end().y)
@@ -52,7 +52,7 @@ impl Shape {
         let step = length / INTERVALS as f64;
         let mut pose = Pose::default();
         for i in 0..INTERVALS {
-            // The heading at three places of the step, and the integral of its direction by Simpson's rule.
+            // Simpson's rule: heading at three points of the step, integral of its direction.
             let headings = [0.0, 0.5, 1.0].map(|part| shape.heading_at((i as f64 + part) * step));
             let [a, b, c] = headings.map(math::sin_cos);
             pose.x += step / 6.0 * (a.1 + 4.0 * b.1 + c.1);
@@ -63,13 +63,13 @@ impl Shape {
         shape
     }
 
-    /// The curvature at a distance from the beginning.
+    /// Curvature at an arc length.
     pub(super) fn curvature_at(&self, s: f64) -> f64 {
         let from_end = s.min(self.length - s).max(0.0);
         self.peak * (from_end / self.ramp).min(1.0)
     }
 
-    /// The angle turned up to a distance from the beginning.
+    /// Angle turned up to an arc length.
     pub(super) fn heading_at(&self, s: f64) -> f64 {
         let Self { length, ramp, peak, .. } = *self;
         let s = s.clamp(0.0, length);
@@ -83,7 +83,7 @@ impl Shape {
         }
     }
 
-    /// The pose at a distance from the beginning.
+    /// Pose at an arc length.
     pub(super) fn pose_at(&self, s: f64) -> Pose {
         let place = (s / self.length).clamp(0.0, 1.0) * INTERVALS as f64;
         let index = (place as usize).min(INTERVALS - 1);
@@ -92,7 +92,7 @@ impl Shape {
         Pose::new(a.x + part * (b.x - a.x), a.y + part * (b.y - a.y), self.heading_at(s))
     }
 
-    /// The pose at the end.
+    /// Pose at the end.
     pub(super) fn end(&self) -> Pose {
         self.poses[INTERVALS]
     }

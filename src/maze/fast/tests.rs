@@ -18,7 +18,7 @@ fn plan(maze: &Maze) -> Option<FastPlan> {
     planner().plan(maze, Unknown::Closed)
 }
 
-/// The walls and posts around a cell, as boxes.
+/// Walls and posts around a cell, as boxes.
 fn solids(maze: &Maze, cell: Cell) -> Vec<Aabb> {
     let mut boxes = Vec::new();
     let half = 0.5 * SCALE.wall;
@@ -58,7 +58,7 @@ fn distance(solid: &Aabb, point: Point) -> f64 {
     )
 }
 
-/// Checks that a run is what it says: without jumps, clear of the walls, along its route, and as long as planned.
+/// Checks that a run is continuous, clear of the walls, along its route, and as long as planned.
 fn assert_drivable(maze: &Maze, plan: &FastPlan) {
     let trajectory = Trajectory::new(plan, SCALE, LIMITS).unwrap();
     assert!((trajectory.duration() - plan.time).abs() < 1e-6, "{} {}", trajectory.duration(), plan.time);
@@ -91,7 +91,7 @@ fn assert_drivable(maze: &Maze, plan: &FastPlan) {
     }
 }
 
-/// Seconds for a route on which the robot stops at every turn.
+/// Time of a route with a stop at every turn (s).
 fn time_with_stops(maze: &Maze) -> Option<f64> {
     let repertoire = super::limits::Repertoire::new(SCALE, LIMITS).unwrap();
     let route = shortest_route(maze, Unknown::Closed, Preference::Turns)?;
@@ -105,7 +105,7 @@ fn time_with_stops(maze: &Maze) -> Option<f64> {
     Some(time)
 }
 
-/// The maze seen in a mirror along the diagonal.
+/// The maze, mirrored along the diagonal.
 fn mirrored(maze: &Maze) -> Maze {
     let mirror = |d: Direction| match d {
         Direction::North => Direction::East,

@@ -6,16 +6,27 @@ use crate::ParameterError;
 use crate::geometry::{Pose, Twist};
 use crate::maze::Scale;
 
-/// Where a robot shall be at a time, and how fast.
+/// Desired pose and velocity at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrajectoryPoint {
-    /// The pose.
+    /// Pose.
     pub pose: Pose,
-    /// The speed.
+    /// Velocity.
     pub twist: Twist,
 }
 
-/// A fast run as a function of time. Position, heading and speed have no jumps, nor has the curvature.
+/// A fast run as a function of time. Position, heading, speed and curvature are continuous.
+///
+/// ```
+/// use roverlab::maze::{FastPlanner, Maze, RunLimits, Scale, Trajectory, Unknown, files};
+/// let maze: Maze = files::parse(b"o---o---o\n| S   G |\no---o---o\n", "two cells")?.maze;
+/// let (scale, limits) = (Scale::MICROMOUSE, RunLimits::MICROMOUSE);
+/// let plan = FastPlanner::new(scale, limits)?.plan(&maze, Unknown::Closed).expect("a way");
+/// let trajectory = Trajectory::new(&plan, scale, limits)?;
+/// assert!((trajectory.duration() - plan.time).abs() < 1e-9);
+/// assert_eq!(trajectory.at(trajectory.duration() + 1.0).twist, Default::default(), "at rest at the end");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
     segments: Vec<Segment>,
@@ -24,7 +35,7 @@ pub struct Trajectory {
 
 #[derive(Debug, Clone, PartialEq)]
 struct Segment {
-    /// Seconds before it, and of it.
+    /// Start time and duration (s).
     begin: f64,
     time: f64,
     start: Pose,
@@ -42,7 +53,7 @@ enum Motion {
 }
 
 impl Motion {
-    /// The pose and the speed relative to where it began, after so many seconds.
+    /// Pose relative to its start, and velocity, at a time.
     fn at(&self, time: f64) -> (Pose, Twist) {
         match self {
             &Self::Straight { speed, acceleration } => {
@@ -64,7 +75,11 @@ impl Motion {
 }
 
 impl Trajectory {
-    /// The motion of a plan. Scale and limits must be those that it was made with.
+    /// The trajectory of a plan. Scale and limits must be those of the planner.
+    ///
+    /// # Errors
+    ///
+    /// If a limit or the cell size is out of range.
     pub fn new(plan: &FastPlan, scale: Scale, limits: RunLimits) -> Result<Self, ParameterError> {
         let repertoire = Repertoire::new(scale, limits)?;
         let mut trajectory = Self { segments: Vec::new(), end: plan.start };
@@ -74,7 +89,7 @@ impl Trajectory {
         Ok(trajectory)
     }
 
-    /// A turn on the spot from standstill to standstill, as fast as the limits allow.
+    /// A turn on the spot from rest to rest, as fast as the limits allow.
     pub fn pivot(start: Pose, angle: f64, limits: &RunLimits) -> Self {
         let mut trajectory = Self { segments: Vec::new(), end: start };
         trajectory.append_pivot(angle, limits);
@@ -121,24 +136,24 @@ impl Trajectory {
         }
     }
 
-    /// Rounds the heading at the end of a piece, which is always a multiple of 45 degrees from the start, so that errors do
-    /// not add up over a long run.
+    /// Rounds the heading at the end of a piece to a multiple of 45 degrees, so that errors do not
+    /// accumulate.
     fn straighten(&mut self) {
         let eighth = std::f64::consts::FRAC_PI_4;
         self.end.heading = (self.end.heading / eighth).round() * eighth;
     }
 
-    /// Seconds from beginning to end.
+    /// Duration (s).
     pub fn duration(&self) -> f64 {
         self.segments.last().map_or(0.0, |last| last.begin + last.time)
     }
 
-    /// Where it ends.
+    /// End pose.
     pub fn end(&self) -> Pose {
         self.end
     }
 
-    /// Where the robot shall be at a time; at rest before the beginning and after the end.
+    /// Desired state at a time (s); at rest before the start and after the end.
     pub fn at(&self, time: f64) -> TrajectoryPoint {
         let index = self.segments.partition_point(|segment| segment.begin + segment.time <= time);
         let rest = |pose| TrajectoryPoint { pose, twist: Twist::STOP };
@@ -152,7 +167,7 @@ impl Trajectory {
         }
     }
 
-    /// The length of the way in metres.
+    /// Path length (m).
     pub fn length(&self) -> f64 {
         let lengths = self.segments.iter().map(|segment| match &segment.motion {
             Motion::Straight { speed, acceleration } => {

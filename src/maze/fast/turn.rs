@@ -1,33 +1,33 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
-/// A smooth turn of a fast run. Straights run along rows and columns, through the middles of cells, or along diagonals,
-/// through the middles of their edges; a turn leads from one such line to another.
+/// A smooth turn of a fast run. Straights run along rows and columns through cell centres, or along diagonals
+/// through the centres of cell edges; a turn joins two such lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum TurnKind {
-    /// A quarter turn within one cell.
+    /// Quarter turn within one cell.
     Short90,
-    /// A quarter turn that takes in half of the cells before and after it.
+    /// Quarter turn that extends into half of the cells before and after it.
     Wide90,
-    /// A half turn into the next row or column.
+    /// Half turn into the adjacent row or column.
     UTurn,
     /// From a row or column into a diagonal.
     In45,
     /// From a diagonal into a row or column.
     Out45,
-    /// As `In45`, in half the length: from standstill or just behind another turn.
+    /// As `In45`, at half the length: from rest or right after another turn.
     TightIn45,
-    /// As `Out45`, in half the length.
+    /// As `Out45`, at half the length.
     TightOut45,
     /// From a row or column back into a diagonal.
     In135,
     /// From a diagonal back into a row or column.
     Out135,
-    /// A quarter turn from one diagonal into another.
+    /// Quarter turn from one diagonal into another.
     Diagonal90,
 }
 
 impl TurnKind {
-    /// All of them.
+    /// All kinds.
     pub const ALL: [Self; 10] = [
         Self::Short90,
         Self::Wide90,
@@ -41,7 +41,7 @@ impl TurnKind {
         Self::Diagonal90,
     ];
 
-    /// The angle by which it turns, in radians.
+    /// Angle of the turn (rad).
     pub const fn angle(self) -> f64 {
         match self {
             Self::Short90 | Self::Wide90 | Self::Diagonal90 => FRAC_PI_2,
@@ -51,8 +51,8 @@ impl TurnKind {
         }
     }
 
-    /// From the corner where the two lines meet to either end of the curve, in cells; for a half turn from the middle of the
-    /// cell. The lengths leave a disc of a fifth of a cell in radius free of the walls.
+    /// Distance from the corner of the two lines to either end of the curve (cells); for a half turn, from
+    /// the cell centre. It keeps a disc with a radius of 0.2 cells clear of the walls.
     pub(super) const fn tangent(self) -> f64 {
         match self {
             Self::Short90 | Self::In45 | Self::Out45 => 0.5,

@@ -1,10 +1,10 @@
-//! The binary files of the first collections: a byte for each cell of a square, column by column from the left, each from
-//! below, with bits for walls to the north, east, south and west.
+//! The binary files of the first collections: one byte per cell of a square, column by column from the left,
+//! each from below, with bits for walls to the north, east, south and west.
 
 use super::{MazeFile, MazeFormat};
 use crate::maze::{Cell, Defect, Direction, Maze, WallState};
 
-/// Whether these bytes are a maze: as many as a square has cells, and none with other bits than those of walls.
+/// Whether the bytes are a maze: the number of cells of a known square, and wall bits only.
 pub(super) fn is_binary(bytes: &[u8]) -> bool {
     side(bytes).is_some() && bytes.iter().all(|&byte| byte < 16) && bytes.iter().any(|&byte| byte > 0)
 }
@@ -16,7 +16,7 @@ fn side(bytes: &[u8]) -> Option<usize> {
 pub(super) fn read(bytes: &[u8]) -> MazeFile {
     let side = side(bytes).unwrap_or(1);
     let mut defects = Vec::new();
-    // A side of 16 or 32 is none too many.
+    // A side of 16 or 32 is valid.
     let mut maze = Maze::open(side, side).unwrap_or_else(|_| unreachable!("a square of known size"));
     for (index, &byte) in bytes.iter().enumerate() {
         let cell = Cell::new((index / side) as u16, (index % side) as u16);

@@ -1,34 +1,34 @@
-//! Which lines of a text are those of a picture of a maze.
+//! Recognition of the lines of a drawn maze.
 //!
-//! Files are damaged: a line is lost, cut short or put in between. The lines of posts therefore vote on the width, and
-//! what stands in the wrong place is a defect rather than the end of the picture.
+//! Files may be damaged: a line is lost, cut short or inserted. The lines of posts vote on the width, and an
+//! unexpected line is a defect rather than the end of the drawing.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 use crate::maze::Defect;
 
-/// The lines of a picture: posts and cells by turns, uppermost first.
+/// Lines of a drawing: posts and cells alternate, uppermost first.
 pub(super) struct Layout<'a> {
     pub(super) lines: Vec<Line<'a>>,
-    /// Cells from left to right.
+    /// Number of cells from left to right.
     pub(super) width: usize,
     pub(super) post: u8,
     pub(super) defects: Vec<Defect>,
-    /// How many lines of the text say something and are none of the picture.
+    /// Number of non-blank lines outside the drawing.
     pub(super) remarks: usize,
 }
 
-/// A line of a picture.
+/// A line of a drawing.
 #[derive(Clone, Copy)]
 pub(super) struct Line<'a> {
-    /// Its number in the file, from 1; where it is missing, that of the line in its place.
+    /// Line number in the file, from 1; for a missing line, that of the line in its place.
     pub(super) number: usize,
-    /// What is left of it without the indentation; `None` where it is missing.
+    /// Text without indentation; `None` if the line is missing.
     pub(super) text: Option<&'a [u8]>,
 }
 
-/// What a line looks like.
+/// Kind of a line.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Posts,
@@ -36,7 +36,7 @@ enum Kind {
     Other,
 }
 
-/// Blanks to the left of a picture, its cells from left to right, and its posts.
+/// Indentation, width in cells, and post character.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Frame {
     indent: usize,
@@ -49,12 +49,12 @@ pub(super) fn is_post(byte: u8) -> bool {
     b"oO+*".contains(&byte)
 }
 
-/// Characters as messages show them.
+/// Characters as shown in messages.
 pub(super) fn shown(bytes: &[u8]) -> String {
     format!("{:?}", String::from_utf8_lossy(bytes))
 }
 
-/// Looks for a picture.
+/// Searches for a drawing.
 pub(super) fn find<'a>(lines: &[&'a str]) -> Option<Layout<'a>> {
     let votes: Vec<Frame> = lines.iter().filter_map(|line| vote(line)).collect();
     let indent = most(votes.iter().map(|vote| vote.indent))?;
@@ -72,7 +72,7 @@ pub(super) fn find<'a>(lines: &[&'a str]) -> Option<Layout<'a>> {
     Some(Layout { lines: finder.found, width, post: frame.post, defects: finder.defects, remarks })
 }
 
-/// The picture that a line of posts belongs to: posts four columns apart, and the walls between them.
+/// Frame of a line of posts: posts four columns apart, with walls between them.
 fn vote(line: &str) -> Option<Frame> {
     let indent = line.len() - line.trim_start().len();
     let bytes = line.trim().as_bytes();
@@ -85,7 +85,7 @@ fn vote(line: &str) -> Option<Frame> {
     (width > 0 && drawn).then_some(Frame { indent, width, post })
 }
 
-/// The value that comes most often, the first of those.
+/// The most frequent value; the first one if several are.
 fn most(values: impl Iterator<Item = usize>) -> Option<usize> {
     let mut tallies = BTreeMap::new();
     for (index, value) in values.enumerate() {
@@ -99,13 +99,13 @@ fn is_blank(line: &[u8]) -> bool {
 }
 
 impl Frame {
-    /// A line without the indentation.
+    /// A line without indentation.
     fn cut<'a>(&self, line: &&'a str) -> &'a [u8] {
         let blanks = line.bytes().take(self.indent).take_while(u8::is_ascii_whitespace).count();
         &line.as_bytes()[blanks..]
     }
 
-    /// How many characters a whole line has.
+    /// Length of a complete line (characters).
     fn length(&self) -> usize {
         4 * self.width + 1
     }
@@ -121,7 +121,7 @@ impl Frame {
         }
     }
 
-    /// Whether most of a line's posts are there, and hardly anything else but walls.
+    /// Whether most posts of a line are present, and hardly anything else but walls.
     fn has_posts(&self, line: &[u8]) -> bool {
         let posts = line.iter().step_by(4).filter(|&&byte| is_post(byte)).count();
         let odd = |&&byte: &&u8| !is_post(byte) && !b"-_= .|".contains(&byte);
@@ -137,24 +137,24 @@ impl Frame {
         !is_blank(line) && 4 * good >= 3 * sides.count() && (bars || plain)
     }
 
-    /// Whether a line that is none of posts was meant to be one.
+    /// Whether a damaged line was meant to be one of posts.
     fn was_posts(line: &[u8]) -> bool {
         !is_blank(line) && line.trim_ascii().iter().all(|&byte| is_post(byte) || b"-_= .|".contains(&byte))
     }
 
-    /// Whether there is a wall between all posts of a line.
+    /// Whether all walls of a line are present.
     fn is_closed(&self, line: &[u8]) -> bool {
         let wall = |x: usize| line.get(4 * x + 1..4 * x + 4).is_some_and(|wall| !wall.contains(&b' '));
         (0..self.width).all(wall)
     }
 }
 
-/// Goes through a text from the first line of a picture to its last.
+/// Reads a drawing from its first line to its last.
 struct Finder<'a> {
-    /// The text without the indentation of the picture.
+    /// The text without the indentation of the drawing.
     lines: Vec<&'a [u8]>,
     frame: Frame,
-    /// The index of the next line to look at.
+    /// Index of the next line.
     next: usize,
     found: Vec<Line<'a>>,
     defects: Vec<Defect>,
@@ -165,7 +165,7 @@ impl Finder<'_> {
         self.lines.get(index).map(|line| self.frame.kind(line))
     }
 
-    /// The first line of the picture, which damage may have made unlike one of posts.
+    /// First line of the drawing, which may be damaged beyond recognition.
     fn top(&self) -> usize {
         let posts = |line: &&[u8]| {
             vote(&String::from_utf8_lossy(line)).is_some_and(|vote| vote.width == self.frame.width)
@@ -185,7 +185,7 @@ impl Finder<'_> {
         }
     }
 
-    /// Takes lines of posts and of cells by turns until neither follows.
+    /// Takes lines of posts and cells alternately until neither follows.
     fn follow(&mut self) {
         loop {
             let wanted = if self.found.len().is_multiple_of(2) { Kind::Posts } else { Kind::Cells };
@@ -213,12 +213,12 @@ impl Finder<'_> {
         }
     }
 
-    /// Whether the next line is the top one once more.
+    /// Whether the next line repeats the top one.
     fn is_top_again(&self) -> bool {
         self.found.len() == 1 && self.found[0].text == Some(self.lines[self.next])
     }
 
-    /// Whether another picture begins below this one: both are closed there.
+    /// Whether another drawing begins below this one: both are closed there.
     fn another_begins(&self) -> bool {
         let closed = |line: &[u8]| self.frame.is_closed(line);
         let last = self.found.last().and_then(|line| line.text).is_some_and(closed);
@@ -230,7 +230,7 @@ impl Finder<'_> {
         last && self.kind(below) == Some(Kind::Posts) && closed(self.lines[below])
     }
 
-    /// Whether the next line is what is left of the lowest one.
+    /// Whether the next line is the remainder of the lowest one.
     fn is_end(&self, wanted: Kind) -> bool {
         wanted == Kind::Posts && Frame::was_posts(self.lines[self.next])
     }
@@ -240,7 +240,7 @@ impl Finder<'_> {
         self.next += 1;
     }
 
-    /// Says what the next line is, and what it should be.
+    /// Records a defect: the next line, and what was expected.
     fn note(&mut self, wanted: Kind, made: &str) {
         let found = match self.lines.get(self.next) {
             None => "the end of the file".into(),
@@ -252,19 +252,19 @@ impl Finder<'_> {
         self.defects.push(Defect::at(self.next + 1, message));
     }
 
-    /// Makes up for a line that is not there.
+    /// Inserts a missing line.
     fn miss(&mut self, wanted: Kind) {
         self.note(wanted, "its walls are unknown");
         self.found.push(Line { number: self.next + 1, text: None });
     }
 
-    /// Leaves out a line that was put in between.
+    /// Skips an inserted line.
     fn skip(&mut self, wanted: Kind) {
         self.note(wanted, "skipped");
         self.next += 1;
     }
 
-    /// Takes a damaged line for what should stand in its place.
+    /// Takes a damaged line for the expected one.
     fn repair(&mut self, wanted: Kind) {
         let line = self.lines[self.next];
         if !is_blank(line) {
@@ -278,7 +278,7 @@ impl Finder<'_> {
         }
     }
 
-    /// Names the first line outside of the picture that seems to be one of a picture.
+    /// Reports the first line outside the drawing that looks like part of a drawing.
     fn note_others(&mut self, top: usize) {
         let drawn = |line: &[u8]| vote(&String::from_utf8_lossy(line)).is_some();
         let above = self.lines[..top].iter().position(|line| drawn(line));

@@ -1,4 +1,4 @@
-//! EyeSim's `.maz`, through the reader that simulated worlds use.
+//! EyeSim's `.maz`, read by the parser of simulated worlds.
 
 use super::{MazeFile, MazeFormat, size_error};
 use crate::maze::{Cell, Defect, Direction, Maze, WallState};
@@ -43,7 +43,7 @@ fn enter_walls(grid: &maz::MazGrid, maze: &mut Maze) {
     }
 }
 
-/// Refuses a text that has walls and letters where no maze has them, or no walls at all.
+/// Rejects text with walls or letters in the wrong places, or without walls.
 fn refuse_prose(text: &str, file: &str) -> Result<(), FormatError> {
     let rows = || text.lines().zip(1..).filter(|(row, _)| row.starts_with(['|', '_', ' ', '\t']));
     let marks =
@@ -62,8 +62,8 @@ fn refuse_prose(text: &str, file: &str) -> Result<(), FormatError> {
     }
 }
 
-/// The cells with a letter that stands for a start, that which counts first: the first `s` as the picture is read, or else
-/// the first other one.
+/// Cells with a start letter, the valid one first: the first `s` in reading order, otherwise the first other
+/// letter.
 fn starts(grid: &maz::MazGrid, maze: &Maze) -> Vec<(Cell, Direction)> {
     let (width, height) = (maze.width() as u16, maze.height() as u16);
     let cells = (0..height).rev().flat_map(|y| (0..width).map(move |x| Cell::new(x, y)));
@@ -84,7 +84,7 @@ fn starts(grid: &maz::MazGrid, maze: &Maze) -> Vec<(Cell, Direction)> {
     found.into_iter().map(|(_, cell, heading)| (cell, heading)).collect()
 }
 
-/// Writes a maze with cells of so many metres.
+/// Writes a maze with a cell size (m).
 pub(super) fn print(maze: &Maze, cell_size: f64) -> String {
     let Some(mut grid) = maz::MazGrid::new(maze.width(), maze.height(), cell_size) else {
         return String::new();

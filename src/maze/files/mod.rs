@@ -1,8 +1,8 @@
-//! Files of mazes: EyeSim's `.maz`, pictures with posts (the micromouse text format, kerikun11's `.maze`, mms's `map`),
-//! mms's `num`, and the old binary files.
+//! Maze files: EyeSim's `.maz`, drawings with posts (the micromouse text format, kerikun11's `.maze`, mms's
+//! `map`), mms's `num`, and the old binary files.
 //!
-//! The format is told from the content, as the same names are used for several of them. What is wrong with a file but
-//! leaves no doubt about the rest is a [`Defect`] of what is read; what leaves doubt is an error.
+//! The format is recognised from the content, because several formats share the same names. An error that
+//! leaves the rest unambiguous is a [`Defect`]; any other is an error.
 
 mod binary;
 mod layout;
@@ -18,43 +18,43 @@ use std::path::Path;
 use super::{Defect, Maze, defects};
 use crate::world::formats::{FormatError, Location};
 
-/// A maze as read from a file.
+/// A maze read from a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MazeFile {
     /// The maze.
     pub maze: Maze,
-    /// The form in which the file has it.
+    /// Format of the file.
     pub format: MazeFormat,
-    /// Metres from cell to cell, where the file states it.
+    /// Cell size (m), if the file states it.
     pub cell: Option<f64>,
-    /// What is wrong with the file and with the maze; at most [`MazeFile::MAX_DEFECTS`].
+    /// Defects of the file and of the maze; at most [`MazeFile::MAX_DEFECTS`].
     pub defects: Vec<Defect>,
 }
 
 impl MazeFile {
-    /// Defects beyond this number are left out, so that a broken file does not fill the memory.
+    /// Maximum number of stored defects, so that a broken file does not exhaust the memory.
     pub const MAX_DEFECTS: usize = 1000;
 }
 
-/// A form in which mazes are written.
+/// A file format for mazes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum MazeFormat {
-    /// The micromouse text format: a picture with posts `o`.
+    /// The micromouse text format: a drawing with posts `o`.
     Text,
-    /// kerikun11's `.maze`, with posts `+`, start, goals and unknown walls.
+    /// kerikun11's `.maze`: posts `+`, start, goals and unknown walls.
     Maze,
-    /// mms's `map`: walls alone, with posts `+`.
+    /// mms's `map`: walls only, with posts `+`.
     Map,
-    /// mms's `num`: a line for each cell.
+    /// mms's `num`: one line per cell.
     Num,
     /// EyeSim's `.maz`: `_` and `|`, with letters in the cells.
     EyeSim,
-    /// A byte for each cell, column by column.
+    /// One byte per cell, column by column.
     Binary,
 }
 
-/// Bytes of a file at most. No text of a maze of 256 x 256 cells is half as long.
+/// Maximum file size (bytes): more than twice the text of a maze of 256 x 256 cells.
 const LONGEST: u64 = 4 << 20;
 
 fn require_length(bytes: u64, file: &str) -> Result<(), FormatError> {
@@ -64,7 +64,7 @@ fn require_length(bytes: u64, file: &str) -> Result<(), FormatError> {
     Err(FormatError::new(file, Location::START, format!("{bytes} bytes"), "a file of at most 4 MiB"))
 }
 
-/// Reads a maze file from disk.
+/// Reads a maze file from disk, in any format.
 ///
 /// ```
 /// use roverlab::maze::files::{load, parse, print};
@@ -92,7 +92,11 @@ pub fn load(path: impl AsRef<Path>) -> Result<MazeFile, FormatError> {
     parse(&std::fs::read(path).map_err(unreadable)?, &name)
 }
 
-/// Reads a maze of any format. `file` is the name that messages call it by.
+/// Reads a maze in any format; messages use `file` as its name.
+///
+/// # Errors
+///
+/// If the text is not a maze, its size is out of range, or it is longer than 4 MiB.
 pub fn parse(bytes: &[u8], file: &str) -> Result<MazeFile, FormatError> {
     require_length(bytes.len() as u64, file)?;
     let mut read = if binary::is_binary(bytes) { binary::read(bytes) } else { read_text(bytes, file)? };
@@ -105,7 +109,7 @@ fn read_text(bytes: &[u8], file: &str) -> Result<MazeFile, FormatError> {
     if bytes.contains(&0) {
         return Err(FormatError::new(file, Location::START, "bytes that are no text", "a maze"));
     }
-    // A maze needs none but ASCII characters. Any other one takes a column, as on the screen, whatever its bytes.
+    // Mazes need only ASCII characters. Any other one takes one column, as on screen.
     let text = String::from_utf8_lossy(bytes);
     let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n").replace('\r', "\n");
     let text = text.replace(|character: char| !character.is_ascii(), "?");
@@ -119,8 +123,13 @@ fn read_text(bytes: &[u8], file: &str) -> Result<MazeFile, FormatError> {
     }
 }
 
-/// Writes a maze. What a format has no form for is left out: `map` and `num` know no start, goal or unknown walls, and
-/// only EyeSim's knows other headings than north. Unknown walls become none there.
+/// Writes a maze. Information that the format cannot express is omitted: `map` and `num` have no start, goals
+/// or unknown walls, and only EyeSim's format has headings other than north. Unknown walls become absent
+/// there.
+///
+/// # Errors
+///
+/// If the format is binary.
 pub fn print(maze: &Maze, format: MazeFormat) -> Result<String, FormatError> {
     match format {
         MazeFormat::Text => Ok(picture::print(maze, 'o', true)),
@@ -135,7 +144,7 @@ pub fn print(maze: &Maze, format: MazeFormat) -> Result<String, FormatError> {
     }
 }
 
-/// The error for a maze of impossible size, at a line.
+/// The error for a maze of invalid size, at a line.
 fn size_error(error: &ParameterError, file: &str, line: usize) -> FormatError {
     let found = format!("a {} of {} cells", error.name(), error.value());
     FormatError::new(file, Location { line, column: 1 }, found, error.expected())

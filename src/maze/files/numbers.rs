@@ -1,4 +1,4 @@
-//! mms's `num`: a line `X Y N E S W` for each cell, with 1 for a wall.
+//! mms's `num`: one line `X Y N E S W` per cell, with 1 for a wall.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -7,7 +7,7 @@ use super::{MazeFile, MazeFormat, size_error};
 use crate::maze::{Cell, Defect, Direction, Maze, WallState};
 use crate::world::formats::{FormatError, Location};
 
-/// Whether most of the lines that say something are those of cells.
+/// Whether most non-blank lines describe cells.
 pub(super) fn is_list(lines: &[&str]) -> bool {
     let said = lines.iter().filter(|line| !line.trim().is_empty());
     let cells = said.clone().filter(|line| numbers(line).is_some()).count();
@@ -20,7 +20,7 @@ fn numbers(line: &str) -> Option<[i64; 6]> {
     words?.try_into().ok()
 }
 
-/// A cell as its line has it.
+/// The line of a cell.
 struct Entry {
     line: usize,
     /// Walls to the north, east, south and west.
@@ -100,7 +100,7 @@ pub(super) fn print(maze: &Maze) -> String {
             let cell = Cell::new(x, y);
             let walls = Direction::ALL.map(|side| u8::from(maze.wall(cell, side) == WallState::Present));
             let [north, east, south, west] = walls;
-            // A string takes all that is written.
+            // Writing to a string cannot fail.
             let _ = writeln!(text, "{x} {y} {north} {east} {south} {west}");
         }
     }

@@ -1,4 +1,4 @@
-//! Pictures of mazes with a post at every corner: four columns and two lines for each cell.
+//! Drawings of mazes with a post at every corner: four columns and two lines per cell.
 //!
 //! ```text
 //! o---o---o   +---+---+
@@ -8,15 +8,15 @@
 //! o---o---o   +---+---+
 //! ```
 //!
-//! Text before and after the picture, and to the right of it after a blank, is ignored. Where a line of it is missing, its
-//! walls are unknown.
+//! Text before and after the drawing, and to its right after a blank, is ignored. The walls of a missing line
+//! are unknown.
 
 use super::layout::{Layout, Line, is_post, shown};
 use super::{MazeFile, MazeFormat, size_error};
 use crate::maze::{Cell, Defect, Direction, Maze, WallState};
 use crate::world::formats::{FormatError, Location};
 
-/// The lines of a picture: posts and cells by turns, uppermost first.
+/// Lines of a drawing: posts and cells alternate, uppermost first.
 struct Picture<'a> {
     lines: Vec<Line<'a>>,
     width: usize,
@@ -67,11 +67,12 @@ pub(super) fn read(layout: Layout<'_>, file: &str) -> Result<MazeFile, FormatErr
     Ok(MazeFile { maze, format, cell: None, defects: picture.defects })
 }
 
-/// So many lines of remarks may stand beside the smallest maze; a text with more of them merely shows one.
+/// Number of other text lines allowed beside the smallest maze; text with more of them merely contains a
+/// drawing.
 const MOST_REMARKS: usize = 20;
 
 impl Picture<'_> {
-    /// A character; blank where the line has ended, `None` where it is missing.
+    /// A character; blank beyond the end of the line, `None` if the line is missing.
     fn at(&self, index: usize, column: usize) -> Option<u8> {
         self.lines[index].text.map(|text| text.get(column).copied().unwrap_or(b' '))
     }
@@ -80,7 +81,7 @@ impl Picture<'_> {
         self.defects.push(Defect::at(self.lines[index].number, message));
     }
 
-    /// Names what may be seen otherwise: blanks that are tabs, and walls beyond the last column.
+    /// Reports ambiguities: tabs, and walls beyond the last column.
     fn note_doubts(&mut self, index: usize) {
         let end = 4 * self.width + 1;
         let Some(text) = self.lines[index].text else { return };
@@ -93,7 +94,7 @@ impl Picture<'_> {
         }
     }
 
-    /// Enters the walls between the posts of a line.
+    /// Stores the walls between the posts of a line.
     fn posts(&mut self, index: usize, maze: &mut Maze) {
         for x in 0..=self.width {
             if let Some(post) = self.at(index, 4 * x).filter(|&post| !is_post(post)) {
@@ -114,7 +115,7 @@ impl Picture<'_> {
                     WallState::Present
                 }
             };
-            // The uppermost line is above the uppermost row, any other below one.
+            // The top line is above the uppermost row, any other line below a row.
             let (cell, side) = match index {
                 0 => (self.cell(x, 1), Direction::North),
                 _ => (self.cell(x, index - 1), Direction::South),
@@ -123,7 +124,7 @@ impl Picture<'_> {
         }
     }
 
-    /// Enters the walls beside cells, and what stands in the cells.
+    /// Stores the walls beside cells, and the marks in the cells.
     fn cells(&mut self, index: usize, maze: &mut Maze, starts: &mut Vec<Cell>, goals: &mut Vec<Cell>) {
         for x in 0..=self.width {
             let mark = self.at(index, 4 * x).unwrap_or(b'.');
@@ -163,13 +164,13 @@ impl Picture<'_> {
         }
     }
 
-    /// The cell of a column and of a line of cells.
+    /// The cell of a column and a line of cells.
     fn cell(&self, x: usize, index: usize) -> Cell {
         Cell::new(x as u16, (self.lines.len() / 2 - 1 - index / 2) as u16)
     }
 }
 
-/// Draws a maze. Without `marks`, start, goals and unknown walls are left out.
+/// Draws a maze. Without `marks`, start, goals and unknown walls are omitted.
 pub(super) fn print(maze: &Maze, post: char, marks: bool) -> String {
     let mut text = String::new();
     for y in (0..maze.height() as u16).rev() {
@@ -182,7 +183,7 @@ pub(super) fn print(maze: &Maze, post: char, marks: bool) -> String {
             text.push(beside(maze.wall(cell, Direction::West), marks));
             let mark = match cell {
                 _ if !marks => ' ',
-                // A goal at the start stays a goal: the start is found without a mark, the goal is not.
+                // A goal at the start stays a goal: readers find the start without a mark, but not the goal.
                 _ if maze.is_goal(cell) => 'G',
                 _ if cell == maze.start() => 'S',
                 _ => ' ',

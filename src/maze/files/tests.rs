@@ -12,7 +12,7 @@ fn messages(file: &MazeFile) -> Vec<String> {
     file.defects.iter().map(ToString::to_string).collect()
 }
 
-/// The maze without what a format has no form for.
+/// The maze, reduced to what every format can express.
 fn plain(maze: &Maze) -> Maze {
     let mut plain = Maze::open(maze.width(), maze.height()).unwrap();
     for cell in maze.cells() {
@@ -121,7 +121,7 @@ fn defects_of_pictures_are_named() {
     );
 }
 
-/// A maze with walls in every line, that damage is done to.
+/// A maze with walls in every line, to be damaged.
 const LINES: [&str; 9] = [
     "o---o---o---o---o",
     "|       |       |",
@@ -150,11 +150,11 @@ fn damaged_pictures_are_read_whole() {
     };
     let unknown = "its walls are unknown";
     for (with, index, count, same, message) in [
-        // Lines that are put in.
+        // Inserted lines.
         ("", 4, 0, true, "line 5: found a blank line; expected a line of posts; skipped".into()),
         ("# hi", 4, 0, true, "line 5: found \"# hi\"; expected a line of posts; skipped".into()),
         ("", 5, 0, true, "line 6: found a blank line; expected a line of cells; skipped".into()),
-        // Lines that are damaged.
+        // Damaged lines.
         (
             "x   x---x   o   o",
             2,
@@ -171,7 +171,7 @@ fn damaged_pictures_are_read_whole() {
         ),
         ("", 4, 1, false, format!("line 5: found a blank line; expected a line of posts; {unknown}")),
         ("", 5, 1, false, format!("line 6: found a blank line; expected a line of cells; {unknown}")),
-        // Lines that are lost.
+        // Lost lines.
         (
             "-",
             4,
@@ -344,7 +344,7 @@ fn what_may_be_seen_otherwise_is_named() {
         "\"---+\" to the right of the maze",
     );
     assert_eq!(cut.maze.width(), 2);
-    // Whatever its bytes, a character takes a column.
+    // A character takes one column, whatever its encoding.
     let odd = named("+---+---+\n| é   G |\n+   +---+\n| S     |\n+---+---+\n", "has no meaning");
     assert_eq!(odd.maze.goals().collect::<Vec<_>>(), [Cell::new(1, 1)]);
 }

@@ -3,11 +3,12 @@ use std::collections::VecDeque;
 use super::{Distances, FloodFill, Passages, UNREACHED};
 use crate::maze::{Cell, Direction};
 
-/// A flood fill that is kept up to date while walls come and go.
+/// A flood fill that is updated incrementally when walls change.
 ///
-/// A wall that opens lets shorter ways run through it; one that closes takes away the ways of those cells that have no
-/// other as short, and these are filled anew from their rim (Ramalingam and Reps, 1996, with unit costs). The work is that
-/// of the cells whose distance changes. [`FloodFill`] is faster on mazes of up to 32 x 32 cells, whatever changes.
+/// An opened wall lets shorter ways spread through it. A closed wall invalidates the cells whose shortest
+/// ways all used it; they are filled again from their boundary (Ramalingam and Reps, 1996, with unit costs).
+/// The work is proportional to the cells whose distance changes. Up to 32 x 32 cells, [`FloodFill`] is
+/// faster, whatever changes.
 ///
 /// ```
 /// use roverlab::maze::{Cell, Direction, IncrementalFlood, Maze, Passages, Unknown};
@@ -16,7 +17,7 @@ use crate::maze::{Cell, Direction};
 /// let mut flood = IncrementalFlood::new(passages, [source]);
 /// assert_eq!(flood.distances().get(far), Some(2));
 /// let changed = flood.set(source, Direction::East, false);
-/// assert_eq!((changed, flood.distances().get(far)), (2, Some(4)), "round by the other row");
+/// assert_eq!((changed, flood.distances().get(far)), (2, Some(4)), "around through the other row");
 /// # Ok::<(), roverlab::ParameterError>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -36,17 +37,17 @@ impl IncrementalFlood {
         Self { passages, sources, distances: flood.into_distances(), queue: VecDeque::new() }
     }
 
-    /// The distances as of now.
+    /// The present distances.
     pub fn distances(&self) -> &Distances {
         &self.distances
     }
 
-    /// The passages as of now.
+    /// The present passages.
     pub fn passages(&self) -> &Passages {
         &self.passages
     }
 
-    /// Opens or closes the way between a cell and its neighbour. Returns how many distances changed.
+    /// Opens or closes the passage between a cell and its neighbour. Returns the number of changed distances.
     pub fn set(&mut self, cell: Cell, direction: Direction, open: bool) -> usize {
         let Some(other) = self.next(cell, direction) else { return 0 };
         if self.passages.is_open(cell, direction) == open {
@@ -82,13 +83,13 @@ impl IncrementalFlood {
         usize::from(cell.y) * self.passages.width + usize::from(cell.x)
     }
 
-    /// The least that the neighbours of a cell offer.
+    /// Minimum distance by way of the neighbours of a cell.
     fn offer(&self, cell: Cell) -> u32 {
         let offers = self.open_neighbours(cell).map(|other| self.steps(other));
         offers.min().unwrap_or(UNREACHED).saturating_add(1)
     }
 
-    /// Lets shorter ways spread from cells.
+    /// Propagates shorter ways from cells.
     fn improve(&mut self, cells: impl IntoIterator<Item = Cell>) -> usize {
         let mut changed = 0;
         self.queue.extend(cells);
@@ -104,7 +105,7 @@ impl IncrementalFlood {
         changed
     }
 
-    /// Takes back the distances that nothing supports any more, and fills those cells anew.
+    /// Invalidates distances that lost their support, and fills those cells again.
     fn worsen(&mut self, cells: impl IntoIterator<Item = Cell>) -> usize {
         let mut lost: Vec<(Cell, u32)> = Vec::new();
         self.queue.extend(cells);
@@ -123,7 +124,7 @@ impl IncrementalFlood {
         lost.iter().filter(|&&(cell, steps)| self.steps(cell) != steps).count()
     }
 
-    /// Fills cells without a distance from those around them, the nearest first.
+    /// Fills invalidated cells from their surroundings, nearest first.
     fn refill(&mut self, lost: Vec<Cell>) {
         let mut rim: Vec<(u32, Cell)> = lost.into_iter().map(|cell| (self.offer(cell), cell)).collect();
         rim.retain(|&(offer, _)| offer != UNREACHED);

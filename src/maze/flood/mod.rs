@@ -1,11 +1,11 @@
-//! Flood fill: how many steps every cell is from the nearest of some cells (book, section 9.6).
+//! Flood fill: number of steps from every cell to the nearest source (book, section 9.6).
 
 mod incremental;
 mod passages;
 mod queue;
 #[cfg(target_arch = "x86_64")]
 mod register;
-#[allow(clippy::inline_always, reason = "a function compiled for a processor takes in only what is inlined")]
+#[allow(clippy::inline_always, reason = "only inlined code is compiled for the selected processor")]
 mod wave;
 
 #[cfg(test)]
@@ -24,11 +24,11 @@ pub struct Distances {
     steps: Vec<u32>,
 }
 
-/// The number of steps that stands for none.
+/// Distance of unreachable cells.
 const UNREACHED: u32 = u32::MAX;
 
 impl Distances {
-    /// Steps from a cell to the nearest source; `None` where no way leads there, and outside of the maze.
+    /// Steps from a cell to the nearest source; `None` if it is unreachable or outside the maze.
     #[inline]
     pub fn get(&self, cell: Cell) -> Option<u32> {
         let x = usize::from(cell.x);
@@ -38,17 +38,17 @@ impl Distances {
         self.steps.get(usize::from(cell.y) * self.width + x).copied().filter(|&steps| steps != UNREACHED)
     }
 
-    /// How many cells a way leads to, the sources included.
+    /// Number of reachable cells, sources included.
     pub fn reached(&self) -> usize {
         self.steps.iter().filter(|&&steps| steps != UNREACHED).count()
     }
 
-    /// The most steps of any cell that a way leads to; `None` without a source.
+    /// Maximum number of steps of any reachable cell; `None` without sources.
     pub fn farthest(&self) -> Option<u32> {
         self.steps.iter().copied().filter(|&steps| steps != UNREACHED).max()
     }
 
-    /// The steps of all cells, row by row from below; `u32::MAX` where no way leads.
+    /// Steps of all cells, row by row from below; `u32::MAX` if unreachable.
     pub fn as_slice(&self) -> &[u32] {
         &self.steps
     }
@@ -60,11 +60,12 @@ impl Distances {
     }
 }
 
-/// Flood fills one after the other in the same memory.
+/// Flood fills that reuse their buffers.
 ///
-/// Mazes of up to 32 x 32 cells are filled by a wave of bits that takes all cells of one distance at once, compiled for
-/// several processors; the best is chosen at run time: a time in proportion to the steps to the farthest cell, however many cells
-/// the wave is wide. Larger ones are filled from a queue with few branches, in a time in proportion to the cells.
+/// Mazes of up to 32 x 32 cells are filled by a bit-parallel wave that advances all cells of one distance at
+/// once. It is compiled for several processors, and the best version is selected at run time; the time is
+/// proportional to the steps to the farthest cell. Larger mazes are filled from a queue with few branches, in
+/// time proportional to the number of cells.
 ///
 /// ```
 /// use roverlab::maze::{Cell, Direction, FloodFill, Maze, Passages, Unknown, WallState};
@@ -84,7 +85,7 @@ pub struct FloodFill {
 }
 
 impl FloodFill {
-    /// Fills a maze from its sources; those outside of it do not count.
+    /// Fills a maze from its sources; sources outside it are ignored.
     pub fn run(&mut self, passages: &Passages, sources: impl IntoIterator<Item = Cell>) -> &Distances {
         let distances = &mut self.distances;
         let inside = |cell: &Cell| passages.contains(*cell);
@@ -104,18 +105,18 @@ impl FloodFill {
         distances
     }
 
-    /// What the last run found.
+    /// Result of the last run.
     pub fn distances(&self) -> &Distances {
         &self.distances
     }
 
-    /// What the last run found, without a copy.
+    /// Result of the last run, without a copy.
     pub fn into_distances(self) -> Distances {
         self.distances
     }
 }
 
-/// The steps of every cell to the goal of a maze.
+/// Steps from every cell to the goal.
 ///
 /// ```
 /// use roverlab::maze::{Cell, Maze, Unknown, distances_to_goal};
@@ -131,7 +132,7 @@ pub fn distances_to_goal(maze: &Maze, unknown: Unknown) -> Distances {
     flood.into_distances()
 }
 
-/// The steps of every cell from the start of a maze.
+/// Steps from the start to every cell.
 ///
 /// ```
 /// use roverlab::maze::{Cell, Direction, Maze, Unknown, WallState, distances_from_start};

@@ -1,6 +1,6 @@
 use crate::maze::{Cell, Direction, Maze, Unknown};
 
-/// Where one can go from cell to cell, in the form that flood fill is fastest on.
+/// Passages between cells, in the form that flood fill processes fastest.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Passages {
     pub(super) width: usize,
@@ -8,7 +8,7 @@ pub struct Passages {
     pub(super) grid: Grid,
 }
 
-/// Cells of the largest maze.
+/// Number of cells of the largest maze.
 pub(super) const LARGEST: usize = Maze::MAX_SIDE * Maze::MAX_SIDE;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -17,12 +17,12 @@ pub(super) enum Grid {
     Small(Boards<4>),
     /// Up to 32 x 32 cells, in rows of 32 bits.
     Medium(Box<Boards<16>>),
-    /// Any more: for each cell its open directions, north in the lowest bit; always as many as the largest maze has.
+    /// Larger mazes: open directions per cell, north in the lowest bit; always sized for the largest maze.
     Large(Vec<u8>),
 }
 
-/// A bit for each cell that is open to the east, and to the north. Of `N` words each has every `N`th row, so that the next
-/// row is in the next word at the same place.
+/// Bit boards of the cells that are open to the east and to the north. Word `i` of `N` holds every `N`th row
+/// from `i`, so that the next row is at the same place in the next word.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Boards<const N: usize> {
     pub(super) east: [u64; N],
@@ -30,16 +30,16 @@ pub(super) struct Boards<const N: usize> {
 }
 
 impl<const N: usize> Boards<N> {
-    /// Bits of a row, with which `N` words hold as many rows.
+    /// Bits per row; `N` words hold as many rows.
     pub(super) const ROW: usize = if N == 4 { 16 } else { 32 };
 
-    /// The word of a row, and its lowest bit there.
+    /// Word of a row, and its lowest bit there.
     #[inline]
     pub(super) fn place(row: usize) -> (usize, usize) {
         (row % N, row / N * Self::ROW)
     }
 
-    /// The boards of a maze that is no wider and no higher than a row is long.
+    /// Boards of a maze whose sides are at most `ROW`.
     fn read(maze: &Maze, unknown: Unknown) -> Self {
         let mut boards = Self { east: [0; N], north: [0; N] };
         for row in 0..maze.height() {
@@ -61,7 +61,7 @@ impl<const N: usize> Boards<N> {
 }
 
 impl Passages {
-    /// The passages of a maze, with unknown walls taken as said.
+    /// Passages of a maze, with `unknown` for unknown walls.
     pub fn new(maze: &Maze, unknown: Unknown) -> Self {
         let (width, height) = (maze.width(), maze.height());
         let grid = match width.max(height) {
@@ -72,7 +72,7 @@ impl Passages {
         Self { width, height, grid }
     }
 
-    /// As [`new`](Self::new), but always in the form of large mazes, which are filled from a queue: for comparisons.
+    /// As [`new`](Self::new), but always in the form for large mazes, for comparisons.
     pub fn listed(maze: &Maze, unknown: Unknown) -> Self {
         let (width, height) = (maze.width(), maze.height());
         let mut passages = Self { width, height, grid: Grid::Large(vec![0; LARGEST]) };
@@ -86,12 +86,12 @@ impl Passages {
         passages
     }
 
-    /// Cells from left to right.
+    /// Number of cells from left to right.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Cells from bottom to top.
+    /// Number of cells from bottom to top.
     pub fn height(&self) -> usize {
         self.height
     }
@@ -102,7 +102,8 @@ impl Passages {
         usize::from(cell.x) < self.width && usize::from(cell.y) < self.height
     }
 
-    /// Opens or closes the way between a cell and its neighbour, both ways. Where there is no neighbour nothing happens.
+    /// Opens or closes the passage between a cell and its neighbour, in both directions. Without a neighbour,
+    /// nothing happens.
     pub fn set(&mut self, cell: Cell, direction: Direction, open: bool) {
         let Some((lower, eastward)) = self.lower(cell, direction) else { return };
         match &mut self.grid {
@@ -124,7 +125,7 @@ impl Passages {
         }
     }
 
-    /// Whether one can go from a cell to its neighbour.
+    /// Whether the passage from a cell to its neighbour is open.
     #[inline]
     pub fn is_open(&self, cell: Cell, direction: Direction) -> bool {
         let Some((lower, eastward)) = self.lower(cell, direction) else { return false };
@@ -138,7 +139,7 @@ impl Passages {
         }
     }
 
-    /// Of a cell and its neighbour the western or southern one, and whether the other lies east of it.
+    /// The western or southern one of a cell and its neighbour, and whether the other lies to its east.
     #[inline]
     fn lower(&self, cell: Cell, direction: Direction) -> Option<((usize, usize), bool)> {
         let (x, y) = (usize::from(cell.x), usize::from(cell.y));

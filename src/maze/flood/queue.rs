@@ -1,31 +1,31 @@
-//! Flood fill of large mazes: a queue, filled with few branches.
+//! Flood fill of large mazes, from a queue with few branches.
 //!
-//! Whether a neighbour is new is as good as random to a processor, so that a branch on it costs more than to write the
-//! neighbour behind the end of the queue in any case and to move the end by 0 or 1. Each entry has the ways on from its cell,
-//! without the one back; most cells have one. Cells have numbers of 16 bits, with which no index into the arrays can be out
-//! of range.
+//! Whether a neighbour is new is unpredictable to the processor, so a branch on it costs more than always
+//! writing the neighbour behind the end of the queue and advancing the end by 0 or 1. Each entry holds the
+//! passages from its cell except the one back; most cells have one. Cells have 16-bit numbers, so no index is
+//! out of range.
 
 use super::UNREACHED;
 use super::passages::LARGEST;
 use crate::maze::Cell;
 
-/// The memory of a flood fill.
+/// Buffers of a flood fill.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Queue {
-    /// Cells in the lower 16 bits, open directions above. No cell enters twice, so that the end comes round to the
-    /// beginning only when that has long been read.
+    /// Cells in the lower 16 bits, open directions above. No cell enters twice, so the end wraps around to
+    /// the start only after that has been read.
     entries: Vec<u32>,
-    /// The open directions of cells that no entry has, and [`SEEN`] for the others.
+    /// Open directions of cells that are not yet queued; [`SEEN`] for the others.
     unseen: Vec<u8>,
 }
 
-/// More than any set of directions.
+/// Mark of a queued cell: more than any set of directions.
 const SEEN: u8 = 1 << 7;
-/// Where the open directions of an entry are.
+/// Bit offset of the open directions in an entry.
 const OPEN: u32 = 16;
 
 impl Queue {
-    /// Fills a maze of some width, `steps` of it in number.
+    /// Fills a maze of a width with `steps.len()` cells.
     pub(super) fn fill(
         &mut self,
         openings: &[u8],
@@ -47,7 +47,7 @@ impl Queue {
     }
 }
 
-/// For each set of openings what to add to a cell for those behind them, with the directions back; 0 for none.
+/// For each set of open sides, the offsets to the neighbours, each with the direction back; 0 for none.
 type Ways = [[u32; 4]; 16];
 
 fn ways(width: usize) -> Ways {
@@ -67,7 +67,7 @@ struct Run<'a> {
     entries: &'a mut [u32; LARGEST],
     unseen: &'a mut [u8; LARGEST],
     ways: Ways,
-    /// How many cells have entered the queue.
+    /// Number of queued cells.
     end: usize,
 }
 
@@ -80,11 +80,11 @@ impl Run<'_> {
         }
     }
 
-    /// Goes on from the sources to all cells.
+    /// Spreads from the sources to all cells.
     fn spread(&mut self, steps: &mut [u32]) {
         let (mut next, mut distance) = (0, 0);
         while next < self.end {
-            // All entries so far are as far away.
+            // All entries so far have the same distance.
             let level = self.end;
             while next < level {
                 let entry = self.entries[usize::from(next as u16)];
@@ -93,7 +93,7 @@ impl Run<'_> {
                 steps[usize::from(here)] = distance;
                 let ways = self.ways[open as usize];
                 self.visit(here, ways[0]);
-                // Few cells have more than one way on, and only sources have four.
+                // Few cells have more than one further passage, and only sources have four.
                 if ways[1] != 0 {
                     self.visit(here, ways[1]);
                     self.visit(here, ways[2]);
@@ -106,7 +106,8 @@ impl Run<'_> {
         }
     }
 
-    /// Enters a neighbour if it is new. Without a way one comes back to where one is, which is not.
+    /// Queues a neighbour if it is new. Without a passage, the offset 0 leads back to the cell itself, which
+    /// is not new.
     #[inline]
     fn visit(&mut self, here: u16, way: u32) {
         let there = here.wrapping_add(way as u16);

@@ -1,5 +1,5 @@
-//! The wave of small mazes in registers of 256 bits, one for each board: left to itself, the compiler spreads the four words
-//! of a board over smaller ones, and gathers them again in each step.
+//! The wave of small mazes in 256-bit registers, one per board. Left to itself, the compiler spreads the four
+//! words of a board over smaller registers and gathers them in each step.
 
 use std::arch::x86_64::{
     __m256i, _mm256_and_si256, _mm256_andnot_si256, _mm256_extract_epi64, _mm256_or_si256,
@@ -86,14 +86,14 @@ impl RegisterWave {
     }
 }
 
-/// Every cell's bit at the place of the cell to its north: a word on, and at the last word a row up.
+/// Moves every bit to the cell to its north: one word on, and after the last word one row up.
 #[target_feature(enable = "avx2")]
 #[inline]
 fn row_above(board: __m256i) -> __m256i {
     _mm256_sllv_epi64(_mm256_permute4x64_epi64::<0b10_01_00_11>(board), _mm256_setr_epi64x(16, 0, 0, 0))
 }
 
-/// Every cell's bit at the place of the cell to its south.
+/// Moves every bit to the cell to its south.
 #[target_feature(enable = "avx2")]
 #[inline]
 fn row_below(board: __m256i) -> __m256i {

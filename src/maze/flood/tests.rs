@@ -8,7 +8,7 @@ use crate::maze::generate::{braided, mazes, partly_known};
 use crate::maze::{Direction, WallState};
 use crate::random::Stream;
 
-/// Breadth-first search, as plainly as it can be written.
+/// Breadth-first search in its plainest form.
 fn breadth_first(maze: &Maze, unknown: Unknown, sources: &[Cell]) -> Vec<Option<u32>> {
     let mut steps = vec![None; maze.cell_count()];
     let mut queue: VecDeque<Cell> = sources.iter().copied().collect();
@@ -28,7 +28,7 @@ fn breadth_first(maze: &Maze, unknown: Unknown, sources: &[Cell]) -> Vec<Option<
     steps
 }
 
-/// Dijkstra's algorithm with every step at a cost of 1.
+/// Dijkstra's algorithm with unit costs.
 fn dijkstra(maze: &Maze, unknown: Unknown, sources: &[Cell]) -> Vec<Option<u32>> {
     let mut steps = vec![None; maze.cell_count()];
     let mut open: BinaryHeap<_> = sources.iter().map(|&cell| Reverse((0, cell))).collect();
@@ -141,7 +141,7 @@ proptest! {
 
 #[test]
 fn waves_spread_alike_with_and_without_wide_registers() {
-    // Where there are such registers, nothing else tries the wave that does without them.
+    // On processors with such registers, nothing else tests the portable wave.
     for seed in 0..50 {
         let maze = braided(16, 16, 0.1, seed).unwrap();
         let passages = Passages::new(&maze, Unknown::Closed);
@@ -154,7 +154,7 @@ fn waves_spread_alike_with_and_without_wide_registers() {
 
 #[test]
 fn the_longest_possible_ways_are_counted() {
-    // A snake through all cells: the last one is as far as a cell can be.
+    // A snake through all cells: the last one has the largest possible distance.
     for side in [16, 32, 256] {
         let mut maze = Maze::open(side, side).unwrap();
         for y in 1..side as u16 {

@@ -1,13 +1,15 @@
-//! Flood fill of small mazes: all cells of one distance are the bits of a few words, and one step moves them all.
+//! Flood fill of small mazes by a bit-parallel wave: the cells of one distance are the bits of a few words,
+//! and one step moves them all.
 //!
-//! The distance of a cell is written as bits too: whenever a wave comes to new cells, they enter the planes of those bits
-//! that are set in its number. The three lowest planes take part in each step; the others are the same for eight steps.
+//! Distances are stored as bit planes: when the wave reaches new cells, they enter the planes of the bits set
+//! in their distance. The three lowest planes change with each step, the others every eight steps.
 
 use super::UNREACHED;
 use super::passages::Boards;
 use crate::maze::Cell;
 
-/// A wave on its way: the cells it is at, those it has not come to, and their distances, a plane for each bit.
+/// State of a wave: the cells of the wavefront, the cells not yet reached, and the distances, one plane per
+/// bit.
 pub(super) struct Wave<const N: usize, const P: usize> {
     pub(super) front: [u64; N],
     pub(super) unseen: [u64; N],
@@ -15,7 +17,7 @@ pub(super) struct Wave<const N: usize, const P: usize> {
 }
 
 impl<const N: usize, const P: usize> Wave<N, P> {
-    /// A wave that has run to its end.
+    /// Runs a wave to its end.
     #[inline(always)]
     pub(super) fn spread(boards: &Boards<N>, sources: [u64; N]) -> Self {
         let mut wave = Self { front: sources, unseen: [!0; N], planes: [[0; N]; P] };
@@ -27,7 +29,8 @@ impl<const N: usize, const P: usize> Wave<N, P> {
         wave
     }
 
-    /// Steps whose distances differ in the three lowest bits alone, written out: a loop is not unrolled, and is half as fast.
+    /// Eight steps, whose distances differ in the three lowest bits only. Written out, because a loop is not
+    /// unrolled and half as fast.
     #[inline(always)]
     fn go_eight_steps(&mut self, boards: &Boards<N>, eighth: usize) {
         let before = self.unseen;
@@ -45,7 +48,7 @@ impl<const N: usize, const P: usize> Wave<N, P> {
         }
     }
 
-    /// Notes the cells that the wave is at and moves it on. `LOW` are the three lowest bits of their distance.
+    /// Records the wavefront and moves it on. `LOW` are the three lowest bits of its distance.
     #[inline(always)]
     fn go<const LOW: usize>(&mut self, boards: &Boards<N>) {
         for (bit, plane) in self.planes.iter_mut().take(3).enumerate() {
@@ -67,8 +70,8 @@ fn add<const N: usize>(plane: &mut [u64; N], cells: &[u64; N]) {
     }
 }
 
-/// Cells that the wave comes to from `front`. The row above that of one word is in the next word; only between the last and
-/// the first word bits move.
+/// Cells that the wave reaches from `front`. The row above is in the next word at the same place; only
+/// between the last and the first word do bits move.
 #[inline(always)]
 fn step<const N: usize>(boards: &Boards<N>, front: &[u64; N], unseen: &[u64; N]) -> [u64; N] {
     let row = Boards::<N>::ROW;
@@ -84,12 +87,12 @@ fn step<const N: usize>(boards: &Boards<N>, front: &[u64; N], unseen: &[u64; N])
     })
 }
 
-/// Writes the distances of a maze of any width up to that of a row.
+/// Writes the distances of a maze up to one row of bits wide.
 #[inline(always)]
 pub(super) fn write<const N: usize, const P: usize>(wave: &Wave<N, P>, width: usize, steps: &mut [u32]) {
     for (y, line) in steps.chunks_exact_mut(width).enumerate() {
         let (word, shift) = Boards::<N>::place(y);
-        // What stands above the row's bits is of no cell.
+        // Bits above the row belong to no cell.
         let bits = |plane: &[u64; N]| (plane[word] >> shift) as u32;
         let rows: [u32; P] = std::array::from_fn(|p| bits(&wave.planes[p]));
         let unseen = bits(&wave.unseen);
@@ -141,7 +144,7 @@ fn small(boards: &Boards<4>, sources: [u64; 4], width: usize, steps: &mut [u32])
         "x86_64+avx512f+avx512bw+avx512dq+avx512vl" | "x86_64+avx2+bmi1+bmi2" => super::register::spread(boards, sources),
         _ => Wave::<4, 8>::spread(boards, sources),
     };
-    // The usual width, known beforehand: all of a row is written at once.
+    // The usual width as a constant, so that a row is written at once.
     if width == 16 {
         write(&wave, 16, steps);
     } else {

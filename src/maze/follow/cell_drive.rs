@@ -8,34 +8,35 @@ use crate::io::{DistanceSensors, Psd, Result};
 use crate::maze::{Rig, Scale};
 use crate::parameter::{require_finite, require_positive};
 
-/// What [`CellDrive`] goes by.
+/// Parameters of [`CellDrive`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CellDriveParameters {
-    /// Metres from the middle of a cell to that of the next.
+    /// Cell size (m).
     pub cell: f64,
-    /// How thick the walls are, in metres.
+    /// Thickness of the walls (m).
     pub wall: f64,
-    /// Metres per second.
+    /// Speed (m/s).
     pub speed: f64,
-    /// What a side sensor reads in the middle between two walls, in metres.
+    /// Reading of a side sensor midway between two walls (m).
     pub aside: f64,
-    /// Metres that the side sensors sit before the middle of the robot.
+    /// Distance of the side sensors ahead of the robot's centre (m).
     pub sensors_ahead: f64,
-    /// What the front sensor reads in the middle of a cell with a wall ahead, in metres.
+    /// Reading of the front sensor in a cell's centre with a wall ahead (m).
     pub ahead: f64,
-    /// Metres that the robot goes on once it is told to stop.
+    /// Distance that the robot rolls after the command to stop (m).
     pub coast: f64,
-    /// The standard deviation of a side sensor's reading, in metres. With it, odometry smoothes how far off the middle the
-    /// robot is; without it, the readings are taken as they are.
+    /// Standard deviation of a side sensor's reading (m). If given, the lateral offset is filtered with
+    /// odometry; otherwise readings are used directly.
     pub reading_error: Option<f64>,
-    /// Turning speed, in rad/s, for a metre off the middle.
+    /// Controller of the angular velocity (rad/s) from the lateral offset (m).
     pub steering: PidParameters,
 }
 
 impl CellDriveParameters {
-    /// The book's proportional controller, a degree per second for each millimetre of difference, for a robot in a maze.
+    /// The book's proportional controller, 1 deg/s per millimetre of difference, scaled to the maze.
     ///
-    /// It swings about the middle. Motors that lag as an S4's make the swing grow along a straight, up to the walls.
+    /// It oscillates about the centre line. With slow motors, such as those of an S4, the oscillation grows
+    /// along a straight until the robot hits a wall.
     pub fn proportional(rig: &Rig, scale: Scale, speed: f64) -> Self {
         let [front, left, _] = rig.sensors;
         let free = 0.5 * (scale.cell - scale.wall);
@@ -53,7 +54,7 @@ impl CellDriveParameters {
         }
     }
 
-    /// A PID controller (section 9.8) for the same, which takes an error back within half of a cell without swinging.
+    /// A PID controller (section 9.8) that corrects an offset within half a cell without oscillation.
     pub fn pid(rig: &Rig, scale: Scale, speed: f64) -> Self {
         let book = Self::proportional(rig, scale, speed);
         let reach = 0.4 * scale.cell;
@@ -80,27 +81,43 @@ impl CellDriveParameters {
     }
 }
 
-/// Drives straight into the next cell, in the middle between the walls beside it (book, section 9.3).
+/// Drives straight into the next cell, midway between the walls beside it (book, section 9.3).
 ///
-/// Which walls there are the readings tell: one that is far from what it would be in the middle comes from no wall of this
-/// cell. Both walls, the left one, the right one or none are followed. The way ends after the length of a cell by odometry,
-/// or by the wall ahead where there is one.
+/// The readings determine which walls exist: one that is far from the expected value does not come from a
+/// wall of this cell. The robot follows both walls, the left one, the right one or none. It stops after one
+/// cell length by odometry, or by the wall ahead if there is one.
 ///
-/// With a [`reading_error`](CellDriveParameters::reading_error), the place in the cell is kept from cell to cell, and what a
-/// slanted beam meets at a side opening is not taken for a wall beside the robot: readings count away from posts, and where
-/// they agree with what is known. How much farther the robot rolls than odometry says is learnt from where walls end. Where
-/// none has ended yet for so long that this may be half a cell, as after some 16 cells with wheels 3 % too large, it
-/// cannot tell one cell from the next.
+/// With a [`reading_error`](CellDriveParameters::reading_error), the position in the cell is tracked from
+/// cell to cell, so that a slanted beam at a side opening is not mistaken for a wall: readings count only
+/// away from posts and if they agree with the estimate. Where walls end, the robot also learns the scale
+/// error of its odometry. If no wall ends until that error may reach half a cell, as after some 16 cells with
+/// wheels 3 % too large, cells can no longer be told apart.
+///
+/// ```
+/// use roverlab::geometry::Pose;
+/// use roverlab::kinematics::OdometryErrors;
+/// use roverlab::maze::{CellDrive, CellDriveParameters, Rig, Scale, mouse};
+/// let rig = Rig::new(&mouse(), OdometryErrors::default(), 0.0)?;
+/// let (scale, speed) = (Scale::MICROMOUSE, 0.1);
+/// let mut drive = CellDrive::new(CellDriveParameters::pid(&rig, scale, speed))?;
+/// drive.begin();
+/// // Nothing ahead, and closer to the left wall than to the right one: steer to the right.
+/// let twist = drive.step(Pose::default(), [f64::INFINITY, 0.04, 0.06], 0.02)?.expect("on the way");
+/// assert!(twist.linear > 0.0 && twist.angular < 0.0);
+/// let next = Pose::new(scale.cell, 0.0, 0.0);
+/// assert_eq!(drive.step(next, [f64::INFINITY; 3], 1.8)?, None, "in the next cell");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct CellDrive {
     parameters: CellDriveParameters,
     pid: Pid,
     place: Option<PlaceInCell>,
-    /// The readings of the last step on the way.
+    /// Readings of the previous step.
     last: Option<Readings>,
 }
 
-/// Readings of the sensors at the front, on the left and on the right, in metres.
+/// Readings of the front, left and right sensor (m).
 pub(super) type Readings = [f64; 3];
 
 pub(super) fn read<R: DistanceSensors + ?Sized>(robot: &mut R) -> Result<Readings> {
@@ -108,19 +125,23 @@ pub(super) fn read<R: DistanceSensors + ?Sized>(robot: &mut R) -> Result<Reading
 }
 
 impl CellDrive {
-    /// Of a cell, how far from the middle of a post a side sensor has to be to be believed: half of a post, and what
-    /// a beam may slant.
+    /// Minimum distance of a valid side reading from the middle of a post (cells): half a post, plus the
+    /// slant of the beam.
     const NEAR_POST: f64 = 0.16;
-    /// Of a cell, how well the end of a wall tells where the robot is.
+    /// Standard deviation of the position by the end of a wall (cells).
     const EDGE: f64 = 0.03;
 
-    /// A controller before its first cell. Fails with the name of the parameter that is out of range.
+    /// A controller before its first cell.
+    ///
+    /// # Errors
+    ///
+    /// If a parameter is out of range.
     pub fn new(parameters: CellDriveParameters) -> Result<Self> {
         parameters.validate()?;
         Ok(Self { pid: Pid::new(parameters.steering)?, parameters, place: None, last: None })
     }
 
-    /// Begins with a new cell, after a turn on the spot or without one.
+    /// Starts a new cell, with or without a turn on the spot before.
     pub fn begin(&mut self) {
         if let Some(place) = &mut self.place {
             place.along -= self.parameters.cell;
@@ -136,27 +157,32 @@ impl CellDrive {
         }
     }
 
-    /// Metres that the robot is left of the middle; `None` where no wall is beside it.
+    /// Lateral offset of the robot, positive to the left (m); `None` without a wall beside it.
     pub fn off_middle(&self, readings: [f64; 3]) -> Option<f64> {
-        // As in the book: 100 to 180 mm where 125 are to be read in cells of 360 mm.
+        // As in the book: 100 to 180 mm where 125 mm is expected, in cells of 360 mm.
         middle(self.by_walls(readings, -0.07..0.16))
     }
 
-    /// The same by the left and by the right wall: by what is, in cells, so far from what would be read in the middle.
+    /// Lateral offset by the left and by the right wall. `walls` is the accepted deviation from the expected
+    /// reading (cells).
     fn by_walls(&self, [_, left, right]: [f64; 3], walls: Range<f64>) -> [Option<f64>; 2] {
         let CellDriveParameters { aside, cell, .. } = self.parameters;
         let wall = |reading: f64| walls.contains(&((reading - aside) / cell));
         [wall(left).then_some(aside - left), wall(right).then_some(right - aside)]
     }
 
-    /// The speed for a pose by odometry and three readings (front, left, right), `seconds` after the last step; `None` once
-    /// the robot is there.
+    /// Velocity command for a pose by odometry and three readings (front, left, right), `seconds` after the
+    /// previous step; `None` once the robot has arrived.
+    ///
+    /// # Errors
+    ///
+    /// If the controller rejects an input.
     pub fn step(&mut self, pose: Pose, readings: [f64; 3], seconds: f64) -> Result<Option<Twist>> {
         let CellDriveParameters { cell, speed, ahead, coast, reading_error, .. } = self.parameters;
         let mut place = self.place.unwrap_or(PlaceInCell::at(pose, cell));
         place.predict(pose);
         let front = readings[0];
-        // A wall ahead tells better than odometry, once it can be that of the next cell alone.
+        // A wall ahead is more reliable than odometry, once it can only be that of the next cell.
         let by_wall = place.along > 0.5 * cell && front < ahead + 0.5 * cell;
         let far = place.along > 1.25 * cell;
         if by_wall {
@@ -167,7 +193,7 @@ impl CellDrive {
             None => self.off_middle(readings),
         };
         self.place = Some(place);
-        // A reading as it is may say too early that the wall is there.
+        // An unfiltered reading may report the wall too early.
         let there = if by_wall && reading_error.is_none() {
             front <= ahead + coast || far
         } else {
@@ -185,7 +211,7 @@ impl CellDrive {
         Ok(Some(Twist::new(speed, turn)))
     }
 
-    /// How far off the middle to take the robot to be.
+    /// Filtered lateral offset (m).
     fn smooth(&mut self, place: &mut PlaceInCell, readings: [f64; 3], error: f64) -> f64 {
         let CellDriveParameters { cell, sensors_ahead, .. } = self.parameters;
         let last = self.last.replace(readings).unwrap_or(readings);
@@ -198,8 +224,8 @@ impl CellDrive {
         if from_post.abs() < Self::NEAR_POST {
             return place.off;
         }
-        // A sensor before the middle is moved aside as the robot turns. What counts is whether a reading agrees with what is
-        // known: a narrow gate would keep the errors to one side.
+        // A sensor ahead of the centre moves sideways as the robot turns. Readings are gated by the estimate;
+        // a narrow fixed gate would bias the errors to one side.
         let seen =
             self.by_walls(readings, -0.4..0.4).map(|off| off.map(|off| off - sensors_ahead * place.turn));
         let believed = seen.map(|off| off.filter(|&off| place.believes(off, error)));
@@ -211,8 +237,8 @@ impl CellDrive {
         place.off
     }
 
-    /// Metres by which the robot is farther along than it takes itself to be, where a side sensor passes the end of a wall:
-    /// walls end at either face of a post. `side` is 1 on the left and -1 on the right.
+    /// Longitudinal correction where a side sensor passes the end of a wall (m): walls end at either face of
+    /// a post. `side` is 1 on the left and -1 on the right.
     fn edge(&self, place: &PlaceInCell, [before, now]: [f64; 2], side: f64) -> Option<f64> {
         let CellDriveParameters { cell, wall, aside, sensors_ahead, .. } = self.parameters;
         let beside = |reading: f64| (reading - aside).abs() < 0.12 * cell;
@@ -222,14 +248,14 @@ impl CellDrive {
             (_, true) => -0.5 * wall,
             _ => return None,
         };
-        // A beam slants as the robot is turned.
+        // The beam slants with the robot.
         let met = place.along + sensors_ahead - side * 0.5 * (cell - wall) * place.turn;
         let past_post = ((met / cell).rem_euclid(1.0) - 0.5) * cell;
         Some(face - past_post).filter(|&missing| place.believes_along(missing, Self::EDGE * cell))
     }
 }
 
-/// What two walls say, if both or one of them says anything.
+/// Mean of the walls that give a value; `None` if neither does.
 fn middle(by_walls: [Option<f64>; 2]) -> Option<f64> {
     match by_walls {
         [Some(left), Some(right)] => Some(0.5 * (left + right)),

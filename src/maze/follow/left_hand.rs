@@ -8,35 +8,35 @@ use crate::io::{DistanceSensors, Manoeuvres, Odometry, Result, StallDetector};
 use crate::maze::Direction;
 use crate::parameter::require_positive;
 
-/// How a robot drives from one cell to the next.
+/// How a robot drives from cell to cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Straight {
-    /// By odometry alone, as the book's first program does (section 9.2): so many metres at a speed.
+    /// By odometry only, as in the book's first program (section 9.2).
     OpenLoop {
-        /// Metres.
+        /// Distance (m).
         length: f64,
-        /// Metres per second.
+        /// Speed (m/s).
         speed: f64,
     },
-    /// In the middle between the walls (section 9.3).
+    /// Midway between the walls (section 9.3).
     Controlled(CellDriveParameters),
 }
 
-/// What [`LeftHand`] goes by.
+/// Parameters of [`LeftHand`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LeftHandParameters {
-    /// A reading beyond it, in metres, says that there is no wall.
+    /// Reading above which there is no wall (m).
     pub threshold: f64,
-    /// Radians per second on the spot.
+    /// Angular velocity on the spot (rad/s).
     pub turn_rate: f64,
     /// How to drive from cell to cell.
     pub straight: Straight,
-    /// Seconds from one step of a controlled drive to the next.
+    /// Control period of a controlled drive (s).
     pub period: f64,
 }
 
 impl LeftHandParameters {
-    /// The book's program, open loop: 400 mm, 45 degrees and 180 mm a second, cells of 360 mm.
+    /// The book's open-loop program: threshold 400 mm, 45 deg/s, 180 mm/s, cells of 360 mm.
     pub fn as_printed() -> Self {
         Self {
             threshold: 0.400,
@@ -46,15 +46,15 @@ impl LeftHandParameters {
         }
     }
 
-    /// The same with another way to drive. The threshold lies half a cell beyond a wall of the robot's own cell, half a cell
-    /// before one of the next.
+    /// The same with a controlled drive. The threshold lies midway between a wall of the robot's own cell and
+    /// one of the next.
     pub fn controlled(drive: CellDriveParameters) -> Self {
         let threshold = 0.5 * (drive.ahead + drive.aside + drive.cell);
         Self { threshold, straight: Straight::Controlled(drive), ..Self::as_printed() }
     }
 }
 
-/// Keeps the left hand on the wall: left where that is free, else straight on, else right, else back (book, section 9.2).
+/// Left-hand rule: left if free, else straight on, else right, else back (book, section 9.2).
 ///
 /// ```
 /// use roverlab::maze::{Direction, LeftHand, LeftHandParameters};
@@ -76,56 +76,59 @@ pub struct LeftHand {
     cells: usize,
 }
 
-/// What the robot does.
+/// Phase of the motion.
 #[derive(Debug, Clone, Copy)]
 enum Phase {
-    /// It stands in a cell.
+    /// Stands in a cell.
     Choosing,
-    /// It turns on the spot.
+    /// Turns on the spot.
     Turning,
-    /// It drives into the next cell.
+    /// Drives into the next cell.
     Driving,
-    /// It comes to rest before it reads its sensors again, for at most so many steps.
+    /// Comes to rest before the next reading, for at most this number of steps.
     Resting(usize),
 }
 
-/// Seconds of coming to rest.
+/// Maximum time for coming to rest (s).
 const REST: f64 = 0.3;
-/// Metres per second below which it is at rest.
+/// Speed below which the robot counts as at rest (m/s).
 const AT_REST: f64 = 2e-3;
 
-/// How a drive along the left wall ended.
+/// How a drive by the left-hand rule ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LeftHandOutcome {
-    /// Who watched had seen enough.
+    /// The observer stopped it.
     Stopped,
-    /// The time was over first.
+    /// The time limit was exceeded.
     TimedOut,
-    /// Something holds the robot.
+    /// The robot stalled.
     Stalled,
 }
 
 halts!(LeftHandOutcome { Stalled: "something holds the robot" });
 
-/// What a [`LeftHand`] sees at a step.
+/// Observation of a [`LeftHand`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LeftHandObservation {
-    /// Where odometry takes the robot to be.
+    /// Pose by odometry.
     pub pose: Pose,
-    /// How fast it drives by odometry.
+    /// Velocity by odometry.
     pub speed: Twist,
-    /// What the sensors at the front, on the left and on the right read, in metres.
+    /// Readings of the front, left and right sensor (m).
     pub readings: [f64; 3],
-    /// Whether its last manoeuvre has ended, or there was none.
+    /// Whether no manoeuvre is in progress.
     pub done: bool,
-    /// Whether something holds it.
+    /// Whether the robot is stalled.
     pub stalled: bool,
 }
 
 impl LeftHand {
-    /// The rule for a robot that faces a direction. Fails with the name of the parameter that is out of
-    /// range.
+    /// The rule for a robot with an initial heading.
+    ///
+    /// # Errors
+    ///
+    /// If a parameter is out of range.
     pub fn new(parameters: LeftHandParameters, heading: Direction) -> Result<Self> {
         require_positive("threshold", parameters.threshold)?;
         require_positive("turn rate", parameters.turn_rate)?;
@@ -141,23 +144,22 @@ impl LeftHand {
         Ok(Self { parameters, controller, phase: Phase::Choosing, at: (0, 0), heading, cells: 0 })
     }
 
-    /// Where the robot takes itself to be, or to be driving from: cells to the east and to the north since
-    /// the start.
+    /// Present or last cell, relative to the start: cells to the east and to the north.
     pub fn at(&self) -> (i32, i32) {
         self.at
     }
 
-    /// Where it faces, or turns to.
+    /// Present or target heading.
     pub fn heading(&self) -> Direction {
         self.heading
     }
 
-    /// How many cells it has driven into.
+    /// Number of cells entered.
     pub fn cells(&self) -> usize {
         self.cells
     }
 
-    /// Quarter turns to the left, -1 to 2, for readings at the front, on the left and on the right.
+    /// Quarter turns to the left, -1 to 2, for the readings front, left, right.
     pub fn choose(&self, readings: [f64; 3]) -> i32 {
         match readings.map(|reading| reading > self.parameters.threshold) {
             [_, true, _] => 1,
@@ -178,7 +180,7 @@ impl LeftHand {
         Ok(ControlFlow::Continue(Manoeuvre::Turn(angle, self.parameters.turn_rate)))
     }
 
-    /// Begins to drive into the next cell.
+    /// Starts to drive into the next cell.
     fn set_off(&mut self, seen: &LeftHandObservation) -> Decision<Self> {
         self.phase = Phase::Driving;
         match self.parameters.straight {

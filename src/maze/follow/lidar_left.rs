@@ -6,27 +6,27 @@ use crate::io::control::{Behaviour, Decision, Halt, Senses};
 use crate::io::{Lidar, LidarScan, Odometry, Result};
 use crate::parameter::{require_finite, require_positive};
 
-/// What [`LidarLeft`] goes by.
+/// Parameters of [`LidarLeft`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LidarLeftParameters {
-    /// Metres per second.
+    /// Speed (m/s).
     pub speed: f64,
-    /// Metres to keep from the wall on the left.
+    /// Desired distance from the left wall (m).
     pub distance: f64,
-    /// Metres to the wall ahead at which the robot turns right.
+    /// Distance from a wall ahead at which the robot turns right (m).
     pub front: f64,
-    /// Radians per second for a radian between the robot and the wall.
+    /// Gain of the angle to the wall (rad/s per rad).
     pub angle_gain: f64,
-    /// Radians per second for a metre too far from the wall.
+    /// Gain of the distance error (rad/s per m).
     pub distance_gain: f64,
-    /// The largest turning speed, in rad/s.
+    /// Maximum angular velocity (rad/s).
     pub turn_rate: f64,
-    /// Seconds from one scan to the next.
+    /// Control period (s).
     pub period: f64,
 }
 
 impl LidarLeftParameters {
-    /// For corridors of a width, in metres, that the robot keeps to the middle of; the ratio of the gains is the book's.
+    /// Parameters for the middle of a corridor of a width (m); the ratio of the gains is the book's.
     pub fn for_corridor(width: f64) -> Self {
         Self {
             speed: 0.15,
@@ -40,21 +40,39 @@ impl LidarLeftParameters {
     }
 }
 
-/// Drives along the wall on the left by a lidar, and turns right where a wall is ahead (book, section 9.4).
+/// Follows the left wall by lidar, and turns right at a wall ahead (book, section 9.4).
 ///
-/// The shortest beam within 45 degrees of the left meets the wall at a right angle: its direction tells how
-/// the robot stands to the wall, its length how far it is. A proportional controller of both steers. All
-/// points that were [seen](LidarLeftObservation::points), put down where odometry has the robot, make a map
-/// that is as good as odometry.
+/// The shortest beam within 45 degrees of the left is perpendicular to the wall: its direction gives the
+/// angle to the wall, its length the distance. A proportional controller uses both. All observed
+/// [points](LidarLeftObservation::points), placed by odometry, form a map as accurate as odometry.
+///
+/// ```
+/// use roverlab::geometry::Pose;
+/// use roverlab::io::control::run;
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::maze::{LidarLeft, LidarLeftParameters};
+/// use roverlab::world::{RobotSpec, Scene, World};
+/// let mut follower = LidarLeft::new(LidarLeftParameters::for_corridor(0.4))?;
+/// let scene = Scene::with_robot(World::walled(2.0, 2.0), RobotSpec::s4(), Pose::new(0.5, 1.7, 0.0));
+/// let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
+/// run(&mut simulation.robot(0)?, &mut follower, 60.0, |_, _, _| {})?;
+/// let driven = simulation.truth().robot(0)?;
+/// assert!(driven.path_length > 4.0 && driven.contacts == 0, "around the room along its walls");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct LidarLeft {
     parameters: LidarLeftParameters,
-    /// The heading, by odometry, of the turn that is under way.
+    /// Target heading, by odometry, of the turn in progress.
     turning_to: Option<f64>,
 }
 
 impl LidarLeft {
-    /// A robot about to drive. Fails with the name of the parameter that is out of range.
+    /// A robot about to drive.
+    ///
+    /// # Errors
+    ///
+    /// If a parameter is out of range.
     pub fn new(parameters: LidarLeftParameters) -> Result<Self> {
         require_positive("speed", parameters.speed)?;
         require_positive("distance", parameters.distance)?;
@@ -66,7 +84,7 @@ impl LidarLeft {
         Ok(Self { parameters, turning_to: None })
     }
 
-    /// The speed for a pose by odometry and a scan.
+    /// Velocity command for a pose by odometry and a scan.
     pub fn step(&mut self, pose: Pose, scan: &LidarScan) -> Twist {
         let p = &self.parameters;
         if let Some(heading) = self.turning_to {
@@ -90,24 +108,24 @@ impl LidarLeft {
             return Twist::STOP;
         }
         let (angle, distance) = within(FRAC_PI_2, FRAC_PI_4).fold((FRAC_PI_2, f64::INFINITY), nearest);
-        // Without a wall on the left the robot goes round to where there is one.
+        // Without a wall on the left, the robot turns left until there is one.
         let off = (distance - p.distance).min(0.5 * p.distance);
         let turn = p.angle_gain * (angle - FRAC_PI_2) + p.distance_gain * off;
         Twist::new(p.speed, turn.clamp(-p.turn_rate, p.turn_rate))
     }
 }
 
-/// What a [`LidarLeft`] sees at a step.
+/// Observation of a [`LidarLeft`].
 #[derive(Debug, Clone, Default)]
 pub struct LidarLeftObservation {
-    /// Where odometry takes the robot to be.
+    /// Pose by odometry.
     pub pose: Pose,
-    /// What it sees from there.
+    /// Scan from that pose.
     pub scan: LidarScan,
 }
 
 impl LidarLeftObservation {
-    /// What was seen, as points in odometry's frame: a piece of the map.
+    /// Observed points in the odometry frame: a part of the map.
     pub fn points(&self) -> impl Iterator<Item = Point> {
         self.scan.points().map(|point| self.pose.to_world(point))
     }

@@ -1,4 +1,4 @@
-//! Following the left wall through a maze, by distance sensors or by a lidar (book, sections 9.2 to 9.4).
+//! Following the left wall through a maze, by distance sensors or lidar (book, sections 9.2 to 9.4).
 
 mod cell_drive;
 mod left_hand;

@@ -4,27 +4,27 @@ use crate::geometry::{Pose, angle_difference, math};
 use crate::kinematics::{DISTANCE_ERROR, OUTLIER, SCALE_ERROR, TURN_ERROR};
 
 
-/// How much farther a robot rolls than odometry says, as a share of the way: tyres are worn or new.
+/// Scale error of odometry (wheel wear), as a fraction of the distance.
 #[derive(Debug, Clone, Copy)]
 struct Stretch {
     share: f64,
     variance: f64,
-    /// What it has in common with how far along the robot is.
+    /// Covariance with the longitudinal position.
     along: f64,
 }
 
-/// Where a robot is in a cell and how it stands, by a Kalman filter from odometry and what the walls say.
+/// Position and orientation of a robot in a cell: a Kalman filter of odometry and wall readings.
 ///
-/// It goes on from cell to cell: what was learnt in one with walls leads through those without.
+/// It continues from cell to cell, so knowledge from cells with walls carries over to those without.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PlaceInCell {
-    /// Metres past the middle of the cell that it left.
+    /// Longitudinal position, from the centre of the cell that it left (m).
     pub(super) along: f64,
-    /// Metres to the left of the middle.
+    /// Lateral offset from the centre line, positive to the left (m).
     pub(super) off: f64,
-    /// Radians to the left.
+    /// Orientation, positive to the left (rad).
     pub(super) turn: f64,
-    /// Variances of the three, and what the last two have in common.
+    /// Variances of the three; `common` is the covariance of the last two.
     spread: [f64; 3],
     common: f64,
     stretch: Stretch,
@@ -32,7 +32,7 @@ pub(super) struct PlaceInCell {
 }
 
 impl PlaceInCell {
-    /// A robot more or less in the middle of a cell.
+    /// A robot roughly in the centre of a cell.
     pub(super) fn at(odometry: Pose, cell: f64) -> Self {
         /// Cells by which the robot stands off the middle at the start, and radians by which it is turned: standard deviations.
         const OFF: f64 = 0.05;
@@ -41,11 +41,11 @@ impl PlaceInCell {
         Self { along: 0.0, off: 0.0, turn: 0.0, spread, common: 0.0, stretch, odometry }
     }
 
-    /// Follows odometry. The cell turns with a robot that has turned by more than half a quarter.
+    /// Follows odometry. If the robot has turned by more than 45 degrees, the cell frame turns with it.
     pub(super) fn predict(&mut self, odometry: Pose) {
         let moved = self.odometry.to_local(odometry.position());
         let way = moved.coords.norm();
-        // Wheels that roll farther turn the robot farther, too.
+        // Larger wheels turn the robot farther, too.
         let turned = angle_difference(odometry.heading, self.odometry.heading) * (1.0 + self.stretch.share);
         let (sin, cos) = (math::sin(self.turn), math::cos(self.turn));
         self.odometry = odometry;
@@ -59,7 +59,8 @@ impl PlaceInCell {
                 + missed * way * way.max(0.01)
                 + ahead * (2.0 * self.stretch.along + ahead * self.stretch.variance),
             off + 2.0 * way * self.common + way * way * turn,
-            // What is missed of a turn is so of each of its parts: its square goes by the whole turn, a quarter.
+            // The error of a turn is the same fraction for all its parts, so its square grows with the whole
+            // turn, a quarter.
             turn + missed * way
                 + turned.abs() * FRAC_PI_2 * (self.stretch.variance + TURN_ERROR * TURN_ERROR),
         ];
@@ -71,7 +72,7 @@ impl PlaceInCell {
         self.turn_cell(quarters as i32);
     }
 
-    /// Turns the cell to the left.
+    /// Turns the cell frame to the left.
     fn turn_cell(&mut self, quarters: i32) {
         (self.along, self.off) = match quarters.rem_euclid(4) {
             1 => (self.off, -self.along),
@@ -88,7 +89,7 @@ impl PlaceInCell {
         self.common = 0.0;
     }
 
-    /// Takes a measurement of how far along the robot is.
+    /// Corrects the longitudinal position.
     pub(super) fn correct_along(&mut self, along: f64, error: f64) {
         let Stretch { variance, along: common, .. } = self.stretch;
         let gains = [self.spread[0], common].map(|spread| spread / (self.spread[0] + error * error));
@@ -100,23 +101,23 @@ impl PlaceInCell {
         self.stretch.along = common * (1.0 - gains[0]);
     }
 
-    /// Whether the robot can be so much farther along than it takes itself to be.
+    /// Whether a longitudinal correction passes the innovation test.
     pub(super) fn believes_along(&self, farther: f64, error: f64) -> bool {
         farther * farther < OUTLIER * OUTLIER * (self.spread[0] + error * error)
     }
 
-    /// Whether a measurement of how far off the middle the robot is can be one.
+    /// Whether a lateral measurement passes the innovation test.
     pub(super) fn believes(&self, off: f64, error: f64) -> bool {
         let innovation = off - self.off;
         innovation * innovation < OUTLIER * OUTLIER * (self.spread[1] + error * error)
     }
 
-    /// Believes itself a little less, as measurements contradict it.
+    /// Increases the lateral variance, because measurements contradict the estimate.
     pub(super) fn doubt(&mut self, off: f64) {
         self.spread[1] += off * off;
     }
 
-    /// Takes a measurement of how far off the middle the robot is.
+    /// Corrects the lateral offset.
     pub(super) fn correct_off(&mut self, off: f64, error: f64) {
         let [_, own, turn] = self.spread;
         let gains = [own, self.common].map(|spread| spread / (own + error * error));

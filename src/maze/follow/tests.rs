@@ -16,7 +16,7 @@ fn rig(spec: &RobotSpec) -> Rig {
     Rig::new(spec, NO_ERRORS, 0.01).unwrap()
 }
 
-/// A maze whose only way out of the start leads north.
+/// A maze in which the only exit from the start leads north.
 fn maze(seed: u64) -> Maze {
     let mut maze = perfect(6, 6, seed).unwrap();
     maze.set_goals([]);
@@ -26,10 +26,10 @@ fn maze(seed: u64) -> Maze {
     maze
 }
 
-/// All the way round, back where it began and without a contact.
+/// A full round that ends at its start, without contacts.
 const GOOD: (LeftHandOutcome, bool, u32) = (LeftHandOutcome::Stopped, true, 0);
 
-/// A drive all the way round. Returns how it ended, whether the robot was where it took itself to be, and contacts.
+/// Drives a full round. Returns the outcome, whether the robot was where it believed to be, and the contacts.
 fn round(
     maze: &Maze,
     spec: &RobotSpec,
@@ -78,7 +78,7 @@ fn controlled_it_goes_round_with_them() {
     }
 }
 
-/// A corridor with openings on both sides, between stubs of walls.
+/// A corridor with openings on both sides, between wall stubs.
 fn comb() -> Maze {
     let mut maze = Maze::open(9, 3).unwrap();
     maze.set_goals([]);
@@ -111,7 +111,7 @@ fn the_place_in_a_cell_turns_with_the_robot() {
     let mut place = place::PlaceInCell::at(Pose::new(0.0, 0.0, 0.0), 0.36);
     place.predict(Pose::new(0.03, 0.01, 0.02));
     assert!((place.along - 0.03).abs() < 1e-12 && (place.off - 0.01).abs() < 1e-12);
-    // Facing left, what was along is to the right.
+    // Facing left, the longitudinal axis points to the right.
     place.predict(Pose::new(0.03, 0.01, 0.02 + std::f64::consts::FRAC_PI_2));
     assert!((place.along - 0.01).abs() < 1e-12 && (place.off + 0.03).abs() < 1e-12);
     assert!((place.turn - 0.02).abs() < 1e-12);
@@ -187,17 +187,17 @@ proptest! {
 fn it_steers_to_the_middle_and_stops_at_walls() {
     let spec = RobotSpec::s4();
     let drive = CellDriveParameters::proportional(&rig(&spec), Scale::DOUBLED, 0.18);
-    // What a drive over open ground does `x` metres on.
+    // Command on open ground, `x` metres on.
     let step = |x: f64, readings| {
         let mut controller = CellDrive::new(drive).unwrap();
         controller.step(Pose::default(), [1.0; 3], 0.01).unwrap();
         controller.step(Pose::new(x, 0.0, 0.0), readings, 0.01).unwrap()
     };
-    // Left of the middle it turns right.
+    // Left of the centre line, it turns right.
     let twist = step(0.0, [1.0, drive.aside - 0.01, drive.aside + 0.01]).unwrap();
     assert!(twist.angular < 0.0 && twist.linear == 0.18);
     assert_eq!(step(0.2, [1.0; 3]).map(|twist| twist.angular), Some(0.0));
-    // A wall ahead ends the way before odometry, and odometry does without one.
+    // A wall ahead ends the drive before odometry does; without one, odometry ends it.
     let nearly = 0.355 - drive.coast;
     assert_eq!(step(nearly, [drive.ahead - 0.001, 1.0, 1.0]), None);
     assert!(step(nearly, [1.0; 3]).is_some());
@@ -212,7 +212,7 @@ fn it_steers_to_the_middle_and_stops_at_walls() {
 
 #[test]
 fn a_robot_learns_how_far_it_rolls() {
-    // It rolls 2 % farther than odometry says, and passes a known place in each cell.
+    // It rolls 2 % farther than odometry reports, and passes a known point in each cell.
     let mut place = place::PlaceInCell::at(Pose::default(), 0.18);
     for step in 1..=60 {
         let truth = 0.09 * f64::from(step);
@@ -235,7 +235,7 @@ fn half_a_turn_is_followed_step_by_step() {
     assert!((place.turn - (3.2 - std::f64::consts::PI)).abs() < 1e-12);
 }
 
-/// A corridor of 16 cells to an opening on the left, then of 4 more.
+/// A corridor of 16 cells to an opening on the left, followed by 4 more.
 fn long_corridor() -> Maze {
     let mut maze = Maze::filled(21, 2, WallState::Present).unwrap();
     maze.set_goals([]);
@@ -252,7 +252,7 @@ fn after_a_long_corridor_the_opening_is_found() {
     for (spec, scale) in [(RobotSpec::s4(), Scale::DOUBLED), (mouse(), Scale::MICROMOUSE)] {
         let drive = CellDriveParameters::pid(&rig(&spec), scale, 0.5 * scale.cell);
         let start = scale.pose(Cell::default(), Direction::East);
-        // A robot in a hundred has wheels so odd that it cannot know.
+        // One robot in a hundred has wheels too unequal to succeed.
         for seed in 0..20 {
             let maze = long_corridor();
             let scene = Scene::with_robot(scale.world(&maze), spec.clone(), start);

@@ -2,15 +2,15 @@ use crate::ParameterError;
 use crate::maze::{Cell, Direction, Maze, WallState};
 use crate::random::Stream;
 
-/// A maze in which exactly one way leads from every cell to every other: a depth-first walk that takes walls down where
-/// it comes to new cells.
+/// A perfect maze: exactly one path joins any two cells. A depth-first walk removes walls on its way to new
+/// cells.
 ///
 /// ```
 /// use roverlab::maze::generate::perfect;
 /// use roverlab::maze::{Unknown, distances_from_start};
 /// let maze = perfect(8, 6, 1)?;
 /// assert_eq!(distances_from_start(&maze, Unknown::Closed).reached(), 48, "every cell");
-/// assert_eq!(maze, perfect(8, 6, 1)?, "a seed, a maze");
+/// assert_eq!(maze, perfect(8, 6, 1)?, "deterministic in the seed");
 /// # Ok::<(), roverlab::ParameterError>(())
 /// ```
 pub fn perfect(width: usize, height: usize, seed: u64) -> Result<Maze, ParameterError> {
@@ -21,8 +21,8 @@ pub fn perfect(width: usize, height: usize, seed: u64) -> Result<Maze, Parameter
     Ok(maze)
 }
 
-/// A perfect maze of which a part of the inner walls, 0 to 1, has been taken down at random, so that many ways lead to
-/// most cells. A part outside of 0 to 1 counts as the nearer of the two.
+/// A perfect maze with a random `part` (0 to 1, clamped) of its inner walls removed, so that many paths lead
+/// to most cells.
 ///
 /// ```
 /// use roverlab::maze::generate::{braided, perfect};
@@ -43,7 +43,7 @@ pub fn braided(width: usize, height: usize, part: f64, seed: u64) -> Result<Maze
     Ok(maze)
 }
 
-/// Walks on from a cell into cells that have not been met, and takes the walls down in between.
+/// Walks from a cell into unvisited cells, and removes the walls in between.
 pub(super) fn carve(maze: &mut Maze, met: &mut [bool], stream: &mut Stream, from: Cell) {
     met[maze.index(from)] = true;
     let mut way = vec![from];
@@ -62,7 +62,7 @@ pub(super) fn carve(maze: &mut Maze, met: &mut [bool], stream: &mut Stream, from
     }
 }
 
-/// The walls between cells, each named once.
+/// Walls between cells, each listed once.
 pub(super) fn inner_walls(maze: &Maze) -> Vec<(Cell, Direction)> {
     let sides = |cell| [Direction::North, Direction::East].map(|side| (cell, side));
     let inner = |&(cell, side): &(Cell, Direction)| {

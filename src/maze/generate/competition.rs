@@ -3,21 +3,25 @@ use crate::ParameterError;
 use crate::maze::{Cell, Direction, Maze, WallState};
 use crate::random::Stream;
 
-/// A maze by the rules of micromouse competitions: a start in the lower left corner with walls on three sides, a goal of
-/// four cells around the centre with one entrance, a wall on every post but the goal's, and more than one way to most
-/// cells.
+/// A maze that follows the rules of micromouse competitions: a start in the lower left corner with walls on
+/// three sides, a goal of four cells around the centre with one entrance, a wall at every post except that of
+/// the goal, and several paths to most cells.
 ///
-/// Both sides have so many cells, rounded up to an even number of at least 6.
+/// `side` is rounded up to an even number of at least 6.
 ///
 /// ```
 /// use roverlab::maze::generate::competition;
 /// use roverlab::maze::{Cell, Direction, Preference, Unknown, WallState, shortest_route};
 /// let maze = competition(16, 1)?;
-/// assert_eq!(maze.wall(Cell::new(0, 0), Direction::East), WallState::Present, "the start has one way out");
+/// assert_eq!(maze.wall(Cell::new(0, 0), Direction::East), WallState::Present, "the start has one exit");
 /// assert_eq!(maze.goals().count(), 4);
 /// assert!(shortest_route(&maze, Unknown::Closed, Preference::Steps).is_some());
 /// # Ok::<(), roverlab::ParameterError>(())
 /// ```
+///
+/// # Errors
+///
+/// If `side` exceeds 256.
 pub fn competition(side: usize, seed: u64) -> Result<Maze, ParameterError> {
     let side = side.max(6).next_multiple_of(2);
     let mut maze = Maze::filled(side, side, WallState::Present)?;
@@ -27,7 +31,7 @@ pub fn competition(side: usize, seed: u64) -> Result<Maze, ParameterError> {
     for &goal in &goals {
         met[maze.index(goal)] = true;
     }
-    // The start is left out as well, and then joined to the north, its only way out.
+    // The start is left out as well; its only exit is then opened to the north.
     met[0] = true;
     carve(&mut maze, &mut met, &mut stream, Cell::new(0, 1));
     maze.set_wall(Cell::default(), Direction::North, WallState::Absent);
@@ -50,9 +54,9 @@ fn join_goal(maze: &mut Maze, goals: &[Cell], stream: &mut Stream) {
     maze.set_wall(cell, side, WallState::Absent);
 }
 
-/// Takes walls down where the posts at their ends keep others, but none of the start or the goal.
+/// Removes walls whose posts keep other walls, except at the start and the goal.
 fn braid(maze: &mut Maze, goals: &[Cell], stream: &mut Stream) {
-    /// The part of the inner walls that may go.
+    /// Fraction of the inner walls that may be removed.
     const PART: f64 = 0.15;
     let mut walls = inner_walls(maze);
     stream.shuffle(&mut walls);
@@ -76,7 +80,7 @@ fn braid(maze: &mut Maze, goals: &[Cell], stream: &mut Stream) {
     }
 }
 
-/// Whether a wall stands on the post at the lower left corner of a cell, which may be one beyond the edge.
+/// Whether a wall touches the post at the lower left corner of a cell, which may be one beyond the edge.
 fn has_wall(maze: &Maze, (x, y): (usize, usize)) -> bool {
     let cell = |dx: usize, dy: usize| {
         let (x, y) = (x.checked_sub(dx)?, y.checked_sub(dy)?);

@@ -1,5 +1,5 @@
-//! Random mazes: perfect, braided, and such as competitions have; with the feature `testing` strategies for
-//! property tests too.
+//! Random mazes: perfect, braided, and by competition rules; with the feature `testing` also strategies for
+//! property tests.
 
 mod carve;
 mod competition;

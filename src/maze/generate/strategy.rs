@@ -4,7 +4,8 @@ use super::{braided, perfect};
 use crate::maze::{Cell, Direction, Maze, WallState};
 use crate::random::Stream;
 
-/// Walls at random, from none to nearly all, so that many cells are out of reach; with any start, heading and goals.
+/// Random walls, from none to nearly all, so that many cells may be unreachable; random start, heading and
+/// goals.
 ///
 /// # Panics
 ///
@@ -18,7 +19,7 @@ use crate::random::Stream;
 /// TestRunner::deterministic().run(&sparse_mazes(8), |maze| {
 ///     let route = shortest_route(&maze, Unknown::Closed, Preference::Steps);
 ///     let steps = distances_to_goal(&maze, Unknown::Closed).get(maze.start());
-///     prop_assert_eq!(route.map(|route| route.steps() as u32), steps, "none where no way leads");
+///     prop_assert_eq!(route.map(|route| route.steps() as u32), steps, "none if unreachable");
 ///     Ok(())
 /// }).unwrap();
 /// ```
@@ -39,7 +40,7 @@ pub fn sparse_mazes(side: usize) -> impl Strategy<Value = Maze> {
     })
 }
 
-/// Mazes in which every cell can be reached, from perfect to half open; with any start, heading and goals.
+/// Mazes in which every cell is reachable, from perfect to half open; random start, heading and goals.
 ///
 /// # Panics
 ///
@@ -94,7 +95,7 @@ pub fn mazes(side: usize) -> impl Strategy<Value = Maze> {
 /// use roverlab::maze::{Unknown, distances_to_goal};
 /// TestRunner::deterministic().run(&partly_known(8), |maze| {
 ///     let steps = |unknown| distances_to_goal(&maze, unknown).get(maze.start()).unwrap_or(u32::MAX);
-///     prop_assert!(steps(Unknown::Open) <= steps(Unknown::Closed), "hope is no longer than what is sure");
+///     prop_assert!(steps(Unknown::Open) <= steps(Unknown::Closed), "the optimistic route is no longer");
 ///     Ok(())
 /// }).unwrap();
 /// ```

@@ -1,8 +1,9 @@
-//! The text protocol of the maze simulator mms (github.com/mackorone/mms): a mouse writes commands, a line each, and reads
-//! the answers.
+//! The text protocol of the maze simulator mms (github.com/mackorone/mms): a mouse writes commands, one per
+//! line, and reads the answers.
 //!
-//! A [`MmsReferee`] answers as the simulator does and counts its score, so that any mouse written for mms can be run here. An
-//! [`MmsMouse`] is our solver at the other end of the line. Both are pure: whoever holds the streams passes the lines on.
+//! [`MmsReferee`] answers as the simulator does and keeps its score, so any mouse written for mms can run
+//! here. [`MmsMouse`] is this library's solver. Both are free of input and output: the caller passes the
+//! lines on.
 //!
 //! ```
 //! use roverlab::maze::mms::{MmsMouse, Move, MmsReferee};
@@ -11,7 +12,7 @@
 //! let mut referee = MmsReferee::new(Maze::open(4, 4)?);
 //! let mut mouse = MmsMouse::new();
 //! let mut answer = None;
-//! while let Move::Say(line) = mouse.step(answer.as_deref()).expect("the answers of a referee make sense") {
+//! while let Move::Say(line) = mouse.step(answer.as_deref()).expect("the referee's answers are valid") {
 //!     answer = referee.answer(&line);
 //! }
 //! assert!(referee.score().solved);

@@ -6,16 +6,16 @@ use crate::maze::{
 };
 use crate::parameter::debug_as_sentence;
 
-/// What the mouse does next.
+/// Next action of the mouse.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Move {
-    /// Writes a line. It wants an answer if [`MmsMouse::awaits`] says so.
+    /// Writes a line. It expects an answer if [`MmsMouse::awaits`] is true.
     Say(String),
-    /// It has ended: it has explored to the proof and driven to the goal, or there is no way.
+    /// Finished: the exploration is proved and the goal reached, or there is no path.
     Done(ExplorationOutcome),
 }
 
-/// An answer that makes no sense.
+/// An invalid answer of the simulator.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error("found the answer {found:?} to {command}; expected {expected}")]
 pub struct MmsError {
@@ -26,10 +26,11 @@ pub struct MmsError {
 
 debug_as_sentence!(MmsError);
 
-/// The mouse's side: explores the maze to the proof that the best route is known, and then drives that.
+/// A solver for mms: explores until the best route is proved, and then drives it.
 ///
-/// It starts in the lower left corner, facing north, and the goal is the centre, as in mms. Walls that it sees are shown by
-/// `setWall`. After every move it asks whether the reset button was pressed, and if so starts anew with what it knows.
+/// As in mms, it starts in the lower left corner, facing north, and the goal is the centre. Observed walls
+/// are shown by `setWall`. After every move it asks whether the reset button was pressed; if so, it starts
+/// again with what it knows.
 #[derive(Debug, Clone)]
 pub struct MmsMouse {
     sides: [usize; 2],
@@ -37,18 +38,18 @@ pub struct MmsMouse {
     at: (Cell, Direction),
     explorer: TwoPhaseExplorer,
     verdict: Option<ExplorationOutcome>,
-    /// Lines to be written, and what their answers are for.
+    /// Lines to write, with the purpose of their answers.
     queue: VecDeque<(String, Asked)>,
     asked: Asked,
     line: String,
-    /// Whether the walls of the cell have been asked for.
+    /// Whether the walls of the present cell have been queried.
     looked: bool,
     racing: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Asked {
-    /// There is no answer.
+    /// No answer expected.
     Nothing,
     Side(usize),
     WallState(Direction),
@@ -65,7 +66,7 @@ impl Default for MmsMouse {
 }
 
 impl MmsMouse {
-    /// A mouse that knows nothing yet.
+    /// A mouse without any knowledge.
     pub fn new() -> Self {
         let ask = |line: &str, index| (line.to_owned(), Asked::Side(index));
         Self {
@@ -82,17 +83,21 @@ impl MmsMouse {
         }
     }
 
-    /// What it knows of the maze, once it knows its size.
+    /// Known part of the maze, once the size is known.
     pub fn maze(&self) -> Option<&Maze> {
         self.known.as_ref()
     }
 
-    /// Whether the line that it wrote last has an answer.
+    /// Whether the last line expects an answer.
     pub fn awaits(&self) -> bool {
         self.asked != Asked::Nothing
     }
 
-    /// Takes the answer to its last line, if that has one, and says what it does next.
+    /// Takes the answer to the last line, if it expects one, and returns the next action.
+    ///
+    /// # Errors
+    ///
+    /// If the answer is invalid.
     pub fn step(&mut self, answer: Option<&str>) -> Result<Move, MmsError> {
         if self.awaits() {
             self.learn(answer.unwrap_or("nothing").trim())?;
@@ -176,7 +181,7 @@ impl MmsMouse {
         if answer == "ack" { Ok(()) } else { Err(self.wrong(answer, "ack")) }
     }
 
-    /// Puts the next lines into the queue, or says how it ended.
+    /// Queues the next lines, or returns the outcome.
     fn decide(&mut self) -> Option<ExplorationOutcome> {
         let Some(known) = &self.known else { return Some(ExplorationOutcome::Unreachable) };
         let (cell, heading) = self.at;
@@ -196,7 +201,7 @@ impl MmsMouse {
         if self.verdict.is_none() {
             let step = self.explorer.next(known, self.at);
             match step {
-                // What is behind has not been seen.
+                // The wall behind has not been seen.
                 ExplorationStep::Go(next) if next == cell => self.turn(heading.right()),
                 ExplorationStep::Go(next) => self.head_for(next),
                 ExplorationStep::Finished(verdict) => self.verdict = Some(verdict),
@@ -206,7 +211,7 @@ impl MmsMouse {
         self.race()
     }
 
-    /// The best route, a cell at a time, once it is known.
+    /// Drives the best route, one cell at a time, once it is known.
     fn race(&mut self) -> Option<ExplorationOutcome> {
         let (known, verdict) = (self.known.as_ref()?, self.verdict?);
         let (cell, _) = self.at;
@@ -233,7 +238,7 @@ impl MmsMouse {
         route.moves().first().copied()
     }
 
-    /// The first step of the way to a cell.
+    /// First step of the path to a cell.
     fn head_for(&mut self, cell: Cell) {
         match self.first_step(|at| at == cell) {
             Some(side) => self.advance(side),

@@ -1,11 +1,12 @@
 use super::score::Score;
 use crate::maze::{Cell, Direction, Maze, Unknown};
 
-/// The simulator's side: a maze with a mouse in it, which answers commands.
+/// The simulator's side of the protocol: a maze with a mouse that answers commands.
 ///
-/// It knows the commands with whole cells and quarter turns: `mazeWidth`, `mazeHeight`, `wallFront`, `wallRight`, `wallLeft`
-/// and `wallBack` (with an odd number of half steps), `moveForward` (with a number of cells), `turnRight`, `turnLeft`,
-/// `wasReset`, `ackReset`, `getStat`, and those that only draw. As in mms, other lines have no answer.
+/// It implements the commands with whole cells and quarter turns: `mazeWidth`, `mazeHeight`, `wallFront`,
+/// `wallRight`, `wallLeft` and `wallBack` (with an odd number of half steps), `moveForward` (with a number of
+/// cells), `turnRight`, `turnLeft`, `wasReset`, `ackReset`, `getStat`, and the drawing commands. As in mms,
+/// other lines get no answer.
 #[derive(Debug, Clone)]
 pub struct MmsReferee {
     maze: Maze,
@@ -18,38 +19,38 @@ pub struct MmsReferee {
 }
 
 impl MmsReferee {
-    /// A mouse at the start of a maze. Unknown walls stand.
+    /// A mouse at the start of a maze. Unknown walls count as present.
     pub fn new(maze: Maze) -> Self {
         let at = (maze.start(), maze.heading());
         Self { maze, at, score: Score::default(), reset: false, commands: 0, ignored: 0, first_ignored: None }
     }
 
-    /// Where the mouse is, and where it faces.
+    /// Cell and heading of the mouse.
     pub fn at(&self) -> (Cell, Direction) {
         self.at
     }
 
-    /// What has been counted so far.
+    /// The score so far.
     pub fn score(&self) -> &Score {
         &self.score
     }
 
-    /// How many lines were commands.
+    /// Number of valid commands.
     pub fn commands(&self) -> u64 {
         self.commands
     }
 
-    /// How many lines were none, and the first of them.
+    /// Number of invalid lines, and the first of them.
     pub fn ignored(&self) -> (u64, Option<&str>) {
         (self.ignored, self.first_ignored.as_deref())
     }
 
-    /// Presses the reset button: the mouse is told when it asks.
+    /// Presses the reset button; the mouse learns of it when it asks.
     pub fn press_reset(&mut self) {
         self.reset = true;
     }
 
-    /// The answer to a line, without its end; `None` if it has none.
+    /// Answer to a line, without the line end; `None` if there is none.
     pub fn answer(&mut self, line: &str) -> Option<String> {
         let words: Vec<&str> = line.split_whitespace().collect();
         let Some(answer) = self.obey(&words) else {
@@ -61,7 +62,7 @@ impl MmsReferee {
         (!answer.is_empty()).then_some(answer)
     }
 
-    /// The answer, empty if a command has none; `None` if it is no command.
+    /// The answer, empty for a command without one; `None` if the line is not a command.
     fn obey(&mut self, words: &[&str]) -> Option<String> {
         let (cell, heading) = self.at;
         Some(match *words {
@@ -99,11 +100,11 @@ impl MmsReferee {
         self.maze.contains(cell).then_some(cell)
     }
 
-    /// Whether a wall stands so many half steps away.
+    /// Whether a wall is a number of half steps away.
     fn wall(&self, side: Direction, rest: &[&str]) -> Option<bool> {
         let half_steps = number(rest)?;
         let mut cell = self.at.0;
-        // The walls of cells lie at odd numbers.
+        // Walls lie at odd numbers of half steps.
         if half_steps.is_multiple_of(2) {
             return None;
         }
@@ -122,7 +123,7 @@ impl MmsReferee {
         "ack".into()
     }
 
-    /// Drives up to so many cells, as far as there is no wall.
+    /// Drives up to a number of cells, as far as no wall blocks the way.
     fn drive(&mut self, cells: u32) -> &'static str {
         let (from, heading) = self.at;
         let mut passed = Vec::new();
@@ -150,7 +151,7 @@ impl MmsReferee {
     }
 }
 
-/// The number behind a command, from 1; 1 without one.
+/// The optional number after a command, from 1; 1 by default.
 fn number(rest: &[&str]) -> Option<u32> {
     match rest {
         [] => Some(1),

@@ -1,32 +1,32 @@
-/// What the simulator counts.
+/// Statistics of the simulator.
 ///
-/// A run begins when the mouse leaves the start, and ends in the goal or back at the start.
+/// A run begins when the mouse leaves the start, and ends at the goal or back at the start.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Score {
-    /// Cells driven in all.
+    /// Total number of cells driven.
     pub total_distance: u32,
-    /// Quarter turns in all.
+    /// Total number of quarter turns.
     pub total_turns: u32,
-    /// The same with long straights counted by half.
+    /// Total distance with long straights counted by half (cells).
     pub total_effective: f64,
-    /// Of the run that is under way, or of the last one.
+    /// The present run, or the last one.
     pub current: MmsRun,
-    /// The run with the lowest sum of turns and effective distance, once there is one.
+    /// The run with the smallest sum of turns and effective distance.
     pub best: Option<MmsRun>,
-    /// Whether a run has come to the goal.
+    /// Whether a run has reached the goal.
     pub solved: bool,
     running: bool,
     penalty: f64,
 }
 
-/// One run from the start.
+/// A run from the start.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MmsRun {
-    /// Cells driven.
+    /// Number of cells driven.
     pub distance: u32,
-    /// Quarter turns.
+    /// Number of quarter turns.
     pub turns: u32,
-    /// Cells, with straights of more than two in one command counted by half.
+    /// Effective distance: straights of more than two cells in one command count by half (cells).
     pub effective: f64,
 }
 
@@ -37,12 +37,12 @@ impl MmsRun {
 }
 
 impl Score {
-    /// The score of a maze that is not solved.
+    /// Score of an unsolved maze.
     const UNSOLVED: f64 = 2000.0;
-    /// What a reset costs.
+    /// Penalty of a reset.
     const RESET: f64 = 15.0;
 
-    /// The score, the lower the better: the best run's, and a tenth of all that was driven.
+    /// The score, lower is better: the best run plus a tenth of everything driven.
     pub fn value(&self) -> f64 {
         match self.best {
             Some(best) => best.sum() + 0.1 * (f64::from(self.total_turns) + self.total_effective),
@@ -50,7 +50,7 @@ impl Score {
         }
     }
 
-    /// What is called by a name of the protocol; -1 where there is nothing yet.
+    /// The statistic of a protocol name; -1 if it does not exist yet.
     pub(super) fn named(&self, name: &str) -> Option<f64> {
         let best = |value: fn(&MmsRun) -> f64| self.best.as_ref().map_or(-1.0, value);
         Some(match name {

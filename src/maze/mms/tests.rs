@@ -4,13 +4,13 @@ use super::*;
 use crate::maze::generate::{competition, mazes};
 use crate::maze::{Cell, Direction, ExplorationOutcome, Maze, Unknown, WallState, distances_from_start};
 
-/// Lets our mouse drive in front of our referee. `interrupt` presses the reset button after so many lines.
+/// Runs our mouse against our referee. `interrupt` presses the reset button after that number of lines.
 fn play(maze: Maze, interrupt: Option<u64>) -> (MmsReferee, MmsMouse, ExplorationOutcome) {
     let mut referee = MmsReferee::new(maze);
     let mut mouse = MmsMouse::new();
     let mut answer = None;
     for line in 0.. {
-        assert!(line < 2_000_000, "a mouse without end");
+        assert!(line < 2_000_000, "the mouse does not finish");
         if interrupt == Some(line) {
             referee.press_reset();
         }
@@ -87,7 +87,7 @@ fn the_referee_answers_as_the_simulator_does() {
         ("turnRight", Some("ack")),
         ("wallFront", Some("false")),
         ("moveForward", Some("ack")),
-        // 3 cells and a turn, and a tenth of that.
+        // 3 cells and a turn, plus a tenth of that.
         ("getStat score", Some("4.4")),
         ("wasReset", Some("false")),
         ("ackReset", Some("ack")),

@@ -8,26 +8,45 @@ use crate::geometry::{Point, Pose, Vector, angle_difference, direction, math, no
 use crate::kinematics::{LEAST_RANGE_ERROR, OUTLIER};
 use crate::maze::{Cell, Direction, Maze, Scale, WallState};
 
-/// Where a robot is in a maze whose walls are partly known, from odometry and three distance sensors.
+/// Localisation in a partly known maze, from odometry and three distance sensors.
 ///
-/// An extended Kalman filter estimates the pose together with what is systematic about the robot: how far it really goes for
-/// a metre of odometry, how far it really turns, and how it bends to one side. Each reading is compared with the known wall
-/// that it should come from, which centres the robot between walls and tells how far it is from one ahead. Where a wall ends
-/// beside the robot, a reading from the wrong side of the end tells how far along the robot is (*wall-edge correction*). Posts
-/// that stand alone are all that there is to see on diagonals of open places.
+/// An extended Kalman filter estimates the pose and the systematic errors of odometry: scale of distances,
+/// scale of turns, and drift to one side. Each reading is compared with the known wall that it should come
+/// from; this centres the robot between walls and gives the distance to a wall ahead. Where a wall beside the
+/// robot ends, the change of the reading gives the longitudinal position (*wall-edge correction*). Isolated
+/// posts are the only landmarks on diagonals of open areas.
+///
+/// ```
+/// use roverlab::geometry::Pose;
+/// use roverlab::kinematics::OdometryErrors;
+/// use roverlab::maze::{MazeLocaliser, Rig, Scale, files, mouse};
+/// let maze = files::parse(b"o---o---o\n| S     |\no---o---o\n", "a corridor")?.maze;
+/// let errors = OdometryErrors { wheel_scale: 0.02, ..OdometryErrors::default() };
+/// let (rig, scale) = (Rig::new(&mouse(), errors, 0.002)?, Scale::MICROMOUSE);
+/// let front = rig.sensors[0];
+/// let start = Pose::new(scale.centre(maze.start()).x, scale.centre(maze.start()).y, 0.0);
+/// let mut localiser = MazeLocaliser::new(rig, scale, start, Pose::default());
+/// // Odometry is 3 mm too large; the wall ahead gives the true position.
+/// localiser.predict(Pose::new(0.103, 0.0, 0.0));
+/// let wall = 2.0 * scale.cell - 0.5 * scale.wall;
+/// localiser.correct(&maze, &front, wall - (start.x + 0.1 + front.mount.x));
+/// assert!((localiser.pose().x - start.x - 0.1).abs() < 0.002);
+/// assert!(localiser.calibration().distance < 1.0, "odometry overestimates");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct MazeLocaliser {
     rig: Rig,
     scale: Scale,
-    /// x, y, heading, and the three of [`Calibration`].
+    /// x, y, heading, and the three components of [`Calibration`].
     state: SVector<f64, 6>,
     covariance: SMatrix<f64, 6, 6>,
     odometry: Pose,
-    /// What each sensor saw last.
+    /// Last observation of each sensor.
     seen: [Option<Seen>; 3],
 }
 
-/// Whether a sensor saw something on the nearest line of walls, and where along it.
+/// Whether a sensor saw a wall on the nearest line of walls, and where along it.
 #[derive(Debug, Clone, Copy)]
 struct Seen {
     upright: bool,
@@ -36,24 +55,24 @@ struct Seen {
     near: bool,
 }
 
-/// What is systematic about a robot's odometry.
+/// Systematic errors of a robot's odometry.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Calibration {
-    /// Metres really driven for a metre of odometry.
+    /// True distance per distance by odometry.
     pub distance: f64,
-    /// Radians really turned for a radian of odometry, at a distance of 1.
+    /// True angle per angle by odometry, at a `distance` of 1.
     pub angle: f64,
-    /// Radians really turned for each metre of odometry straight ahead.
+    /// True angle per distance by odometry on a straight (rad/m).
     pub bend: f64,
 }
 
-/// Index of the heading in radians.
+/// Index of the heading (rad).
 const HEADING: usize = 2;
-/// Index of the share by which distances are underrated.
+/// Index of the distance scale.
 const DISTANCE: usize = 3;
-/// Index of the share by which turns are underrated.
+/// Index of the angle scale.
 const ANGLE: usize = 4;
-/// Index of the radians by which a metre straight on turns.
+/// Index of the drift (rad/m).
 const BEND: usize = 5;
 
 /// The standard deviations at the start: metres and radians.
@@ -67,7 +86,7 @@ const SQUARE: f64 = 0.97;
 const EDGE: f64 = 0.004;
 
 impl MazeLocaliser {
-    /// A robot at a known pose in the maze, at rest, whose odometry reads `odometry`.
+    /// A robot at rest at a known pose in the maze, whose odometry reads `odometry`.
     pub fn new(rig: Rig, scale: Scale, pose: Pose, odometry: Pose) -> Self {
         let e = rig.errors;
         let [place, heading] = START;
@@ -83,23 +102,23 @@ impl MazeLocaliser {
         }
     }
 
-    /// The most likely pose.
+    /// Estimated pose.
     pub fn pose(&self) -> Pose {
         Pose::new(self.state[0], self.state[1], normalize_angle(self.state[HEADING]))
     }
 
-    /// What has been learnt about the robot.
+    /// Estimated systematic errors.
     pub fn calibration(&self) -> Calibration {
         Calibration { distance: self.state[DISTANCE], angle: self.state[ANGLE], bend: self.state[BEND] }
     }
 
-    /// Standard deviations of the position, in the worse direction, and of the heading.
+    /// Standard deviations of the position (m, worse axis) and of the heading (rad).
     pub fn deviations(&self) -> (f64, f64) {
         let (xx, yy) = (self.covariance[(0, 0)], self.covariance[(1, 1)]);
         (xx.max(yy).sqrt(), self.covariance[(HEADING, HEADING)].sqrt())
     }
 
-    /// Moves on to a new reading of odometry.
+    /// Prediction step, to a new pose by odometry.
     pub fn predict(&mut self, odometry: Pose) {
         let moved = odometry.position() - self.odometry.position();
         let turned = angle_difference(odometry.heading, self.odometry.heading);
@@ -117,7 +136,7 @@ impl MazeLocaliser {
         let middle = s[HEADING] + 0.5 * angle;
         let (sin, cos) = math::sin_cos(middle);
         let mut jacobian = SMatrix::<f64, 6, 6>::identity();
-        // How the heading depends on the calibration, and the position on half of that.
+        // Derivatives of the heading by the calibration; the position depends on half of that.
         let slopes = [(DISTANCE, s[ANGLE] * turned), (ANGLE, s[DISTANCE] * turned), (BEND, length)];
         for (index, slope) in slopes {
             jacobian[(HEADING, index)] = slope;
@@ -135,7 +154,7 @@ impl MazeLocaliser {
         self.add_slip(length, turned, (sin, cos));
     }
 
-    /// Slip of both wheels, which grows with the square root of the way.
+    /// Adds the slip of both wheels, which grows with the square root of the distance.
     fn add_slip(&mut self, length: f64, turned: f64, (sin, cos): (f64, f64)) {
         let aside = 0.5 * self.rig.track * turned;
         let slip = self.rig.errors.slip * self.rig.errors.slip + 1e-8;
@@ -149,7 +168,7 @@ impl MazeLocaliser {
         self.covariance[(HEADING, HEADING)] += around;
     }
 
-    /// Learns from a reading of one of the rig's sensors, infinite without a return.
+    /// Correction step, with a reading of one of the rig's sensors (m), infinite without an echo.
     pub fn correct(&mut self, maze: &Maze, sensor: &RigSensor, reading: f64) {
         let pose = self.pose();
         let yaw = pose.heading + sensor.mount.yaw;
@@ -163,7 +182,7 @@ impl MazeLocaliser {
         }
         for (passed, crossing) in Crossings::new(maze, self.scale, pose.position() + offset, ray).enumerate()
         {
-            // A blunt angle onto the walls tells little about where the robot is.
+            // At a shallow angle to the wall, a reading says little about the position.
             let straight_on = if crossing.upright { ray.x } else { ray.y };
             if crossing.distance > sensor.max_range || straight_on.abs() < 0.5 {
                 return;
@@ -181,7 +200,7 @@ impl MazeLocaliser {
             let differs = reading - crossing.distance;
             match crossing.wall {
                 WallState::Unknown => {
-                    // A return from where a wall can be is one from it, or from a post in line with it.
+                    // An echo from a possible wall comes from it, or from a post in line with it.
                     if agrees && square {
                         self.update(&model.range_slope(), differs, deviation * deviation);
                     }
@@ -210,8 +229,8 @@ impl MazeLocaliser {
         }
     }
 
-    /// Compares what a sensor sees on the nearest line of walls with what it saw last. Where that changes, a wall or a post
-    /// begins or ends, and that is at a corner of the maze.
+    /// Compares the observation on the nearest line of walls with the previous one. A change marks the end of
+    /// a wall or post, at a corner of the maze.
     fn notice_edge(&mut self, sensor: &RigSensor, model: &Model, reading: f64) {
         let Some(index) = self.rig.sensors.iter().position(|other| other.id == sensor.id) else { return };
         let Crossing { upright, line, along, distance, corner, .. } = model.crossing;
@@ -222,10 +241,10 @@ impl MazeLocaliser {
         if near == last.near || step.abs() < 1e-5 || step.abs() > 0.3 * self.scale.cell {
             return;
         }
-        // Going this way, a wall ends behind the corner and begins before it.
+        // In the direction of travel, a wall ends behind the corner and begins before it.
         let side = if near { -step.signum() } else { step.signum() };
         let edge = corner + side * 0.5 * self.scale.wall;
-        // It changed at some time since the last reading.
+        // The change happened at some time since the last reading.
         let innovation = edge - (along - 0.5 * step);
         let variance = step * step / 12.0 + EDGE * EDGE;
         let slack = OUTLIER * (EDGE + self.deviation(&model.along_slope()));
@@ -234,7 +253,7 @@ impl MazeLocaliser {
         }
     }
 
-    /// Learns from a reading of a post without walls that a slanted beam meets. Returns whether it seems to come from one.
+    /// Correction by a bare post that a slanted beam hits. Returns whether the reading matches one.
     fn notice_post(&mut self, maze: &Maze, offset: Vector, ray: Vector, reading: f64) -> bool {
         if !reading.is_finite() {
             return false;
@@ -255,7 +274,7 @@ impl MazeLocaliser {
             [(ray, reading + FRAC_PI_4 * half, range * range + 0.25 * half * half), (aside, 0.0, half * half)]
         {
             let view = post - (self.pose().position() + offset);
-            // How far the middle of the post is along the direction, by x, y and heading.
+            // Derivative of the position of the post along a direction by x, y and heading.
             let turned = view.dot(&Vector::new(-towards.y, towards.x)) - moved.dot(&towards);
             let slope = SVector::from([-towards.x, -towards.y, turned, 0.0, 0.0, 0.0]);
             self.update(&slope, expected - view.dot(&towards), variance);
@@ -263,12 +282,12 @@ impl MazeLocaliser {
         true
     }
 
-    /// The standard deviation of something that depends on the state with a slope.
+    /// Standard deviation of a quantity with a gradient in the state.
     fn deviation(&self, slope: &SVector<f64, 6>) -> f64 {
         slope.dot(&(self.covariance * slope)).max(0.0).sqrt()
     }
 
-    /// A measurement of one number: its slope by the state, by how much it differs, and its variance.
+    /// Scalar Kalman update: gradient in the state, innovation, variance.
     fn update(&mut self, slope: &SVector<f64, 6>, innovation: f64, variance: f64) {
         let spread = self.covariance * slope;
         let total = slope.dot(&spread) + variance;
@@ -278,12 +297,12 @@ impl MazeLocaliser {
         let gain = spread / total;
         self.state += gain * innovation;
         self.covariance -= gain * spread.transpose();
-        // Rounding must not make it lopsided.
+        // Keep the covariance symmetric despite rounding.
         self.covariance = 0.5 * (self.covariance + self.covariance.transpose());
     }
 }
 
-/// Whether a post is known to stand without walls; posts are counted from the lower left corner of the maze.
+/// Whether a post is known to have no walls; posts are counted from the lower left corner of the maze.
 fn is_bare(maze: &Maze, x: i64, y: i64) -> bool {
     let inside = 0 < x && x < maze.width() as i64 && 0 < y && y < maze.height() as i64;
     if !inside {
@@ -297,16 +316,16 @@ fn is_bare(maze: &Maze, x: i64, y: i64) -> bool {
         .all(|(cell, side)| maze.wall(cell, side) == WallState::Absent)
 }
 
-/// How a reading depends on the state.
+/// Measurement model of a reading.
 struct Model {
     crossing: Crossing,
-    /// From the robot to the sensor, in the maze's frame.
+    /// Offset from robot to sensor, in the maze frame.
     offset: Vector,
     ray: Vector,
 }
 
 impl Model {
-    /// Slopes of the distance to the face of the wall.
+    /// Gradient of the distance to the wall's face.
     fn range_slope(&self) -> SVector<f64, 6> {
         let (offset, ray, d) = (self.offset, self.ray, self.crossing.distance);
         let mut slope = SVector::zeros();
@@ -320,7 +339,7 @@ impl Model {
         slope
     }
 
-    /// Slopes of the place along the wall.
+    /// Gradient of the hit position along the wall.
     fn along_slope(&self) -> SVector<f64, 6> {
         let (offset, ray, d) = (self.offset, self.ray, self.crossing.distance);
         let range = self.range_slope();

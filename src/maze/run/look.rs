@@ -1,28 +1,28 @@
-//! What distance readings from the middle of a cell say about the walls around.
+//! Evaluation of distance readings from the centre of a cell.
 
 use crate::geometry::math;
 use crate::maze::{Cell, Direction, Maze, Scale, Unknown, WallState};
 
-/// A direction seen from a cell.
+/// A reading in one direction from a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct View {
     pub(super) cell: Cell,
     pub(super) direction: Direction,
-    /// Metres from the middle of the cell to what was seen; infinite without a return.
+    /// Distance from the cell centre to the echo (m); infinite without one.
     pub(super) distance: f64,
-    /// Metres from the middle of the cell as far as the sensor sees.
+    /// Maximum range, from the cell centre (m).
     pub(super) range: f64,
-    /// Standard deviation of the sensor's heading, in radians.
+    /// Standard deviation of the sensor's heading (rad).
     pub(super) heading_deviation: f64,
 }
 
-/// Enters what a view says into a maze, but changes nothing that is known. Returns how many walls became known.
+/// Enters a reading into a maze without changing what is known. Returns the number of newly known walls.
 ///
-/// A beam runs along the middle of a corridor until it meets a wall; those in between are absent. It counts as far as it must
-/// be in the corridor still.
+/// A beam runs along the middle of a corridor until it hits a wall; the positions in between have no walls.
+/// It counts only as far as it certainly stays in the corridor.
 pub(super) fn enter(maze: &mut Maze, scale: Scale, view: &View) -> usize {
     let free = 0.5 * (scale.cell - scale.wall);
-    // Beyond, the beam may have left the corridor.
+    // Farther on, the beam may have left the corridor.
     let sure = 0.2 * scale.cell / math::tan((3.0 * view.heading_deviation).clamp(1e-3, 0.5));
     let seen = view.distance.min(view.range);
     let walls = ((seen - free) / scale.cell).round().max(0.0);
@@ -31,7 +31,7 @@ pub(super) fn enter(maze: &mut Maze, scale: Scale, view: &View) -> usize {
     let (mut cell, mut learnt) = (view.cell, 0);
     for passed in 0..=maze.width().max(maze.height()) {
         let place = free + passed as f64 * scale.cell;
-        // The wall of one's own cell is always seen for sure.
+        // The wall of the robot's own cell is always certain.
         if passed > 0 && place > sure {
             break;
         }
@@ -80,9 +80,9 @@ mod tests {
 
     #[test]
     fn what_is_in_doubt_stays_unknown() {
-        // Between two walls: something else was seen.
+        // Between two walls: another object.
         assert_eq!(learn(0.175, 0.005).1[1], WallState::Unknown);
-        // A heading that may be off by 10 degrees tells of the next wall alone.
+        // A heading uncertainty of 10 degrees reveals only the next wall.
         assert_eq!(learn(0.624, 0.06).0, 1);
     }
 

@@ -1,8 +1,8 @@
-//! Driving through mazes: where the robot is, how it keeps to its way, how it looks around (book, sections 9.3 and 9.8).
+//! Driving through mazes: localisation, trajectory tracking and exploration (book, sections 9.3 and 9.8).
 //!
-//! A robot tells where it is by the ends of walls and by walls ahead. Along a leg without either, odometry alone must tell one
-//! cell from the next: with wheels whose size is 1 % off, as in [`NoiseModel::real`](crate::io::sim::NoiseModel::real), a
-//! straight leg of 24 cells or more may end in a wrong map.
+//! Ends of walls and walls ahead reveal the robot's position. On a straight leg without either, only odometry
+//! separates the cells: with a wheel error of 1 %, as in
+//! [`NoiseModel::real`](crate::io::sim::NoiseModel::real), a leg of 24 cells or more may lead to a wrong map.
 
 mod localiser;
 mod look;

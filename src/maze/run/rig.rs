@@ -4,12 +4,17 @@ use crate::io::{Error, Psd, Result};
 use crate::kinematics::OdometryErrors;
 use crate::world::{DriveSpec, Footprint, MotorSpec, Mount, PsdSpec, RobotSpec};
 
-/// A robot of the size of a micromouse: two wheels, three distance sensors, quick motors.
+/// A robot of micromouse size: two wheels, three distance sensors, fast motors.
+///
+/// ```
+/// use roverlab::maze::mouse;
+/// assert_eq!(mouse().psds.len(), 3, "front, left, right");
+/// ```
 pub fn mouse() -> RobotSpec {
     let psd = |id: u8, name: &str, x, y, yaw| PsdSpec {
         id,
         name: name.into(),
-        mount: Mount { x, y, z: 0.020, yaw },
+        mount: Mount { x, y, z: 0.020, yaw, ..Mount::default() },
         max_range: 1.0,
     };
     RobotSpec {
@@ -35,35 +40,49 @@ pub fn mouse() -> RobotSpec {
     }
 }
 
-/// What a program has to know about its robot to drive it through a maze.
+/// Properties of a robot that the maze programs need.
+///
+/// ```
+/// use roverlab::kinematics::OdometryErrors;
+/// use roverlab::maze::{Rig, mouse};
+/// use roverlab::world::RobotSpec;
+/// let rig = Rig::new(&mouse(), OdometryErrors::default(), 0.002)?;
+/// assert!(rig.sensors.iter().all(|sensor| sensor.max_range > 0.1));
+/// let blind = RobotSpec { psds: Vec::new(), ..mouse() };
+/// assert!(Rig::new(&blind, OdometryErrors::default(), 0.002).is_err(), "three sensors are required");
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rig {
-    /// Metres between the wheels.
+    /// Distance between the wheels (m).
     pub track: f64,
-    /// The time constant, in seconds, with which wheel speed follows a command.
+    /// Time constant of the motors (s).
     pub lag: f64,
-    /// The distance sensors at the front, on the left and on the right.
+    /// Distance sensors: front, left, right.
     pub sensors: [RigSensor; 3],
-    /// Standard deviations of the robot from its description.
+    /// Odometry errors (standard deviations).
     pub errors: OdometryErrors,
-    /// The standard deviation of a distance sensor's reading, in metres.
+    /// Standard deviation of a distance reading (m).
     pub range_error: f64,
 }
 
 /// A distance sensor of a rig.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RigSensor {
-    /// The number by which programs read it.
+    /// Sensor number.
     pub id: Psd,
-    /// Where it sits, and where it points.
+    /// Position and direction on the robot.
     pub mount: Mount,
-    /// The farthest distance that it reports, in metres.
+    /// Maximum reported distance (m).
     pub max_range: f64,
 }
 
 impl Rig {
-    /// The rig of a described robot, whose drive and sensors err as said. Fails for a robot without two driven wheels or
-    /// without one of the three sensors.
+    /// The rig of a described robot with the given errors.
+    ///
+    /// # Errors
+    ///
+    /// If the robot has no differential drive, or one of the three sensors is missing.
     pub fn new(spec: &RobotSpec, errors: OdometryErrors, range_error: f64) -> Result<Self> {
         let DriveSpec::Differential { track, .. } = spec.drive else {
             let message = format!("robot {}: a drive other than two wheels side by side", spec.name);

@@ -11,21 +11,21 @@ use crate::maze::{
 };
 use crate::parameter::require;
 
-/// How a robot drives through mazes.
+/// Parameters of [`MazeRunner`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MazeRunnerParameters {
-    /// What the robot does at most while it explores.
+    /// Limits while exploring.
     pub exploring: RunLimits,
-    /// What it does at most on the fast run.
+    /// Limits on the fast run.
     pub racing: RunLimits,
-    /// How it is kept on its way.
+    /// Gains of the trajectory tracker.
     pub tracker: TrajectoryTrackerParameters,
-    /// Readings of each sensor that are averaged when it looks around.
+    /// Number of averaged readings per sensor when looking around.
     pub readings: usize,
 }
 
 impl MazeRunnerParameters {
-    /// For a micromouse.
+    /// A micromouse.
     pub const MICROMOUSE: Self = Self {
         exploring: RunLimits {
             speed: 0.8,
@@ -40,7 +40,7 @@ impl MazeRunnerParameters {
         readings: 8,
     };
 
-    /// For an EyeBot in the book's larger maze.
+    /// An EyeBot in the book's larger maze.
     pub const EYEBOT: Self = Self {
         exploring: RunLimits {
             speed: 0.5,
@@ -56,23 +56,50 @@ impl MazeRunnerParameters {
     };
 }
 
-/// What an exploration came to.
+/// Result of an exploration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Exploration {
     /// How it ended.
     pub verdict: ExplorationOutcome,
-    /// How many cells the robot has been in.
+    /// Number of visited cells.
     pub visited: usize,
-    /// How often it stopped to look around.
+    /// Number of stops to look around.
     pub looks: usize,
-    /// Seconds.
+    /// Duration (s).
     pub time: f64,
 }
 
-/// A robot that knows where it is in a maze of which it knows a part: looks around, drives, explores, races.
+/// Drives a robot through a partly known maze: it looks around, explores and races.
 ///
-/// The frame is that of the maze: its lower left corner is the origin. What the robot has learnt about its own odometry
-/// while it explored makes the fast run precise.
+/// The frame is that of the maze, with the origin at its lower left corner. The odometry calibration learnt
+/// while exploring makes the fast run precise.
+///
+/// ```
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::kinematics::OdometryErrors;
+/// use roverlab::maze::{
+///     ExplorationOutcome, Goals, Maze, MazeRunner, MazeRunnerParameters, Rig, Scale, TwoPhaseExplorer,
+///     files, mouse,
+/// };
+/// use roverlab::world::Scene;
+/// let maze = files::parse(b"o---o---o\n|     G |\no   o---o\n| S |   |\no---o---o\n", "a maze")?.maze;
+/// let (scale, spec) = (Scale::MICROMOUSE, mouse());
+/// let scene = Scene::with_robot(scale.world(&maze), spec.clone(), scale.pose(maze.start(), maze.heading()));
+/// let simulation = Simulation::new(&scene, SimOptions::ideal())?;
+/// let mut robot = simulation.robot(0)?;
+/// let rig = Rig::new(&spec, OdometryErrors::default(), 0.002)?;
+/// let mut known = Maze::unexplored(maze.width(), maze.height())?;
+/// known.set_start(maze.start(), maze.heading());
+/// known.set_goals(maze.goals());
+/// let mut runner = MazeRunner::new(&mut robot, rig, known, scale, MazeRunnerParameters::MICROMOUSE, 120.0)?;
+/// let mut explorer = TwoPhaseExplorer::new(Goals::StepsAndTime(Box::new(runner.planner())));
+/// let explored = runner.explore(&mut explorer, &mut |_| {})?;
+/// assert_eq!(explored.verdict, ExplorationOutcome::Optimal);
+/// let plan = runner.plan_fast_run().expect("a way to the goal");
+/// runner.race(&plan, &mut |_| {})?;
+/// assert!(simulation.truth().pose(0)?.distance_to(scale.centre(plan.route.end())) < 0.02);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct MazeRunner<'r, R: ?Sized> {
     robot: &'r mut R,
@@ -85,15 +112,19 @@ pub struct MazeRunner<'r, R: ?Sized> {
     visited: Vec<bool>,
     explorer: FastPlanner,
     racer: FastPlanner,
-    /// Seconds for all that it does, counted from where its clock is asked first.
+    /// Time limit for everything (s), counted from the first reading of the clock.
     time_limit: f64,
     clock: Option<Stopwatch>,
 }
 
 impl<'r, R: Clock + Drive + Odometry + StallDetector + DistanceSensors + ?Sized> MazeRunner<'r, R> {
-    /// A robot that stands in the middle of the maze's start cell and faces its start heading. `maze` is what
-    /// it knows. It has `time_limit` seconds for all that it does, infinity for any time; what is not done
-    /// then fails with [`TimedOut`](ErrorKind::TimedOut).
+    /// A robot that stands in the centre of the maze's start cell, with the start heading. `maze` is its
+    /// initial knowledge. After `time_limit` seconds (may be infinite), calls fail with
+    /// [`TimedOut`](ErrorKind::TimedOut).
+    ///
+    /// # Errors
+    ///
+    /// If a parameter is out of range.
     pub fn new(
         robot: &'r mut R,
         rig: Rig,
@@ -128,22 +159,22 @@ impl<'r, R: Clock + Drive + Odometry + StallDetector + DistanceSensors + ?Sized>
         })
     }
 
-    /// What is known about the maze.
+    /// The known maze.
     pub fn maze(&self) -> &Maze {
         &self.maze
     }
 
-    /// Where the robot takes itself to be.
+    /// Estimated pose.
     pub fn pose(&self) -> Pose {
         self.localiser.pose()
     }
 
-    /// What the robot has learnt about its odometry.
+    /// Estimated systematic errors of odometry.
     pub fn calibration(&self) -> Calibration {
         self.localiser.calibration()
     }
 
-    /// Whether the robot has been in a cell.
+    /// Whether the robot has visited a cell.
     pub fn has_visited(&self, cell: Cell) -> bool {
         self.maze.contains(cell) && self.visited[self.maze.index(cell)]
     }
@@ -153,8 +184,12 @@ impl<'r, R: Clock + Drive + Odometry + StallDetector + DistanceSensors + ?Sized>
         self.racer.clone()
     }
 
-    /// Explores until the explorer has finished, and faces the start heading again at the start. `watch` is called at every
-    /// step with where the robot takes itself to be.
+    /// Explores until the explorer finishes; the robot ends at the start with the start heading. `watch`
+    /// receives the estimated pose at every step.
+    ///
+    /// # Errors
+    ///
+    /// If the robot reports one, gets stuck, or cannot recognise the walls around it.
     pub fn explore(
         &mut self,
         explorer: &mut dyn Explorer,
@@ -191,7 +226,7 @@ impl<'r, R: Clock + Drive + Odometry + StallDetector + DistanceSensors + ?Sized>
         }
     }
 
-    /// Looks at the walls of the cell and of those behind its openings. Turns if it has not seen what is behind.
+    /// Observes the walls of the cell and of those behind its openings; turns if the wall behind is unknown.
     fn look_around(&mut self, watch: &mut dyn FnMut(Pose)) -> Result<()> {
         self.look(watch)?;
         for _ in 0..3 {
@@ -243,7 +278,7 @@ impl<'r, R: Clock + Drive + Odometry + StallDetector + DistanceSensors + ?Sized>
         Ok(())
     }
 
-    /// Reads odometry and the sensors, and learns from them. Returns the readings.
+    /// Reads odometry and sensors, updates the estimate, and returns the readings.
     fn sense(&mut self) -> Result<[f64; 3]> {
         let odometry = self.robot.pose()?;
         self.localiser.predict(odometry);
@@ -266,13 +301,13 @@ impl<'r, R: Clock + Drive + Odometry + StallDetector + DistanceSensors + ?Sized>
         self.clock.is_some_and(|clock| clock.is_over())
     }
 
-    /// Where a time lies among the ticks at which steps are made: that of the last one.
+    /// Time of the last tick at or before a time; steps are made at ticks.
     fn tick(&self, time: f64) -> f64 {
         let period = self.parameters.tracker.period;
         (time / period + 1e-6).floor() * period
     }
 
-    /// Lets time pass up to the next step. Fails if the time is over.
+    /// Waits for the next tick. Fails if the time limit is exceeded.
     fn wait_for_tick(&mut self) -> Result<()> {
         let now = self.now()?;
         if self.is_over() {
@@ -283,6 +318,10 @@ impl<'r, R: Clock + Drive + Odometry + StallDetector + DistanceSensors + ?Sized>
     }
 
     /// Turns on the spot towards a direction.
+    ///
+    /// # Errors
+    ///
+    /// If the robot reports one, gets stuck, or runs out of time.
     pub fn face(&mut self, direction: Direction, watch: &mut dyn FnMut(Pose)) -> Result<()> {
         let (cell, heading) = self.at;
         if direction != heading {
@@ -295,7 +334,11 @@ impl<'r, R: Clock + Drive + Odometry + StallDetector + DistanceSensors + ?Sized>
         Ok(())
     }
 
-    /// Drives to a cell by the fastest way through walls that are known to be absent.
+    /// Drives to a cell by the fastest path through walls known to be absent.
+    ///
+    /// # Errors
+    ///
+    /// If no path is known, the robot reports an error, gets stuck, or runs out of time.
     pub fn go_to(&mut self, cell: Cell, watch: &mut dyn FnMut(Pose)) -> Result<()> {
         let plan = self.explorer.plan_from(&self.maze, Unknown::Closed, self.at, |other| other == cell);
         let Some(plan) = plan else {
@@ -305,13 +348,17 @@ impl<'r, R: Clock + Drive + Odometry + StallDetector + DistanceSensors + ?Sized>
         self.drive(&plan, self.parameters.exploring, watch).map(|_| ())
     }
 
-    /// The fastest run from the start to the goal through walls that are known to be absent; `None` if no way leads there.
+    /// The fastest run from the start to the goal through walls known to be absent; `None` if there is none.
     pub fn plan_fast_run(&mut self) -> Option<FastPlan> {
         self.racer.plan(&self.maze, Unknown::Closed)
     }
 
-    /// Drives a plan of [`plan_fast_run`](Self::plan_fast_run) from the start. Returns the seconds from standstill to
-    /// standstill.
+    /// Drives a plan of [`plan_fast_run`](Self::plan_fast_run) from the start. Returns its duration from rest
+    /// to rest (s).
+    ///
+    /// # Errors
+    ///
+    /// If the robot reports one, gets stuck, or runs out of time.
     pub fn race(&mut self, plan: &FastPlan, watch: &mut dyn FnMut(Pose)) -> Result<f64> {
         self.drive(plan, self.parameters.racing, watch)
     }
@@ -329,7 +376,7 @@ impl<'r, R: Clock + Drive + Odometry + StallDetector + DistanceSensors + ?Sized>
         Ok(time)
     }
 
-    /// Follows a trajectory to its end, where the robot is stopped. Returns the seconds that it took.
+    /// Follows a trajectory and stops the robot at its end. Returns the duration (s).
     fn follow(&mut self, trajectory: Trajectory, watch: &mut dyn FnMut(Pose)) -> Result<f64> {
         let followed = self.follow_to_end(trajectory, watch);
         stopping::<_, Twist, _>(self.robot, followed)
@@ -339,7 +386,7 @@ impl<'r, R: Clock + Drive + Odometry + StallDetector + DistanceSensors + ?Sized>
         let tracker = TrajectoryTracker::new(trajectory, self.parameters.tracker, self.rig.lag)?;
         let limit = 2.0 * tracker.trajectory().duration() + 5.0;
         self.wait_for_tick()?;
-        // Steps are counted from the tick at which the motors first obey.
+        // Steps are counted from the tick at which the motors first respond.
         let begin = self.now()?;
         let begin = self.tick(begin);
         loop {

@@ -1,42 +1,42 @@
-//! What a ray meets in a maze as far as it is known.
+//! Ray casting in the known part of a maze.
 
 use crate::geometry::units::NEGLIGIBLE;
 use crate::geometry::{Point, Vector};
 use crate::maze::{Cell, Direction, Maze, Scale, WallState};
 
-/// A line of walls that a ray crosses.
+/// A line of walls crossed by a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Crossing {
-    /// Metres from the origin of the ray to the near face of the walls.
+    /// Distance from the origin of the ray to the near face of the walls (m).
     pub(super) distance: f64,
-    /// Whether the walls run along y, so that the face is at one x.
+    /// Whether the walls run along y.
     pub(super) upright: bool,
-    /// The number of the line, from the left or from below.
+    /// Index of the line, from the left or from below.
     pub(super) line: i64,
-    /// Where along the walls the ray crosses.
+    /// Position of the crossing along the walls (m).
     pub(super) along: f64,
-    /// What stands there.
+    /// State of the wall there.
     pub(super) wall: WallState,
-    /// Where along the walls the nearest corner is, and what stands on its other side.
+    /// Position of the nearest corner along the walls (m); `beyond` is the wall on its other side.
     pub(super) corner: f64,
     pub(super) beyond: WallState,
 }
 
 impl Crossing {
-    /// Metres along the walls to the nearest corner.
+    /// Distance along the walls to the nearest corner (m).
     pub(super) fn corner_distance(&self) -> f64 {
         (self.along - self.corner).abs()
     }
 }
 
-/// Lines of walls in the way of a ray, the nearest first.
+/// Lines of walls crossed by a ray, nearest first.
 #[derive(Debug, Clone)]
 pub(super) struct Crossings<'a> {
     maze: &'a Maze,
     scale: Scale,
     origin: Point,
     direction: Vector,
-    /// The next line of walls in x and in y.
+    /// Next line of walls in x and in y.
     lines: [i64; 2],
 }
 
@@ -55,7 +55,7 @@ impl<'a> Crossings<'a> {
         Self { maze, scale, origin, direction, lines }
     }
 
-    /// Metres to the next line in x or y.
+    /// Distance to the next line in x or y (m).
     fn distance(&self, axis: usize) -> f64 {
         let speed = self.direction[axis];
         if speed.abs() < NEGLIGIBLE {
@@ -65,7 +65,7 @@ impl<'a> Crossings<'a> {
         (face - self.origin[axis]) / speed
     }
 
-    /// The wall of a line at a place along it; `None` outside of the maze.
+    /// The wall of a line at a position; `None` outside the maze.
     fn wall(&self, axis: usize, line: i64, place: i64) -> Option<WallState> {
         let sides = [self.maze.width() as i64, self.maze.height() as i64];
         if !(0..=sides[axis]).contains(&line) || !(0..sides[1 - axis]).contains(&place) {
@@ -133,7 +133,7 @@ mod tests {
             let truth = space.cast_ray(origin, toward, 0.02, 3.0, None);
             let stands = |crossing: &Crossing| crossing.wall == WallState::Present;
             let met = Crossings::new(&maze, scale, origin, toward).find(stands);
-            // Close to corners the ray may meet the end of a wall or a bare post.
+            // Close to corners, the ray may hit the end of a wall or a bare post.
             let mut passed = Crossings::new(&maze, scale, origin, toward);
             let grazes = passed.any(|c| c.distance < truth + 0.02 && c.corner_distance() < 0.03);
             if let Some(met) = met.filter(|met| met.distance < 2.9 && !grazes) {

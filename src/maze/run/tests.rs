@@ -8,7 +8,7 @@ use crate::maze::{
 };
 use crate::world::{RobotSpec, Scene};
 
-/// A robot in a maze that it does not know.
+/// A robot in an unknown maze.
 struct Trial {
     maze: Maze,
     scale: Scale,
@@ -113,7 +113,7 @@ fn odometry_is_calibrated_on_the_way() {
         let mut explorer = TwoPhaseExplorer::new(Goals::Steps);
         runner.explore(&mut explorer, &mut |_| ()).unwrap();
         let robot = truth.robot(0).unwrap();
-        // Odometry alone has lost its way by then; the runner has not.
+        // Odometry alone is lost by then; the runner is not.
         let odometry = trial.scale.pose(trial.maze.start(), trial.maze.heading()).compose(&robot.odometry);
         let [alone, corrected] =
             [odometry, runner.pose()].map(|pose| robot.pose.distance_to(pose.position()));

@@ -6,49 +6,49 @@ use crate::geometry::{Point, Pose, Twist};
 use crate::io::control::{Behaviour, LidarObservation, Senses};
 use crate::io::{Lidar, Odometry, Result};
 
-/// A bug algorithm: to a goal through unknown obstacles by what a robot senses around it.
+/// A bug algorithm: navigation to a goal among unknown obstacles by local sensing.
 ///
-/// All drive at the goal until something is in the way, follow its boundary, and leave it again; they differ in when
-/// they leave, when they turn back, and when they give up.
+/// Every bug drives towards the goal until an obstacle blocks it, follows the obstacle's boundary, and leaves
+/// it again. The algorithms differ in when they leave, turn back and give up.
 pub trait Bug:
     Behaviour<Observation = LidarObservation, Command = Twist, Outcome = BugOutcome> + Debug
 {
-    /// What the algorithm is called.
+    /// Name of the algorithm.
     fn name(&self) -> &'static str;
 
-    /// What is proved about it.
+    /// Its proved guarantee.
     fn guarantee(&self) -> Guarantee;
 
-    /// What it goes by.
+    /// Its parameters.
     fn parameters(&self) -> &BugParameters;
 
-    /// What the robot is doing.
+    /// Current phase.
     fn phase(&self) -> BugPhase;
 
-    /// Where the robot takes itself to be, relative to its start.
+    /// Estimated pose relative to the start.
     fn pose(&self) -> Pose;
 
-    /// The distance to the goal that the robot takes itself to have.
+    /// Estimated distance to the goal (m).
     fn goal_distance(&self) -> f64;
 
-    /// What it sees at the moment: the noise-filtered hits of the scan in the robot's frame.
+    /// Noise-filtered points of the current scan, in the robot's frame.
     fn visible_points(&self) -> &[Point];
 
-    /// Takes the events that have happened since the last call.
+    /// Takes the events since the last call.
     fn take_events(&mut self) -> Vec<BugEvent>;
 }
 
-/// What is proved about an algorithm, for a robot whose position and sensors are exact.
+/// Proved properties of an algorithm, for a robot with exact position and sensors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Guarantee {
-    /// Whether it always comes to the goal, or to the verdict that there is no way.
+    /// Whether it always reaches the goal or reports that no way exists.
     pub complete: bool,
-    /// How long its path can become.
+    /// Bound on the path length.
     pub path_bound: PathBound,
 }
 
-/// A bound of a path's length, by the straight distance `D` from start to goal and the boundaries that are met, of
-/// perimeters `p`.
+/// Bound on the path length, given the straight distance `D` from start to goal and the perimeters `p` of the
+/// boundaries met.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PathBound {
@@ -56,16 +56,16 @@ pub enum PathBound {
     Perimeters,
     /// `D + 2 sum(p)`.
     TwicePerimeters,
-    /// `D + sum(n p) / 2`, where the line from start to goal crosses a boundary `n` times; `n` counts as even, because
-    /// one more time leads into an obstacle that the goal is in.
+    /// `D + sum(n p) / 2`, where the line from start to goal crosses a boundary `n` times. An odd `n` is
+    /// rounded up, as one more crossing leads into an obstacle that contains the goal.
     Crossings,
-    /// None is known in these terms.
+    /// No bound in these terms is known.
     Unknown,
 }
 
 impl PathBound {
-    /// The bound in metres, for boundaries given by their perimeters in metres and how often the line from start to goal
-    /// crosses them; `None` if none is known.
+    /// The bound (m). Each boundary is given by its perimeter (m) and the number of times the line from start
+    /// to goal crosses it. `None` if no bound is known.
     ///
     /// ```
     /// use roverlab::nav::PathBound;
@@ -95,7 +95,7 @@ impl<R: Odometry + Lidar + ?Sized, B: Bug + ?Sized> Senses<R> for B {
     }
 }
 
-/// Defines a bug: its name, the strategy that an engine acts by, and the path's bound. All are complete.
+/// Defines a bug by its name, its strategy and the bound on its path length. All bugs are complete.
 macro_rules! bug_algorithm {
     ($(#[$doc:meta])* $bug:ident, $name:literal, $strategy:ty, PathBound::$bound:ident) => {
         $(#[$doc])*
@@ -103,7 +103,8 @@ macro_rules! bug_algorithm {
         pub struct $bug(crate::nav::bug::engine::Engine<$strategy>);
 
         impl $bug {
-            /// A run to a goal given relative to the robot's start: metres ahead and to the left.
+            /// Creates a run to a goal relative to the robot's start: metres ahead and to the left. Fails for
+            /// parameters out of range and a goal that is not finite.
             pub fn new(
                 goal: crate::geometry::Point,
                 parameters: crate::nav::BugParameters,

@@ -8,9 +8,9 @@ use crate::nav::boundary::nearer_side;
 use crate::nav::surroundings::Surroundings;
 use crate::scan::{ScanFilter, ScanMatcher, check_measured};
 
-/// What all bugs have in common: where they are, what they see, and how they steer.
+/// State common to all bugs: localisation, perception and steering.
 ///
-/// The robot is a disc; an obstacle grown by its radius and the least clearance is what the boundary is of.
+/// The robot is a disc; boundaries are those of obstacles inflated by its radius plus the least clearance.
 #[derive(Debug, Clone)]
 pub(super) struct Body {
     pub(super) parameters: BugParameters,
@@ -18,10 +18,10 @@ pub(super) struct Body {
     pub(super) phase: BugPhase,
     pub(super) pose: Pose,
     pub(super) surroundings: Surroundings,
-    /// The noise-filtered hits of the scan in the robot's frame.
+    /// Noise-filtered points of the scan, in the robot's frame.
     pub(super) points: Vec<Point>,
     pub(super) events: Vec<BugEvent>,
-    /// The hits of the scan as measured, in the robot's frame.
+    /// Points of the scan as measured, in the robot's frame.
     measured: Vec<Point>,
     slow_to_pass: bool,
     ends: WallEnds,
@@ -30,7 +30,7 @@ pub(super) struct Body {
     matcher: ScanMatcher,
 }
 
-/// How far the robot has looked round.
+/// Progress of the initial look round.
 #[derive(Debug, Clone, Default)]
 struct LookRound {
     steps: u32,
@@ -38,15 +38,15 @@ struct LookRound {
     last: Option<f64>,
 }
 
-/// The goal as the robot sees it.
+/// The goal as seen from the robot.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct GoalView {
     pub(super) bearing: f64,
     pub(super) distance: f64,
-    /// How far the disc can move towards the goal, and what it touches there.
+    /// How far the disc can move towards the goal, and the point it touches there.
     pub(super) free: f64,
     pub(super) obstacle: Option<Point>,
-    /// Whether the goal is near, and the disc can move straight to where it counts as reached.
+    /// Whether the goal is near and the disc can move straight to within its tolerance.
     pub(super) is_at_hand: bool,
 }
 
@@ -54,7 +54,8 @@ pub(super) struct GoalView {
 const REACH: f64 = 2.4;
 /// How much farther round the robot the ends of walls are kept in mind.
 const ENDS_REACH: f64 = 1.7;
-/// How far apart, in metres, one thing may be seen from two places without noise, and for each metre of noise.
+/// How far apart, in metres, one thing may be seen from two places without noise, and for each metre of
+/// noise.
 const EXACT: f64 = 0.003;
 const ENDS_SLACK: f64 = 5.0;
 /// The part of the goal's tolerance that the robot makes use of where it cannot come nearer.
@@ -117,7 +118,7 @@ impl Body {
         }
     }
 
-    /// Takes in what the robot measures.
+    /// Updates pose and surroundings from an observation.
     pub(super) fn perceive(&mut self, observation: &LidarObservation) -> Result<()> {
         check_measured(&observation.odometry, &observation.scan)?;
         self.measured.clear();
@@ -135,7 +136,7 @@ impl Body {
         Ok(())
     }
 
-    /// The pose by odometry, corrected by matching the scan as measured.
+    /// Pose by odometry, corrected by matching the measured scan.
     fn locate(&mut self, observation: &LidarObservation) -> Pose {
         if !self.parameters.match_scans {
             return observation.odometry;
@@ -143,12 +144,12 @@ impl Body {
         self.matcher.update(observation.odometry, &self.measured)
     }
 
-    /// Keeps what is seen for the correction of later poses.
+    /// Adds the current points to the map for later corrections.
     pub(super) fn learn(&mut self) {
         self.matcher.learn(&self.points);
     }
 
-    /// Stands until the filter has something to go by, then turns once on the spot.
+    /// Stands until the range filter has enough scans, then turns once on the spot.
     pub(super) fn look_round(&mut self) -> Twist {
         self.look.steps += 1;
         if self.look.steps < SETTLING_STEPS {
@@ -165,7 +166,7 @@ impl Body {
         Twist::new(0.0, LOOKING_TURN)
     }
 
-    /// Bearing and distance of the goal, how far the way there is free, and what ends it.
+    /// Bearing and distance of the goal, free distance towards it, and the point that limits it.
     pub(super) fn look_at_goal(&self) -> GoalView {
         let bearing = self.pose.bearing_to(self.goal);
         let distance = self.goal_distance();
@@ -176,13 +177,13 @@ impl Body {
         GoalView { bearing, distance, free, obstacle, is_at_hand }
     }
 
-    /// Whether the way to the goal ends right here.
+    /// Whether the way to the goal is blocked at the robot.
     pub(super) fn is_blocked(&self, view: &GoalView) -> bool {
         let near = self.parameters.follow_distances().wished - self.parameters.robot_radius;
         view.free < near && view.free < view.distance
     }
 
-    /// The side on which to follow an obstacle, unless the algorithm has its own mind about it.
+    /// The side on which to follow an obstacle, unless the strategy chooses one.
     pub(super) fn usual_side(&mut self, view: &GoalView, obstacle: Point) -> WallSide {
         let distances = self.parameters.follow_distances();
         self.parameters
@@ -190,8 +191,8 @@ impl Body {
             .unwrap_or_else(|| nearer_side(view.bearing, obstacle, &mut self.surroundings, distances))
     }
 
-    /// Whether what ends the way to the goal is the followed obstacle itself, a margin away: then the disc pushed up
-    /// to it is a point of the boundary, not a place to leave for.
+    /// Whether the followed obstacle itself, within its margin, ends the way to the goal. Then the disc
+    /// pushed up to it is a point of the boundary, not a reason to leave.
     pub(super) fn is_at_followed_boundary(&self, view: &GoalView, side: WallSide) -> bool {
         let distances = self.parameters.follow_distances();
         let margin = distances.wished - distances.least + self.parameters.step;
@@ -199,7 +200,8 @@ impl Body {
         towards_it && view.free < margin && view.free < view.distance
     }
 
-    /// Whether the robot, near the goal, sees that it has no room within the goal's tolerance, errors aside.
+    /// Whether the robot, near the goal, sees that it has no room within the goal's tolerance, measurement
+    /// errors considered.
     pub(super) fn is_goal_seen_without_room(&self) -> bool {
         let distances = self.parameters.follow_distances();
         if self.goal_distance() > 2.0 * NEAR * distances.wished {
@@ -225,8 +227,9 @@ impl Body {
 
     /// The twist that turns the robot to a heading and drives it on.
     pub(super) fn steer(&self, heading: f64, speed: Twist) -> Twist {
-        // Proportional to the error, damped by the turn rate: the motors' lag would make it swing otherwise.
-        // A robot that turns round while it rolls on comes round in an arc, into what it was passing: it stops before.
+        // Proportional to the error and damped by the turn rate: the motors' lag would cause oscillation
+        // otherwise. A robot that turns round while rolling moves in an arc, into what it just passed; so it
+        // stops first.
         let stops = heading.abs() > TURNING_ROUND && speed.linear > ROLLING;
         let turn = if stops { 0.0 } else { 8.0 * heading };
         let angular = (turn - 1.5 * speed.angular).clamp(-3.0, 3.0);
@@ -236,19 +239,19 @@ impl Body {
             BugPhase::ToGoal => self.parameters.cruise_speed,
             _ => self.parameters.follow_speed,
         };
-        // The heading has been found free; where the robot points on its way there need not be.
+        // The heading is known to be free, but directions passed while turning to it may not be.
         let least = if heading.abs() < POINTING { CREEP } else { 0.0 };
         let linear = (cruise * aligned).min(self.safe_speed(speed.linear).max(least));
         Twist::new(linear, angular)
     }
 
-    /// The speed, from the present one, from which the robot can still stop before what is ahead, or at the goal.
+    /// The maximum speed from which the robot can still stop before an obstacle ahead, or at the goal.
     fn safe_speed(&self, present: f64) -> f64 {
         /// Metres that are left before what is ahead, for rounding.
         const HAIR: f64 = 0.001;
         let passing = if self.slow_to_pass && self.phase == BugPhase::ToGoal { 1.0 } else { 0.5 };
         let outline = self.parameters.robot_radius + passing * self.parameters.least_clearance;
-        // Nearer to something than that, it may drive off it, but not a hair's breadth nearer.
+        // A robot nearer to something than that may drive away from it, but not the slightest bit nearer.
         if !self.surroundings.is_step_free(direction(0.0), HAIR, outline) {
             return 0.0;
         }
@@ -257,12 +260,12 @@ impl Body {
     }
 }
 
-/// The speed at which a robot that goes at `present` comes to stand after `room` metres, and not beyond them.
+/// The speed at which a robot now moving at `present` stops after at most `room` metres.
 ///
-/// What it will roll on by itself is used up already. A speed in proportion to all of the room would be too much for the
-/// motors to follow: the robot would come to stand behind the place.
+/// The distance it still rolls by itself is subtracted first. A speed proportional to all of the room would
+/// change too fast for the motors, and the robot would overshoot.
 fn approach(room: f64, present: f64, parameters: &BugParameters) -> f64 {
-    // Within one step it must not use up more than there is.
+    // Within one step it must not use more room than there is.
     let rate = APPROACH_RATE.min(parameters.period.recip());
     (rate * (room - present * parameters.lag)).max(0.0)
 }
@@ -274,14 +277,14 @@ mod tests {
 
     proptest! {
         #![proptest_config(crate::testing::cases(256))]
-        /// Motors follow what they are told exponentially, and are told anew each period.
+        /// Motors approach their command exponentially; a new command comes each period.
         #[test]
         fn an_approach_ends_where_it_should(
             lag in 0.05..0.5f64, period in 0.01..0.3f64, cruise in 0.05..0.5f64, spare in 0.0..1.0f64,
         ) {
             let parameters = BugParameters { lag, period, ..BugParameters::default() };
             let fade = math::exp(-period / lag);
-            // As near as it may be found at this speed.
+            // The shortest distance at which an obstacle may appear at this speed.
             let (mut speed, mut room) = (cruise, cruise * lag + spare);
             for _ in 0..2000 {
                 let told = approach(room, speed, &parameters).min(cruise);

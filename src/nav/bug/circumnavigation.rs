@@ -2,37 +2,37 @@ use super::body::Body;
 use super::doubt::Doubt;
 use super::strategy::{Decision, Sight, Strategy};
 
-/// Goes once round, then to the best place to leave. With `BY_RANGE` free ranges count too.
+/// Follows the whole boundary, then returns to the best leave point. With `BY_RANGE` free ranges count too.
 #[derive(Debug, Clone)]
 pub(super) struct Circumnavigation<const BY_RANGE: bool> {
-    /// How near to the goal the boundary has come.
+    /// Smallest distance of the boundary from the goal (m).
     least_distance: f64,
     best: Option<Candidate>,
-    /// The same among places whose merit the places before have as well; a free range between two obstacles may be there
-    /// for a moment only, and not be met again.
+    /// Best point whose merit the points just before share: a free range between two obstacles may exist only
+    /// for a moment and not be found again.
     lasting: Option<Candidate>,
-    /// The merits of the latest places, if they could be left.
+    /// Merits of the latest points, if they can be left.
     latest: [Option<f64>; LASTING],
     returning: Option<Returning>,
     doubt: Doubt,
 }
 
-/// A place to leave.
+/// A candidate leave point.
 #[derive(Debug, Clone, Copy)]
 struct Candidate {
-    /// How near to the goal it leads.
+    /// Smallest distance from the goal that it leads to (m).
     merit: f64,
-    /// Metres from the hit point along the boundary.
+    /// Distance from the hit point along the boundary (m).
     at: f64,
 }
 
-/// The way back to the best place.
+/// The return to the best point.
 #[derive(Debug, Clone, Copy)]
 struct Returning {
-    /// Where it began, in metres from the hit point.
+    /// Start, as a distance from the hit point (m).
     from: f64,
     length: f64,
-    /// The merit a step ago.
+    /// Merit at the previous step.
     before: Option<f64>,
 }
 
@@ -40,7 +40,8 @@ struct Returning {
 const SLACK: f64 = 0.5;
 /// How much worse, in metres, for each metre that the place has been missed by.
 const SLACK_PER_METRE: f64 = 0.1;
-/// After so many robot radii the place has been missed for good, and the next one that can be left at all will do.
+/// After so many robot radii the place has been missed for good, and the next one that can be left at all
+/// will do.
 const MISSED: f64 = 3.0;
 /// For so many steps a merit lasts.
 const LASTING: usize = 3;
@@ -60,7 +61,7 @@ impl<const BY_RANGE: bool> Default for Circumnavigation<BY_RANGE> {
 }
 
 impl<const BY_RANGE: bool> Circumnavigation<BY_RANGE> {
-    /// How near to the goal leaving here leads; `None` where the way is blocked.
+    /// Smallest distance from the goal reached by leaving here; `None` if the way is blocked.
     fn merit(&self, sight: &Sight) -> Option<f64> {
         let free = if BY_RANGE { sight.free.min(sight.distance) * self.doubt.trust() } else { 0.0 };
         sight.is_open().then_some(sight.distance - free)
@@ -79,13 +80,13 @@ impl<const BY_RANGE: bool> Circumnavigation<BY_RANGE> {
         }
     }
 
-    /// The best place to leave for a goal outside: nearer to it than all of the boundary.
+    /// The best leave point if the goal is outside: nearer to it than all of the boundary.
     fn place(&self) -> Option<Candidate> {
         let leads_out = |place: &Candidate| place.merit <= self.least_distance;
         self.lasting.filter(leads_out).or(self.best.filter(leads_out))
     }
 
-    /// Whether the robot is back at the best place.
+    /// Whether the robot is back at the best point.
     fn is_there(&mut self, sight: &Sight) -> bool {
         let merit = self.merit(sight);
         let Some(way) = &mut self.returning else { return false };
@@ -95,7 +96,7 @@ impl<const BY_RANGE: bool> Circumnavigation<BY_RANGE> {
         let near = MISSED * sight.radius;
         self.place().zip(merit).is_some_and(|(best, merit)| {
             let receding = before.is_some_and(|before| merit > before);
-            // Round a corner the robot drives a little farther out or in than the other way.
+            // At a corner the robot drives slightly wider or tighter than on the way there.
             let passing = beyond.abs() < near && receding && merit <= best.merit + sight.step;
             let missed = beyond > near && merit <= self.least_distance;
             merit <= best.merit + slack || passing || missed
@@ -104,8 +105,8 @@ impl<const BY_RANGE: bool> Circumnavigation<BY_RANGE> {
 }
 
 impl<const BY_RANGE: bool> Strategy for Circumnavigation<BY_RANGE> {
-    /// Begins a tour. If the last leave has not brought the robot nearer than all of the boundary before, as it promised,
-    /// free ranges are relied upon less from now on; so the robot cannot go round the same obstacle for ever.
+    /// Begins a circumnavigation. If the last leave did not bring the robot nearer than all of the earlier
+    /// boundary as predicted, free ranges are trusted less; this prevents endless circling of one obstacle.
     fn meet(&mut self, meeting: &Sight) {
         let least_distance = meeting.distance - meeting.free;
         let kept = least_distance <= self.least_distance - 0.5 * meeting.step;

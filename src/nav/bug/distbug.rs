@@ -7,37 +7,38 @@ use super::strategy::{Decision, Sight, Strategy};
 use crate::geometry::{Point, Pose};
 
 bug_algorithm! {
-    /// DistBug: to a goal through unknown obstacles, with a proof when there is no way (book, sections 10.1 and 10.2;
-    /// I. Kamon and E. Rivlin, "Sensory-based motion planning with global proofs", IEEE Transactions on Robotics and
-    /// Automation 13(6), 1997).
+    /// DistBug: to a goal among unknown obstacles, with a proof when no way exists (book, sections 10.1 and
+    /// 10.2; I. Kamon and E. Rivlin, "Sensory-based motion planning with global proofs", IEEE Transactions on
+    /// Robotics and Automation 13(6), 1997).
     ///
-    /// The robot drives straight at the goal until something is in the way: the *hit point*. It then follows the
-    /// obstacle's boundary and keeps the smallest distance `d_min` that the boundary has had to the goal. As soon as
-    /// `d - F <= d_min - STEP`, where `d` is the distance to the goal and `F` the free range towards it, it leaves: the
-    /// *leave point*. Back at the hit point without having left, it knows that the goal cannot be reached.
+    /// The robot drives straight towards the goal until an obstacle blocks it: the *hit point*. It then
+    /// follows the obstacle's boundary and records the boundary's smallest distance to the goal, `d_min`. As
+    /// soon as `d - F <= d_min - STEP`, where `d` is the distance to the goal and `F` the free range towards
+    /// it, it leaves: the *leave point*. Back at the hit point without having left, it reports that the goal
+    /// cannot be reached.
     ///
     /// # Model
     ///
-    /// The robot is a disc; an obstacle grown by its radius and the least clearance is what the boundary is of. So the
-    /// proof holds for a robot of that size: a passage narrower than `2 (radius + least clearance)` counts as closed.
-    /// One between that and one and a half robot widths may be open from one side and closed from the other, as beams see its
-    /// edges: where there are such, a verdict may be wrong.
-    /// `F` is the distance that the whole disc can move towards the goal, and `d_min` starts at the place where the
-    /// disc would have touched the obstacle, so that the margins kept from obstacles do not enter the
+    /// The robot is a disc; boundaries are those of obstacles inflated by its radius plus the least
+    /// clearance. So the proof holds for a robot of that size: a passage narrower than `2 (radius + least
+    /// clearance)` counts as closed. A passage between that width and one and a half robot widths may be open
+    /// from one side and closed from the other, depending on how beams hit its edges; with such passages a
+    /// verdict may be wrong. `F` is the distance that the whole disc can move towards the goal. `d_min`
+    /// starts at the point where the disc would touch the obstacle, so that the clearance does not affect the
     /// comparison. A way that ends within a few margins at the followed obstacle itself, as in a corner, is
-    /// no place to leave: its end is one more point of the boundary.
+    /// not a leave point: its end is one more point of the boundary.
     ///
     /// # Failure modes
     ///
-    /// Odometry errors move the goal and can hide that the robot has come back to its hit point; with
-    /// [`match_scans`](super::BugParameters::match_scans) poses are corrected by the scans themselves.
+    /// Odometry errors shift the goal and can hide the return to the hit point; with
+    /// [`match_scans`](super::BugParameters::match_scans) the scans themselves correct the poses.
     DistBug, "DistBug", DistRule, PathBound::Unknown
 }
 
-/// Leaves as soon as free range promises to get nearer than the boundary has been.
+/// Leaves as soon as the free range leads nearer to the goal than the boundary has been.
 #[derive(Debug, Clone)]
 pub(super) struct DistRule {
-    /// `d_min`: the smallest distance to the goal that a boundary has had.
+    /// `d_min`: smallest distance of a boundary to the goal (m).
     least_distance: f64,
     doubt: Doubt,
 }
@@ -49,19 +50,19 @@ impl Default for DistRule {
 }
 
 impl Strategy for DistRule {
-    /// It turns the nearer way, which leads past.
+    /// The robot turns to the nearer side, which leads past.
     fn slows_to_pass(&self) -> bool {
         false
     }
 
-    /// By its free ranges it knows the last piece of a boundary beforehand.
+    /// Free ranges show the last piece of a boundary beforehand.
     fn laps(&self) -> LapRule {
         LapRule { lost_turns: 2.0, to_the_end: false }
     }
 
-    /// Takes in how near to the goal the boundary of a new obstacle begins. If the last leave has not brought the
-    /// robot as much nearer as it promised, free ranges are relied upon less from now on; so the robot cannot go back
-    /// and forth for ever because of errors.
+    /// Records how near to the goal the boundary of a new obstacle begins. If the last leave did not bring
+    /// the robot as much nearer as predicted, free ranges are trusted less; this prevents endless shuttling
+    /// caused by errors.
     fn meet(&mut self, meeting: &Sight) {
         let distance = meeting.distance - meeting.free;
         if distance > self.least_distance - 0.5 * meeting.step && self.least_distance.is_finite() {
@@ -82,27 +83,27 @@ impl Strategy for DistRule {
 }
 
 impl DistBug {
-    /// What the robot is doing.
+    /// Current phase.
     pub fn phase(&self) -> BugPhase {
         Bug::phase(self)
     }
 
-    /// Where the robot takes itself to be, relative to its start.
+    /// Estimated pose relative to the start.
     pub fn pose(&self) -> Pose {
         Bug::pose(self)
     }
 
-    /// The distance to the goal that the robot takes itself to have.
+    /// Estimated distance to the goal (m).
     pub fn goal_distance(&self) -> f64 {
         Bug::goal_distance(self)
     }
 
-    /// What it sees at the moment: the noise-filtered hits of the scan in the robot's frame.
+    /// Noise-filtered points of the current scan, in the robot's frame.
     pub fn visible_points(&self) -> &[Point] {
         Bug::visible_points(self)
     }
 
-    /// Takes the events that have happened since the last call.
+    /// Takes the events since the last call.
     pub fn take_events(&mut self) -> Vec<BugEvent> {
         Bug::take_events(self)
     }

@@ -1,6 +1,6 @@
-/// The share of a free range that is not relied upon. Gaps between beams, and errors of the pose, grow with the distance; a
-/// range that has led a robot less near to its goal than it promised makes it doubt more from then on, so that it cannot go
-/// back and forth for ever because of errors.
+/// The fraction of a free range that is not trusted. Gaps between beams and pose errors grow with distance.
+/// Each range that leads the robot less near to its goal than predicted increases the doubt, so errors cannot
+/// make it shuttle for ever.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Doubt(f64);
 
@@ -16,12 +16,12 @@ impl Default for Doubt {
 }
 
 impl Doubt {
-    /// The share that is relied upon.
+    /// The trusted fraction.
     pub(super) fn trust(self) -> f64 {
         1.0 - self.0
     }
 
-    /// A range was less than it promised.
+    /// Increases the doubt after a range proved too long.
     pub(super) fn grow(&mut self) {
         self.0 = (2.0 * self.0).min(MOST);
     }

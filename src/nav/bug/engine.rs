@@ -12,7 +12,7 @@ use crate::io::Result;
 use crate::io::control::LidarObservation;
 use crate::nav::boundary::BoundaryFollower;
 
-/// A body that acts by a strategy: to the goal, along boundaries, and to a verdict.
+/// A body driven by a strategy: to the goal, along boundaries, and to a verdict.
 #[derive(Debug, Clone)]
 pub(super) struct Engine<S> {
     pub(super) body: Body,
@@ -20,16 +20,16 @@ pub(super) struct Engine<S> {
     following: Option<Following>,
 }
 
-/// One obstacle's boundary, as far as it has been followed.
+/// The boundary of the current obstacle, as far as it has been followed.
 #[derive(Debug, Clone)]
 struct Following {
     side: WallSide,
     boundary: BoundaryFollower,
     progress: LoopProgress,
-    /// Metres since the obstacle was met, and where they were counted last.
+    /// Distance travelled since the obstacle was met (m), and the position where it was last updated.
     travelled: f64,
     last: Point,
-    /// Whether the last heading was about the robot's own.
+    /// Whether the last heading was nearly the robot's own.
     in_line: bool,
 }
 
@@ -41,14 +41,14 @@ impl<S: Strategy> Engine<S> {
         Ok(Self { body: Body::new(goal, parameters, strategy.slows_to_pass())?, strategy, following: None })
     }
 
-    /// What the robot shall do until the next step, or how its run has ended.
+    /// The velocity until the next step, or the outcome of the run.
     pub(super) fn decide(&mut self, seen: &LidarObservation) -> Result<ControlFlow<BugOutcome, Twist>> {
         let Self { body, strategy, following } = self;
         Decider { body, strategy, following }.decide(seen)
     }
 }
 
-/// An engine whatever its strategy, so that the code below is there once.
+/// An engine independent of its strategy type, so that the code below is compiled once.
 struct Decider<'e> {
     body: &'e mut Body,
     strategy: &'e mut dyn Strategy,
@@ -83,7 +83,7 @@ impl Decider<'_> {
         Ok(heading.map_or(Twist::STOP, |heading| self.body.steer(heading, observation.speed)))
     }
 
-    /// Drives at the goal; the heading to take.
+    /// Drives towards the goal; returns the heading to take.
     fn head_for_goal(&mut self) -> Option<f64> {
         let view = self.body.look_at_goal();
         if view.is_at_hand {
@@ -98,7 +98,7 @@ impl Decider<'_> {
         }
     }
 
-    /// Starts to follow what is in the way.
+    /// Starts to follow the obstacle in the way.
     fn hit(&mut self, view: &GoalView, obstacle: Point) -> Option<f64> {
         let body = &mut *self.body;
         let own = self.strategy.side(body, view);
@@ -122,7 +122,7 @@ impl Decider<'_> {
         self.follow()
     }
 
-    /// What the strategy decides by.
+    /// The observation for the strategy's decision.
     fn sight(&self, view: &GoalView) -> Option<Sight> {
         let (body, following) = (&*self.body, self.following.as_ref()?);
         let distances = body.parameters.follow_distances();
@@ -143,7 +143,7 @@ impl Decider<'_> {
         })
     }
 
-    /// Follows the boundary until it can be left or is closed; the heading to take.
+    /// Follows the boundary until it can be left or is closed; returns the heading to take.
     fn follow(&mut self) -> Option<f64> {
         let view = self.body.look_at_goal();
         let position = self.body.pose.position();
@@ -168,7 +168,8 @@ impl Decider<'_> {
         }
     }
 
-    /// Does what the strategy has decided. `None`: the run has ended; `Some(None)`: the boundary is to be followed on.
+    /// Executes the strategy's decision. `None`: the run has ended; `Some(None)`: keep following the
+    /// boundary.
     #[allow(
         clippy::option_option,
         reason = "the end of the run is not the lack of a heading, and `?` leads there"
@@ -196,7 +197,7 @@ impl Decider<'_> {
         }
     }
 
-    /// The heading along the boundary, and what has been seen of it.
+    /// The heading along the boundary, and the progress of the lap.
     fn along_boundary(&mut self) -> Option<(Option<f64>, Lap)> {
         let body = &mut *self.body;
         let following = self.following.as_mut()?;

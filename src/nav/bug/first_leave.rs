@@ -2,7 +2,7 @@ use super::body::Body;
 use super::leave_rule::LeaveRule;
 use super::strategy::{Decision, Sight, Strategy};
 
-/// Follows one way round until a rule allows to leave.
+/// Follows the boundary in one direction until a rule allows to leave.
 #[derive(Debug, Clone, Default)]
 pub(super) struct FirstLeave<R> {
     rule: R,

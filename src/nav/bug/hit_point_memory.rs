@@ -3,15 +3,15 @@ use super::leave_rule::LeaveRule;
 use super::strategy::{Decision, Place, Sight, Strategy};
 use crate::geometry::WallSide;
 
-/// Follows until a rule allows to leave, turns back once at a point that it remembers, and with `ALTERNATING` takes the
-/// other side at every obstacle.
+/// Follows the boundary until a rule allows to leave, and turns back once at a remembered point. With
+/// `ALTERNATING` it takes the other side at every obstacle.
 #[derive(Debug, Clone, Default)]
 pub(super) struct HitPointMemory<R, const ALTERNATING: bool> {
     rule: R,
-    /// Hit and leave points of before.
+    /// Earlier hit and leave points.
     remembered: Vec<Remembered>,
     hit: Option<Place>,
-    /// The side that was followed last.
+    /// Side followed last.
     side: Option<WallSide>,
     course: Course,
 }
@@ -19,19 +19,19 @@ pub(super) struct HitPointMemory<R, const ALTERNATING: bool> {
 #[derive(Debug, Clone, Copy)]
 struct Remembered {
     place: Place,
-    /// Whether the robot has been away from it since the present hit point, so that meeting it is news.
+    /// Whether the robot has been away from it since the current hit point; only then does meeting it count.
     left_behind: bool,
 }
 
-/// How the present obstacle is being followed.
+/// Stage of following the current obstacle.
 #[derive(Debug, Clone, Copy, Default)]
 enum Course {
-    /// The first way.
+    /// The first direction.
     #[default]
     First,
-    /// Back to the hit point, so many metres, since so many.
+    /// Back to the hit point: distance, and the distance travelled at the start of the return (m).
     Back { length: f64, from: f64 },
-    /// The other way.
+    /// The other direction.
     Other,
 }
 
@@ -45,7 +45,7 @@ const EARLIEST: f64 = 0.6;
 const LATEST: f64 = 1.4;
 
 impl<R, const ALTERNATING: bool> HitPointMemory<R, ALTERNATING> {
-    /// Whether the robot meets a place that it remembers.
+    /// Whether the robot meets a remembered point.
     fn meets_remembered(&mut self, sight: &Sight) -> bool {
         let mut met = false;
         for remembered in &mut self.remembered {
@@ -57,7 +57,7 @@ impl<R, const ALTERNATING: bool> HitPointMemory<R, ALTERNATING> {
         met
     }
 
-    /// Whether the way back of a length has come to the hit point.
+    /// Whether a return of this length has arrived at the hit point.
     fn is_back(&self, sight: &Sight, length: f64, from: f64) -> bool {
         let way = sight.travelled - from;
         let here = self.hit.is_none_or(|hit| hit.is(&sight.place, HIT_POINT * sight.radius));

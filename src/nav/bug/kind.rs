@@ -8,7 +8,7 @@ use crate::geometry::Point;
 use crate::io::Result;
 use crate::parameter::debug_as_sentence;
 
-/// The bugs of this library, to choose among by name.
+/// The bugs of this library, selectable by name.
 ///
 /// ```
 /// use roverlab::geometry::Point;
@@ -45,7 +45,7 @@ pub enum BugKind {
     Class1,
 }
 
-/// A name that no bug has.
+/// Unknown name of a bug.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error("unknown bug `{found}`; expected one of {}", BugKind::names())]
 pub struct UnknownBug {
@@ -55,7 +55,7 @@ pub struct UnknownBug {
 debug_as_sentence!(UnknownBug);
 
 impl BugKind {
-    /// All of them.
+    /// All bugs.
     pub const ALL: [Self; 11] = [
         Self::Bug1,
         Self::Bug2,
@@ -70,7 +70,7 @@ impl BugKind {
         Self::Class1,
     ];
 
-    /// What the algorithm is called.
+    /// Name of the algorithm.
     pub fn name(self) -> &'static str {
         match self {
             Self::Bug1 => "Bug1",
@@ -87,7 +87,8 @@ impl BugKind {
         }
     }
 
-    /// A run to a goal given relative to the robot's start: metres ahead and to the left.
+    /// Creates a run to a goal relative to the robot's start: metres ahead and to the left. Fails for
+    /// parameters out of range and a goal that is not finite.
     pub fn with(self, goal: Point, parameters: BugParameters) -> Result<Box<dyn Bug + Send>> {
         Ok(match self {
             Self::Bug1 => Box::new(Bug1::new(goal, parameters)?),
@@ -118,7 +119,7 @@ impl fmt::Display for BugKind {
 impl FromStr for BugKind {
     type Err = UnknownBug;
 
-    /// Reads a name, in capitals or not.
+    /// Parses a name, ignoring case.
     fn from_str(text: &str) -> std::result::Result<Self, UnknownBug> {
         let named = |kind: &Self| kind.name().eq_ignore_ascii_case(text.trim());
         Self::ALL.into_iter().find(named).ok_or_else(|| UnknownBug { found: text.to_owned() })

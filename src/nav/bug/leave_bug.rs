@@ -2,22 +2,25 @@ use super::algorithm::bug_algorithm;
 use super::circumnavigation::Circumnavigation;
 
 bug_algorithm! {
-    /// LeaveBug: goes all round every obstacle, and leaves it where the free range towards the goal brings it nearest.
+    /// LeaveBug: follows the whole boundary of every obstacle, and leaves it where the free range leads
+    /// nearest to the goal.
     ///
-    /// This is [`Bug1`](super::Bug1) with eyes: what counts of a place is not how near it is to the goal but how near the
-    /// way from it leads, as in the leave condition of [`DistBug`](super::DistBug).
+    /// This is [`Bug1`](super::Bug1) with range sensing: a point is rated by how near the way from it leads
+    /// to the goal, as in the leave condition of [`DistBug`](super::DistBug).
     ///
-    /// The name is from J. Ng and T. Bräunl, "Performance comparison of bug navigation algorithms", Journal of Intelligent
-    /// and Robotic Systems 50, 2007. The definition is this library's own, and no claim about theirs.
+    /// The name is from J. Ng and T. Bräunl, "Performance comparison of bug navigation algorithms", Journal
+    /// of Intelligent and Robotic Systems 50, 2007. The definition is this library's own and makes no claim
+    /// about theirs.
     ///
     /// # Guarantee
     ///
-    /// Complete, for the reasons of Bug1: what the best place promises is nearer than all of the boundary, so no obstacle
-    /// is met twice. The path is at most `D + 2 sum(p)`: the best place may be farther from the goal than the hit point is,
-    /// by half of the boundary at the most, and the way to the next obstacle is longer by that.
+    /// Complete, for the same reason as Bug1: the predicted distance of the best point is smaller than that
+    /// of all of the boundary, so no obstacle is met twice. The path is at most `D + 2 sum(p)`: the best
+    /// point may be farther from the goal than the hit point by at most half of the boundary, which lengthens
+    /// the way to the next obstacle by as much.
     ///
-    /// A free range that is seen between two beams may not be there. Then the robot meets the same obstacle again, and relies
-    /// on ranges less from there on: in 2 of 10,000 generated worlds, closed rooms, that made the path longer than the bound, by
-    /// 1 %.
+    /// A free range between two beams may be an illusion. Then the robot meets the same obstacle again and
+    /// trusts ranges less from there on. In 2 of 10,000 generated worlds, closed rooms, this made the path 1
+    /// % longer than the bound.
     LeaveBug, "LeaveBug", Circumnavigation<true>, PathBound::TwicePerimeters
 }

@@ -3,18 +3,18 @@ use std::fmt::Debug;
 use super::strategy::Sight;
 use crate::geometry::{Point, cross};
 
-/// Where an obstacle may be left.
+/// Condition for leaving an obstacle.
 pub(super) trait LeaveRule: Debug + Clone + Default {
-    /// Takes in that an obstacle has been met.
+    /// Records that an obstacle has been met.
     fn meet(&mut self, meeting: &Sight);
 
-    /// Whether the obstacle may be left here. `goal` is that of the run.
+    /// Whether the obstacle may be left here, for the goal of the run.
     fn allows(&mut self, goal: Point, sight: &Sight) -> bool;
 }
 
-/// Where the way to the goal is open, and the robot is nearer to the goal than at those places before where it was not.
-/// With `EVER` all of the run count, else those along the present obstacle's boundary up to where the way opens first:
-/// the hit point alone.
+/// Leaves where the way to the goal is open and the robot is nearer to the goal than at earlier blocked
+/// points. With `EVER` all points of the run count, otherwise only those of the current boundary until the
+/// way first opens: in effect the hit point.
 #[derive(Debug, Clone)]
 pub(super) struct Nearer<const EVER: bool> {
     nearest: f64,
@@ -42,17 +42,18 @@ impl<const EVER: bool> LeaveRule for Nearer<EVER> {
     }
 }
 
-/// On the M-line, the straight line that the robot drives to the goal along, nearer to the goal than at the hit point, or
-/// with `EVER` than at any place of that line where the robot has been, if the way along it is open.
+/// Leaves on the M-line, the straight line to the goal, where the way along it is open and the robot is
+/// nearer to the goal than at the hit point; with `EVER`, nearer than at any earlier point of the line.
 ///
-/// A robot that turns off an obstacle rolls on across the line for some centimetres and drives at the goal from there, and
-/// what reaches over the one line by less need not reach over the other. So the line is drawn anew at every hit point.
+/// A robot that leaves an obstacle rolls on across the line for some centimetres and drives to the goal from
+/// there. An obstacle that just crosses the one line may miss the other, so the line is drawn anew at every
+/// hit point.
 #[derive(Debug, Clone)]
 pub(super) struct OnMainLine<const EVER: bool> {
     nearest: f64,
-    /// Where the line begins.
+    /// Start of the line.
     hit: Point,
-    /// Metres that the robot was to the left of the line at the last step.
+    /// Offset to the left of the line at the previous step (m).
     offset: f64,
 }
 
@@ -77,7 +78,7 @@ impl<const EVER: bool> LeaveRule for OnMainLine<EVER> {
         let (before, line) = (self.offset, goal - self.hit);
         self.offset = cross(line, sight.place.point - self.hit) / line.norm();
         let on_line = self.offset.abs() < LINE_WIDTH || self.offset * before < 0.0;
-        // Behind the goal it ends.
+        // The line ends at the goal.
         if !on_line || line.dot(&(goal - sight.place.point)) < 0.0 {
             return false;
         }
@@ -117,7 +118,7 @@ mod tests {
         }
     }
 
-    /// The line is that from the hit point, a little beside that from the start, and ends at the goal.
+    /// The line starts at the hit point, slightly beside the line from the start, and ends at the goal.
     #[test]
     fn the_main_line_leads_from_the_hit_point_to_the_goal() {
         let mut rule = OnMainLine::<false>::default();
@@ -126,7 +127,7 @@ mod tests {
         assert!(rule.allows(GOAL, &sight(2.0, 0.1)));
         rule.meet(&sight(1.0, 0.04));
         assert!(!rule.allows(GOAL, &sight(2.0, 0.0)) && rule.allows(GOAL, &sight(2.0, 0.018)));
-        // Farther than the hit point, and behind the goal.
+        // Farther than the hit point, and beyond the goal.
         rule.meet(&sight(1.0, 0.04));
         assert!(!rule.allows(GOAL, &sight(0.5, -0.1)) && !rule.allows(GOAL, &sight(0.5, 0.2)));
         assert!(!rule.allows(GOAL, &sight(3.5, 0.1)) && !rule.allows(GOAL, &sight(3.5, -0.1)));

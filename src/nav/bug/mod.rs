@@ -1,4 +1,5 @@
-//! The bug family: sensor-based ways to a goal, with a proof when there is none (book, sections 10.1 and 10.2).
+//! The bug family: sensor-based navigation to a goal, with a proof when no way exists (book, sections 10.1
+//! and 10.2).
 
 mod alg1;
 mod alg2;

@@ -2,23 +2,23 @@ use std::f64::consts::TAU;
 
 use crate::geometry::{Point, Vector, direction, math, normalize_angle};
 
-/// How far a disc can move in every direction: a scan as a disc-shaped robot has it.
+/// How far a disc can move in every direction: a scan from the perspective of a disc-shaped robot.
 ///
-/// What is far is taken to be larger by what may hide between two beams.
+/// Distant points are enlarged by what may hide between two beams.
 #[derive(Debug, Clone)]
 pub(super) struct Panorama {
     units: Vec<Vector>,
     free: Vec<f64>,
 }
 
-/// An end of what is in the way: where the free range jumps from one direction to the next.
+/// An end of an obstacle: a jump of the free range between neighbouring directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Edge {
-    /// The direction along its free side, radians counter-clockwise of the robot's heading.
+    /// Direction along its free side (rad), counter-clockwise from the robot's heading.
     pub(super) bearing: f64,
-    /// How far away it is.
+    /// Distance (m).
     pub(super) distance: f64,
-    /// On which side of that direction the obstacle is: +1 counter-clockwise, -1 clockwise.
+    /// Side of that direction on which the obstacle lies: +1 counter-clockwise, -1 clockwise.
     pub(super) obstacle: f64,
 }
 
@@ -35,7 +35,8 @@ impl Default for Panorama {
 }
 
 impl Panorama {
-    /// Looks round among points in the robot's frame. A radius larger than the present clearance is cut down to it.
+    /// Computes the free ranges among points in the robot's frame. A radius larger than the current clearance
+    /// is reduced to it.
     pub(super) fn look(&mut self, points: &[Point], radius: f64) {
         let nearest = points.iter().map(|p| p.coords.norm_squared()).fold(f64::INFINITY, f64::min).sqrt();
         let radius = radius.min(nearest - 1e-3);
@@ -45,7 +46,7 @@ impl Panorama {
         }
     }
 
-    /// Shortens the free ranges by what one point is in the way.
+    /// Shortens the free ranges blocked by one point.
     fn take_in(&mut self, point: &Point, radius: f64) {
         let away = point.coords.norm();
         let radius = (radius + SPACING * away).min(away - 1e-3);
@@ -65,7 +66,7 @@ impl Panorama {
         }
     }
 
-    /// The ends of obstacles behind which there is more than `depth` metres of free space.
+    /// The ends of obstacles with more than `depth` metres of free space behind them.
     pub(super) fn edges(&self, depth: f64) -> impl Iterator<Item = Edge> + '_ {
         (0..DIRECTIONS).filter_map(move |i| {
             let next = (i + 1) % DIRECTIONS;
@@ -85,8 +86,8 @@ impl Panorama {
         })
     }
 
-    /// Where the disc would touch the obstacle that lies in a direction, as far as it is seen in one piece: from one
-    /// direction to the next, the place moves by at most `link` metres.
+    /// The positions where the disc would touch the obstacle in a direction, as far as it appears connected:
+    /// neighbouring positions are at most `link` metres apart.
     pub(super) fn obstacle(&self, bearing: f64, link: f64) -> impl Iterator<Item = Point> + '_ {
         let begin = (bearing / SPACING).round() as i64;
         let end = move |k: i64| {
@@ -94,7 +95,7 @@ impl Panorama {
             Point::origin() + self.units[i] * self.free[i]
         };
         let linked = move |k: i64, sense: i64| {
-            // The place at infinity is no number, and not linked to anything.
+            // A position at infinity gives NaN and is linked to nothing.
             (end(begin + sense * k) - end(begin + sense * (k - 1))).norm() <= link
         };
         let to_side = move |sense: i64| {
@@ -105,8 +106,8 @@ impl Panorama {
         to_side(1).chain(to_side(-1))
     }
 
-    /// The place nearest to `goal` that a straight move leads to, of at most `reach` metres and a part `trust` of what is
-    /// free.
+    /// The position nearest to `goal` reachable by a straight move of at most `reach` metres and the fraction
+    /// `trust` of the free range.
     pub(super) fn nearest_to(&self, goal: Point, reach: f64, trust: f64) -> Point {
         let ends = self.units.iter().zip(&self.free).map(|(unit, free)| {
             let along = goal.coords.dot(unit).clamp(0.0, (free * trust).min(reach));
@@ -143,7 +144,8 @@ mod tests {
             let wide = surroundings.free_distance(unit, 0.1 + 2.0 * SPACING).0;
             let narrow = surroundings.free_distance(unit, 0.1).0;
             let found = panorama.free[index];
-            // A larger disc is stopped earlier; the clearance cuts the wide one down, so that the bound below is loose.
+            // A larger disc is stopped earlier. The clearance limits the wide one, so the bound below is
+            // loose.
             prop_assert!(found <= narrow + 1e-9, "{found} {narrow}");
             prop_assert!(wide.is_finite() || found > 0.0);
         }

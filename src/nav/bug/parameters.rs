@@ -3,35 +3,35 @@ use crate::geometry::WallSide;
 use crate::nav::boundary::FollowDistances;
 use crate::parameter::{require, require_positive};
 
-/// What the bugs go by. Lengths in metres, speeds in metres per second.
+/// Parameters of the bugs. Lengths in metres, speeds in metres per second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BugParameters {
-    /// The radius of the robot's outline.
+    /// Radius of the robot's outline.
     pub robot_radius: f64,
-    /// The free space beside the outline that a passage must offer on either side.
+    /// Free space required beside the outline on either side of a passage.
     pub least_clearance: f64,
-    /// The free space beside the outline that is kept to an obstacle where there is room.
+    /// Free space kept beside the outline where there is room.
     pub clearance: f64,
-    /// STEP of the leave conditions: how much nearer to the goal than before a leave must bring the robot.
+    /// STEP of the leave conditions: how much nearer to the goal a leave must bring the robot.
     pub step: f64,
-    /// The distance to the goal that counts as reached.
+    /// Distance from the goal that counts as reached.
     pub goal_tolerance: f64,
-    /// The speed in the open.
+    /// Speed in the open.
     pub cruise_speed: f64,
-    /// The speed along an obstacle.
+    /// Speed along an obstacle.
     pub follow_speed: f64,
-    /// On which side obstacles are kept at first; `None`: on the side that needs the smaller turn.
+    /// Side on which obstacles are followed at first; `None` chooses the smaller turn.
     pub side: Option<WallSide>,
-    /// Whether odometry is corrected by matching scans.
+    /// Whether scan matching corrects odometry.
     pub match_scans: bool,
-    /// The seconds by which the robot does later what it is told: at a speed `v` it rolls `v * lag` farther before it stands.
+    /// Delay of the robot's response (s): at a speed `v` it rolls another `v * lag` before it stands.
     pub lag: f64,
-    /// Seconds from one control step to the next.
+    /// Control period (s).
     pub period: f64,
 }
 
 impl BugParameters {
-    /// Parameters for a disc-shaped robot of a radius in metres; distances are scaled to it.
+    /// Parameters for a disc-shaped robot of this radius (m); distances scale with it.
     pub fn for_radius(radius: f64) -> Self {
         Self {
             robot_radius: radius,
@@ -48,7 +48,7 @@ impl BugParameters {
         }
     }
 
-    /// Fails with the name of the parameter that is out of range.
+    /// Checks every parameter; the error names the one out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         require_positive("robot radius", self.robot_radius)?;
         require_positive("least clearance", self.least_clearance)?;
@@ -74,7 +74,7 @@ impl BugParameters {
 }
 
 impl Default for BugParameters {
-    /// For the S4's 60 mm.
+    /// Parameters for the S4's radius of 60 mm.
     fn default() -> Self {
         Self::for_radius(0.060)
     }

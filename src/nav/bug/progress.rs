@@ -3,57 +3,58 @@ use std::f64::consts::TAU;
 use crate::geometry::WallSide;
 use crate::geometry::{Point, Pose, angle_difference, normalize_angle};
 
-/// Whether the robot has been all round.
+/// Detects when the robot has gone all round a boundary.
 #[derive(Debug, Clone)]
 pub(super) struct LoopProgress {
     begin: Option<Pose>,
     last: Pose,
-    /// Metres since the boundary was met, and since the loop began.
+    /// Distance travelled since the boundary was met, and since the loop began (m).
     approach: f64,
     travelled: f64,
-    /// Radians that the boundary has turned since the loop began.
+    /// Rotation of the boundary since the loop began (rad).
     turned: f64,
     spin: Spin,
     side: WallSide,
-    /// Steps without a free heading.
+    /// Number of steps without a free heading.
     boxed_in: u32,
-    /// How near the robot was to the loop's begin at the last step, if it was as good as there.
+    /// Distance to the loop's start at the previous step (m), if the robot was practically there.
     closing: Option<f64>,
-    /// Whether the robot has left the place where the loop began, and how often it came back the same way.
+    /// Whether the robot has left the loop's start, and how often it returned in the same direction.
     away: bool,
     returns: u32,
     rule: LapRule,
 }
 
-/// When a boundary counts as gone round.
+/// Criterion for having gone round a boundary.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LapRule {
-    /// Full turns after which the place where the loop began should have been found; if not, the robot has been wrong
-    /// about it, and the loop begins anew.
+    /// Full turns after which the loop's start should have been found; otherwise its estimate was wrong, and
+    /// the loop begins anew.
     pub(super) lost_turns: f64,
-    /// Whether the loop is followed to its very end, rather than until that is near.
+    /// Whether the loop is followed to its very end, rather than until the end is near.
     pub(super) to_the_end: bool,
 }
 
-/// What the latest step has shown.
+/// Result of the latest step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Lap {
-    /// There is more of the boundary to come.
+    /// Part of the boundary is still ahead.
     Open,
-    /// The robot is back where the loop began, which is so many metres long.
+    /// The robot is back at the loop's start; the loop's length (m).
     Closed(f64),
-    /// There is no way on at all.
+    /// No heading is free.
     BoxedIn,
 }
 
-/// What a robot turns more or less on the spot.
+/// Rotation more or less on the spot.
 #[derive(Debug, Clone, Copy)]
 struct Spin {
     from: Point,
     turned: f64,
 }
 
-/// Radians by which a robot that turns towards the wall on the spot turns round: about the end of a wall it would drive.
+/// Radians by which a robot that turns towards the wall on the spot turns round: about the end of a wall it
+/// would drive.
 const TURNING_ROUND: f64 = 2.2;
 /// Returns the same way after which a loop is closed, however the robot has turned on it.
 const CERTAIN_RETURNS: u32 = 2;
@@ -79,7 +80,7 @@ impl LoopProgress {
         }
     }
 
-    /// Takes in where the robot is and the heading that it takes; whether it is back where the loop began.
+    /// Updates the loop with the robot's pose and heading. Returns whether it is closed.
     pub(super) fn update(&mut self, pose: Pose, heading: Option<f64>, radius: f64) -> Lap {
         let moved = pose.distance_to(self.last.position());
         let turned = angle_difference(pose.heading, self.last.heading);
@@ -91,7 +92,7 @@ impl LoopProgress {
         self.boxed_in = 0;
         let Some(begin) = self.begin else {
             self.approach += moved;
-            // The loop begins once the robot has come into line with the boundary.
+            // The loop begins once the robot drives in line with the boundary.
             let in_line = heading.abs() < 0.3 && self.approach > 0.5 * radius;
             if in_line || self.approach > 6.0 * radius {
                 self.begin = Some(pose);
@@ -108,10 +109,11 @@ impl LoopProgress {
             self.away = false;
             self.returns += 1;
         }
-        // Once round a closed curve, the heading turns by one full turn, whatever the curve; back and forth, by none.
+        // Once round any closed curve the heading turns by one full turn; back and forth, by none.
         let all_round = self.turned.abs() > 0.6 * TAU || self.returns >= CERTAIN_RETURNS;
         if self.turned.abs() > self.rule.lost_turns * TAU {
-            // It has been round without finding the place, so its pose there was wrong. The loop begins anew here.
+            // It went round without finding the start, so the start's pose was wrong. The loop begins anew
+            // here.
             *self = Self { begin: Some(pose), ..Self::new(pose, self.side, self.rule) };
             return Lap::Open;
         }
@@ -123,8 +125,8 @@ impl LoopProgress {
         }
     }
 
-    /// What the boundary turns by as the robot turns. In a dead end it turns away from the wall, by half a turn; the robot may
-    /// turn round the other way there, and comes to face the same way.
+    /// Rotation of the boundary as the robot turns. In a dead end the boundary turns away from the wall by
+    /// half a turn, but the robot may turn the other way and end with the same heading.
     fn turn_of_boundary(&mut self, pose: Pose, turned: f64, radius: f64) -> f64 {
         if pose.distance_to(self.spin.from) > radius {
             self.spin = Spin { from: pose.position(), turned: 0.0 };
@@ -138,7 +140,7 @@ impl LoopProgress {
         turned + away * TAU
     }
 
-    /// Whether the loop is over for a robot that is, or is not, as good as at its begin.
+    /// Whether the loop is over for a robot that is, or is not, practically at its start.
     fn is_over(&mut self, there: bool, distance: f64) -> bool {
         if !self.rule.to_the_end {
             return there;
@@ -155,7 +157,7 @@ mod tests {
     use crate::geometry::math;
     use std::f64::consts::PI;
 
-    /// Follows a closed line round and round. How many rounds it takes until the loop is closed.
+    /// Follows a closed line repeatedly. Returns the number of rounds until the loop is closed.
     fn rounds(place: impl Fn(f64) -> (f64, f64)) -> f64 {
         let at = |t: f64| {
             let ((x, y), (ahead_x, ahead_y)) = (place(t), place(t + 1e-3));
@@ -175,7 +177,7 @@ mod tests {
         assert!((0.9..1.1).contains(&round), "{round}");
     }
 
-    /// Up and down a blind alley: all of its boundary is gone along in one way there and one back.
+    /// Into a blind alley and back: this covers all of its boundary.
     #[test]
     fn a_dead_end_is_left_whichever_way_the_robot_turns_round() {
         for (side, towards_the_wall) in [(WallSide::Right, -PI), (WallSide::Left, PI), (WallSide::Right, PI)]

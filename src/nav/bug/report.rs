@@ -2,18 +2,18 @@ use crate::geometry::Point;
 use crate::geometry::WallSide;
 use crate::io::control::halts;
 
-/// How the run of a bug ended.
+/// Outcome of a bug's run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BugOutcome {
     /// The robot is at the goal.
     Reached,
-    /// The robot went all the way round an obstacle without getting nearer to the goal: there is no way.
+    /// The robot went all the way round an obstacle without getting nearer to the goal: no way exists.
     Unreachable,
-    /// The robot sees that there is no room for it at the goal, nor anywhere near enough to it.
+    /// The robot sees that it has no room at the goal or within its tolerance.
     NoRoom,
-    /// The time was over.
+    /// The time limit came first.
     TimedOut,
-    /// Who watched had seen enough.
+    /// The observer stopped the run.
     Stopped,
 }
 
@@ -23,10 +23,10 @@ halts!(BugOutcome {
     NoRoom: "the robot has no room at the goal",
 });
 
-/// What the robot is doing.
+/// Phase of a bug's run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BugPhase {
-    /// Looking round: standing, then turning once on the spot, which shows how true odometry's turns are.
+    /// Standing, then turning once on the spot, which calibrates the turns of odometry.
     LookingRound,
     /// Driving towards the goal.
     ToGoal,
@@ -36,29 +36,29 @@ pub enum BugPhase {
     Ended(BugOutcome),
 }
 
-/// Something worth telling that happened in a step. Points are where the robot was, relative to its start.
+/// Event of a step. Points are the robot's positions relative to its start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum BugEvent {
     /// An obstacle is in the way: the hit point.
     Hit {
-        /// Where the robot was.
+        /// Position of the robot.
         point: Point,
-        /// The side of the robot on which it follows the obstacle.
+        /// Side of the robot on which it follows the obstacle.
         side: WallSide,
     },
     /// The robot turns back and follows the same obstacle the other way.
     Reverse {
-        /// Where the robot was.
+        /// Position of the robot.
         point: Point,
-        /// The side of the robot on which it follows the obstacle from now on.
+        /// Side of the robot on which it follows the obstacle from now on.
         side: WallSide,
     },
-    /// The way to the goal is free enough: the leave point.
+    /// The robot leaves the obstacle: the leave point.
     Leave {
-        /// Where the robot was.
+        /// Position of the robot.
         point: Point,
-        /// The free distance towards the goal.
+        /// Free distance towards the goal (m).
         free: f64,
     },
     /// The run is over.

@@ -3,97 +3,99 @@ use super::progress::LapRule;
 use crate::geometry::WallSide;
 use crate::geometry::{Point, angle_difference};
 
-/// What makes one bug differ from another: when it leaves an obstacle, when it turns back, and when it gives up.
+/// What distinguishes one bug from another: when it leaves an obstacle, turns back, and gives up.
 ///
-/// The engine drives the body by it. All lengths are in metres.
+/// The engine drives the body accordingly. All lengths are in metres.
 pub(super) trait Strategy {
-    /// Whether the robot slows down on its way to the goal for what it would pass with less than the least clearance.
-    /// Whoever may turn either way then must, since a robot rolls on while it turns.
+    /// Whether the robot, on its way to the goal, slows down for obstacles it would pass with less than the
+    /// least clearance. Required for a strategy that may turn either way there, since the robot rolls on
+    /// while it turns.
     fn slows_to_pass(&self) -> bool {
         true
     }
 
-    /// When a boundary counts as gone round. Along a spiral the robot turns several times before it unwinds, and the
-    /// place to leave may lie right before the end.
+    /// Criterion for having gone round a boundary. Along a spiral the robot turns several times before it
+    /// unwinds, and the leave point may lie right before the end.
     fn laps(&self) -> LapRule {
         LapRule { lost_turns: 4.0, to_the_end: true }
     }
 
-    /// While the goal is driven at: another heading than straight to it, if the algorithm has one.
+    /// Another heading than straight to the goal, if the strategy has one.
     fn detour(&mut self, _body: &Body, _view: &GoalView) -> Option<f64> {
         None
     }
 
-    /// The side on which a newly met obstacle is to be kept, if not the usual one.
+    /// Side on which to follow a newly met obstacle, if not the usual one.
     fn side(&mut self, _body: &Body, _view: &GoalView) -> Option<WallSide> {
         None
     }
 
-    /// Takes in that an obstacle has been met, which is now going to be followed.
+    /// Records that an obstacle has been met and will be followed.
     fn meet(&mut self, meeting: &Sight);
 
-    /// What to do at a step along the boundary.
+    /// Decision at a step along the boundary.
     fn consider(&mut self, body: &Body, sight: &Sight) -> Decision;
 
-    /// What to do once the robot has been all round a boundary, which is `lap` metres long.
+    /// Decision after a complete round of a boundary of `lap` metres.
     fn all_round(&mut self, _sight: &Sight, _lap: f64) -> Decision {
         Decision::GiveUp
     }
 }
 
-/// What a bug decides.
+/// Decision of a bug.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Decision {
-    /// To follow on.
+    /// Keep following.
     Follow,
-    /// To leave for the goal.
+    /// Leave for the goal.
     Leave,
-    /// To turn back and follow the other way.
+    /// Turn back and follow the other way.
     Reverse,
-    /// To follow on, with the count of what has been seen of this boundary begun anew.
+    /// Keep following, and start a new lap here.
     BeginLap,
-    /// That there is no way to the goal.
+    /// No way leads to the goal.
     GiveUp,
 }
 
-/// What a bug decides by.
+/// Observation behind a bug's decision.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sight {
     pub(super) place: Place,
     pub(super) side: WallSide,
-    /// The distance to the goal.
+    /// Distance to the goal.
     pub(super) distance: f64,
     /// How far the disc can move towards the goal.
     pub(super) free: f64,
-    /// The sine of the goal's direction with respect to the wall, positive into it: -1 straight away from it.
+    /// Sine of the goal's direction relative to the wall, positive into the wall; -1 is straight away from
+    /// it.
     pub(super) into_wall: f64,
     /// Whether the disc pushed towards the goal would touch the followed obstacle within its margin.
     pub(super) at_boundary: bool,
     /// Whether the robot drives along the boundary, rather than turning on the spot.
     pub(super) in_line: bool,
-    /// Metres along this obstacle since it was met, back and forth.
+    /// Distance along this obstacle since it was met, back and forth.
     pub(super) travelled: f64,
-    /// The room between where the boundary is followed and where it is.
+    /// Distance between the path along the boundary and the boundary itself.
     pub(super) margin: f64,
     pub(super) step: f64,
     pub(super) radius: f64,
 }
 
 impl Sight {
-    /// How near the boundary here is to the goal: that of the disc pushed up to it.
+    /// Distance of the boundary here from the goal, with the disc pushed up to it.
     pub(super) fn boundary_distance(&self) -> f64 {
         if self.at_boundary { self.distance - self.free } else { self.distance }
     }
 
-    /// The same for a boundary that the robot keeps farther from than its margin, as in an acute corner. The way must
-    /// lead straight into the wall then, for it to be this wall that ends it.
+    /// The same where the robot keeps farther away than its margin, as in an acute corner. The way must lead
+    /// straight into the wall, so that this wall ends it.
     pub(super) fn corner_distance(&self) -> f64 {
         let in_corner = self.into_wall > STRAIGHT_INTO && self.free < RECESS * self.margin;
         if in_corner { self.distance - self.free } else { self.boundary_distance() }
     }
 
-    /// Whether the robot can move towards the goal, as far as the followed obstacle goes: not if the way leads into a
-    /// wall that goes on straight.
+    /// Whether the followed obstacle lets the robot move towards the goal. A way that leads into a straight
+    /// wall is not open.
     pub(super) fn is_open(&self) -> bool {
         if self.free >= self.distance {
             return true;
@@ -108,16 +110,16 @@ impl Sight {
 
 /// What is deeper than this, in margins, is more than a corner of the wall.
 const RECESS: f64 = 2.5;
-/// The sine from which on a direction leads straight into the wall: round the end of a wall, in an arc, a disc that
-/// moves so still touches it.
+/// The sine from which on a direction leads straight into the wall: round the end of a wall, in an arc, a
+/// disc that moves so still touches it.
 const STRAIGHT_INTO: f64 = 0.8;
 
-/// A point of a boundary as a robot can recognise it: where it stands, and in which direction it has the wall. Only
-/// both tell the two sides of a thin wall apart.
+/// A recognisable point of a boundary: the robot's position and the direction of the wall. Only both together
+/// distinguish the two sides of a thin wall.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Place {
     pub(super) point: Point,
-    /// The direction of the wall, radians in the frame of the start.
+    /// Direction of the wall in the frame of the start (rad).
     pub(super) wall: f64,
 }
 

@@ -7,45 +7,48 @@ use crate::geometry::WallSide;
 use crate::geometry::{Point, direction, math, normalize_angle};
 
 bug_algorithm! {
-    /// TangentBug: drives for the ends of obstacles that it sees from afar (I. Kamon, E. Rimon and E. Rivlin, "TangentBug: a
-    /// range-sensor-based navigation algorithm", International Journal of Robotics Research 17(9), 1998).
+    /// TangentBug: drives towards the ends of obstacles seen from afar (I. Kamon, E. Rimon and E. Rivlin,
+    /// "TangentBug: a range-sensor-based navigation algorithm", International Journal of Robotics Research
+    /// 17(9), 1998).
     ///
-    /// The ends of what is in the way, where the free range jumps, are the nodes of the *local tangent graph*, and so is the
-    /// goal if the way to it is free. Of the nodes that bring the robot nearer to the goal, it drives for that with the
-    /// shortest way over it. Where none does, in a local minimum, it drives up to the obstacle and follows its boundary to
-    /// the side of the best node. It keeps `d_followed`, the smallest distance to the goal of the boundary that it has
-    /// seen, and looks for `d_reach`, the smallest distance of the places that it can move to straight. As soon as
-    /// `d_reach < d_followed`, by STEP, it leaves for that place. All round without having left, it knows that there is no
-    /// way.
+    /// The nodes of the *local tangent graph* are the ends of the blocking obstacles, where the free range
+    /// jumps, and the goal if the way to it is free. Among the nodes that bring the robot nearer to the goal,
+    /// it drives to the one with the shortest way over it. If there is none, in a local minimum, it drives up
+    /// to the obstacle and follows its boundary on the side of the best node. It records `d_followed`, the
+    /// smallest distance of the visible boundary from the goal, and `d_reach`, the smallest distance among
+    /// the places it can move straight to. As soon as `d_reach < d_followed` by STEP, it leaves for that
+    /// place. All round without having left, it reports that no way exists.
     ///
     /// # Guarantee
     ///
-    /// Complete: every leave brings the robot nearer to the goal than all of the boundary before, and between them the
-    /// distance to the goal decreases.
+    /// Complete: every leave brings the robot nearer to the goal than all of the earlier boundary, and the
+    /// distance to the goal decreases in between.
     ///
     /// # Model
     ///
-    /// As for [`DistBug`](super::DistBug): free ranges are those of the whole disc. Places count up to
-    /// 33 robot radii away, since walls hide between the beams of a lidar beyond.
+    /// As for [`DistBug`](super::DistBug): free ranges are those of the whole disc. Places count up to 33
+    /// robot radii away, since walls farther off may hide between the beams.
     TangentBug, "TangentBug", Tangent, PathBound::Unknown
 }
 
-/// Motion to the goal over the nodes of the local tangent graph, and boundary following by `d_reach < d_followed`.
+/// Motion to the goal over the nodes of the local tangent graph, and boundary following until `d_reach <
+/// d_followed`.
 #[derive(Debug, Clone)]
 pub(super) struct Tangent {
     panorama: Panorama,
-    /// How near to the goal boundaries have come where the robot was: each leave is nearer than all before.
+    /// Smallest distance of the boundaries to the goal where the robot was: each leave is nearer than all
+    /// before.
     passed: f64,
-    /// The same for the present obstacle's boundary as far as it has been seen.
+    /// The same for the visible part of the current boundary.
     seen: f64,
-    /// `d_reach` at its smallest along the present boundary.
+    /// Smallest `d_reach` along the current boundary.
     reach: f64,
-    /// Whether what was only seen of the boundary no longer counts. It may have been of something else.
+    /// Whether seen but unvisited boundary no longer counts, as it may belong to another obstacle.
     distrustful: bool,
     doubt: Doubt,
     /// The place that the obstacle was left for, until it is reached.
     leaving_for: Option<Point>,
-    /// On which side of the goal's direction the robot passes the obstacle, as [`Edge::obstacle`].
+    /// Side of the goal's direction on which the robot passes the obstacle, as [`Edge::obstacle`].
     passing: Option<f64>,
 }
 
@@ -55,13 +58,13 @@ const REACH: f64 = 33.0;
 const NODE_DEPTH: f64 = 3.0;
 /// The least cosine between the way to a node and that to the goal.
 const LEAST_PROGRESS: f64 = 0.1;
-/// How much longer, as a factor, the way over a node on the other side may be said to be, so that the robot does not
-/// waver.
+/// How much longer, as a factor, the way over a node on the other side may be said to be, so that the robot
+/// does not waver.
 const LOYALTY: f64 = 1.1;
 /// How far, in radians, a robot turns away from an edge that it is as near to as it can be.
 const YIELD: f64 = 0.5;
-/// Ends of free ranges in neighbouring directions that are no farther apart than this, in robot radii, are of one
-/// obstacle: the robot does not fit between.
+/// Ends of free ranges in neighbouring directions that are no farther apart than this, in robot radii, are of
+/// one obstacle: the robot does not fit between.
 const LINK: f64 = 2.0;
 /// How near, in robot radii, the place is reached that an obstacle was left for.
 const ARRIVAL: f64 = 0.5;
@@ -82,13 +85,13 @@ impl Default for Tangent {
 }
 
 impl Tangent {
-    /// The length of the way over a node.
+    /// Length of the way over a node.
     fn length(edge: &Edge, view: &GoalView) -> f64 {
         let node = direction(edge.bearing) * edge.distance;
         edge.distance + (direction(view.bearing) * view.distance - node).norm()
     }
 
-    /// The best node among those that `pick` picks.
+    /// The best node among those accepted by `pick`.
     fn best_node(&self, body: &Body, view: &GoalView, pick: impl Fn(&Edge) -> bool) -> Option<Edge> {
         let depth = NODE_DEPTH * body.parameters.robot_radius;
         let weighed = |edge: &Edge| {
@@ -114,7 +117,7 @@ impl Tangent {
         edge.bearing - edge.obstacle * YIELD * (lacking / most).min(1.0)
     }
 
-    /// The heading to the place that the obstacle was left for, as long as there is one.
+    /// The heading to the place that the obstacle was left for, until it is reached.
     fn leave_on(&mut self, body: &Body, view: &GoalView) -> Option<f64> {
         let place = body.pose.to_local(self.leaving_for?);
         let radius = body.parameters.robot_radius;
@@ -163,14 +166,14 @@ impl Strategy for Tangent {
         }
         self.panorama.look(body.surroundings.points(), body.parameters.follow_distances().wished);
         let node = self.best_node(body, view, |_| true)?;
-        // With the obstacle clockwise of the way past its end, the robot has it to its right.
+        // An obstacle clockwise of the way past its end is on the robot's right.
         Some(if node.obstacle < 0.0 { WallSide::Right } else { WallSide::Left })
     }
 
     fn meet(&mut self, meeting: &Sight) {
         let distance = meeting.distance - meeting.free;
         if distance > self.passed - 0.5 * meeting.step && self.passed.is_finite() {
-            // The last leave has not led as near as it promised.
+            // The last leave did not lead as near as predicted.
             self.doubt.grow();
         }
         let passed = self.passed.min(distance);

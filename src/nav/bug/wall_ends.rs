@@ -1,10 +1,10 @@
 use crate::geometry::{Point, Pose, Vector, cross};
 
-/// The free ends of walls that were seen near the robot of late.
+/// The free ends of walls recently seen near the robot.
 ///
-/// A thin wall's end, seen along the wall, falls between the beams, and may do so just when the robot turns round it. It is
-/// there still: a robot that steers by what it sees alone would cut the corner. Nor is it where filtered ranges have it that
-/// average over what a beam meets while it sweeps off the end.
+/// The end of a thin wall seen edge-on falls between the beams, possibly just when the robot turns round it.
+/// A robot steered only by current points would cut the corner. Filtered ranges do not show the end either:
+/// they average over what a beam meets while it sweeps off the end.
 #[derive(Debug, Clone, Default)]
 pub(super) struct WallEnds {
     known: Vec<WallEnd>,
@@ -12,20 +12,21 @@ pub(super) struct WallEnds {
 
 #[derive(Debug, Clone, Copy)]
 struct WallEnd {
-    /// In the frame of the robot's pose.
+    /// Position in the frame of the robot's poses.
     place: Point,
-    /// Steps since it was last measured.
+    /// Number of steps since it was last measured.
     age: u32,
 }
 
-/// What is seen in two beams side by side is not of one surface if it lies farther apart than this, in metres.
+/// What is seen in two beams side by side is not of one surface if it lies farther apart than this, in
+/// metres.
 const GAP: f64 = 0.03;
 /// Steps for which an end that is out of sight is taken to be there still.
 const MEMORY: u32 = 40;
 
 impl WallEnds {
-    /// Takes in the points that are measured from a pose, in the order of their beams. Ends within `reach` metres count, and
-    /// a point is known to within `error` metres.
+    /// Updates the ends with the points measured from a pose, in the order of their beams. Ends within
+    /// `reach` metres count; points are accurate to `error` metres.
     pub(super) fn update(&mut self, pose: &Pose, measured: &[Point], reach: f64, error: f64) {
         self.known.retain_mut(|end| {
             end.age += 1;
@@ -36,7 +37,7 @@ impl WallEnds {
         }
     }
 
-    /// The ends that are not among what is seen, in the robot's frame.
+    /// The ends that are not among the visible points, in the robot's frame.
     pub(super) fn hidden<'a>(
         &'a self,
         pose: &'a Pose,
@@ -56,19 +57,19 @@ impl WallEnds {
     }
 }
 
-/// The points behind which there is a gap in what is seen.
+/// The points with a gap behind them.
 fn ends(measured: &[Point]) -> impl Iterator<Item = Point> + '_ {
     gaps(measured).map(|gap| gap.end)
 }
 
-/// Where walls that are seen at a slant may really end: anywhere before the next beam, which passes them. What is shorter
-/// than `least` metres, such as what noise makes, is of no account.
+/// Possible ends of walls seen at a slant: anywhere before the next beam, which passes them. Extensions
+/// shorter than `least` metres, such as noise, are ignored.
 pub(super) fn overhangs(measured: &[Point], reach: f64, least: f64) -> impl Iterator<Item = Point> + '_ {
     let near = gaps(measured).filter(move |gap| gap.end.coords.norm_squared() < reach * reach);
     near.filter_map(move |gap| overhang(gap.end, gap.before, least))
 }
 
-/// A gap in what is seen: the point at its nearer side, and the one in the beam before that.
+/// A gap between neighbouring beams: the point on its nearer side, and the point of the beam before.
 struct Gap {
     end: Point,
     before: Point,
@@ -87,8 +88,8 @@ fn gaps(seen: &[Point]) -> impl Iterator<Item = Gap> + '_ {
     })
 }
 
-/// Where the wall through two points, seen in beams side by side, would meet the next beam, if that is nearer by
-/// `least` metres. Along a straight line, the reciprocal of the range is linear for small angles.
+/// Where the wall through two points of neighbouring beams would meet the next beam, if that is nearer by
+/// `least` metres. Along a straight line the reciprocal of the range is linear for small angles.
 fn overhang(end: Point, before: Point, least: f64) -> Option<Point> {
     if (end - before).norm_squared() > GAP * GAP {
         return None;
@@ -96,7 +97,7 @@ fn overhang(end: Point, before: Point, least: f64) -> Option<Point> {
     let (range, range_before) = (end.coords.norm(), before.coords.norm());
     let next = (2.0 / range - 1.0 / range_before).recip();
     let (unit, unit_before) = (end.coords / range, before.coords / range_before);
-    // From one beam to the next the direction turns by as much again.
+    // Each beam turns by the same angle from the previous one.
     let (sin, cos) = (cross(unit_before, unit), unit_before.dot(&unit));
     let onward = Vector::new(cos * unit.x - sin * unit.y, sin * unit.x + cos * unit.y);
     (next < range - least).then(|| Point::origin() + onward * next)

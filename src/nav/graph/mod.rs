@@ -1,9 +1,10 @@
 //! Shortest paths in graphs (book, section 10.6).
 //!
-//! [`shortest_path`] searches anything that can list the neighbours of a node; with the feature `petgraph`,
-//! `petgraph_shortest_path` searches any graph of that crate. Both are A\*, and Dijkstra's algorithm if the estimate is
-//! 0. Costs are floating-point numbers, and handled with care: a cost that is no number or negative is an error that
-//! names it, and equal ones are taken in the order in which they were found.
+//! [`shortest_path`] searches any graph that can list the neighbours of a node. With the feature `petgraph`,
+//! `petgraph_shortest_path` searches graphs of that crate, and `petgraph_of_grid` makes one of a grid. Both
+//! searches are A\*, or Dijkstra's algorithm with an estimate of 0. Costs are floating-point numbers: a NaN or
+//! negative cost is an error that names its edge, and equal costs are taken in the order in which they were
+//! found.
 
 mod search;
 #[cfg(test)]
@@ -13,4 +14,4 @@ mod with_petgraph;
 
 pub use search::{GraphError, GraphPath, GraphStep, shortest_path};
 #[cfg(feature = "petgraph")]
-pub use with_petgraph::petgraph_shortest_path;
+pub use with_petgraph::{petgraph_of_grid, petgraph_shortest_path};

@@ -3,67 +3,67 @@ use std::collections::BinaryHeap;
 
 use crate::nav::grid::SearchStatistics;
 
-/// A way through a graph, with what it took to find it.
+/// A path through a graph, with statistics of the search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GraphPath<N> {
-    /// The nodes from the start to the goal.
+    /// Nodes from the start to the goal.
     pub nodes: Vec<N>,
-    /// The sum of the costs along them.
+    /// Sum of the costs along them.
     pub cost: f64,
-    /// What the search did.
+    /// Statistics of the search.
     pub statistics: SearchStatistics,
 }
 
-/// A node taken off the queue: the step by which a search advances.
+/// A node taken off the queue: one step of a search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GraphStep<N> {
     /// The node.
     pub node: N,
-    /// The node before it on the way; `None` at the start.
+    /// Previous node on the path; `None` at the start.
     pub before: Option<N>,
-    /// The cost of the way to it.
+    /// Cost of the path to it.
     pub cost: f64,
-    /// The lower bound of the rest.
+    /// Lower bound of the remaining cost.
     pub estimate: f64,
-    /// The nodes that ways were found to from here, cheaper than those known before, with their costs and estimates. A
-    /// way's score is the sum of the two.
+    /// Nodes reached from here more cheaply than before, with their costs and estimates. The score of a path
+    /// is the sum of the two.
     pub reached: Vec<(N, f64, f64)>,
 }
 
-/// Why there is no path.
+/// Reason for the lack of a path.
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GraphError<N: std::fmt::Debug> {
-    /// A node does not belong to the graph.
+    /// A node is not in the graph.
     #[error("node {0:?} is not in the graph")]
     NoSuchNode(N),
-    /// A cost is no number.
+    /// A cost is NaN.
     #[error("the cost from {from:?} to {to:?} is not a number")]
     NanCost {
-        /// The edge leads from here.
+        /// Start of the edge.
         from: N,
-        /// And to here.
+        /// End of the edge.
         to: N,
     },
     /// A cost is negative.
     #[error("the cost from {from:?} to {to:?} is {cost}; expected 0 or more")]
     NegativeCost {
-        /// The edge leads from here.
+        /// Start of the edge.
         from: N,
-        /// And to here.
+        /// End of the edge.
         to: N,
-        /// Its cost.
+        /// Cost of the edge.
         cost: f64,
     },
-    /// An estimate is no number.
+    /// An estimate is NaN.
     #[error("the estimate at {0:?} is not a number")]
     NanEstimate(N),
     /// No way leads to the goal.
     #[error("no way leads from {start:?} to {goal:?}")]
     Unreachable {
-        /// From here.
+        /// Start of the query.
         start: N,
-        /// To here.
+        /// Goal of the query.
         goal: N,
     },
 }
@@ -74,19 +74,19 @@ impl<N: std::fmt::Debug> std::fmt::Debug for GraphError<N> {
     }
 }
 
-/// The cheapest way from one node to another one, by A\*.
+/// The cheapest path between two nodes, by A\*.
 ///
-/// Nodes are numbers below `count`. `neighbours(node, visit)` calls `visit(next, cost)` for each edge from a node;
-/// an infinite cost counts as no edge. `estimate(node)` must not be more than the cost of the rest of the way: 0 makes this
-/// Dijkstra's algorithm, and an estimate that is sound but jumps from node to node costs time, never the answer.
-/// `trace` is told about every step.
+/// Nodes are numbers below `count`. `neighbours(node, visit)` calls `visit(next, cost)` for each edge from a
+/// node; an infinite cost counts as no edge. `estimate(node)` must not exceed the remaining cost: 0 gives
+/// Dijkstra's algorithm, and an admissible but inconsistent estimate costs time, never the answer. `trace` is
+/// called with every step.
 ///
-/// E. W. Dijkstra 1959; P. E. Hart, N. J. Nilsson, B. Raphael 1968, as cited in the book. Time O((n + m) log m) for n
-/// nodes and m edges with a consistent estimate; space O(n + m).
+/// E. W. Dijkstra 1959; P. E. Hart, N. J. Nilsson, B. Raphael 1968, as cited in the book. Time O((n + m) log
+/// m) for n nodes and m edges with a consistent estimate; space O(n + m).
 ///
 /// ```
 /// use roverlab::nav::graph::shortest_path;
-/// //  0 --1-- 1 --1-- 2      the straight way from 0 to 2 costs 3
+/// //  0 --1-- 1 --1-- 2      the direct edge from 0 to 2 costs 3
 /// let edges = [(0, 1, 1.0), (1, 2, 1.0), (0, 2, 3.0)];
 /// let neighbours = |node, visit: &mut dyn FnMut(usize, f64)| {
 ///     edges.iter().filter(|edge| edge.0 == node).for_each(|edge| visit(edge.1, edge.2));
@@ -164,7 +164,7 @@ fn check_edge(count: usize, from: usize, to: usize, cost: f64) -> Result<(), Gra
     Ok(())
 }
 
-/// What is known about a node.
+/// Search state of a node.
 #[derive(Debug, Clone, Copy)]
 struct Label {
     cost: f64,
@@ -193,7 +193,7 @@ impl Search {
     }
 }
 
-/// A node on the queue. The largest one is that with the lowest score, among equal ones the oldest.
+/// A node on the queue. The greatest entry has the lowest score; among equal ones it is the oldest.
 #[derive(Debug, Clone, Copy)]
 struct Entry {
     score: f64,

@@ -18,7 +18,8 @@ fn search(
     shortest_path(count, start, goal, neighbours, estimate, |_| {}).map(|path| (path.nodes, path.cost))
 }
 
-/// The example of section 10.6: start, a, b, c, d and the goal, which is the node b. Scores as in Figures 10.13 to 10.15.
+/// The example of section 10.6: start, a, b, c and d, with the goal at b. Scores as in Figures 10.13 to
+/// 10.15.
 #[test]
 fn the_books_example_step_by_step() {
     let [s, a, b, c, d] = [0, 1, 2, 3, 4];
@@ -70,7 +71,7 @@ fn truth(count: usize, edges: &[Edge], goal: usize) -> Vec<f64> {
 
 proptest! {
     #![proptest_config(crate::testing::cases(256))]
-    /// With no estimate, with the true one, and with one that is sound but inconsistent.
+    /// Without an estimate, with the exact one, and with an admissible but inconsistent one.
     #[test]
     fn the_cheapest_way_is_found(
         count in 1..12usize,

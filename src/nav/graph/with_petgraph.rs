@@ -1,11 +1,55 @@
+use petgraph::graph::{NodeIndex, UnGraph};
 use petgraph::visit::{EdgeRef, IntoEdges, NodeIndexable};
 
 use super::search::{GraphError, GraphPath, GraphStep, shortest_path};
+use crate::world::{BitGrid, GridCell};
 
-/// The cheapest way from one node of a `petgraph` graph to another one, by A\*; see [`shortest_path`].
+/// A grid as a `petgraph` graph: a node for each free cell, row by row, and an edge for each step that grid planners take,
+/// with its cost in cells: 1 along rows and columns, √2 along a diagonal that cuts no corner.
 ///
-/// `cost` says what an edge costs, `estimate` a lower bound of the cost from a node to the goal: 0 for Dijkstra's
-/// algorithm.
+/// ```
+/// use roverlab::nav::graph::petgraph_of_grid;
+/// use roverlab::world::BitGrid;
+/// let graph = petgraph_of_grid(&BitGrid::from_text("..#\n...")?);
+/// assert_eq!((graph.node_count(), graph.edge_count()), (5, 7));
+/// # Ok::<(), roverlab::world::BitGridError>(())
+/// ```
+pub fn petgraph_of_grid(grid: &BitGrid) -> UnGraph<GridCell, f64> {
+    let mut graph = UnGraph::default();
+    let (width, height) = (grid.width(), grid.height());
+    let mut nodes: Vec<Option<NodeIndex>> = vec![None; width * height];
+    for cell in (0..height).flat_map(|row| (0..width).map(move |column| GridCell::new(column, row))) {
+        if !grid.is_free(cell) {
+            continue;
+        }
+        let node = graph.add_node(cell);
+        nodes[cell.row * width + cell.column] = Some(node);
+        let at = |column: usize, row: usize| nodes.get(row * width + column).copied().flatten();
+        let left = cell.column.checked_sub(1).and_then(|column| at(column, cell.row));
+        if let Some(left) = left {
+            graph.add_edge(left, node, 1.0);
+        }
+        let Some(row) = cell.row.checked_sub(1) else { continue };
+        let above = at(cell.column, row);
+        if let Some(above) = above {
+            graph.add_edge(above, node, 1.0);
+        }
+        let corner = cell.column.checked_sub(1).and_then(|column| at(column, row));
+        if let (Some(_), Some(_), Some(corner)) = (left, above, corner) {
+            graph.add_edge(corner, node, std::f64::consts::SQRT_2);
+        }
+        // The other diagonal of the same four cells.
+        if let (Some(left), Some(above), Some(_)) = (left, above, corner) {
+            graph.add_edge(left, above, std::f64::consts::SQRT_2);
+        }
+    }
+    graph
+}
+
+/// The cheapest path between two nodes of a `petgraph` graph, by A\*; see [`shortest_path`].
+///
+/// `cost` returns the cost of an edge, `estimate` a lower bound of the cost from a node to the goal: 0 gives
+/// Dijkstra's algorithm.
 ///
 /// ```
 /// use petgraph::graph::UnGraph;

@@ -1,11 +1,12 @@
 use crate::world::{BitGrid, GridCell};
 
-/// The connected regions of a grid's free cells: tells at once whether any way leads from one cell to another.
+/// The connected regions of a grid's free cells: answers at once whether a path between two cells exists.
 ///
-/// Cells are connected through edges. A diagonal step needs both cells beside it free and so connects no more.
+/// Cells are connected through edges. A diagonal step needs both cells beside it free, so it connects nothing
+/// more.
 ///
-/// Found by joining the runs of free cells in neighbouring rows (union-find over runs); takes time in proportion to the
-/// grid's words and the runs, and memory in proportion to the runs.
+/// Union-find over the runs of free cells in neighbouring rows. Time is proportional to the number of the
+/// grid's words and runs, memory to the number of runs.
 ///
 /// ```
 /// use roverlab::nav::grid::GridComponents;
@@ -19,7 +20,7 @@ use crate::world::{BitGrid, GridCell};
 /// ```
 #[derive(Debug, Clone)]
 pub struct GridComponents {
-    /// Where the runs of each row begin, and the end.
+    /// Index of the first run of each row, and the end.
     rows: Vec<u32>,
     runs: Vec<Run>,
     count: usize,
@@ -30,7 +31,7 @@ pub struct GridComponents {
 struct Run {
     first: u32,
     end: u32,
-    /// Another run of the same region with a lower index, or itself; in the end the number of the region.
+    /// A lower-numbered run of the same region, or itself; finally the number of the region.
     label: u32,
 }
 
@@ -51,13 +52,12 @@ impl GridComponents {
         this
     }
 
-    /// How many regions there are.
+    /// Number of regions.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// The number of the region that a cell belongs to, from 0 in the order of their first cells; `None` if the cell
-    /// is not free.
+    /// The region of a cell, numbered from 0 in the order of first cells; `None` if the cell is not free.
     pub fn region(&self, cell: GridCell) -> Option<usize> {
         let rows = self.rows.get(cell.row..cell.row.saturating_add(2))?;
         let runs = &self.runs[rows[0] as usize..rows[1] as usize];
@@ -65,12 +65,12 @@ impl GridComponents {
         runs.get(index).filter(|run| run.first as usize <= cell.column).map(|run| run.label as usize)
     }
 
-    /// Whether both cells are free and a way leads from one to the other.
+    /// Whether both cells are free and a path connects them.
     pub fn connected(&self, a: GridCell, b: GridCell) -> bool {
         self.region(a).is_some_and(|region| Some(region) == self.region(b))
     }
 
-    /// The number of cells in each region.
+    /// Number of cells in each region.
     pub fn sizes(&self) -> Vec<usize> {
         let mut sizes = vec![0; self.count];
         for run in &self.runs {
@@ -79,7 +79,7 @@ impl GridComponents {
         sizes
     }
 
-    /// Joins the runs of the last row with those of the one above that they touch.
+    /// Joins the runs of the last row with those they touch in the row above.
     fn join(&mut self, above: std::ops::Range<usize>) {
         let (mut a, mut b) = (above.start, above.end);
         while a < above.end && b < self.runs.len() {
@@ -100,7 +100,7 @@ impl GridComponents {
     fn root(&mut self, mut run: usize) -> usize {
         while self.runs[run].label as usize != run {
             let next = self.runs[run].label as usize;
-            // Halving the way keeps it short.
+            // Path halving keeps the chains short.
             self.runs[run].label = self.runs[next].label;
             run = self.runs[run].label as usize;
         }
@@ -114,7 +114,7 @@ impl GridComponents {
                 self.count += 1;
                 self.count as u32 - 1
             } else {
-                // Labels point to earlier runs, which have got their numbers.
+                // Labels point to earlier runs, which are already numbered.
                 self.runs[label].label
             };
         }
@@ -131,7 +131,7 @@ fn for_each_run(words: &[u64], width: usize, mut found: impl FnMut(usize, usize)
     }
 }
 
-/// The first bit from `from` on, below `width`, that is set or not.
+/// The first bit at or after `from`, below `width`, that equals `set`.
 fn next_bit(words: &[u64], width: usize, from: usize, set: bool) -> Option<usize> {
     let flip = if set { 0 } else { u64::MAX };
     let mut index = from / 64;
@@ -167,7 +167,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(crate::testing::cases(256))]
-        /// Regions are what flooding from cell to cell finds.
+        /// Regions agree with flood fill.
         #[test]
         fn regions_are_flooded(width in 1..140usize, height in 1..20usize, seed in any::<u64>(), share in 0.3..0.9f64) {
             let mut stream = Stream::new(seed);

@@ -1,8 +1,8 @@
-//! Lengths of octile paths as whole numbers, which add up without rounding and so compare the same everywhere.
+//! Lengths of octile paths as integers, which add up without rounding and so compare the same everywhere.
 //!
-//! A straight step counts 33,461 and a diagonal one 47,321. Their ratio is a convergent of the continued fraction of
-//! the square root of two and differs from it by 3 parts in 10^10: paths of less than 33,461 diagonal steps that differ in
-//! length at all compare as their true lengths do.
+//! A straight step counts 33,461 and a diagonal one 47,321. Their ratio is a convergent of the continued
+//! fraction of the square root of two, accurate to 3 parts in 10^10: paths of different length with less than
+//! 33,461 diagonal steps compare as their true lengths do.
 
 use std::f64::consts::SQRT_2;
 
@@ -18,18 +18,18 @@ pub(super) fn octile(dx: u32, dy: u32) -> u64 {
     STRAIGHT * u64::from(long - short) + DIAGONAL * u64::from(short)
 }
 
-/// The length in cells of so many steps.
+/// Length in cells of a number of steps.
 pub(super) fn length(straight: u64, diagonal: u64) -> f64 {
     straight as f64 + diagonal as f64 * SQRT_2
 }
 
-/// A length in cells as a whole number, rounded down.
+/// A length in cells as an integer, rounded down.
 #[inline]
 pub(super) fn fixed(length: f64) -> u64 {
     (length * STRAIGHT as f64) as u64
 }
 
-/// A whole number above that of a length that may be infinite.
+/// An integer above that of a length, which may be infinite.
 #[inline]
 pub(super) fn limit(length: f64) -> u64 {
     if length.is_finite() { fixed(length) + 1 } else { u64::MAX }

@@ -1,12 +1,12 @@
 use crate::world::{BitGrid, GridCell};
 
-/// How far every cell's middle is from the nearest blocked cell, in cells: from its edge, not its middle. What lies outside
-/// of the map is blocked.
+/// Distance of every cell's centre from the nearest edge of a blocked cell, in cells. Everything outside the
+/// map is blocked.
 ///
-/// Exact. Columns first, then rows by the lower envelope of the columns' distances (A. Meijster, J. Roerdink, W.
-/// Hesselink, *A General Algorithm for Computing Distance Transforms in Linear Time*, 2000; P. Felzenszwalb, D.
-/// Huttenlocher, *Distance Transforms of Sampled Functions*, 2012). Time O(n log w) for n cells in rows of w; 4 bytes a
-/// cell.
+/// Exact. Columns first, then rows by the lower envelope of the columns' distances (A. Meijster, J. Roerdink,
+/// W. Hesselink, *A General Algorithm for Computing Distance Transforms in Linear Time*, 2000; P.
+/// Felzenszwalb, D. Huttenlocher, *Distance Transforms of Sampled Functions*, 2012). Time O(n log w) for n
+/// cells in rows of w; 4 bytes per cell.
 ///
 /// ```
 /// use roverlab::nav::grid::DistanceField;
@@ -14,7 +14,7 @@ use crate::world::{BitGrid, GridCell};
 /// let field = DistanceField::new(&BitGrid::from_text(".....\n.....\n..#..\n.....\n.....")?);
 /// assert_eq!(field.at(GridCell::new(2, 1)), 0.5);
 /// assert_eq!(field.at(GridCell::new(2, 2)), 0.0);
-/// // One cell away over the corner.
+/// // One cell away diagonally.
 /// assert_eq!(field.at(GridCell::new(1, 1)), 0.5f64.sqrt());
 /// # Ok::<(), roverlab::world::BitGridError>(())
 /// ```
@@ -22,18 +22,18 @@ use crate::world::{BitGrid, GridCell};
 pub struct DistanceField {
     width: usize,
     height: usize,
-    /// Squares of the distances in half cells; 0 at blocked cells.
+    /// Squared distances in half cells; 0 at blocked cells.
     squares: Vec<u32>,
 }
 
-/// The square of the distance in half cells between a middle and the nearest edge of a cell so many cells away.
+/// Squared distance in half cells between a centre and the nearest edge of a cell `apart` cells away.
 fn square(apart: u32) -> u32 {
     let halves = (2 * apart).saturating_sub(1);
     halves.saturating_mul(halves)
 }
 
 impl DistanceField {
-    /// Measures a grid.
+    /// Computes the distances of a grid.
     pub fn new(grid: &BitGrid) -> Self {
         let (width, height) = (grid.width(), grid.height());
         let mut field = Self { width, height, squares: vec![0; width * height] };
@@ -48,13 +48,13 @@ impl DistanceField {
         field
     }
 
-    /// The distance at a cell, in cells. Outside of the map it is 0.
+    /// Distance at a cell, in cells; 0 outside the map.
     pub fn at(&self, cell: GridCell) -> f64 {
         let inside = cell.column < self.width && cell.row < self.height;
         if inside { 0.5 * f64::from(self.squares[cell.row * self.width + cell.column]).sqrt() } else { 0.0 }
     }
 
-    /// The cells in whose middles a disc of some radius, in cells, touches no blocked cell, or just so.
+    /// The cells where a disc of this radius (cells) at the centre overlaps no blocked cell; it may touch.
     pub fn grid(&self, radius: f64) -> BitGrid {
         let free = |column, row| {
             let distance = self.at(GridCell::new(column, row));
@@ -64,7 +64,8 @@ impl DistanceField {
             .unwrap_or_else(|_| unreachable!("as large as the first"))
     }
 
-    /// Distances along columns, down and up. The border is a blocked cell before the first and after the last.
+    /// Distances along columns, down and up. The border counts as a blocked cell before the first and after
+    /// the last.
     fn columns(&mut self, grid: &BitGrid) {
         let mut steps = vec![0u32; self.width];
         for y in 0..self.height {
@@ -84,10 +85,12 @@ impl DistanceField {
     }
 }
 
-/// For each place of a row the least sum of a column's value and the square of the distance to the column.
+/// For each position of a row, the minimum over the columns of the column's value plus the squared distance
+/// to the column.
 ///
-/// Of two columns, the left one is better up to some place and the right one from there on, because the squares grow faster
-/// and faster; `envelope` holds the columns that are best somewhere, each with its first place.
+/// Of two columns, the left one is better up to some position and the right one from there on, because the
+/// squares grow ever faster; `envelope` holds the columns that are best somewhere, each with its first
+/// position.
 fn lower_envelope(row: &[u32], envelope: &mut Vec<(usize, usize)>, out: &mut [u32]) {
     let value = |column: usize, at: usize| row[column].saturating_add(square(column.abs_diff(at) as u32));
     envelope.clear();
@@ -98,7 +101,7 @@ fn lower_envelope(row: &[u32], envelope: &mut Vec<(usize, usize)>, out: &mut [u3
                 envelope.pop();
                 continue;
             }
-            // The first place at which the new column is better.
+            // The first position at which the new column is better.
             let (mut low, mut high) = (from, row.len());
             while low + 1 < high {
                 let middle = usize::midpoint(low, high);
@@ -129,7 +132,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(crate::testing::cases(256))]
-        /// The distance is the least over all blocked cells, those around the map included.
+        /// The distance is the minimum over all blocked cells, including those around the map.
         #[test]
         fn distances_are_the_least(width in 1..30usize, height in 1..30usize, share in 0.5..1.0f64, seed in any::<u64>()) {
             let mut stream = Stream::new(seed);

@@ -6,14 +6,15 @@ use super::cost::{DIAGONAL, STRAIGHT, octile};
 use super::path::{End, GridPath, PlanError, SearchStatistics};
 use crate::world::{BitGrid, GridCell};
 
-/// D\* Lite: the shortest octile path of a robot that finds out on its way that the map is different.
+/// D\* Lite: the shortest octile path for a robot that discovers changes of the map on its way.
 ///
-/// The search runs from the goal to the robot and is kept. When cells turn out to be blocked or free, what depends on
-/// them alone is computed anew.
+/// The search runs from the goal to the robot and is kept. When cells turn out to be blocked or free, only
+/// what depends on them is recomputed.
 ///
-/// S. Koenig, M. Likhachev, *D\* Lite*, AAAI 2002. A new plan takes time in proportion to the cells whose distance to the
-/// goal has changed and matters, times the logarithm of the queue's length; memory is 40 bytes a cell. That the map as it
-/// was given has no way is told at once by its [`GridComponents`]; that a change has cut off the last one is found by search.
+/// S. Koenig, M. Likhachev, *D\* Lite*, AAAI 2002. Replanning takes time proportional to the number of
+/// relevant cells whose distance to the goal changed, times the logarithm of the queue length; memory is 40
+/// bytes per cell. [`GridComponents`] of the initial map report at once that it has no path; that a change
+/// has cut off the last path is found by search.
 ///
 /// ```
 /// use roverlab::nav::grid::DStarLite;
@@ -31,10 +32,10 @@ pub struct DStarLite {
     grid: BitGrid,
     robot: GridCell,
     goal: GridCell,
-    /// The distance to the goal as last propagated, and as the neighbours say.
+    /// Distance to the goal as last propagated, and as implied by the neighbours.
     cells: Vec<Distances>,
     queue: BinaryHeap<Reverse<Entry>>,
-    /// By how much keys have grown since the beginning, as the robot has moved.
+    /// Growth of the keys since the beginning, caused by the robot's motion.
     shift: u64,
     searched: bool,
     statistics: SearchStatistics,
@@ -44,7 +45,7 @@ pub struct DStarLite {
 struct Distances {
     settled: u64,
     implied: u64,
-    /// The key with which the cell is on the queue, if it is.
+    /// Key of the cell on the queue, if it is queued.
     key: Option<Key>,
 }
 
@@ -60,7 +61,8 @@ struct Entry {
 const FAR: u64 = u64::MAX / 4;
 
 impl DStarLite {
-    /// Takes over a map, the robot's cell and the goal. The goal may be blocked now and become free later.
+    /// Creates a planner for a map, the robot's cell and the goal. The goal may be blocked now and become
+    /// free later. Fails for an empty map and for cells outside it.
     pub fn new(grid: &BitGrid, robot: GridCell, goal: GridCell) -> Result<Self, PlanError> {
         if grid.width() == 0 || grid.height() == 0 {
             return Err(PlanError::EmptyMap);
@@ -85,28 +87,28 @@ impl DStarLite {
         Ok(this)
     }
 
-    /// The map as it is known.
+    /// The map as currently known.
     pub fn grid(&self) -> &BitGrid {
         &self.grid
     }
 
-    /// Tells where the robot is.
+    /// Sets the robot's cell. Fails for a cell outside the map.
     pub fn move_to(&mut self, robot: GridCell) -> Result<(), PlanError> {
         self.check_inside(End::Start, robot)?;
-        // What is on the queue has keys from the old place: no more than they are from the new one, once those grow by
-        // the way between.
+        // Queued keys are based on the old cell. They remain lower bounds once new keys grow by the distance
+        // moved.
         self.shift += between(self.robot, robot);
         self.robot = robot;
         Ok(())
     }
 
-    /// Tells that a cell is free or blocked. Outside the map nothing happens.
+    /// Sets a cell free or blocked. Ignores cells outside the map.
     pub fn set_free(&mut self, cell: GridCell, free: bool) {
         if !self.grid.contains(cell) || self.grid.is_free(cell) == free {
             return;
         }
         self.grid.set_free(cell, free);
-        // All steps that the cell is part of, or beside, begin and end around it.
+        // All steps through or beside the cell start and end around it.
         for row in cell.row.saturating_sub(1)..(cell.row + 2).min(self.grid.height()) {
             for column in cell.column.saturating_sub(1)..(cell.column + 2).min(self.grid.width()) {
                 self.update(GridCell::new(column, row));
@@ -114,7 +116,8 @@ impl DStarLite {
         }
     }
 
-    /// The shortest path from the robot to the goal on the map as it is known. Its statistics are those of this call.
+    /// The shortest path from the robot to the goal on the known map. Its statistics are those of this call.
+    /// Fails if an end is blocked or no path exists.
     pub fn plan(&mut self) -> Result<GridPath, PlanError> {
         for (end, cell) in [(End::Start, self.robot), (End::Goal, self.goal)] {
             if !self.grid.is_free(cell) {
@@ -137,7 +140,7 @@ impl DStarLite {
             let next = self.steps(at).into_iter().flatten();
             let best = next.min_by_key(|&(cell, cost)| cost + self.cells[self.index(cell)].settled);
             let next = best.ok_or(unreachable)?.0;
-            // What a shortest path goes over is settled.
+            // Cells on a shortest path are settled.
             debug_assert_eq!(self.cells[self.index(next)].settled, self.cells[self.index(next)].implied);
             at = next;
             cells.push(at);
@@ -145,7 +148,7 @@ impl DStarLite {
         Ok(GridPath::through(&cells, self.statistics))
     }
 
-    /// Computes distances until that of the robot is right.
+    /// Computes distances until the robot's is final.
     fn settle(&mut self) {
         while let Some(&Reverse(Entry { key, cell: index })) = self.queue.peek() {
             let cell = self.cell(index);
@@ -178,7 +181,7 @@ impl DStarLite {
         }
     }
 
-    /// Asks a cell's neighbours for its distance, and puts it on the queue if that is news.
+    /// Recomputes a cell's implied distance from its neighbours, and queues the cell if it differs.
     fn update(&mut self, cell: GridCell) {
         let index = self.index(cell);
         if cell != self.goal {
@@ -205,7 +208,7 @@ impl DStarLite {
         (distance + between(self.robot, cell) + self.shift, distance)
     }
 
-    /// The cells that one step leads to, and its length.
+    /// The cells one step away, and the step's length.
     fn steps(&self, cell: GridCell) -> [Option<(GridCell, u64)>; 8] {
         let at = |dx: isize, dy: isize| {
             GridCell::new(cell.column.wrapping_add_signed(dx), cell.row.wrapping_add_signed(dy))
@@ -246,7 +249,7 @@ mod tests {
     proptest! {
         #![proptest_config(crate::testing::cases(150))]
 
-        /// After every move and every change the path is that of A*.
+        /// After every move and every change the path agrees with A*.
         #[test]
         fn plans_are_those_of_a_star(width in 2..25usize, height in 2..25usize, share in 0.5..0.95f64, seed in any::<u64>()) {
             let mut stream = Stream::new(seed);
@@ -263,7 +266,7 @@ mod tests {
                 } else {
                     prop_assert_eq!(expected.as_ref().err(), found.as_ref().err());
                 }
-                // A step, several steps, or to any free cell.
+                // One step, several steps, or to any free cell.
                 let ahead = 1 + stream.below(5);
                 let next = found.ok().and_then(|path| path.points.get(ahead).copied());
                 let next = next.and_then(GridCell::at).unwrap_or_else(|| any(&mut stream));
@@ -296,7 +299,7 @@ mod tests {
         assert!(second > 0 && 3 * second < first, "{second} after {first}");
     }
 
-    /// The first plan knows the regions of the map, so that it need not search all of the goal's.
+    /// The first plan uses the regions of the map, so it does not search all of the goal's region.
     #[test]
     fn no_way_is_told_at_once() {
         let grid = BitGrid::from_fn(100, 100, |x, _| x != 50).unwrap();

@@ -1,14 +1,14 @@
 use crate::geometry::{Aabb, Point, direction};
 use crate::world::{BitGrid, Footprint};
 
-/// The cells in whose middles a robot touches no blocked cell, if it keeps its heading.
+/// The cells at whose centres a robot with a fixed heading touches no blocked cell.
 ///
-/// Cells are `resolution` metres wide, columns along x and rows along y, as those of an
-/// [`OccupancyGrid`](crate::world::OccupancyGrid) without a turn. Without a heading the robot may turn on the spot: its
-/// outline is then the circle that holds it. What lies outside of the map is blocked. Edges may touch.
+/// Cells are `resolution` metres wide, columns along x and rows along y, as in an
+/// [`OccupancyGrid`](crate::world::OccupancyGrid) without rotation. Without a heading the robot may turn on
+/// the spot: its outline is then its bounding circle. Everything outside the map is blocked. Edges may touch.
 ///
-/// Works on 64 cells at a time: for each row of cells that the outline covers, the rows of the map are moved and joined in as
-/// many steps as the logarithm of the outline's width.
+/// Works on 64 cells at a time: for each row of cells that the outline covers, the map's rows are shifted and
+/// combined, in a number of steps logarithmic in the outline's width.
 ///
 /// ```
 /// use roverlab::nav::grid::inflated;
@@ -16,7 +16,7 @@ use crate::world::{BitGrid, Footprint};
 /// let grid = BitGrid::from_fn(9, 9, |x, y| (x, y) != (4, 4))?;
 /// let free = inflated(&grid, 0.1, &Footprint::Disc { radius: 0.12 }, None);
 /// assert!(free.is_free(GridCell::new(2, 4)) && !free.is_free(GridCell::new(3, 4)));
-/// // Over the corner the next cell but one is far enough; the border is no place for a robot.
+/// // Diagonally, the next cell but one is far enough; the border is blocked.
 /// assert!(free.is_free(GridCell::new(2, 2)) && !free.is_free(GridCell::new(0, 0)));
 /// # Ok::<(), roverlab::world::BitGridError>(())
 /// ```
@@ -47,7 +47,7 @@ pub fn inflated(grid: &BitGrid, resolution: f64, footprint: &Footprint, heading:
         .unwrap_or_else(|_| unreachable!("as large as the first"))
 }
 
-/// A robot's outline about the middle of a cell, in cells.
+/// A robot's outline about the centre of a cell, in cells.
 enum Outline {
     Disc(f64),
     /// A rectangle along its own axes, and the direction of the first one.
@@ -68,7 +68,7 @@ impl Outline {
         }
     }
 
-    /// Cells that it reaches at most.
+    /// Maximum reach of the outline (cells).
     fn reach(&self) -> i64 {
         let radius = match self {
             Self::Disc(radius) => *radius,
@@ -78,11 +78,11 @@ impl Outline {
                 (x * x + y * y).sqrt()
             }
         };
-        // A number that is none reaches nowhere; one that is too large is cut short by the caller.
+        // NaN gives no reach; the caller limits a reach that is too large.
         (radius + 0.5).ceil() as i64
     }
 
-    /// The cells of a row, so many rows away, whose insides it meets: they have no gaps, because it is convex.
+    /// The cells of the row at offset `dy` whose interiors it meets: without gaps, as it is convex.
     fn columns(&self, dy: i64, reach: i64) -> Option<(i64, i64)> {
         let first = (-reach..=reach).find(|&dx| self.meets(dx, dy))?;
         let last = (-reach..=reach).rev().find(|&dx| self.meets(dx, dy))?;
@@ -100,7 +100,8 @@ impl Outline {
                 let middle = Point::new(0.5 * (sides.min.x + sides.max.x), 0.5 * (sides.min.y + sides.max.y));
                 let half = (0.5 * (sides.max.x - sides.min.x), 0.5 * (sides.max.y - sides.min.y));
                 let (c, s) = (axis.x, axis.y);
-                // The way from the rectangle's middle to the cell's, along the axes of the grid and of the rectangle.
+                // The vector from the rectangle's centre to the cell's, along the axes of the grid and of the
+                // rectangle.
                 let across = (x - (middle.x * c - middle.y * s), y - (middle.x * s + middle.y * c));
                 let along = (across.0 * c + across.1 * s, -across.0 * s + across.1 * c);
                 let (c, s) = (c.abs(), s.abs());
@@ -110,14 +111,14 @@ impl Outline {
                     along.0.abs() - half.0 - 0.5 * (c + s),
                     along.1.abs() - half.1 - 0.5 * (c + s),
                 ];
-                // Rounding must not make edges that touch overlap.
+                // Rounding must not make touching edges overlap.
                 apart.into_iter().all(|gap| gap < -1e-9)
             }
         }
     }
 }
 
-/// A row of bits with room on both sides, which is blocked outside of the map.
+/// A row of bits with room on both sides, blocked outside the map.
 struct Line {
     width: usize,
     bits: Vec<u64>,
@@ -145,7 +146,7 @@ impl Line {
         }
     }
 
-    /// Sets each bit that has a set one from `first` to `last` places after it.
+    /// Sets each bit that has a set bit `first` to `last` places after it.
     fn spread(&mut self, first: i64, last: i64) {
         let mut covered = 1;
         let count = last - first + 1;
@@ -157,7 +158,7 @@ impl Line {
         self.shift(first);
     }
 
-    /// Joins the bits with those so many places after them.
+    /// Combines the bits with those `step` places after them.
     fn join_moved(&mut self, step: i64) {
         self.spare.clone_from(&self.bits);
         self.shift(step);
@@ -166,7 +167,7 @@ impl Line {
         }
     }
 
-    /// Takes each bit from so many places after it; beyond the ends all are set.
+    /// Takes each bit from `by` places after it; beyond the ends all are set.
     fn shift(&mut self, by: i64) {
         let (words, bits) = (by.div_euclid(64), by.rem_euclid(64) as u32);
         let at = |line: &[u64], index: i64| {
@@ -202,7 +203,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(crate::testing::cases(256))]
-        /// Two ways to the same answer: bits moved and joined, and exact distances.
+        /// Two methods agree: shifted bits and exact distances.
         #[test]
         fn discs_keep_their_distance(width in 1..150usize, height in 1..40usize, radius in 0.0..9.0f64, seed in any::<u64>()) {
             let grid = random_grid(width, height, seed);
@@ -210,7 +211,7 @@ mod tests {
             prop_assert_eq!(free, DistanceField::new(&grid).grid(radius));
         }
 
-        /// A robot in a free cell has no blocked cell within its rectangle, and in other cells it has.
+        /// In a free cell the robot's rectangle meets no blocked cell; in other cells it does.
         #[test]
         fn rectangles_cover_what_they_meet(
             width in 1..40usize, height in 1..40usize, heading in -3.0..3.0f64, seed in any::<u64>(),
@@ -221,7 +222,8 @@ mod tests {
             let free = inflated(&grid, 1.0, &Footprint::Rectangle(sides), Some(heading));
             let axis = direction(heading);
             for cell in grid.free_cells() {
-                // Points spread over the rectangle, and how far the free cells beyond its edge are.
+                // Points spread over the rectangle, and the maximum distance of blocked cells beyond its
+                // edge.
                 let meets = |slack: f64| (0..=40).any(|i| (0..=40).any(|j| {
                     let x = (-back - slack) + (front + back + 2.0 * slack) * f64::from(i) / 40.0;
                     let y = (-side - slack) + 2.0 * (side + slack) * f64::from(j) / 40.0;

@@ -1,7 +1,8 @@
 //! Planning on occupancy grids (book, sections 10.3 and 10.6).
 //!
-//! A map is a [`BitGrid`](crate::world::BitGrid), a query a start cell and a goal cell, and every planner is a
-//! [`GridPlanner`]. A query that has no answer is told so at once: the planners know the connected regions of their map.
+//! A map is a [`BitGrid`](crate::world::BitGrid), a query a start cell and a goal cell, and every planner is
+//! a [`GridPlanner`]. Planners know the connected regions of their map, so a query without an answer fails at
+//! once.
 //!
 //! | planner | paths | prepares |
 //! |---|---|---|
@@ -12,10 +13,10 @@
 //! | [`LazyThetaStar`] | short, in any direction | nothing |
 //! | [`QuadtreePlanner`] | short, in any direction | a [`Quadtree`], and which of its leaves are neighbours |
 //!
-//! [`DStarLite`] keeps its plan while the map changes. [`inflated`] leaves a robot's outline room, [`DistanceField`] tells
-//! how much there is.
+//! [`DStarLite`] repairs its plan while the map changes. [`inflated`] inflates a map by a robot's outline,
+//! [`DistanceField`] computes the distance to obstacles.
 //!
-//! *Octile* paths go from cell to cell, along edges and along diagonals whose both side cells are free.
+//! *Octile* paths go from cell to cell, along edges and along diagonals with both side cells free.
 
 mod any_angle;
 mod components;

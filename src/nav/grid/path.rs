@@ -5,60 +5,60 @@ use crate::world::{BitGrid, GridCell};
 use super::components::GridComponents;
 use super::cost;
 
-/// A way through a grid, with what it took to find it.
+/// A path through a grid, with statistics of the search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GridPath {
-    /// The middle of the start's cell, the places where the path turns or steps, and the middle of the goal's cell; in
-    /// cells, so that the middle of column c and row r is (c + 0.5, r + 0.5).
+    /// Centre of the start cell, turning points or steps of the path, and centre of the goal cell, in cells:
+    /// the centre of column c and row r is (c + 0.5, r + 0.5).
     pub points: Vec<Point>,
-    /// The length in cells.
+    /// Length (cells).
     pub cost: f64,
-    /// What the search did.
+    /// Statistics of the search.
     pub statistics: SearchStatistics,
 }
 
-/// What a search did.
+/// Statistics of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct SearchStatistics {
-    /// Nodes taken off the queue, and their successors looked at.
+    /// Number of nodes expanded.
     pub expanded: usize,
-    /// Nodes put on the queue, again included.
+    /// Number of nodes put on the queue, including repetitions.
     pub generated: usize,
 }
 
-/// Why there is no path.
+/// Reason for the lack of a path.
 #[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlanError {
     /// The grid has no cells.
     #[error("the map is empty; expected at least one cell")]
     EmptyMap,
-    /// The start or the goal lies outside.
+    /// The start or the goal is outside the map.
     #[error("the {end} {cell} lies outside of the map of {width} x {height} cells")]
     Outside {
-        /// Which of them.
+        /// Which end of the path.
         end: End,
-        /// Where it is.
+        /// Its cell.
         cell: GridCell,
-        /// Cells in a row of the map.
+        /// Number of columns of the map.
         width: usize,
-        /// Rows of the map.
+        /// Number of rows of the map.
         height: usize,
     },
-    /// The start or the goal is not free.
+    /// The start or the goal is blocked.
     #[error("the {end} {cell} is blocked; expected a free cell")]
     Blocked {
-        /// Which of them.
+        /// Which end of the path.
         end: End,
-        /// Where it is.
+        /// Its cell.
         cell: GridCell,
     },
-    /// No way leads from the start to the goal.
+    /// No path leads from the start to the goal.
     #[error("no way leads from {start} to {goal}")]
     Unreachable {
-        /// From here.
+        /// Start of the query.
         start: GridCell,
-        /// To here.
+        /// Goal of the query.
         goal: GridCell,
     },
 }
@@ -68,9 +68,9 @@ debug_as_sentence!(PlanError);
 /// An end of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
-    /// Where it starts.
+    /// The start.
     Start,
-    /// Where it goes.
+    /// The goal.
     Goal,
 }
 
@@ -83,9 +83,9 @@ impl std::fmt::Display for End {
     }
 }
 
-/// Anything that finds paths through a grid, from the middle of one cell to that of another.
+/// A planner of paths through a grid, between the centres of cells.
 pub trait GridPlanner {
-    /// Finds a path.
+    /// Finds a path. Fails if an end is outside the map or blocked, or no path exists.
     fn plan(&mut self, start: GridCell, goal: GridCell) -> Result<GridPath, PlanError>;
 }
 
@@ -102,7 +102,7 @@ impl<P: GridPlanner + ?Sized> GridPlanner for Box<P> {
 }
 
 impl GridPath {
-    /// The octile path over the cells of some turns, in between which it goes diagonally first, then straight.
+    /// The octile path through turning cells, between which it goes diagonally first, then straight.
     pub(super) fn through(turns: &[GridCell], statistics: SearchStatistics) -> Self {
         let mut points: Vec<Point> = turns.first().map(|cell| cell.centre()).into_iter().collect();
         let (mut straight, mut diagonal) = (0, 0);
@@ -135,7 +135,7 @@ fn towards(from: usize, to: usize) -> usize {
     }
 }
 
-/// Refuses queries that need no search.
+/// Rejects queries that need no search.
 pub(super) fn check(
     grid: &BitGrid,
     components: &GridComponents,

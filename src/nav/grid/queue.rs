@@ -1,16 +1,16 @@
-//! The queue of the searches on grids.
+//! The priority queue of the grid searches.
 
 /// Marks the end of a chain.
 const NONE: u32 = u32::MAX;
 
-/// A queue of nodes by estimated cost: buckets about half a step wide, the last node in being the first out.
+/// A queue of nodes by estimated cost, in buckets about half a step wide; last in, first out within a bucket.
 ///
-/// Within a bucket the order is not that of the costs. A search stays exact if it takes up a node again that gets
-/// cheaper, and goes on until no bucket is left that could hold anything cheaper than what it has found. In exchange
-/// both ends of the queue cost next to nothing.
+/// Within a bucket the order is not that of the costs. A search stays exact if it expands a node again that
+/// gets cheaper, and continues until no bucket can hold anything cheaper than its result. In exchange push
+/// and pop cost next to nothing.
 #[derive(Debug, Clone, Default)]
 pub(super) struct BucketQueue {
-    /// The newest entry of each bucket.
+    /// Newest entry of each bucket.
     heads: Vec<u32>,
     entries: Vec<Entry>,
     base: u64,
@@ -29,14 +29,14 @@ impl BucketQueue {
     /// Bits of an estimate that a bucket does not tell apart: less than half of a straight step.
     const SHIFT: u32 = 14;
 
-    /// Empties the queue. From now on nothing will come that costs less than `base`.
+    /// Empties the queue. No later entry may cost less than `base`.
     pub(super) fn start(&mut self, base: u64) {
         self.heads.clear();
         self.entries.clear();
         (self.base, self.current, self.left) = (base, 0, 0);
     }
 
-    /// Puts a node in by its `estimate`, beside which its `cost` so far is kept.
+    /// Adds a node by its `estimate`, with its `cost` so far.
     #[inline]
     pub(super) fn push(&mut self, estimate: u64, node: u32, cost: u64) {
         let bucket = (estimate.saturating_sub(self.base) >> Self::SHIFT) as usize;
@@ -50,7 +50,7 @@ impl BucketQueue {
         self.left += 1;
     }
 
-    /// A node of the cheapest bucket, with its cost so far; `None` if no bucket is left that could hold an estimate below
+    /// A node of the cheapest bucket, with its cost so far; `None` if no bucket can hold an estimate below
     /// `limit`.
     #[inline]
     pub(super) fn pop_below(&mut self, limit: u64) -> Option<(u32, u64)> {
@@ -67,7 +67,7 @@ impl BucketQueue {
         let entry = self.entries[index as usize];
         self.heads[self.current] = entry.next;
         self.left -= 1;
-        // The newest of all entries can go for good.
+        // The newest of all entries can be freed.
         if index as usize + 1 == self.entries.len() {
             self.entries.pop();
         }

@@ -5,15 +5,16 @@ use super::cost::{self, DIAGONAL, STRAIGHT};
 use super::path::{GridPath, GridPlanner, PlanError, SearchStatistics, check};
 use super::queue::BucketQueue;
 
-/// Dijkstra's algorithm and A\* on a grid, from cell to cell: steps along edges and along diagonals whose both side
-/// cells are free, so that no corner is cut (book, section 10.6).
+/// Dijkstra's algorithm and A\* on a grid, from cell to cell: steps along edges and along diagonals with both
+/// side cells free, so that no corner is cut (book, section 10.6).
 ///
-/// A\* uses the octile distance as its lower bound. The cells are their own graph; nothing is built but one number for
-/// each, which also holds which query it belongs to, so that a new query need not clear them.
+/// A\* uses the octile distance as its lower bound. The cells are their own graph; the search state is one
+/// integer per cell, which includes the query it belongs to, so that a new query need not clear it.
 ///
-/// E. W. Dijkstra, *A Note on Two Problems in Connexion with Graphs*, Numerische Mathematik 1, 1959; P. E. Hart,
-/// N. J. Nilsson, B. Raphael, *A Formal Basis for the Heuristic Determination of Minimum Cost Paths*, IEEE Trans.
-/// Systems Science and Cybernetics 4(2), 1968. Time in proportion to the cells looked at; 8 bytes a cell.
+/// E. W. Dijkstra, *A Note on Two Problems in Connexion with Graphs*, Numerische Mathematik 1, 1959; P. E.
+/// Hart, N. J. Nilsson, B. Raphael, *A Formal Basis for the Heuristic Determination of Minimum Cost Paths*,
+/// IEEE Trans. Systems Science and Cybernetics 4(2), 1968. Time is proportional to the number of cells
+/// visited; 8 bytes per cell.
 ///
 /// ```
 /// use roverlab::nav::grid::{GridPlanner, GridSearch};
@@ -43,18 +44,18 @@ pub struct GridSearch {
 pub struct GridStep {
     /// The cell.
     pub cell: GridCell,
-    /// The length of the path to it, in cells.
+    /// Length of the path to it (cells).
     pub cost: f64,
-    /// The lower bound of the rest, in cells; 0 in Dijkstra's algorithm.
+    /// Lower bound of the rest (cells); 0 in Dijkstra's algorithm.
     pub estimate: f64,
 }
 
-/// What is known about a cell: the query by which (16 bits), the step that led to it (3), the cost so far (45).
+/// Search state of a cell: query (16 bits), step that led to it (3), cost so far (45).
 #[derive(Debug, Clone, Copy, Default)]
 struct Label(u64);
 
 impl Label {
-    /// The bits of a node's cost.
+    /// Bits of the cost.
     const COST: u64 = (1 << 45) - 1;
 
     fn new(query: u64, direction: usize, cost: u64) -> Self {
@@ -110,7 +111,7 @@ impl GridSearch {
         }
     }
 
-    /// As [`GridPlanner::plan`], and tells about each cell taken off the queue.
+    /// Like [`GridPlanner::plan`], and calls back with each cell taken off the queue.
     pub fn plan_traced(
         &mut self,
         start: GridCell,
@@ -177,7 +178,8 @@ impl GridSearch {
         statistics
     }
 
-    /// The straight steps from a cell as bits in the order east, south, west, north, and the diagonal ones after each.
+    /// The straight steps from a cell as bits in the order east, south, west, north, and the diagonal ones
+    /// after each.
     #[inline]
     fn steps(&self, node: usize) -> (u32, u32) {
         let (above, here, below) =
@@ -188,7 +190,7 @@ impl GridSearch {
         (straight, corners & straight & turned)
     }
 
-    /// Three bits of the free cells from an index on.
+    /// Three bits of the free cells starting at an index.
     #[inline]
     fn three(&self, index: usize) -> u32 {
         let (word, bit) = (index / 64, index % 64);
@@ -207,7 +209,7 @@ impl GridSearch {
         (cell.row + 1) * self.stride + cell.column + 1
     }
 
-    /// The cells from the start to the goal, by the steps that led there.
+    /// The cells of the path, traced back from the goal.
     fn cells_back(&self, start: usize, goal: usize) -> Vec<GridCell> {
         let (mut cells, mut at) = (Vec::new(), goal);
         loop {

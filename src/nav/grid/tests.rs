@@ -12,7 +12,7 @@ fn random_grid(width: usize, height: usize, share: f64, seed: u64) -> BitGrid {
     BitGrid::from_fn(width, height, |_, _| stream.chance(share)).unwrap()
 }
 
-/// A grid of rectangles, which has long walls and wide spaces.
+/// A grid of rectangles, with long walls and wide spaces.
 fn boxes(width: usize, height: usize, count: usize, seed: u64) -> BitGrid {
     let mut stream = Stream::new(seed);
     let mut grid = BitGrid::from_fn(width, height, |_, _| true).unwrap();
@@ -26,7 +26,7 @@ fn boxes(width: usize, height: usize, count: usize, seed: u64) -> BitGrid {
     grid
 }
 
-/// Bellman's equations, relaxed until nothing changes: the costs from a cell to all others.
+/// Costs from a cell to all others, by Bellman's equations relaxed until nothing changes.
 fn truth(grid: &BitGrid, start: GridCell) -> Vec<f64> {
     let (w, h) = (grid.width() as isize, grid.height() as isize);
     let free = |x: isize, y: isize| x >= 0 && y >= 0 && grid.is_free(GridCell::new(x as usize, y as usize));
@@ -59,7 +59,7 @@ fn planners(grid: &BitGrid) -> [(&'static str, Box<dyn GridPlanner>); 4] {
     ]
 }
 
-/// The path's steps are allowed, and its cost is what they add up to.
+/// The path's steps are allowed, and its cost is their sum.
 fn assert_sound(grid: &BitGrid, path: &GridPath, start: GridCell, goal: GridCell) {
     let cells: Vec<GridCell> = path.points.iter().map(|&point| GridCell::at(point).unwrap()).collect();
     assert_eq!((cells[0], cells[cells.len() - 1]), (start, goal));
@@ -148,7 +148,7 @@ proptest! {
     }
 }
 
-/// All that plan on a map, whatever their paths are like.
+/// All planners on a map, whatever kind of paths they find.
 fn all_planners(grid: &BitGrid) -> Vec<(&'static str, Box<dyn GridPlanner>)> {
     let mut prepared = AnyAngle::new(grid);
     prepared.prepare();
@@ -189,7 +189,7 @@ fn queries_without_an_answer_are_named() {
     assert_eq!(blocked(End::Start).to_string(), "the start (2, 1) is blocked; expected a free cell");
 }
 
-/// That there is no way is known before the search.
+/// The lack of a path is known before the search.
 #[test]
 fn disconnected_regions_need_no_search() {
     let grid = BitGrid::from_fn(300, 300, |x, _| x != 150).unwrap();
@@ -212,7 +212,7 @@ fn a_star_looks_at_less_than_dijkstra_and_jumps_at_less_than_both() {
     let mut astar = GridSearch::astar(&grid);
     let path = astar.plan_traced(start, goal, |step| steps.push(step)).unwrap();
     assert_eq!((steps.len(), steps[0].cell), (path.statistics.expanded, start));
-    // The queue is in order to within a bucket.
+    // The queue is ordered to within a bucket.
     let most = steps.iter().map(|step| step.cost + step.estimate).fold(0.0, f64::max);
     assert!(most <= path.cost + 0.5, "{most} for {}", path.cost);
 }

@@ -3,21 +3,22 @@ use crate::geometry::Point;
 use crate::io::{Error, ErrorKind, Result};
 use crate::world::{BitGrid, Clearance, GridCell, World};
 
-/// The known world in cells, and what has been seen that it lacks.
+/// A raster of the known world and of newly seen obstacles.
 ///
-/// There are several *levels* of clearance, the largest first. At each a cell is free if the robot touches nothing wherever
-/// in the cell its middle is, with the clearance beside it: so the disc that a straight way through free cells sweeps is
-/// free as well. What has been seen counts as a point in the middle of its cell, and may be nearer by half of a diagonal.
+/// There are several *levels* of clearance, the largest first. At each level a cell is free if the robot,
+/// with its centre anywhere in the cell, keeps the clearance. So the disc swept by a straight way through
+/// free cells is free as well. A seen point counts as the centre of its cell, and may be nearer by half of a
+/// diagonal.
 #[derive(Debug, Clone)]
 pub(super) struct Chart {
     clearance: Clearance,
     levels: [Level; LEVELS],
-    /// How often each cell has been seen to hold something unknown.
+    /// Number of times an unknown obstacle was seen in each cell.
     evidence: Vec<u8>,
     marks: Vec<GridCell>,
 }
 
-/// A clearance, and what it asks of the middle of a cell.
+/// A clearance, and the distance it requires at the centre of a cell.
 #[derive(Debug, Clone, Copy)]
 struct Level {
     clearance: f64,
@@ -51,28 +52,28 @@ impl Chart {
         Ok(Self { clearance, levels, evidence, marks: Vec::new() })
     }
 
-    /// Metres along an edge of a cell.
+    /// Cell size (m).
     pub(super) fn resolution(&self) -> f64 {
         self.clearance.raster().resolution()
     }
 
-    /// The free space beside the outline at a level.
+    /// Free space beside the outline at a level (m).
     pub(super) fn clearance(&self, level: usize) -> f64 {
         self.levels[level].clearance
     }
 
-    /// The cell that holds a point.
+    /// The cell that contains a point.
     pub(super) fn cell(&self, point: Point) -> Option<GridCell> {
         let raster = self.clearance.raster();
         raster.cell_at(point).map(|cell| GridCell::new(cell % raster.columns(), cell / raster.columns()))
     }
 
-    /// The middle of a cell.
+    /// Centre of a cell.
     pub(super) fn centre(&self, cell: GridCell) -> Point {
         self.clearance.raster().centre(self.index(cell))
     }
 
-    /// A point in cells.
+    /// A point in units of cells.
     pub(super) fn in_cells(&self, point: Point) -> Point {
         let first = self.clearance.raster().centre(0);
         Point::from((point - first) / self.resolution() + crate::geometry::Vector::new(0.5, 0.5))
@@ -91,13 +92,13 @@ impl Chart {
         grid
     }
 
-    /// Whether the robot could stand at a point, by the known world and the least clearance.
+    /// Whether the robot has room at a point of the known world, with the least clearance.
     pub(super) fn has_room(&self, point: Point, radius: f64) -> bool {
         let least = self.levels[LEVELS - 1].clearance;
         self.clearance.at_point(point).is_some_and(|distance| distance >= radius + least)
     }
 
-    /// Whether a point lies in the known world, and not in what stands there.
+    /// Whether a point is in the known world's free space.
     pub(super) fn is_open(&self, point: Point) -> bool {
         self.clearance.at_point(point).is_some_and(|distance| distance > self.resolution())
     }
@@ -119,14 +120,14 @@ impl Chart {
         }
     }
 
-    /// Takes down that something is at a point. Returns its cell if that is news: it is farther than `stray` metres from
-    /// what the known world has there, and it has been seen often enough.
+    /// Records an obstacle at a point. Returns its cell if it is new: farther than `stray` metres from known
+    /// obstacles, and seen often enough.
     pub(super) fn note(&mut self, point: Point, stray: f64) -> Option<GridCell> {
         let known = self.clearance.at_point(point)? <= stray.min(MAX_STRAY);
         if known { None } else { self.count(point, 1) }
     }
 
-    /// Takes down that something is at a point, beyond doubt and whatever the known world has there.
+    /// Records an obstacle at a point as certain, whatever the known world shows.
     pub(super) fn insist(&mut self, point: Point) -> Option<GridCell> {
         self.count(point, ENOUGH)
     }
@@ -143,7 +144,7 @@ impl Chart {
         is_news.then_some(cell)
     }
 
-    /// Forgets all that has been seen. Returns whether that was anything.
+    /// Forgets all seen obstacles. Returns whether there were any.
     pub(super) fn forget(&mut self) -> bool {
         self.evidence.fill(0);
         let any = !self.marks.is_empty();
@@ -151,7 +152,7 @@ impl Chart {
         any
     }
 
-    /// The middles of the cells that hold what the known world lacks.
+    /// Centres of the cells with obstacles that the known world lacks.
     pub(super) fn seen(&self) -> impl Iterator<Item = Point> + '_ {
         self.marks.iter().map(|&cell| self.centre(cell))
     }

@@ -4,7 +4,7 @@ use crate::scan::{HEIGHT, ScanMatcher};
 use crate::world::World;
 use crate::world::space::{Scanner, Solid, Space};
 
-/// Where the robot is in the known world: by odometry, corrected by the scans that the world lets expect.
+/// Localisation in the known world: odometry, corrected by matching scans with expected ones.
 #[derive(Debug, Clone)]
 pub(super) struct Locator {
     space: Space,
@@ -12,7 +12,7 @@ pub(super) struct Locator {
     scanner: Option<Scanner>,
     expected: LidarScan,
     matcher: ScanMatcher,
-    /// Where the expected scan is from, relative to the start.
+    /// Pose of the expected scan, relative to the start.
     expected_at: Pose,
     points: Vec<Point>,
 }
@@ -37,7 +37,7 @@ impl Locator {
         }
     }
 
-    /// The pose in the world at which a scan was made.
+    /// The pose in the world at which a scan was taken.
     pub(super) fn locate(&mut self, odometry: Pose, scan: &LidarScan) -> Pose {
         self.points.clear();
         self.points.extend(scan.points());
@@ -49,7 +49,7 @@ impl Locator {
         self.start.compose(&pose)
     }
 
-    /// Works out what there is to be seen, by the known world, from a pose relative to the start.
+    /// Computes the scan expected in the known world from a pose relative to the start.
     fn expect(&mut self, pose: Pose, scan: &LidarScan) {
         let beams = scan.ranges.len();
         let scanner = self.scanner.get_or_insert_with(|| {

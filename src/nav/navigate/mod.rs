@@ -1,4 +1,4 @@
-//! Driving what is planned: to a goal through a known world, of which something may have changed.
+//! Navigation to a goal in a known world that may have changed.
 
 mod chart;
 mod locator;

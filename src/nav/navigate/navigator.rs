@@ -14,26 +14,46 @@ use crate::nav::surroundings::Surroundings;
 use crate::scan::{ScanFilter, check_measured};
 use crate::world::{GridCell, World};
 
-/// Drives to a goal through a known world, of which something may have changed (book, section 10.3 and after).
+/// Drives to a goal in a known world that may have changed (book, section 10.3 and after).
 ///
-/// The robot plans on a grid of the known world, grown by its outline and a clearance, and follows the plan with
-/// feedback: at every step it heads for the farthest point of the path that a straight way leads to, past what the lidar
-/// sees. What the lidar sees and the world lacks goes into the grid, and the plan is repaired by D\* Lite. Where the wished
-/// clearance leaves no way, it plans with less, down to the least one, and with more again as soon as that leads on.
+/// The robot plans on a grid of the known world, inflated by its outline plus a clearance, and follows the
+/// plan with feedback: at every step it heads for the farthest path point reachable in a straight line, past
+/// the obstacles that the lidar sees. Seen obstacles that the world lacks are added to the grid, and D\* Lite
+/// repairs the plan. If the wished clearance leaves no way, it plans with less, down to the least one, and
+/// with more again as soon as possible.
 ///
-/// Odometry is corrected by matching scans with those that the known world lets expect.
-///
+/// Scan matching corrects odometry: measured scans are matched with those expected in the known world.
 /// # Model
 ///
-/// The plan is that of the circle that holds the outline, so that the robot can turn everywhere. All places within a free
-/// cell are free for it; what a straight way through such cells sweeps is, too. At every step the outline itself is swept
-/// along the arc that is about to be driven, and slowed down to stop before anything that is seen.
+/// The plan is made for the circle around the outline, so that the robot can turn everywhere. The robot fits
+/// at every place in a free cell, and along every straight way through free cells. At every step the outline
+/// itself is swept along the commanded arc, slowed down so that it stops before any visible point.
 ///
 /// # Outcomes
 ///
-/// [`Unreachable`](NavigatorOutcome::Unreachable) is told at once if the known world has no way. If what has been seen leaves
-/// none, it is forgotten and looked at anew first. A robot that does not get on takes down what is before it, backs off
-/// and plans anew; after several times it is [`Stuck`](NavigatorOutcome::Stuck).
+/// [`Unreachable`](NavigatorOutcome::Unreachable) is reported at once if the known world has no way. If seen
+/// obstacles leave none, they are forgotten and looked at anew first. A robot without progress records what
+/// is in front of it, backs off and plans anew; after several attempts it is
+/// [`Stuck`](NavigatorOutcome::Stuck).
+///
+/// ```
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::io::control::run;
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::nav::{Navigator, NavigatorOutcome, NavigatorParameters};
+/// use roverlab::world::{RobotSpec, Scene, Wall, World};
+/// let mut world = World::walled(3.0, 2.0);
+/// world.walls.push(Wall::new(Point::new(1.5, 0.0), Point::new(1.5, 1.4)));
+/// let (start, goal) = (Pose::new(0.5, 0.5, 0.0), Point::new(2.5, 0.5));
+/// let mut navigator = Navigator::new(&world, start, goal, NavigatorParameters::default())?;
+/// let scene = Scene::with_robot(world, RobotSpec::s4(), start);
+/// let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
+/// let outcome = run(&mut simulation.robot(0)?, &mut navigator, 120.0, |_, _, _| {})?;
+/// let truth = simulation.truth().robot(0)?;
+/// assert_eq!((outcome, truth.contacts), (NavigatorOutcome::Reached, 0));
+/// assert!(truth.pose.distance_to(goal) < 0.1);
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Navigator {
     parameters: NavigatorParameters,
@@ -46,21 +66,21 @@ pub struct Navigator {
     pose: Pose,
     filter: ScanFilter,
     surroundings: Surroundings,
-    /// The noise-filtered hits of the scan in the robot's frame, and those near it.
+    /// Noise-filtered points of the scan in the robot's frame, and those near it.
     points: Vec<Point>,
     near: Vec<Point>,
     events: Vec<NavigatorEvent>,
-    /// What has been seen since the plan was made.
+    /// Cells with obstacles seen since the plan was made.
     marks: Vec<GridCell>,
     progress: Progress,
-    /// Steps that are left of looking or backing off.
+    /// Remaining steps of looking or backing off.
     left: u32,
     doubts: u32,
-    /// Where a wider way was looked for last.
+    /// Position of the last search for a wider way.
     widened_at: Point,
 }
 
-/// Whether the robot gets on.
+/// Monitors the robot's progress.
 #[derive(Debug, Clone)]
 struct Progress {
     anchor: Pose,
@@ -91,9 +111,9 @@ const MAX_DOUBTS: u32 = 2;
 const WIDENING: f64 = 0.3;
 
 impl Navigator {
-    /// A run through a known world, from a pose to a goal in it.
+    /// Creates a run through a known world, from a pose to a goal in it.
     ///
-    /// Fails if a parameter is out of range, the start or the goal is no finite place, or the world is too large.
+    /// Fails if a parameter is out of range, the start or the goal is not finite, or the world is too large.
     pub fn new(world: &World, start: Pose, goal: Point, parameters: NavigatorParameters) -> Result<Self> {
         parameters.validate()?;
         if !start.is_finite() {
@@ -135,42 +155,42 @@ impl Navigator {
         Ok(this)
     }
 
-    /// What the robot is doing.
+    /// Current phase.
     pub fn phase(&self) -> NavigatorPhase {
         self.phase
     }
 
-    /// Where the robot takes itself to be in the world.
+    /// Estimated pose in the world.
     pub fn pose(&self) -> Pose {
         self.pose
     }
 
-    /// The distance to the goal that the robot takes itself to have.
+    /// Estimated distance to the goal (m).
     pub fn goal_distance(&self) -> f64 {
         self.pose.distance_to(self.goal)
     }
 
-    /// The path that is left, from the robot to the goal, in the world.
+    /// The remaining path from the robot to the goal, in the world.
     pub fn path(&self) -> &[Point] {
         self.route.as_ref().map_or(&[], Route::path)
     }
 
-    /// The length of the path that is left, in metres along the edges and diagonals of cells.
+    /// Length of the remaining path along the edges and diagonals of cells (m).
     pub fn path_length(&self) -> Option<f64> {
         self.route.as_ref().map(Route::length)
     }
 
-    /// What it sees at the moment: the noise-filtered hits of the scan in the robot's frame.
+    /// Noise-filtered points of the current scan, in the robot's frame.
     pub fn visible_points(&self) -> &[Point] {
         &self.points
     }
 
-    /// The places in the world where it has seen something that the known world lacks.
+    /// Positions in the world of seen obstacles that the known world lacks.
     pub fn unknown_obstacles(&self) -> Vec<Point> {
         self.chart.seen().collect()
     }
 
-    /// Takes the events that have happened since the last call.
+    /// Takes the events since the last call.
     pub fn take_events(&mut self) -> Vec<NavigatorEvent> {
         std::mem::take(&mut self.events)
     }
@@ -182,7 +202,7 @@ impl Navigator {
         }
     }
 
-    /// What the robot shall do until the next step.
+    /// The velocity until the next step.
     fn steer(&mut self, observation: &LidarObservation) -> Result<Twist> {
         if matches!(self.phase, NavigatorPhase::Ended(_)) {
             return Ok(Twist::STOP);
@@ -202,7 +222,7 @@ impl Navigator {
         })
     }
 
-    /// Takes in what the robot measures.
+    /// Updates pose and obstacles from an observation.
     fn perceive(&mut self, observation: &LidarObservation) -> Result<()> {
         check_measured(&observation.odometry, &observation.scan)?;
         self.pose = if self.parameters.match_scans {
@@ -234,7 +254,7 @@ impl Navigator {
         }
     }
 
-    /// Plans at the largest of the first so many clearances that leaves a way.
+    /// Plans with the largest of the first `levels` clearances that leaves a way.
     fn plan(&mut self, levels: usize) -> bool {
         let (from, radius) = (self.pose.position(), self.parameters.radius());
         let mut routes =
@@ -248,7 +268,7 @@ impl Navigator {
         true
     }
 
-    /// No way is left at the present clearance.
+    /// Handles the loss of the last way at the current clearance.
     fn lose_way(&mut self) {
         if self.plan(LEVELS) {
             return;
@@ -280,7 +300,7 @@ impl Navigator {
         self.steering(clearance).towards(self.pose.to_local(target), self.pose.distance_to(self.goal), speed)
     }
 
-    /// Brings the plan up to date. `false` if no way is left.
+    /// Updates the plan. `false` if no way is left.
     fn repair(&mut self) -> bool {
         let position = self.pose.position();
         let Some(route) = &mut self.route else { return false };
@@ -297,7 +317,7 @@ impl Navigator {
         true
     }
 
-    /// Looks for a way with more clearance than the present one has.
+    /// Looks for a way with more clearance than the current one.
     fn widen(&mut self) {
         let level = self.route.as_ref().map_or(0, |route| route.level);
         if level > 0 && self.pose.distance_to(self.widened_at) > WIDENING {
@@ -306,7 +326,7 @@ impl Navigator {
         }
     }
 
-    /// Whether the robot moves, and the way that is left gets shorter.
+    /// Whether the robot moves and its remaining path gets shorter.
     fn gets_on(&mut self) -> bool {
         let (period, pose) = (self.parameters.period, self.pose);
         let length = self.path_length().unwrap_or(f64::INFINITY);
@@ -324,7 +344,7 @@ impl Navigator {
         progress.idle < IDLE_TIME && progress.waiting < WAITING_TIME
     }
 
-    /// Takes down what is before the robot and begins to back off.
+    /// Records what is in front of the robot and begins to back off.
     fn give_way(&mut self) -> Twist {
         let position = self.pose.position();
         self.events.push(NavigatorEvent::Blocked { point: position });
@@ -340,7 +360,7 @@ impl Navigator {
             return Twist::STOP;
         }
         if progress.blocked.is_multiple_of(3) {
-            // What has been taken down may be what is wrong.
+            // The recorded obstacles may be wrong.
             self.chart.forget();
             self.plan(LEVELS);
         }

@@ -2,32 +2,31 @@ use crate::ParameterError;
 use crate::parameter::{require, require_positive};
 use crate::world::Footprint;
 
-/// What a [`Navigator`](super::Navigator) goes by. Lengths in metres, speeds in metres per second.
+/// Parameters of a [`Navigator`](super::Navigator). Lengths in metres, speeds in metres per second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NavigatorParameters {
-    /// The robot's outline.
+    /// Outline of the robot.
     pub footprint: Footprint,
-    /// The free space beside the outline that the plan keeps where there is room.
+    /// Free space beside the outline that the plan keeps where there is room.
     pub clearance: f64,
-    /// The free space beside the outline that a passage must offer on either side.
+    /// Free space required beside the outline on either side of a passage.
     pub least_clearance: f64,
-    /// Along an edge of the cells that it plans on. In large worlds they are larger, so that there are at most four
-    /// million.
+    /// Cell size of the planning grid; larger in large worlds, to keep to at most four million cells.
     pub resolution: f64,
-    /// The distance to the goal that counts as reached.
+    /// Distance from the goal that counts as reached.
     pub goal_tolerance: f64,
-    /// The speed in the open.
+    /// Speed in the open.
     pub cruise_speed: f64,
-    /// The fastest turn, in radians per second.
+    /// Maximum turn rate (rad/s).
     pub turn_rate: f64,
-    /// Whether odometry is corrected by matching scans with the known world.
+    /// Whether scan matching with the known world corrects odometry.
     pub match_scans: bool,
-    /// Seconds from one control step to the next.
+    /// Control period (s).
     pub period: f64,
 }
 
 impl NavigatorParameters {
-    /// Parameters for a robot with an outline; distances are scaled to the radius of the circle that holds it.
+    /// Parameters for a robot's outline; distances scale with its bounding radius.
     pub fn for_footprint(footprint: Footprint) -> Self {
         let radius = footprint.bounding_radius();
         Self {
@@ -43,7 +42,7 @@ impl NavigatorParameters {
         }
     }
 
-    /// Fails with the name of the parameter that is out of range.
+    /// Checks every parameter; the error names the one out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         require_positive("radius of the footprint", self.radius())?;
         require_positive("least clearance", self.least_clearance)?;
@@ -61,14 +60,14 @@ impl NavigatorParameters {
         )
     }
 
-    /// The radius of the circle that holds the outline: with it the robot can turn everywhere.
+    /// Bounding radius of the outline, with which the robot can turn everywhere (m).
     pub(super) fn radius(&self) -> f64 {
         self.footprint.bounding_radius()
     }
 }
 
 impl Default for NavigatorParameters {
-    /// For the S4's disc of 60 mm.
+    /// Parameters for the S4's disc of 60 mm.
     fn default() -> Self {
         Self::for_footprint(Footprint::Disc { radius: 0.060 })
     }

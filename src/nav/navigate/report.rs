@@ -1,18 +1,18 @@
 use crate::geometry::Point;
 use crate::io::control::halts;
 
-/// How a run ended.
+/// Outcome of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NavigatorOutcome {
     /// The robot is at the goal.
     Reached,
-    /// No way leads to the goal, by the known world and what has been seen.
+    /// No way leads to the goal, given the known world and the obstacles seen.
     Unreachable,
-    /// There should be a way, but the robot does not get on.
+    /// A way exists, but the robot makes no progress.
     Stuck,
-    /// The time was over.
+    /// The time limit came first.
     TimedOut,
-    /// Who watched had seen enough.
+    /// The observer stopped the run.
     Stopped,
 }
 
@@ -22,45 +22,45 @@ halts!(NavigatorOutcome {
     Stuck: "the robot makes no progress",
 });
 
-/// What the robot is doing.
+/// Phase of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NavigatorPhase {
     /// Standing and looking.
     Looking,
     /// Following the path.
     Driving,
-    /// Backing off from what is in the way.
+    /// Backing off from an obstacle.
     BackingOff,
     /// Standing, with a verdict.
     Ended(NavigatorOutcome),
 }
 
-/// Something worth telling that happened in a step. Points are in the world.
+/// Event of a step. Points are in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum NavigatorEvent {
-    /// There is a first plan, or one with another clearance.
+    /// A first plan exists, or one with another clearance.
     Planned {
-        /// Metres to the goal.
+        /// Length of the path to the goal (m).
         length: f64,
-        /// The free space beside the outline that it keeps.
+        /// Free space that it keeps beside the outline (m).
         clearance: f64,
     },
-    /// Something that the known world lacks changed the plan.
+    /// An obstacle that the known world lacks changed the plan.
     Replanned {
-        /// Where the robot was.
+        /// Position of the robot.
         point: Point,
-        /// Metres to the goal.
+        /// Length of the path to the goal (m).
         length: f64,
     },
-    /// The robot does not get on and backs off.
+    /// The robot makes no progress and backs off.
     Blocked {
-        /// Where it was.
+        /// Position of the robot.
         point: Point,
     },
-    /// No way is left; what has been seen is forgotten and looked at anew, in case it was an error.
+    /// No way is left; seen obstacles are forgotten and looked at anew, in case they were errors.
     Doubted {
-        /// Where it was.
+        /// Position of the robot.
         point: Point,
     },
     /// The run is over.

@@ -3,14 +3,14 @@ use crate::geometry::Point;
 use crate::nav::grid::DStarLite;
 use crate::world::{BitGrid, GridCell};
 
-/// A plan at one level of clearance, which changes as obstacles are seen.
+/// A plan at one level of clearance, updated as obstacles are seen.
 #[derive(Debug, Clone)]
 pub(super) struct Route {
     pub(super) level: usize,
     planner: DStarLite,
-    /// Where the robot was when the path was planned; its own cell, or the nearest free one.
+    /// The robot's cell when the path was planned, or the nearest free one.
     cell: GridCell,
-    /// The middles of the path's cells, and the goal.
+    /// Centres of the path's cells, and the goal.
     path: Vec<Point>,
     goal: Point,
     length: f64,
@@ -20,7 +20,7 @@ pub(super) struct Route {
 const REACH: f64 = 0.12;
 
 impl Route {
-    /// A plan at a level; `None` if there is no way.
+    /// A plan at a level; `None` if no way exists.
     pub(super) fn new(chart: &Chart, level: usize, robot: Point, goal: Point, radius: f64) -> Option<Self> {
         let grid = chart.grid(level);
         let from = nearest_free(chart, &grid, robot)?;
@@ -34,7 +34,7 @@ impl Route {
         route.plan(chart).then_some(route)
     }
 
-    /// Takes in where the robot is. `false` if no way is left.
+    /// Updates the robot's position. `false` if no way is left.
     pub(super) fn follow(&mut self, chart: &Chart, robot: Point) -> bool {
         let Some(cell) = nearest_free(chart, self.planner.grid(), robot) else { return false };
         if cell == self.cell {
@@ -44,7 +44,7 @@ impl Route {
         self.planner.move_to(cell).is_ok() && self.plan(chart)
     }
 
-    /// Takes in cells that hold something. `None` if no way is left, else whether the plan has changed.
+    /// Adds cells with obstacles. `None` if no way is left, otherwise whether the plan has changed.
     pub(super) fn block(&mut self, chart: &Chart, marks: &[GridCell], robot: Point) -> Option<bool> {
         let mut changed = false;
         for &mark in marks {
@@ -59,7 +59,7 @@ impl Route {
         let before = self.length;
         self.cell = nearest_free(chart, self.planner.grid(), robot)?;
         let found = self.planner.move_to(self.cell).is_ok() && self.plan(chart);
-        // The robot has moved on, so that a way that is as long as before has become longer.
+        // The robot has moved on, so a path of equal length means a detour.
         found.then_some(self.length > before)
     }
 
@@ -74,21 +74,21 @@ impl Route {
         true
     }
 
-    /// Metres to the goal, along the edges and diagonals of cells.
+    /// Length of the path to the goal, along the edges and diagonals of cells (m).
     pub(super) fn length(&self) -> f64 {
         self.length
     }
 
-    /// The path's points, from the robot's cell to the goal.
+    /// Points of the path, from the robot's cell to the goal.
     pub(super) fn path(&self) -> &[Point] {
         &self.path
     }
 
-    /// The farthest point of the path within some metres of it that a straight way leads to.
+    /// The farthest path point within `far` metres that a straight way leads to.
     pub(super) fn target(&self, chart: &Chart, robot: Point, far: f64) -> Point {
         let grid = self.planner.grid();
         let is_free = chart.cell(robot).is_some_and(|cell| grid.is_free(cell));
-        // A robot too near to something goes back to the path by its next few cells.
+        // A robot too near to something returns to the path by its next few cells.
         let reach = if is_free { far } else { 4.0 * chart.resolution() };
         let mut best = self.path[0];
         let from = chart.in_cells(robot);
@@ -98,7 +98,7 @@ impl Route {
             if travelled > reach {
                 break;
             }
-            // The goal itself may be in a cell that is not free, as may the robot.
+            // Robot and goal may be in cells that are not free.
             let is_last = index + 1 == self.path.len();
             if !is_free || is_last && index < 2 || is_line_free(grid, from, chart.in_cells(point)) {
                 best = point;
@@ -122,10 +122,10 @@ fn nearest_free(chart: &Chart, grid: &BitGrid, point: Point) -> Option<GridCell>
     cells.filter(|&cell| grid.is_free(cell)).min_by(|a, b| away(a).total_cmp(&away(b)))
 }
 
-/// Whether all cells that a line meets, given in cells, are free.
+/// Whether all cells met by a line, given in units of cells, are free.
 fn is_line_free(grid: &BitGrid, a: Point, b: Point) -> bool {
     let (dx, dy) = (b.x - a.x, b.y - a.y);
-    // Row by row: the columns between where the line enters the row and where it leaves it.
+    // Row by row: the columns between the line's entry and its exit.
     let (low, high) = (a.y.min(b.y).floor(), a.y.max(b.y).floor());
     let mut row = low;
     while row <= high {
@@ -152,7 +152,8 @@ mod tests {
 
     proptest! {
         #![proptest_config(crate::testing::cases(256))]
-        /// Points spread over a free line lie in free cells, and a line that is not free has one that does not, or nearly so.
+        /// Points on a free line lie in free cells; a line that is not free has a point that does not, or
+        /// nearly so.
         #[test]
         fn lines_are_free_if_their_cells_are(seed in any::<u64>()) {
             let mut stream = Stream::new(seed);

@@ -3,14 +3,14 @@ use super::sweep::Sweep;
 use crate::geometry::{Point, Twist, direction, math};
 use crate::nav::surroundings::Surroundings;
 
-/// How a robot steers past what it sees.
+/// Steering past visible obstacles.
 #[derive(Debug)]
 pub(super) struct Steering<'a> {
     pub(super) parameters: &'a NavigatorParameters,
     pub(super) surroundings: &'a Surroundings,
-    /// What is seen near the robot, in its frame.
+    /// Points near the robot, in its frame.
     pub(super) points: &'a [Point],
-    /// The clearance of the plan.
+    /// Clearance of the plan (m).
     pub(super) clearance: f64,
 }
 
@@ -22,12 +22,13 @@ const ASIDE: f64 = 1.2;
 const TURN: f64 = 0.08;
 
 impl Steering<'_> {
-    /// The twist for a target in the robot's frame that is on the way to a goal so many metres off.
+    /// The twist for a target in the robot's frame, on the way to a goal at a distance of `rest` metres.
     pub(super) fn towards(&self, target: Point, rest: f64, speed: Twist) -> Twist {
         let bearing = math::atan2(target.y, target.x);
         let heading = self.past_obstacles(bearing, target.coords.norm());
         let limit = self.parameters.turn_rate;
-        // Proportional to the error, damped by the turn rate: the motors' lag would make it swing otherwise.
+        // Proportional to the error and damped by the turn rate: the motors' lag would cause oscillation
+        // otherwise.
         let angular = (8.0 * heading - 1.5 * speed.angular).clamp(-limit, limit);
         let ahead = math::cos(heading).max(0.0);
         let wished = self.parameters.cruise_speed * ahead * ahead * ahead;
@@ -35,7 +36,7 @@ impl Steering<'_> {
         self.safe(Twist::new(linear, angular))
     }
 
-    /// The direction nearest to a bearing in which a step keeps its distance: that of the plan, or else the least.
+    /// The direction nearest to a bearing in which a step keeps the plan's clearance, or else the least one.
     fn past_obstacles(&self, bearing: f64, length: f64) -> f64 {
         let radius = self.parameters.radius();
         let offsets = (0..=(ASIDE / TURN) as i32).flat_map(|step| {
@@ -53,20 +54,19 @@ impl Steering<'_> {
         bearing
     }
 
-    /// The same twist, slowed down so that the robot can stop before its outline sweeps over anything: what is told to the
-    /// robot touches nothing within the time that it takes to stop.
+    /// The twist, slowed down so that the robot can stop before its outline touches anything.
     pub(super) fn safe(&self, twist: Twist) -> Twist {
         let slower = |twist: Twist| (self.time_to_contact(twist) / STOPPING_TIME).min(1.0);
-        // A robot that turns later than it is told to drives straight on.
+        // A robot that turns with a delay drives straight on at first.
         let straight = Twist::new(twist.linear, 0.0);
         let linear = twist.linear * slower(twist).min(slower(straight));
         let slowed = Twist::new(linear, twist.angular * slower(Twist::new(0.0, twist.angular)));
-        // Driving and turning, if slowed differently, make another arc.
+        // Slowing down linear and angular speed differently changes the arc.
         let rest = slower(slowed);
         Twist::new(slowed.linear * rest, slowed.angular * rest)
     }
 
-    /// Seconds until the outline, with half of the least clearance around it, touches something.
+    /// Time until the outline, with half of the least clearance around it, touches something (s).
     fn time_to_contact(&self, twist: Twist) -> f64 {
         let margin = 0.5 * self.parameters.least_clearance;
         Sweep::new(&self.parameters.footprint, margin, twist).time_to_contact(self.points)
@@ -82,7 +82,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(crate::testing::cases(256))]
-        /// Whatever is wished, the outline does not sweep over what is seen before the robot can stop.
+        /// Whatever is wished, the outline touches nothing visible before the robot can stop.
         #[test]
         fn what_is_told_can_be_stopped(
             places in prop::collection::vec((0.12..0.6f64, -3.1..3.1f64), 0..30),

@@ -4,9 +4,9 @@ use crate::geometry::units::NEGLIGIBLE;
 use crate::geometry::{Aabb, Point, Twist, math};
 use crate::world::Footprint;
 
-/// An outline that moves at a constant speed and turn, and when it touches a point: exactly, not at sampled places.
+/// Computes when an outline moving with a constant twist touches a point; exact, without sampling.
 ///
-/// Seen from the robot, a point moves along an arc about the centre of the robot's own turn.
+/// Relative to the robot, a point moves along an arc around the robot's own centre of rotation.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sweep {
     outline: Footprint,
@@ -15,7 +15,7 @@ pub(super) struct Sweep {
 
 
 impl Sweep {
-    /// The outline grown by `margin` metres; a rectangle keeps its corners.
+    /// The outline inflated by `margin` metres; a rectangle keeps its corners.
     pub(super) fn new(footprint: &Footprint, margin: f64, twist: Twist) -> Self {
         let outline = match footprint {
             Footprint::Disc { radius } => Footprint::Disc { radius: radius + margin },
@@ -24,9 +24,9 @@ impl Sweep {
         Self { outline, twist }
     }
 
-    /// Seconds until the outline touches one of the points, in the robot's frame; infinite if it never does.
+    /// Time until the outline touches one of the points in the robot's frame (s); infinite if it never does.
     ///
-    /// A point that is inside already counts as touched at once, unless the outline moves off it.
+    /// A point already inside counts as touched at once, unless the outline moves away from it.
     pub(super) fn time_to_contact(&self, points: &[Point]) -> f64 {
         points.iter().map(|&point| self.time_to(point)).fold(f64::INFINITY, f64::min)
     }
@@ -45,7 +45,7 @@ impl Sweep {
         }
     }
 
-    /// Whether a point gets farther from the outline's middle.
+    /// Whether a point gets farther from the outline's centre.
     fn moves_off(&self, point: Point) -> bool {
         let middle = match &self.outline {
             Footprint::Disc { .. } => Point::origin(),
@@ -62,7 +62,7 @@ impl Sweep {
         if speed == 0.0 {
             return f64::INFINITY;
         }
-        // The outline's front and back on the point's line.
+        // Front and back of the outline at the point's y coordinate.
         let (back, front) = match &self.outline {
             Footprint::Disc { radius } => {
                 let depth = radius * radius - point.y * point.y;
@@ -91,7 +91,7 @@ impl Sweep {
         }
     }
 
-    /// The point's circle meets the disc where their centres and the point form a triangle of known sides.
+    /// The point's circle meets the disc where the two centres and the point form a triangle of known sides.
     fn until_disc(&self, point: Point, centre: Point, radius: f64, disc: f64) -> f64 {
         let apart = centre.coords.norm();
         let product = 2.0 * apart * radius;
@@ -137,7 +137,7 @@ impl Sweep {
         least
     }
 
-    /// Seconds until a point has turned about the centre to an angle, seen from the robot: against the robot's own turn.
+    /// Time until a point reaches an angle about the centre (s), moving against the robot's own rotation.
     fn until_angle(&self, point: Point, centre: Point, angle: f64) -> f64 {
         let from = point - centre;
         let now = math::atan2(from.y, from.x);
@@ -160,7 +160,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(crate::testing::cases(256))]
-        /// Moved step by step, the outline is free until the time that is told, and touches then.
+        /// Moved step by step, the outline is free until the predicted time and touches then.
         #[test]
         fn contact_is_when_it_is_told(
             x in -0.5..0.5f64, y in -0.5..0.5f64, linear in -0.3..0.3f64, angular in -2.0..2.0f64, straight in any::<bool>()

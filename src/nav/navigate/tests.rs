@@ -71,7 +71,7 @@ fn nonsense_is_refused() {
     }
 }
 
-/// The path keeps its clearance everywhere, not just at its points.
+/// The path keeps its clearance everywhere, not only at its points.
 #[test]
 fn what_the_path_sweeps_is_free() {
     let mut navigator = navigator(0.5);

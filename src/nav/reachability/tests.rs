@@ -19,7 +19,7 @@ fn scattered_world() -> impl Strategy<Value = World> {
     })
 }
 
-/// A field in two halves, with a gap of a width in the wall between them.
+/// A field in two halves, with a gap of this width in the wall between them.
 fn gate(width: f64, angle: f64) -> (World, Point, Point) {
     let along = direction(angle);
     let middle = Point::new(1.0, 1.0);
@@ -36,8 +36,8 @@ fn ring(middle: Point, radius: f64, corners: usize) -> Vec<Point> {
     (0..corners).map(|i| middle + direction(TAU * i as f64 / corners as f64) * radius).collect()
 }
 
-/// Two robots on one raster. A raster of its own begins elsewhere for each radius, so the middle of the
-/// cell that holds a point is another place.
+/// Two robots on one raster. Separate rasters would begin elsewhere for each radius and shift the cells'
+/// centres.
 fn on_the_same_cells(world: &World, small: f64, large: f64) -> (Reachability, Reachability) {
     let field = Clearance::new(world, 0.02, large.next_up()).unwrap();
     (Reachability::from_clearance(&field, small), Reachability::from_clearance(&field, large))
@@ -72,7 +72,8 @@ proptest! {
         match (space.shortest_path_length(a, b), space.shortest_path_length(b, a)) {
             (Some(there), Some(back)) => {
                 prop_assert!(space.connected(a, b));
-                // The pieces between the given points and the cells' middles may differ on ways of equal cost.
+                // On ways of equal cost the pieces between the given points and the cells' centres may
+                // differ.
                 prop_assert!((there - back).abs() < 0.03, "{} {}", there, back);
                 prop_assert!(there >= (b - a).norm() - 1e-9);
             }
@@ -129,7 +130,7 @@ proptest! {
         let corner = Point::new(0.2, 0.2);
         let closed = Reachability::new(&world, RADIUS, 0.01).unwrap();
         prop_assert!(closed.is_free(middle) && closed.is_free(corner) && !closed.connected(middle, corner));
-        // Take walls away until the gap is twice as wide as the robot.
+        // Removes walls until the gap is twice as wide as the robot.
         let side = world.walls[5].line.length();
         let gone = (4.0 * RADIUS / side).ceil() as usize;
         world.walls.drain(4 + opening.min(corners - gone)..).take(gone).for_each(drop);
@@ -138,7 +139,7 @@ proptest! {
     }
 }
 
-/// The costs of all cells by relaxing every step until nothing changes.
+/// Costs of all cells, by relaxing every step until nothing changes.
 fn bellman_ford(space: &Reachability, start: usize) -> Vec<f64> {
     let mut costs = vec![f64::INFINITY; space.raster.cells()];
     costs[start] = 0.0;

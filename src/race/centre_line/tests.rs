@@ -8,22 +8,22 @@ fn blind(cones: &[Cone]) -> Vec<Cone> {
     cones.iter().map(|cone| Cone::unknown(cone.position)).collect()
 }
 
-/// The greatest distance of the found middle from the true one.
+/// Maximum distance of the found centre line from the true one (m).
 fn error(found: &CentreLine, truth: &Corridor) -> f64 {
     let middle: Vec<Point> = truth.stations().iter().map(|s| s.position).collect();
     let away = |p: Point| middle.iter().map(|m| (m - p).norm()).fold(f64::INFINITY, f64::min);
     found.corridor.stations().iter().map(|s| away(s.position)).fold(0.0, f64::max)
 }
 
-/// Plans on many tracks from which a function takes cones away or to which it adds some. The share of plans that are closed
-/// and nowhere farther than so many metres from the true middle; with `driven`, the way of the first lap is known.
+/// Plans on many tracks with modified cones. Returns the fraction of plans that are closed and nowhere
+/// farther than `wrong` metres from the true centre line; with `driven`, the path of the first lap is known.
 fn share(wrong: f64, driven: bool, change: impl Fn(&GeneratedTrack, &mut Stream) -> Vec<Cone>) -> f64 {
     let mut good = 0;
     for seed in 0..TRACKS {
         let generated = generate(seed, &TrackOptions::drawn(seed)).unwrap();
         let mut random = Stream::new(seed).child("change", 0);
         let cones = blind(&change(&generated, &mut random));
-        // A first lap is driven some decimetres beside the middle.
+        // A first lap deviates from the centre line by some decimetres.
         let stations = generated.corridor.stations().iter().step_by(2);
         let way: Vec<Point> = stations.map(|s| s.aside(random.between(-0.4, 0.4))).collect();
         let way = if driven { way } else { Vec::new() };
@@ -46,7 +46,7 @@ fn with_false_and_missing(generated: &GeneratedTrack, random: &mut Stream) -> Ve
         let offset = station.left + random.between(0.8, 3.0);
         cones.push(Cone::unknown(station.aside(if random.chance(0.5) { offset } else { -offset })));
     }
-    // None in the middle of another part of the track.
+    // No cone in the middle of another part of the track.
     cones.retain(|c| corridor.stations().iter().all(|s| (s.position - c.position).norm() > s.left - 0.2));
     cones
 }
@@ -74,7 +74,7 @@ fn cones_missing_and_too_many() {
 #[test]
 fn one_side_is_missing_for_twenty_metres() {
     assert!(share(1.8, true, with_a_gap) >= 0.8);
-    // Without a lap that was driven, the colours would tell; a colour-blind plan is right for most tracks only.
+    // Without a first lap, only colours could tell; a colour-blind plan succeeds on most tracks only.
     assert!(share(1.8, false, with_a_gap) >= 0.6);
 }
 

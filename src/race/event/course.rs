@@ -6,13 +6,13 @@ use crate::race::corridor::Corridor;
 use crate::race::profile::{CarLimits, SpeedProfile};
 use crate::race::racing_line::CarOutline;
 
-/// The course of an event, as a referee measures it out among all cones.
+/// The course of an event, as a referee determines it from all cones.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EventCourse {
     event: Event,
     layout: EventLayout,
     corridor: Corridor,
-    /// Stations of the lines where each time begins and ends.
+    /// Stations of the start and finish line of each timed section.
     timed: Vec<[usize; 2]>,
 }
 
@@ -26,10 +26,11 @@ const GATE: f64 = 8.0;
 const BEHIND: f64 = 1.0;
 
 impl EventCourse {
-    /// The course among the cones of a track, for a car with an outline. `None` for tracks of laps, and where the cones stand as
-    /// at none of the events.
+    /// The course among the cones of a track, for a car with an outline. `None` for laps, and if the cones
+    /// match no event.
     ///
-    /// Lines are the gates of the track, or else those between its large cones; of a skidpad the one through its middle.
+    /// The timing lines are the gates of the track, or else those between its large cones; for a skidpad, the
+    /// line through its centre.
     pub fn of(track: &ConeTrack, outline: &CarOutline) -> Option<Self> {
         let start = track.start_pose()?;
         match track.event() {
@@ -88,29 +89,30 @@ impl EventCourse {
         Some(Self { event, layout, corridor, timed })
     }
 
-    /// Which event it is of.
+    /// The event.
     pub fn event(&self) -> Event {
         self.event
     }
 
-    /// Its edges in the frame of the track.
+    /// Its edges, in the frame of the track.
     pub fn layout(&self) -> &EventLayout {
         &self.layout
     }
 
-    /// The whole way between its edges, from behind the start to the end of the lane behind the finish.
+    /// The whole corridor, from behind the start to the end of the lane behind the finish.
     pub fn corridor(&self) -> &Corridor {
         &self.corridor
     }
 
-    /// Stations of the lines where each time begins and ends: one time of an acceleration; of a skidpad that of the second lap to the
-    /// right, then to the left.
+    /// Stations of the start and finish line of each timed section: one for an acceleration; for a skidpad,
+    /// the second laps to the right and to the left.
     pub fn timed(&self) -> &[[usize; 2]] {
         &self.timed
     }
 
-    /// Seconds of each time at the quasi-steady optimum of a car with some limits: straight on from standing, as fast as it can
-    /// still stand before the end of the lane, or around the inner cones as near as its width lets it.
+    /// Quasi-steady-state optimum of each timed section (s): an acceleration from standstill, limited by the
+    /// braking distance before the end of the lane, or circles as close to the inner cones as the car's width
+    /// permits.
     pub fn optima(&self, limits: &CarLimits, outline: &CarOutline) -> Vec<f64> {
         match self.layout.shape {
             EventShape::Strip { .. } => self.strip_optimum(limits, outline).into_iter().collect(),
@@ -124,7 +126,7 @@ impl EventCourse {
         }
     }
 
-    /// That of a strip: stations are where the nose is.
+    /// Optimum of a strip; stations are positions of the nose.
     fn strip_optimum(&self, limits: &CarLimits, outline: &CarOutline) -> Option<f64> {
         let stations = self.corridor.stations();
         let along = |k: usize| self.layout.pose.to_local(stations[k].position).x;

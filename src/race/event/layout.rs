@@ -1,37 +1,39 @@
-//! What the books of rules say of a strip and of a skidpad, and where that is among cones.
+//! Layouts of strip and skidpad by the rules, and their registration among cones.
 
 use nalgebra::{Matrix6, Vector6};
 
 use crate::geometry::{Point, Pose, Vector, normalize_angle};
 use crate::race::cone::Cone;
 
-/// The edges between which an event is driven, by a few numbers: which cones stand where on an edge differs from place to place.
+/// The edges of an event, given by a few numbers. The placement of cones along an edge differs from site to
+/// site.
 ///
-/// In its frame x is ahead of the car at the start and y to its left.
+/// In its frame, x is ahead of the car at the start and y to its left.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum EventShape {
     /// Two straight rows along x.
     Strip {
-        /// Metres from the middle to each row.
+        /// Distance from the centre line to each row (m).
         half_width: f64,
     },
-    /// Two pairs of circles, to the right and to the left of the origin, and the lanes along x that lead to it and away from it.
+    /// Two pairs of circles, right and left of the origin, and the lanes along x that lead to it and away
+    /// from it.
     Eight {
-        /// Metres from the origin to each centre.
+        /// Distance from the origin to each centre (m).
         apart: f64,
-        /// Radius of the inner circles in metres.
+        /// Radius of the inner circles (m).
         inner: f64,
-        /// Radius of the outer circles in metres.
+        /// Radius of the outer circles (m).
         outer: f64,
     },
 }
 
-/// An edge near a place.
+/// An edge near a point.
 #[derive(Debug, Clone, Copy)]
 struct Edge {
-    /// Metres of the place beyond the edge.
+    /// Signed distance of the point beyond the edge (m).
     off: f64,
-    /// How that changes with the place, and with the numbers of the shape.
+    /// Gradient of that distance in the point; `by_shape` is that in the numbers of the shape.
     by_place: Vector,
     by_shape: [f64; 3],
 }
@@ -45,7 +47,7 @@ impl EventShape {
     /// The skidpad of the rules of Formula Student: centres 18.25 m from each other, circles of 15.25 and 21.25 m.
     pub const EIGHT: Self = Self::Eight { apart: 9.125, inner: 7.625, outer: 10.625 };
 
-    /// Its numbers.
+    /// Its numbers (m).
     pub(super) fn numbers(&self) -> [f64; 3] {
         match *self {
             Self::Strip { half_width } => [half_width, 0.0, 0.0],
@@ -53,7 +55,7 @@ impl EventShape {
         }
     }
 
-    /// The same kind with other numbers.
+    /// The same kind of shape with other numbers.
     fn with(&self, [first, inner, outer]: [f64; 3]) -> Self {
         match self {
             Self::Strip { .. } => Self::Strip { half_width: first },
@@ -61,7 +63,7 @@ impl EventShape {
         }
     }
 
-    /// That of the rules, and metres by which a course may differ from it.
+    /// The shape by the rules, and the permitted deviation of its numbers (m).
     fn ruled(&self) -> (Self, f64) {
         match self {
             Self::Strip { .. } => (Self::Strip { half_width: 1.75 }, 0.5),
@@ -69,7 +71,7 @@ impl EventShape {
         }
     }
 
-    /// Metres from the middle to the edges of the straight lanes.
+    /// Half the width of the straight lanes (m).
     pub fn half_width(&self) -> f64 {
         match *self {
             Self::Strip { half_width } => half_width,
@@ -77,7 +79,7 @@ impl EventShape {
         }
     }
 
-    /// The edge nearest to a place.
+    /// The edge nearest to a point.
     fn edge(&self, place: Point) -> Edge {
         let row = |by_shape: [f64; 3]| {
             let side = 1.0_f64.copysign(place.y);
@@ -97,12 +99,12 @@ impl EventShape {
     }
 }
 
-/// Edges at a pose.
+/// A layout: edges at a pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EventLayout {
-    /// The frame of the shape.
+    /// Frame of the shape.
     pub pose: Pose,
-    /// The edges in that frame.
+    /// Edges in that frame.
     pub shape: EventShape,
 }
 
@@ -120,8 +122,8 @@ const FEWEST: usize = 3;
 const MOVES: [f64; 3] = [0.05, 0.05, 0.01];
 
 impl EventLayout {
-    /// Looks for a strip or a skidpad of any size among cones, for a car that stands at a pose before its start. `None` if cones
-    /// fit none, or too few of them are seen. O(n) for n cones.
+    /// Searches for a strip or a skidpad among cones, for a car that stands before its start. `None` if no
+    /// layout fits the cones, or too few of them are visible. O(n) for n cones.
     ///
     /// ```
     /// use roverlab::race::{Cone, EventLayout, EventShape};
@@ -130,7 +132,7 @@ impl EventLayout {
     /// let cones: Vec<Cone> = row(1.9).chain(row(-1.9)).collect();
     /// let found = EventLayout::find(&cones, Pose::new(-2.0, 0.2, 0.05), EventShape::STRIP).unwrap();
     /// assert!((found.shape.half_width() - 1.9).abs() < 0.05 && found.pose.heading.abs() < 0.01);
-    /// // The origin of a strip is where the car stands, in its middle.
+    /// // The origin of a strip is at the car's position, on the centre line.
     /// assert!((found.pose.position() - Point::new(-2.0, 0.0)).norm() < 0.05);
     /// ```
     pub fn find(cones: &[Cone], car: Pose, shape: EventShape) -> Option<Self> {
@@ -146,14 +148,14 @@ impl EventLayout {
             found.improve(cones, [0.3, 0.3, 0.1]);
         }
         if matches!(shape, EventShape::Strip { .. }) {
-            // Nothing says where a strip begins.
+            // Nothing determines where a strip begins.
             let ahead = found.pose.to_local(car.position()).x;
             found.pose = found.pose.compose(&Pose::new(ahead, 0.0, 0.0));
         }
         (found.holds(cones, SHARES[0]) && found.has_both_hands(cones)).then_some(found)
     }
 
-    /// Layouts that a car which stands before the start may have around it.
+    /// Initial guesses of the layout around a car before the start.
     fn guesses(car: Pose, shape: EventShape) -> impl Iterator<Item = Self> {
         let (begins, widths) = match shape {
             EventShape::Strip { .. } => (0..1, 5),
@@ -179,7 +181,7 @@ impl EventLayout {
         })
     }
 
-    /// How many cones stand at edges, the nearer the better.
+    /// Number of cones at edges, weighted by proximity.
     fn score(&self, cones: &[Cone]) -> f64 {
         let near = |cone: &Cone| {
             let off = self.off(cone.position) / AT_EDGE;
@@ -188,12 +190,12 @@ impl EventLayout {
         cones.iter().map(near).sum()
     }
 
-    /// Metres of a place from the nearest edge.
+    /// Distance of a point beyond the nearest edge (m).
     fn off(&self, place: Point) -> f64 {
         self.shape.edge(self.pose.to_local(place)).off
     }
 
-    /// Whether enough of some cones stand at the edges for a layout that was found.
+    /// Whether enough cones are at the edges to keep a layout.
     pub(super) fn fits(&self, cones: &[Cone]) -> bool {
         self.holds(cones, SHARES[1])
     }
@@ -208,7 +210,7 @@ impl EventLayout {
         cones.iter().filter(move |cone| layout.off(cone.position).abs() < AT_EDGE)
     }
 
-    /// Whether there are some of them on each hand: a single row may be the edge of anything.
+    /// Whether cones are on both sides: a single row may be the edge of anything.
     fn has_both_hands(&self, cones: &[Cone]) -> bool {
         let fewest = if matches!(self.shape, EventShape::Strip { .. }) { 2 } else { 4 };
         let on = |side: f64| {
@@ -222,8 +224,8 @@ impl EventLayout {
         self.improve(cones, MOVES);
     }
 
-    /// One step of Gauss and Newton towards the least distances of cones from their edges, those that are far off counting less,
-    /// while nothing moves much farther than it may.
+    /// One damped Gauss-Newton step that minimises the distances of cones from their edges, with robust
+    /// weights.
     fn improve(&mut self, cones: &[Cone], moves: [f64; 3]) {
         let (ruled, differs) = self.shape.ruled();
         let mut matrix = Matrix6::zeros();

@@ -1,4 +1,4 @@
-//! The lines of the events, in the frame of their layout.
+//! Reference lines of the events, in the frame of their layout.
 
 use std::f64::consts::TAU;
 
@@ -14,14 +14,14 @@ pub(super) const LAPS: u32 = 2;
 /// Metres over which the way passes from circle to circle: the standard deviation of the bell that smooths it.
 const PASSES: f64 = 2.0;
 
-/// A straight way along x.
+/// A straight line along x.
 pub(super) fn straight(from: f64, to: f64) -> Vec<Point> {
     let parts = ((to - from) / STEP).ceil().max(2.0);
     (0..=parts as u32).map(|k| Point::new(from + (to - from) * f64::from(k) / parts, 0.0)).collect()
 }
 
-/// The way of a skidpad: in along x, two laps clockwise around the centre on the right, two counter-clockwise around that on the left,
-/// and out along x.
+/// Path of a skidpad: in along x, two laps clockwise around the right centre, two counter-clockwise around
+/// the left one, and out along x.
 pub(super) fn eight(apart: f64, radius: f64, [from, to]: [f64; 2]) -> Vec<Point> {
     let mut points = straight(from, 0.0);
     points.pop();
@@ -37,10 +37,9 @@ pub(super) fn eight(apart: f64, radius: f64, [from, to]: [f64; 2]) -> Vec<Point>
     points
 }
 
-/// The same where laps are as near to the inner cones as `radius` says, and passes between them are smooth. The number of points
-/// does not depend on the layout.
+/// The same with laps at `radius` and smooth transitions. The number of points is independent of the layout.
 pub(super) fn smooth_eight(apart: f64, radius: f64, ends: [f64; 2]) -> Vec<Point> {
-    // Smoothing draws circles together.
+    // Smoothing shrinks circles.
     let loss = 0.5 * (PASSES / radius) * (PASSES / radius);
     let mut points = eight(apart, radius * (1.0 + loss), ends);
     let passes = (2.0 * PASSES * PASSES / (STEP * STEP)).round() as usize;
@@ -56,14 +55,13 @@ pub(super) fn smooth_eight(apart: f64, radius: f64, ends: [f64; 2]) -> Vec<Point
     points
 }
 
-/// The points at which the line crosses the origin of a skidpad: before the first lap, and after each one.
+/// Indices at which the line crosses the origin of a skidpad: before the first lap, and after each one.
 pub(super) fn crossings(ends: [f64; 2]) -> Vec<usize> {
     let first = straight(ends[0], 0.0).len() - 1;
     (0..=2 * LAPS).map(|lap| first + (lap * ROUND) as usize).collect()
 }
 
-/// The circle that leaves so much room between the middle of a car and the cones inside of it, or the middle between both circles,
-/// if that is less.
+/// Radius of the driven circle: `room` outside the inner cones, but at most midway between both circles.
 pub(super) fn radius(shape: EventShape, room: f64) -> f64 {
     match shape {
         EventShape::Strip { .. } => f64::INFINITY,
@@ -86,7 +84,7 @@ mod tests {
         let sharpest = profile.curvatures.iter().fold(0.0_f64, |most, bend| most.max(bend.abs()));
         assert!(sharpest < 1.05 / 8.8, "{sharpest}");
         let crossings = crossings(ends);
-        // In the middle of each lap it is on the far side of its circle.
+        // Halfway through each lap it is on the far side of its circle.
         for (lap, side) in [(0, -1.0), (1, -1.0), (2, 1.0), (3, 1.0)] {
             let far = smooth[usize::midpoint(crossings[lap], crossings[lap + 1])];
             assert!((far - Point::new(0.0, side * (9.125 + 8.8))).norm() < 0.03, "{lap}: {far:?}");

@@ -17,26 +17,27 @@ use crate::race::sight::{ConeSighting, sightings};
 use crate::race::tracker::{CRAWL, LineTracker, LineTrackerParameters};
 use crate::race::tyres::Tyres;
 
-/// How an event is driven.
+/// Parameters of [`EventRacer`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EventParameters {
-    /// What is asked of the tyres and motors at most.
+    /// Limits of tyres and motors.
     pub limits: CarLimits,
-    /// The car's outline, by which it keeps clear of cones.
+    /// Outline of the car, for the clearance from cones.
     pub outline: CarOutline,
-    /// How the map is made.
+    /// Parameters of the map.
     pub map: ConeMapParameters,
-    /// How lines are followed.
+    /// Parameters of the line tracker.
     pub tracker: LineTrackerParameters,
-    /// Metres from the nose to the finish of an acceleration: from where the car stands to the start line, and 75 m.
+    /// Distance from the nose at the start to the finish of an acceleration (m): to the start line, plus 75
+    /// m.
     pub strip: f64,
-    /// Metres behind the finish at which the nose stands at the end: of an acceleration, and of a skidpad.
+    /// Distance of the nose behind the finish at the end: acceleration, skidpad (m).
     pub stop: [f64; 2],
-    /// Metres per second up to the first circle of a skidpad.
+    /// Speed up to the first circle of a skidpad (m/s).
     pub entry: f64,
-    /// Seconds without cones that fit the layout after which the car stops: as it is looked for, and as it is driven.
+    /// Time without cones that fit the layout after which the car stops: while searching, while driving (s).
     pub patience: [f64; 2],
-    /// Seconds from decision to decision.
+    /// Control period (s).
     pub period: f64,
 }
 
@@ -44,7 +45,7 @@ impl Default for EventParameters {
     fn default() -> Self {
         let RacerParameters { limits, outline, map, tracker, period, .. } = RacerParameters::default();
         Self {
-            // A circle that stays the same asks less of steering and tyres than bends that come and go.
+            // A steady circle demands less of steering and tyres than changing bends.
             limits: CarLimits {
                 grip: GripLimit::Balance(Tyres { grip: 11.7, ..Tyres::default() }),
                 brake: 10.0,
@@ -64,7 +65,11 @@ impl Default for EventParameters {
 }
 
 impl EventParameters {
-    /// Fails with the name of the parameter that is out of range.
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    ///
+    /// If one is out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         self.limits.validate().map_err(|error| error.of("limits"))?;
         self.outline.validate().map_err(|error| error.of("outline"))?;
@@ -80,10 +85,10 @@ impl EventParameters {
     }
 }
 
-/// What a car at an event does.
+/// Phase of a car at an event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum EventPhase {
-    /// Looks for the layout, standing at first.
+    /// Searches for the layout, initially at rest.
     Looking,
     /// Drives.
     Driving,
@@ -93,11 +98,11 @@ pub enum EventPhase {
     Lost,
 }
 
-/// Drives an acceleration or a skidpad by cones that it does not know and a layout that it does.
+/// Drives an acceleration or a skidpad with unknown cones and a known layout.
 ///
-/// The layout is fitted to the cones that were seen lately, at every look; the line is given in its frame. The way of an
-/// acceleration is the middle between both rows, with all that the motors give, so far that the car stands within the shortest
-/// lane that there is behind a finish. That of a skidpad leads around the inner cones as near as is safe.
+/// In every control period, the layout is fitted to recently seen cones; the line is given in its frame. In
+/// an acceleration, the car follows the centre line at full throttle and stops within the shortest lane
+/// behind a finish. In a skidpad, it circles the inner cones as closely as is safe.
 #[derive(Debug, Clone)]
 pub struct EventRacer {
     pub(in crate::race) parameters: EventParameters,
@@ -107,9 +112,9 @@ pub struct EventRacer {
     layout: Option<EventLayout>,
     phase: EventPhase,
     line: Option<LineTracker>,
-    /// The layout's shape for which the line is.
+    /// The layout's shape for which the line was planned.
     planned: EventShape,
-    /// Seconds, metres, and seconds since cones fitted.
+    /// Time (s), distance (m), and time since cones last fitted the layout (s).
     time: f64,
     way: f64,
     blind: f64,
@@ -130,11 +135,19 @@ const AHEAD: f64 = 45.0;
 
 impl EventRacer {
     /// A car before the start of an acceleration.
+    ///
+    /// # Errors
+    ///
+    /// If a parameter is out of range.
     pub fn acceleration(parameters: EventParameters) -> Result<Self, ParameterError> {
         Self::new(EventShape::STRIP, &parameters)
     }
 
     /// A car before the start of a skidpad.
+    ///
+    /// # Errors
+    ///
+    /// If a parameter is out of range.
     pub fn skidpad(parameters: EventParameters) -> Result<Self, ParameterError> {
         Self::new(EventShape::EIGHT, &parameters)
     }
@@ -156,17 +169,17 @@ impl EventRacer {
         })
     }
 
-    /// What it does now.
+    /// Present phase.
     pub fn phase(&self) -> EventPhase {
         self.phase
     }
 
-    /// The cones that it has seen, in the frame of its start.
+    /// Map of the cones seen, in the frame of its start.
     pub fn map(&self) -> &ConeMap {
         &self.map
     }
 
-    /// Where it believes the layout to be, in the frame of its map.
+    /// Estimated layout, in the frame of the map.
     pub fn layout(&self) -> Option<&EventLayout> {
         self.layout.as_ref()
     }
@@ -176,13 +189,13 @@ impl EventRacer {
         self.line.as_ref()
     }
 
-    /// The command for the pose and the speed that odometry measures and a scan.
+    /// Command for a pose and a velocity by odometry and a scan.
     pub fn step(&mut self, odometry: Pose, speed: Twist, scan: &LidarScan) -> Twist {
         self.decide(odometry, speed, &sightings(scan))
     }
 
-    /// The same for what was found already, by a lidar or a camera. It is called once in every
-    /// [`period`](EventParameters::period). Where odometry is no number, the car brakes.
+    /// The same for detections of a lidar or a camera. Call it once per [`period`](EventParameters::period).
+    /// If odometry is not finite, the car brakes.
     pub fn decide(&mut self, odometry: Pose, speed: Twist, seen: &[ConeSighting]) -> Twist {
         if !(odometry.is_finite() && speed.is_finite()) {
             return Twist::STOP;
@@ -200,12 +213,12 @@ impl EventRacer {
         }
     }
 
-    /// Whether it stands and drives no more.
+    /// Whether it has finished driving and stands.
     pub fn is_done(&self, speed: Twist) -> bool {
         matches!(self.phase, EventPhase::Finished | EventPhase::Lost) && speed.linear.abs() < STILL
     }
 
-    /// Finds the layout, or follows it, and tells for how long nothing that is seen has belonged to it.
+    /// Finds or follows the layout, and measures how long no detection has fitted it.
     fn localise(&mut self, fresh: &[Cone], seen: &[ConeSighting]) {
         let Some(layout) = &mut self.layout else {
             self.blind = if seen.is_empty() { self.blind + self.parameters.period } else { 0.0 };
@@ -222,13 +235,13 @@ impl EventRacer {
     fn find(&self, fresh: &[Cone]) -> Option<EventLayout> {
         let mut found = EventLayout::find(fresh, self.map.pose(), self.event)?;
         if matches!(self.event, EventShape::Strip { .. }) {
-            // The origin of a strip is where the nose stood at first.
+            // The origin of a strip is the initial position of the nose.
             found.pose = found.pose.compose(&Pose::new(self.parameters.outline.nose - self.way, 0.0, 0.0));
         }
         Some(found)
     }
 
-    /// Stands, then creeps on, until the layout is found.
+    /// Stands, then creeps forward, until the layout is found.
     fn look(&mut self, fresh: &[Cone]) -> Twist {
         if let Some(layout) = self.layout {
             self.planned = layout.shape;
@@ -254,7 +267,7 @@ impl EventRacer {
         if creeps { Twist::new(CRAWL, 0.0) } else { Twist::default() }
     }
 
-    /// Metres from the line at which a car touches a cone, and a little more.
+    /// Distance from the line at which a car would touch a cone, plus a margin (m).
     fn beside(&self) -> f64 {
         self.parameters.outline.half_width + ConeColour::Unknown.radius() + BESIDE
     }
@@ -293,7 +306,7 @@ impl EventRacer {
         self.before_cones(command, fresh)
     }
 
-    /// Plans again where the layout has other numbers than it had.
+    /// Replans if the numbers of the layout have changed.
     fn adapt(&mut self) {
         let Some(layout) = self.layout else { return };
         let (now, before) = (layout.shape.numbers(), self.planned.numbers());
@@ -321,7 +334,7 @@ impl EventRacer {
         left.iter().sum::<f64>() < STRIDE
     }
 
-    /// A command that stops before cones, and other things, that stand in the way, as at the end of a lane.
+    /// Limits a command so that the car stops before obstacles, such as the cones at the end of a lane.
     fn before_cones(&self, command: Twist, fresh: &[Cone]) -> Twist {
         let Some((layout, line)) = self.layout.as_ref().zip(self.line.as_ref()) else { return command };
         let p = &self.parameters;
@@ -340,7 +353,7 @@ impl EventRacer {
     }
 }
 
-/// A command of the same curvature that is no faster than some speed.
+/// Limits the speed of a command, preserving its curvature.
 fn slowed(command: Twist, fastest: f64) -> Twist {
     if command.linear <= fastest {
         return command;

@@ -2,7 +2,7 @@ use super::course::EventCourse;
 use crate::geometry::{Point, Pose};
 use crate::race::referee::RaceScore;
 
-/// Takes the times of an event and looks whether a car stays on its course.
+/// Measures the times of an event, and checks whether a car stays on its course.
 #[derive(Debug, Clone)]
 pub struct EventReferee {
     course: EventCourse,
@@ -11,9 +11,9 @@ pub struct EventReferee {
     verdict: RaceScore,
     nearest: usize,
     outside: bool,
-    /// When each line was crossed: the beginnings and the ends of the times.
+    /// Crossing times of the start and finish lines.
     crossed: Vec<[Option<f64>; 2]>,
-    /// Stations passed, and when, at the last look.
+    /// Stations passed, and the time, at the last call.
     last: Option<(f64, f64)>,
 }
 
@@ -23,19 +23,20 @@ const WINDOW: [usize; 2] = [16, 4];
 const WHEELS: [usize; 2] = [3, 14];
 
 impl EventReferee {
-    /// A referee for a car with wheels at some places of its frame, whose nose breaks the light barriers.
+    /// A referee for a car with wheels at the given positions in its frame; its nose breaks the light
+    /// barriers.
     pub fn new(course: EventCourse, wheels: [Point; 4], nose: Point) -> Self {
         let crossed = vec![[None; 2]; course.timed().len()];
         let verdict = RaceScore::default();
         Self { course, wheels, nose, verdict, nearest: 0, outside: false, crossed, last: None }
     }
 
-    /// What was seen so far. Its lap times are those of the event.
+    /// Result so far. Its lap times are those of the event.
     pub fn verdict(&self) -> &RaceScore {
         &self.verdict
     }
 
-    /// Whether all times were taken, and the car is before the end of the lane behind the finish.
+    /// Whether all times are taken, and the car is before the end of the lane behind the finish.
     pub fn is_complete(&self) -> bool {
         let beyond = self
             .last
@@ -43,11 +44,11 @@ impl EventReferee {
         !beyond && self.verdict.lap_times.len() == self.course.timed().len()
     }
 
-    /// Where a car is at a time, and how many cones it has knocked over up to then.
+    /// Takes the pose of the car at a time, and the number of cones knocked over so far.
     pub fn see(&mut self, time: f64, pose: Pose, cones_hit: usize) {
         let nose = pose.to_world(self.nose);
         let begin = self.course.timed().first().map_or(0, |lines| lines[0]);
-        // Before the first look, it is anywhere before the first line.
+        // Before the first call, the car is anywhere before the first line.
         let around = if self.last.is_some() {
             self.nearest.saturating_sub(WINDOW[1])..self.nearest + WINDOW[0]
         } else {
@@ -65,7 +66,7 @@ impl EventReferee {
         self.verdict.cones_hit = cones_hit;
     }
 
-    /// Stations that a place is beyond, with the share of the next one.
+    /// Number of stations passed, with the fraction of the next one.
     fn passed(&self, place: Point) -> f64 {
         let stations = self.course.corridor().stations();
         let station = stations[self.nearest];
@@ -75,7 +76,7 @@ impl EventReferee {
         self.nearest as f64 + (place - station.position).dot(&along) / step.max(1e-9)
     }
 
-    /// Notes the lines that were crossed between two looks, each as so many stations at a time.
+    /// Records the lines crossed between two calls, with interpolated times.
     fn take_times(&mut self, (before, then): (f64, f64), (passed, time): (f64, f64)) {
         for (lines, crossed) in self.course.timed().iter().zip(&mut self.crossed) {
             for end in [0, 1] {
@@ -91,7 +92,7 @@ impl EventReferee {
         }
     }
 
-    /// The station nearest to a place among some.
+    /// The station nearest to a point, among some.
     fn search(&self, place: Point, around: std::ops::Range<usize>) -> usize {
         let stations = self.course.corridor().stations();
         let away = |i: usize| (stations[i].position - place).norm_squared();

@@ -1,4 +1,4 @@
-//! Whole runs on strips and skidpads of our own.
+//! Complete runs on generated strips and skidpads.
 
 use std::f64::consts::TAU;
 
@@ -14,7 +14,7 @@ use crate::world::RobotSpec;
 
 const OUTLINE: CarOutline = CarOutline { half_width: 0.7, nose: 2.15, ahead: 0.9, room: 0.0 };
 
-/// A strip with rows so far from its middle and cones so far from each other, and a lane behind the finish that two cones close.
+/// A strip with a half-width, a cone spacing, and a lane behind the finish that two cones close.
 fn strip(half_width: f64, spacing: f64, lane: f64) -> ConeTrack {
     let mut track = ConeTrack { start: Some(Pose::new(-2.45, 0.3, 0.05)), ..ConeTrack::default() };
     let mut both = |x: f64, colours: [ConeColour; 2]| {
@@ -37,7 +37,7 @@ fn strip(half_width: f64, spacing: f64, lane: f64) -> ConeTrack {
     track
 }
 
-/// A skidpad by the rules, or about so, turned and moved.
+/// A skidpad by the rules, or nearly so, at an arbitrary pose.
 fn skidpad(apart: f64, inner: f64, outer: f64) -> ConeTrack {
     let frame = Pose::new(7.0, -3.0, 0.8);
     let mut track =
@@ -75,7 +75,7 @@ fn world(track: &ConeTrack, seed: u64) -> Simulation {
     Simulation::new(&scene, SimOptions { seed, ..SimOptions::default() }).unwrap()
 }
 
-/// One run with lidar or camera: what the referee saw, whether all was complete, and how the car ended.
+/// One run with lidar or camera: the referee's result, whether it was complete, and the final phase.
 fn run(track: &ConeTrack, seed: u64, camera: bool) -> (RaceScore, bool, EventPhase) {
     let course = EventCourse::of(track, &OUTLINE).unwrap();
     let wheels = [(0.0, 0.6), (0.0, -0.6), (1.55, 0.6), (1.55, -0.6)].map(|(x, y)| Point::new(x, y));
@@ -106,7 +106,7 @@ fn run(track: &ConeTrack, seed: u64, camera: bool) -> (RaceScore, bool, EventPha
     (referee.verdict().clone(), referee.is_complete(), racer.phase())
 }
 
-/// A run that ends behind its finish, without a penalty, near the optimum.
+/// Checks that a run ends behind its finish, without penalty, near the optimum.
 fn assert_clean(track: &ConeTrack, seed: u64, camera: bool, over: f64) {
     let course = EventCourse::of(track, &OUTLINE).unwrap();
     let limits = CarLimits::of(&RobotSpec::race_car()).unwrap();
@@ -154,7 +154,7 @@ fn the_course_is_measured_out_among_the_cones() {
     let course = EventCourse::of(&skidpad(9.125, 7.625, 10.625), &OUTLINE).unwrap();
     let laps: Vec<usize> = course.timed().iter().map(|[begin, end]| end - begin).collect();
     assert_eq!((course.event(), laps), (Event::Skidpad, vec![224; 2]));
-    // Laps of a circuit are none, nor is a heap with a cone of orange.
+    // Laps of a circuit are no event, and neither is a random heap with orange cones.
     let mut track = strip(1.5, 5.0, 25.0);
     track.cones.retain(|cone| cone.colour != ConeColour::Orange);
     assert_eq!(EventCourse::of(&track, &OUTLINE), None);

@@ -22,7 +22,7 @@ impl Field<'_> {
     }
 }
 
-/// The lines with their fields; empty ones are left out.
+/// Lines with their fields; empty lines are skipped.
 pub(super) fn rows(text: &str) -> impl Iterator<Item = Vec<Field<'_>>> {
     let lines = text.trim_start_matches('\u{feff}').lines().enumerate();
     lines.filter(|(_, line)| !line.trim().is_empty()).map(|(index, line)| {
@@ -38,7 +38,7 @@ pub(super) fn rows(text: &str) -> impl Iterator<Item = Vec<Field<'_>>> {
     })
 }
 
-/// The field of a row, or an error at the row's end.
+/// A field of a row, or an error at the end of the row.
 pub(super) fn field<'a>(
     row: &[Field<'a>],
     index: usize,

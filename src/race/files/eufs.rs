@@ -11,7 +11,22 @@ const HEADER: &str = "tag,x,y,direction,x_variance,y_variance,xy_covariance";
 /// What a row may begin with.
 const TAGS: &str = "blue, yellow, orange, big_orange, unknown, car_start or midpoint";
 
-/// Reads a cone map of EUFS: a tag, metres, and for the start a direction in radians; variances are not used.
+/// Reads a cone map of EUFS: a tag, coordinates (m), and for the start a heading (rad); variances are
+/// ignored.
+///
+/// ```
+/// use roverlab::race::{ConeColour, parse_eufs, write_eufs};
+/// let text = "tag,x,y,direction,x_variance,y_variance,xy_covariance\n\
+///             blue,1.0,1.5,0,0,0,0\nyellow,1.0,-1.5,0,0,0,0\ncar_start,0,0,0.1,0,0,0\n";
+/// let track = parse_eufs(text, "short.csv")?;
+/// assert_eq!((track.of(ConeColour::Blue).count(), track.start.expect("a start").heading), (1, 0.1));
+/// assert_eq!(parse_eufs(&write_eufs(&track), "again.csv")?, track);
+/// # Ok::<(), roverlab::world::formats::FormatError>(())
+/// ```
+///
+/// # Errors
+///
+/// If the text is not such a map, or contains no cones or too many.
 pub fn parse_eufs(text: &str, file: &str) -> Result<ConeTrack, FormatError> {
     let mut rows = rows(text);
     let header = rows.next();
@@ -33,9 +48,9 @@ pub fn parse_eufs(text: &str, file: &str) -> Result<ConeTrack, FormatError> {
                 track.start = Some(Pose::new(metres(1)?, metres(2)?, direction.unwrap_or(0.0)));
                 continue;
             }
-            // Some files are two, one behind the other.
+            // Some files consist of two, one after the other.
             "tag" if is_header(&row) => continue,
-            // Points of the way that is to be driven, without a cone.
+            // Points of the path to drive, without a cone.
             "midpoint" => continue,
             "blue" => ConeColour::Blue,
             "yellow" => ConeColour::Yellow,
@@ -59,7 +74,7 @@ fn is_header(row: &[Field<'_>]) -> bool {
     row.len() >= 3 && row.iter().zip(["tag", "x", "y"]).all(|(field, name)| field.text == name)
 }
 
-/// A cone map as [`parse_eufs`] reads it. The lines where time is taken have no place in it and are left out.
+/// Writes a cone map that [`parse_eufs`] reads. The format has no timing lines.
 pub fn write_eufs(track: &ConeTrack) -> String {
     let mut text = format!("{HEADER}\n");
     for cone in &track.cones {

@@ -18,9 +18,22 @@ const KEYS: [(&str, ConeColour); 4] = [
 /// Metres from the rear axle to the front wing, where these files say that the car starts.
 const WING: f64 = 2.15;
 
-/// Reads a track of FSSIM: lists of cones by colour, the pose of the front wing at the start, and the ends of the lines
-/// where time is taken. The start of the track is that of the rear axle, 2.15 m behind the wing. Other keys with lists of
-/// numbers are left out.
+/// Reads a track of FSSIM: lists of cones by colour, the start pose of the front wing, and the ends of the
+/// timing lines. The start of the track is that of the rear axle, 2.15 m behind the wing. Other keys with
+/// lists of numbers are ignored.
+///
+/// ```
+/// use roverlab::race::{ConeColour, parse_fssim, write_fssim};
+/// let text = "cones_left: [[1.0, 1.5]]\ncones_right: [[1.0, -1.5], [6.0, -1.5]]\n";
+/// let track = parse_fssim(text, "short.yaml")?;
+/// assert_eq!((track.of(ConeColour::Blue).count(), track.of(ConeColour::Yellow).count()), (1, 2));
+/// assert_eq!(parse_fssim(&write_fssim(&track), "again.yaml")?, track);
+/// # Ok::<(), roverlab::world::formats::FormatError>(())
+/// ```
+///
+/// # Errors
+///
+/// If the text is not such a track, or contains no cones or too many.
 pub fn parse_fssim(text: &str, file: &str) -> Result<ConeTrack, FormatError> {
     let mut events = YamlEvents::new(text, file, "keys with lists");
     let mut track = ConeTrack::default();
@@ -44,7 +57,7 @@ pub fn parse_fssim(text: &str, file: &str) -> Result<ConeTrack, FormatError> {
     Ok(track)
 }
 
-/// Takes in the list of a key.
+/// Reads the list of a key.
 fn take(
     track: &mut ConeTrack,
     events: &mut YamlEvents<'_>,
@@ -72,7 +85,7 @@ fn take(
     Ok(())
 }
 
-/// A track as [`parse_fssim`] reads it. Cones without a colour have no place in it and are left out.
+/// Writes a track that [`parse_fssim`] reads. The format has no cones without colour.
 pub fn write_fssim(track: &ConeTrack) -> String {
     let mut text = String::new();
     for (key, colour) in KEYS {

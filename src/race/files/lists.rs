@@ -1,4 +1,4 @@
-//! Lists of numbers in YAML, of which JSON is a part.
+//! Lists of numbers in YAML, of which JSON is a subset.
 
 use saphyr_parser::Event;
 
@@ -7,7 +7,7 @@ use crate::geometry::units::FARTHEST;
 use crate::geometry::Point;
 use crate::world::formats::{FormatError, Location, YamlEvents};
 
-/// A list of what `item` makes of its events.
+/// A list of items read by `item`.
 pub(super) fn list_of<'a, T>(
     events: &mut YamlEvents<'a>,
     item: impl FnMut(&mut YamlEvents<'a>, Event<'a>, Location) -> Result<T, FormatError>,
@@ -23,7 +23,7 @@ pub(super) fn points(events: &mut YamlEvents<'_>) -> Result<Vec<Point>, FormatEr
     list_of(events, |events, event, at| pair(events, &event, at))
 }
 
-/// A list of x and y, from its first event on.
+/// A list of x and y, starting at its first event.
 pub(super) fn pair(
     events: &mut YamlEvents<'_>,
     first: &Event<'_>,

@@ -6,14 +6,14 @@ use crate::geometry::{Pose, math};
 use crate::race::{Cone, ConeColour};
 use crate::world::formats::{FormatError, Location, YamlEvents, shown};
 
-/// What a car knew at one moment of a drive.
+/// Knowledge of a car at one moment of a drive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConeFrame {
-    /// Where it was.
+    /// Pose of the car.
     pub car: Pose,
-    /// How fast it was in m/s, if that was noted.
+    /// Speed of the car, if recorded (m/s).
     pub speed: Option<f64>,
-    /// The cones that it knew.
+    /// Known cones.
     pub cones: Vec<Cone>,
 }
 
@@ -23,9 +23,24 @@ const COLOURS: [ConeColour; 5] =
 /// The keys of a frame.
 const KEYS: &str = "car_position, car_direction, car_speed or slam_cones";
 
-/// Reads a log of a car's own map of cones, as the planner `ft-fsd-path-planning` takes it: a JSON list of frames with
-/// `car_position` in metres, `car_direction` as a vector, `car_speed` in m/s where it is known, and `slam_cones`, five
-/// lists: without colour, yellow, blue, orange, large and orange. All are in one frame of reference.
+/// Reads a log of a car's cone map, in the format of the planner `ft-fsd-path-planning`: a JSON list of
+/// frames with `car_position` (m), `car_direction` (a vector), optionally `car_speed` (m/s), and
+/// `slam_cones`, five lists: without colour, yellow, blue, orange, large orange. All are in one frame of
+/// reference.
+///
+/// ```
+/// use roverlab::race::{ConeColour, parse_cone_log};
+/// let text = r#"[{"car_position": [2.0, 0.0], "car_direction": [0.0, 1.0], "car_speed": 3.5,
+///     "slam_cones": [[], [[4.0, 1.0]], [], [], []]}]"#;
+/// let frames = parse_cone_log(text, "drive.json")?;
+/// assert_eq!((frames[0].speed, frames[0].cones[0].colour), (Some(3.5), ConeColour::Yellow));
+/// assert!((frames[0].car.heading - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+/// # Ok::<(), roverlab::world::formats::FormatError>(())
+/// ```
+///
+/// # Errors
+///
+/// If the text is not such a log.
 pub fn parse_cone_log(text: &str, file: &str) -> Result<Vec<ConeFrame>, FormatError> {
     let mut events = YamlEvents::new(text, file, "a list of frames");
     match events.first()? {
@@ -77,7 +92,7 @@ fn next_pair(events: &mut YamlEvents<'_>) -> Result<crate::geometry::Point, Form
     pair(events, &event, at)
 }
 
-/// The heading of a vector.
+/// Heading of a vector.
 fn direction(events: &mut YamlEvents<'_>) -> Result<f64, FormatError> {
     let (event, at) = events.next()?;
     let vector = pair(events, &event, at)?;
@@ -87,7 +102,7 @@ fn direction(events: &mut YamlEvents<'_>) -> Result<f64, FormatError> {
     Ok(math::atan2(vector.y, vector.x))
 }
 
-/// The cones of all colours.
+/// Cones of all colours.
 fn lists(events: &mut YamlEvents<'_>) -> Result<Vec<Cone>, FormatError> {
     let (event, start) = events.next()?;
     if !matches!(event, Event::SequenceStart(..)) {

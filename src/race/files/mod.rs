@@ -1,5 +1,5 @@
-//! Readers and writers of track files: FSSIM's YAML, the CSV of EUFS, and the CSV of the TUM race track database; and a reader
-//! of logs of drives between cones.
+//! Readers and writers of track files: YAML of FSSIM, CSV of EUFS, CSV of the TUM racetrack database; and a
+//! reader of logs of drives between cones.
 //!
 //! All are in metres and radians.
 
@@ -22,20 +22,20 @@ use crate::world::formats::{FormatError, Location, shown};
 /// Cones or stations of a file.
 const MOST: usize = 20_000;
 
-/// What a track file holds.
+/// Content of a track file.
 #[derive(Debug, Clone, PartialEq)]
 pub enum TrackFile {
     /// Cones (FSSIM, EUFS).
     Cones(ConeTrack),
-    /// A centre line with its widths (TUM).
+    /// Centre line with widths (TUM).
     Corridor(Corridor),
-    /// A line without widths, as the race lines of TUM.
+    /// Line without widths, such as the race lines of TUM.
     Line(Vec<Point>),
-    /// What a car knew from moment to moment (JSON).
+    /// Log of a car's knowledge (JSON).
     Log(Vec<ConeFrame>),
 }
 
-/// Reads a track file of any of the kinds, told apart by what they begin with. `file` is how messages call it.
+/// Reads a track file of any format, recognised by its beginning. Messages use `file` as its name.
 ///
 /// ```
 /// use roverlab::race::{TrackFile, parse_track};
@@ -45,6 +45,10 @@ pub enum TrackFile {
 /// let error = parse_track("tag,x,y\nblue,1.0,here\n", "bad.csv").unwrap_err();
 /// assert_eq!(error.to_string(), "bad.csv:2:10: found `here`; expected a number of metres");
 /// ```
+///
+/// # Errors
+///
+/// If the text is not a track in one of the formats.
 pub fn parse_track(text: &str, file: &str) -> Result<TrackFile, FormatError> {
     let first = text.lines().find(|line| !line.trim().is_empty()).unwrap_or("");
     let first = first.trim_start_matches('\u{feff}').trim_start();
@@ -70,8 +74,8 @@ pub fn parse_track(text: &str, file: &str) -> Result<TrackFile, FormatError> {
 /// How the CSV files begin.
 const CSV: &str = "a line that begins with tag,x,y (EUFS), # x_m,y_m,w_tr_right_m,w_tr_left_m (TUM), or # x_m,y_m (a race line of TUM)";
 
-/// Whether a file is to be one of comma-separated values: by its name, if it does not begin with a key, or by a first line that
-/// is a row of numbers.
+/// Whether a file is meant to be comma-separated: by its name, unless it begins with a key, or because its
+/// first line is a row of numbers.
 fn is_csv(first: &str, file: &str) -> bool {
     let named = file.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("csv"));
     (named && !first.contains(':'))

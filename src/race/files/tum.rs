@@ -12,8 +12,23 @@ const WIDEST: f64 = 100.0;
 /// The first line of the tracks of the TUM racetrack database.
 const HEADER: &str = "# x_m,y_m,w_tr_right_m,w_tr_left_m";
 
-/// Reads a circuit of the TUM race track database: a closed centre line in metres, and how far the track reaches to the
-/// right and to the left of each point.
+/// Reads a circuit of the TUM racetrack database: a closed centre line (m), with the distance to the right
+/// and left edge at each point (m).
+///
+/// ```
+/// use roverlab::race::{parse_line, parse_tum, write_tum};
+/// let text = "# x_m,y_m,w_tr_right_m,w_tr_left_m\n0,0,5,4\n100,0,5,4\n100,80,5,4\n50,80,5,4\n0,80,5,4\n";
+/// let circuit = parse_tum(text, "block.csv")?;
+/// assert!((circuit.length() - 360.0).abs() < 1.0 && circuit.stations()[0].left == 4.0);
+/// assert_eq!(parse_tum(&write_tum(&circuit), "again.csv")?, circuit);
+/// let error = parse_line("# x_m,y_m\n0,0\n1,up\n", "line.csv").unwrap_err();
+/// assert!(error.to_string().starts_with("line.csv:3:3"), "{error}");
+/// # Ok::<(), roverlab::world::formats::FormatError>(())
+/// ```
+///
+/// # Errors
+///
+/// If the text is not such a circuit.
 pub fn parse_tum(text: &str, file: &str) -> Result<Corridor, FormatError> {
     let numbers = table::<4>(text, file, HEADER)?;
     for (values, at) in &numbers {
@@ -31,13 +46,17 @@ pub fn parse_tum(text: &str, file: &str) -> Result<Corridor, FormatError> {
     })
 }
 
-/// Reads a line without widths, as the race lines of the same database.
+/// Reads a line without widths, such as the race lines of the same database.
+///
+/// # Errors
+///
+/// If the text is not such a line.
 pub fn parse_line(text: &str, file: &str) -> Result<Vec<Point>, FormatError> {
     let rows = table::<2>(text, file, "# x_m,y_m")?;
     Ok(rows.iter().map(|([x, y], _)| Point::new(*x, *y)).collect())
 }
 
-/// A circuit as [`parse_tum`] reads it.
+/// Writes a circuit that [`parse_tum`] reads.
 pub fn write_tum(corridor: &Corridor) -> String {
     let mut text = format!("{HEADER}\n");
     for station in corridor.stations() {
@@ -47,7 +66,7 @@ pub fn write_tum(corridor: &Corridor) -> String {
     text
 }
 
-/// Rows of numbers behind a line that begins with a hash.
+/// Rows of numbers after a header line that begins with `#`.
 fn table<const N: usize>(
     text: &str,
     file: &str,

@@ -10,18 +10,18 @@ fn a_course_that_crosses_itself_is_free_where_it_does() {
     let all = place_cones(&mut Stream::new(0), &corridor, &TrackOptions::default()).cones.len();
     let GeneratedTrack { track, corridor } = lined(&corridor, 5.0).unwrap();
     assert!(track.cones.iter().all(|cone| !is_on_track(cone.position, &corridor)));
-    // The four edges stop before the crossing, and nowhere else.
+    // The four edges end before the crossing, and nowhere else.
     assert!(track.cones.len() + 4 < all && track.cones.len() + 40 > all, "{} of {all}", track.cones.len());
 }
 
-/// The cones of an edge in order, from the large one before the line on.
+/// Cones of an edge in order, beginning with the large one before the line.
 fn edge_of(track: &ConeTrack, left: bool) -> Vec<Point> {
     let colour = if left { ConeColour::Blue } else { ConeColour::Yellow };
     let gate = track.of(ConeColour::BigOrange).skip(if left { 0 } else { 2 }).take(2);
     gate.chain(track.of(colour)).collect()
 }
 
-/// The greatest distance from a cone to the next one of its edge.
+/// Maximum distance between adjacent cones of an edge (m).
 fn widest_gap(track: &ConeTrack) -> f64 {
     let gaps = [true, false].into_iter().flat_map(|left| {
         let edge = edge_of(track, left);
@@ -72,7 +72,7 @@ fn edges_that_are_lined_have_no_gap() {
         });
         let corridor = Corridor::closed(&ring.collect::<Vec<_>>()).unwrap();
         let widest = widest_gap(&lined(&corridor, spacing).unwrap().track);
-        // The large cones themselves are a metre from each other.
+        // The large cones themselves are one metre apart.
         assert!(widest <= spacing.max(2.0 * GATE) + BESIDE, "{widest} of {spacing}");
     }
 }

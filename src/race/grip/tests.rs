@@ -23,13 +23,13 @@ proptest! {
     fn no_balance_exceeds_the_tyres(curvature in 0.0..0.3f64, share in 0.0..1.0f64) {
         let (grip, circle) = (balance(), Tyres::default().grip);
         let most = grip.across(curvature, DRIVE);
-        // The front axle gives up first, but turned wheels that drive pull the car around as well.
+        // The front axle saturates first, but driven, turned wheels also pull the car around.
         prop_assert!(most < if curvature < 0.05 { 0.9 } else { 0.971 } * circle, "{most}");
         let across = share * most;
         for along in [grip.forwards(curvature, across, DRIVE), grip.backwards(curvature, across, 11.0)] {
             prop_assert!(along >= 0.0 && math::hypot(along, across) < circle, "{along} {across}");
         }
-        // Wheels that are turned push against what keeps them from sliding.
+        // Turned wheels partly push against the lateral forces.
         prop_assert!(grip.forwards(curvature, across, DRIVE) <= 1.1 * DRIVE);
     }
 
@@ -46,7 +46,7 @@ proptest! {
 
 #[test]
 fn where_the_wheels_do_not_turn_far_enough_a_car_crawls() {
-    // 0.6 rad are a curvature of 0.44 for wheels that do not slip.
+    // 0.6 rad is a curvature of 0.44 1/m for wheels without slip.
     let speed = |bend: f64| (balance().across(bend, DRIVE) / bend).sqrt();
     assert!((0.5..2.0).contains(&speed(0.5)) && speed(0.4) > 3.0, "{} {}", speed(0.5), speed(0.4));
 }

@@ -3,7 +3,7 @@ use super::*;
 fn known(cones: &[Cone]) -> Lane {
     let p = LaneParameters::default();
     let mut found = Lane::unknown(p.usual);
-    // Its width is learnt from look to look.
+    // The width is learnt step by step.
     for _ in 0..20 {
         found = lane(cones, &[], Pose::default(), &found, &p).unwrap();
     }
@@ -18,12 +18,12 @@ fn row(side: f64, places: impl Iterator<Item = u32>) -> Vec<Cone> {
 fn one_edge_is_enough() {
     let both = [row(1.6, 0..8), row(-1.6, 0..8)].concat();
     let found = known(&both);
-    // Where a way ends, it may turn to have one more cone beside it.
+    // At its end, a path may turn to have one more cone beside it.
     let beyond = |point: &Point| point.y.abs() > if point.x < 10.5 { 0.02 } else { 0.1 };
     assert!(!found.points.iter().any(beyond), "{found:?}");
-    // As far as it looks ahead, which is 17.5 m.
+    // Up to the look-ahead distance of 17.5 m.
     assert_eq!((found.edges[0].len(), found.edges[1].len()), (6, 6));
-    // The left one ends after six metres; two false cones stand beside the right one.
+    // The left edge ends after six metres; two false cones stand beside the right one.
     let mut cones = [row(1.6, 0..3), row(-1.6, 0..8)].concat();
     cones.extend([Point::new(8.0, -3.0), Point::new(13.0, -3.4)].map(Cone::unknown));
     let found = known(&cones);
@@ -41,8 +41,8 @@ fn a_cone_that_stands_in_the_lane_is_given_room() {
 
 #[test]
 fn a_lane_does_not_go_around_the_end_of_a_row() {
-    // The left row ends; behind it lies the way back. The right one turns off to the right, where two cones stand opposite: without
-    // them, the lane might as well go to the left, between the end of one row and nothing.
+    // The left row ends; the way back lies behind it. The right one turns right, where two cones stand
+    // opposite; without them, the lane might as well go left, between the end of one row and nothing.
     let ends = [(-3.0, 2.1), (0.0, 2.1), (2.5, 2.6), (3.5, 3.4), (3.8, 4.2), (8.4, 0.0), (11.0, -0.4)];
     let turns = [(-3.0, -2.1), (0.0, -2.1), (2.6, -1.6), (4.5, -3.4), (7.0, -4.0), (9.6, -4.2)];
     let cones: Vec<Cone> =

@@ -8,7 +8,7 @@ fn sighting(x: f64, y: f64) -> ConeSighting {
     ConeSighting { position, size: 0.1, confidence: 1.0, range, error: 0.03, colour }
 }
 
-/// A map after some looks from one place.
+/// Updates a map several times from one pose.
 fn seen(map: &mut ConeMap, from: Pose, looks: usize, places: &[(f64, f64)]) {
     let sightings: Vec<ConeSighting> = places.iter().map(|&(x, y)| sighting(x, y)).collect();
     (0..looks).for_each(|_| map.update(from, &sightings));
@@ -18,7 +18,7 @@ fn seen(map: &mut ConeMap, from: Pose, looks: usize, places: &[(f64, f64)]) {
 fn two_things_in_one_scan_are_two_cones() {
     let mut map = ConeMap::new(ConeMapParameters::default()).unwrap();
     seen(&mut map, Pose::default(), 10, &[(6.0, 1.5), (6.6, 1.5), (6.0, -1.5), (6.0, -1.3)]);
-    // The last one is too near the one before it to be another one.
+    // The last one is too close to its neighbour to be another cone.
     assert_eq!(map.cones().count(), 3);
 }
 
@@ -36,7 +36,7 @@ fn what_has_no_colour_among_cones_that_have_one_is_none_of_them() {
     let painted = [blue(5.0, 1.5), blue(6.5, 1.5), blue(8.0, 1.5), blue(9.5, 1.5), sighting(13.0, 1.5)];
     let mixed = [&painted[..], &[pale(6.0, 3.0)]].concat();
     assert_eq!(after(20, &mixed), [5.0, 6.5, 8.0, 9.5, 13.0]);
-    // Where few cones have a colour, it tells nothing.
+    // If only few cones have a colour, its absence means nothing.
     assert_eq!(after(20, &[pale(5.0, 1.5), pale(6.0, 3.0), blue(8.0, 1.5)]), [5.0, 6.0, 8.0]);
 }
 
@@ -50,7 +50,7 @@ fn what_has_no_colour_is_not_driven_into_and_a_known_cone_keeps_its_colour() {
     (0..20).for_each(|_| map.update(Pose::default(), &seen));
     let others: Vec<Point> = map.fresh_others().collect();
     assert!(others.len() == 1 && (others[0] - Point::new(6.0, 3.0)).norm() < 0.01, "{others:?}");
-    // A camera that fails after a while takes none of them away.
+    // A camera that fails later removes none of them.
     let dark: Vec<ConeSighting> = seen.into_iter().map(pale).collect();
     (0..200).for_each(|_| map.update(Pose::default(), &dark));
     assert_eq!(map.cones().count(), 4);
@@ -61,7 +61,7 @@ fn what_is_hidden_is_not_forgotten() {
     for (hidden, left) in [(true, 2), (false, 1)] {
         let mut map = ConeMap::new(ConeMapParameters::default()).unwrap();
         seen(&mut map, Pose::default(), 10, &[(5.0, 1.0), (8.0, 1.9)]);
-        // From there, the second one is behind the first one, or not.
+        // From there, the first one hides the second, or not.
         let before = if hidden { (5.0, 1.0) } else { (5.0, -1.0) };
         seen(&mut map, Pose::default(), 20, &[before]);
         let stays = map.cones().filter(|cone| (cone.position - Point::new(8.0, 1.9)).norm() < 0.1).count();
@@ -73,11 +73,11 @@ fn what_is_hidden_is_not_forgotten() {
 fn what_a_car_hides_is_not_forgotten() {
     let mut map = ConeMap::new(ConeMapParameters::default()).unwrap();
     seen(&mut map, Pose::default(), 10, &[(5.0, 1.9), (8.0, -0.6)]);
-    // The second one is behind the right end of its rear.
+    // The second one is hidden behind the right end of the car.
     let car = ConeSighting { size: 1.4, ..sighting(6.0, 0.0) };
     (0..20).for_each(|_| map.update(Pose::default(), &[sighting(5.0, 1.9), car]));
     assert_eq!(map.cones().count(), 2);
-    // It is gone, and so is the cone.
+    // The car is gone, and so is the cone.
     seen(&mut map, Pose::default(), 20, &[(5.0, 1.9)]);
     assert_eq!(map.cones().count(), 1);
 }
@@ -88,7 +88,7 @@ fn cones_that_were_passed_before_tell_their_edge() {
     seen(&mut map, Pose::default(), 10, &[(6.0, -1.5)]);
     let place = map.cones().next().unwrap().position;
     (0..SURE).for_each(|_| map.vote_side([place].into_iter(), -1));
-    // A way around, with nothing in sight, and back by the other end of it, a little wrong.
+    // A loop with nothing in sight, back past its other end, with a small error.
     for step in 1..=40 {
         let angle = 0.157 * f64::from(step);
         map.update(Pose::new(8.0 * math::sin(angle), 8.0 - 8.0 * math::cos(angle), angle), &[]);
@@ -124,12 +124,13 @@ fn of_a_short_lap_that_was_driven_again_one_is_left() {
         let n = trail.len();
         let legs: Vec<f64> = (0..n).map(|i| (trail[(i + 1) % n] - trail[i]).norm()).collect();
         assert!(legs.iter().all(|leg| (0.5..2.5 * STRIDE).contains(leg)), "{laps}: {legs:?}");
-        // A little shorter than the circle, as chords are.
+        // Slightly shorter than the circle, because of the chords.
         assert!((15.0..18.9).contains(&legs.iter().sum::<f64>()), "{laps}: {legs:?}");
     }
 }
 
-/// The middle of a lane of two straights and two half circles, so many metres from the middle of a straight.
+/// Pose on the centre line of a stadium (two straights, two half circles), at a distance from the middle of a
+/// straight.
 fn on_stadium(along: f64) -> Pose {
     const STRAIGHT: f64 = 120.0;
     const RADIUS: f64 = 20.0;
@@ -166,7 +167,7 @@ fn a_lap_that_begins_later_closes_as_well() {
             (0..3).for_each(|_| map.update(car, &sightings));
             along += 1.0;
         }
-        // Less than what is fresh is no lap.
+        // Less than the fresh distance is no lap.
         map.begin_later(FRESH);
         map.begin_later(-1.0);
         assert!(

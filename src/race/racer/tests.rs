@@ -11,7 +11,7 @@ fn a_car_that_measures_its_speed_too_high_stops_all_the_same() {
         Pose::new(RADIUS * math::sin(turned), RADIUS * (1.0 - math::cos(turned)), turned)
     };
     let parameters = RacerParameters::default();
-    // A loop: no lane is looked for then, and for want of cones lost.
+    // A loop, so that the car neither searches a lane nor gets lost for lack of cones.
     let points: Vec<Point> = (0..200).map(|k| at(TAU * RADIUS * f64::from(k) / 200.0).position()).collect();
     let profile = SpeedProfile::closed(&points, &parameters.limits).unwrap();
     let mut racer = Racer::new(parameters).unwrap();

@@ -47,7 +47,7 @@ fn the_line_bends_less_than_the_middle() {
     let line = minimum_curvature(&corridor, &RacingLineParameters::default()).unwrap();
     let energy = |points: &[Point]| ClosedSpline::through(points).unwrap().bending_energy();
     assert!(energy(&line.points) < 0.5 * energy(&middle), "{} {}", energy(&line.points), energy(&middle));
-    // The sum over circles is near the integral over the spline.
+    // The sum over circles approximates the integral over the spline.
     assert!((line.bending_energy / energy(&line.points) - 1.0).abs() < 0.02);
 }
 

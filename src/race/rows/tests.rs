@@ -35,11 +35,11 @@ fn rows_go_on_where_a_cone_is_missing() {
 
 #[test]
 fn a_leg_costs_more_the_more_it_turns_and_the_longer_it_is() {
-    let end = End { cone: Some(0), place: Point::new(0.0, -1.8), heading: 0.0, turn: 0.0, share: 0.85 };
+    let end = End { cone: Some(0), place: Point::new(0.0, -1.8), heading: 0.0, share: 0.85 };
     let cost = |x: f64, y: f64| end.cost_to(Point::new(x, y), 10.5);
     assert!(cost(4.0, -1.8) < cost(5.0, -1.8) && cost(4.0, -1.8) < cost(3.0, 0.8));
     assert_eq!(cost(10.6, -1.8), None);
-    // Of a row that has just begun, it is not known how it goes on.
+    // The direction of a row that has just begun is unknown.
     assert_eq!(End { share: 1.0, ..end }.cost_to(Point::new(4.0, -1.8), 10.5), None);
     assert_eq!(End { cone: None, ..end }.cost_to(Point::new(4.0, -1.8), 10.5), None);
 }
@@ -94,7 +94,7 @@ fn readings_contradict_each_other_and_the_best_is_the_first() {
 
 #[test]
 fn a_row_that_ends_does_not_go_over_to_the_other_one() {
-    // The left one ends; the right one goes on across its way, in a bend to the left.
+    // The left row ends; the right one continues across its direction, in a bend to the left.
     let right: Vec<(f64, f64)> = (0..8)
         .map(|k| 0.22 * f64::from(k))
         .map(|a| (13.0 * math::sin(a), 11.2 - 13.0 * math::cos(a)))
@@ -108,7 +108,7 @@ fn a_row_that_ends_does_not_go_over_to_the_other_one() {
 
 #[test]
 fn an_inner_row_turns_on_one_cone() {
-    // A hairpin to the right: four cones inside, one of them at its tip, and nine around them.
+    // A hairpin to the right: four inner cones and one at the apex, nine outer ones.
     let inner = [(0.0, -1.8), (3.0, -2.0), (5.2, -4.0), (3.0, -6.0), (0.0, -6.2)];
     let outer = [
         (0.0, 1.8),
@@ -127,7 +127,7 @@ fn an_inner_row_turns_on_one_cone() {
 
 #[test]
 fn a_row_does_not_go_over_to_another_lane() {
-    // A bend to the left by a right angle; beyond its outer row, another lane goes by across the car's way.
+    // A right-angle bend to the left; beyond its outer row, another lane crosses the car's direction.
     let left = [(-3.0, 1.8), (0.0, 1.8), (2.0, 3.4), (2.2, 6.5), (2.2, 9.5)];
     let right = [(-3.0, -1.8), (0.0, -1.8), (3.0, -1.2), (5.4, 1.2), (6.0, 4.2), (6.0, 7.2), (6.0, 10.2)];
     let other = [
@@ -142,7 +142,7 @@ fn a_row_does_not_go_over_to_another_lane() {
     ];
     let cones = at(&[&left[..], &right[..], &other[..]].concat());
     let found = best(&cones, &[Pose::new(-3.0, 0.0, 0.0), Pose::default()], &[], &P);
-    // Where they end, they may err.
+    // At their ends, rows may be wrong.
     assert!(found.edges[0].starts_with(&[0, 1, 2, 3, 4]), "{found:?}");
     assert!(found.edges[1].starts_with(&[5, 6, 7, 8, 9, 10]), "{found:?}");
     assert_eq!(found.sides(cones.len())[..10], [1, 1, 1, 1, 1, -1, -1, -1, -1, -1]);
@@ -158,11 +158,11 @@ fn ways_pass_through_legs() {
 
 #[test]
 fn no_row_leads_back_by_the_way_the_car_came_earlier() {
-    // A lane ahead that ends where another one comes from the right.
+    // A lane that ends where another one comes from the right.
     let before = [(0.0, 1.8), (4.0, 1.8), (8.0, 1.8), (0.0, -1.8), (4.0, -1.8)];
     let aside = [(6.2, -4.0), (6.2, -8.0), (9.8, -1.0), (9.8, -4.0), (9.8, -8.0)];
     let cones = at(&[&before[..], &aside[..]].concat());
-    // The car came up there.
+    // The car came along that one.
     let upwards = |k| Pose::new(8.0, f64::from(k) * 2.0 - 12.0, 0.5 * std::f64::consts::PI);
     let earlier: Vec<Passage> = (0..7).map(|k| upwards(k).into()).collect();
     let last = |earlier: &[Passage]| {
@@ -171,7 +171,7 @@ fn no_row_leads_back_by_the_way_the_car_came_earlier() {
     };
     assert!(last(&[]) < -7.0 && last(&earlier) > -5.0, "{} {}", last(&[]), last(&earlier));
     assert!(leads_back(Pose::new(8.5, -5.0, -1.6).into(), &earlier, 1.8));
-    // Neither the same way again, nor across it, nor beside it.
+    // Allowed: the same direction again, across it, and beside it.
     for pose in [Pose::new(8.5, -5.0, 1.6), Pose::new(8.0, -5.0, 0.0), Pose::new(11.4, -5.0, -1.6)] {
         assert!(!leads_back(pose.into(), &earlier, 1.8), "{pose:?}");
     }

@@ -3,35 +3,36 @@ use crate::geometry::{Point, direction, math};
 use crate::io::LidarScan;
 use crate::kinematics::OUTLIER;
 
-/// A beam that has hit something.
+/// A beam with an echo.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Hit {
     pub(super) beam: usize,
     pub(super) range: f64,
-    /// In the robot's frame.
+    /// Position in the robot frame (m).
     pub(super) point: Point,
 }
 
-/// Hits of neighbouring beams on what seems to be one surface, in order.
+/// Hits of adjacent beams on what appears to be one surface, in order.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Cluster {
     pub(super) hits: Vec<Hit>,
-    /// Whether what the beams beside it hit, if anything, is farther away.
+    /// Whether the adjacent beams on either side hit something farther away, or nothing.
     pub(super) stands_before: [bool; 2],
 }
 
-/// The flattest angle, in radians, at which beams are expected to meet a wall.
+/// Smallest angle at which beams are expected to hit a wall (rad).
 const GRAZING: f64 = 0.1;
 
-/// Parts a scan where neighbouring beams hit different surfaces (G. A. Borges and M.-J. Aldon, "Line extraction in 2D range
-/// images for mobile robotics", 2004). A cluster that reaches over the scan's ends is whole if the scan goes all round.
+/// Splits a scan where adjacent beams hit different surfaces (G. A. Borges and M.-J. Aldon, "Line extraction
+/// in 2D range images for mobile robotics", 2004). In a full-turn scan, a cluster across the scan's ends
+/// stays whole.
 pub(super) fn clusters(scan: &LidarScan, parameters: &ScanFeaturesParameters) -> Vec<Cluster> {
     let beams = scan.ranges.len();
     let all_round = (scan.angle_increment.abs() * beams as f64 - std::f64::consts::TAU).abs() < 1e-6;
     let breaks: Vec<bool> = (0..beams)
         .map(|beam| (beam == 0 && !all_round) || is_break(scan, (beam + beams - 1) % beams, beam, parameters))
         .collect();
-    // Begin at a break, so that no cluster lies over the end.
+    // Begin at a break, so that no cluster crosses the end.
     let Some(first) = breaks.iter().position(|&is_break| is_break) else {
         let hits = (0..beams).filter_map(|beam| hit(scan, beam)).collect();
         return vec![Cluster { hits, stands_before: [false; 2] }];
@@ -60,7 +61,7 @@ fn hit(scan: &LidarScan, beam: usize) -> Option<Hit> {
     range.is_finite().then_some(Hit { beam, range, point })
 }
 
-/// Whether two neighbouring beams hit different surfaces, or one of them nothing.
+/// Whether two adjacent beams hit different surfaces, or only one of them has an echo.
 fn is_break(scan: &LidarScan, one: usize, other: usize, parameters: &ScanFeaturesParameters) -> bool {
     let (a, b) = (scan.ranges[one], scan.ranges[other]);
     match (a.is_finite(), b.is_finite()) {
@@ -73,7 +74,7 @@ fn is_break(scan: &LidarScan, one: usize, other: usize, parameters: &ScanFeature
     (a - b).abs() > a.min(b) * slope.min(1.0) + OUTLIER * parameters.range_error + 0.01
 }
 
-/// Whether a cluster ends before something farther away, on either side.
+/// Whether the neighbours of a cluster are farther away, on either side.
 fn sides(scan: &LidarScan, cluster: &Cluster, all_round: bool) -> [bool; 2] {
     let beams = scan.ranges.len();
     let (first, last) = (cluster.hits[0], cluster.hits[cluster.hits.len() - 1]);

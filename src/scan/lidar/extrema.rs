@@ -1,32 +1,32 @@
 use crate::io::LidarScan;
 
-/// A peak or a dip of a scan.
+/// A local extremum of a scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extremum {
-    /// The beam.
+    /// Index of the beam.
     pub beam: usize,
-    /// Its direction relative to the scanner's mount, in radians.
+    /// Direction relative to the scanner's mount (rad).
     pub angle: f64,
-    /// Its range in metres, averaged with its neighbours.
+    /// Range, averaged over the window (m).
     pub range: f64,
-    /// Which of the two it is.
+    /// Peak or dip.
     pub kind: ExtremumKind,
 }
 
-/// A peak or a dip.
+/// Kind of extremum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ExtremumKind {
-    /// Farther away than what is beside it: the corner of a room.
+    /// Farther away than its surroundings: the corner of a room.
     Peak,
-    /// Nearer: a wall's foot, a corner that stands into the room, an object.
+    /// Nearer: the foot of a perpendicular on a wall, a convex corner, an object.
     Dip,
 }
 
-/// The peaks and dips of a scan, which are how the book reads it (section 4.1), in the order of the beams.
+/// Peaks and dips of a scan, in beam order: the book's way to interpret a scan (section 4.1).
 ///
-/// Ranges are averaged over `window` beams, and between a peak and a dip they have to differ by more than `prominence`
-/// metres, so that noise makes none. A beam without a return counts as the farthest range of the scanner. A scan all round
-/// has no ends; in any other the first and the last beam may be extrema.
+/// Ranges are averaged over `window` beams. A peak and the adjacent dip differ by more than `prominence` (m),
+/// which suppresses noise. A beam without an echo counts as the scanner's maximum range. Unless the scan
+/// covers a full turn, its first and last beam may be extrema.
 ///
 /// ```
 /// use roverlab::scan::{ExtremumKind, local_extrema};
@@ -45,7 +45,7 @@ pub fn local_extrema(scan: &LidarScan, window: usize, prominence: f64) -> Vec<Ex
     }
     let all_round = (scan.angle_increment.abs() * beams as f64 - std::f64::consts::TAU).abs() < 1e-6;
     let smooth = averaged(scan, window, all_round);
-    // Begin at the nearest beam of all, so that the first extremum is known.
+    // Begin at the nearest beam, which is certainly a dip.
     let first = (0..beams).min_by(|&a, &b| smooth[a].total_cmp(&smooth[b])).unwrap_or(0);
     let first = if all_round { first } else { 0 };
     let mut found: Vec<(usize, ExtremumKind)> = Vec::new();
@@ -80,7 +80,7 @@ pub fn local_extrema(scan: &LidarScan, window: usize, prominence: f64) -> Vec<Ex
     found.into_iter().map(extremum).collect()
 }
 
-/// Ranges averaged over a window about each beam.
+/// Ranges averaged over a window around each beam.
 fn averaged(scan: &LidarScan, window: usize, all_round: bool) -> Vec<f64> {
     let beams = scan.ranges.len() as isize;
     let half = (window.clamp(1, scan.ranges.len()) / 2) as isize;

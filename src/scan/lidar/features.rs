@@ -6,54 +6,54 @@ use super::split_merge::{ALIKE, Part, straight_parts};
 use crate::geometry::{FittedLine, Point, angle_difference};
 use crate::io::{LidarScan, Result};
 
-/// A straight wall in a scan, in the robot's frame.
+/// A straight wall in a scan, in the robot frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ScanWall {
-    /// The line through its points, counter-clockwise about the robot.
+    /// Fitted line, directed counter-clockwise about the robot.
     pub line: FittedLine,
-    /// The ends that are seen: feet of the first and the last point.
+    /// Visible ends: projections of the first and the last point onto the line.
     pub ends: [Point; 2],
-    /// The beams that hit it; the end lies below the start where they reach over the scan's end.
+    /// Beams that hit it; the end is below the start if they cross the scan's end.
     pub beams: Range<usize>,
 }
 
-/// Where two walls meet, in the robot's frame.
+/// Corner of two walls, in the robot frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScanCorner {
-    /// The crossing of the walls' lines.
+    /// Intersection of the walls' lines (m).
     pub position: Point,
-    /// The angle between the walls on the robot's side, in radians: below half a turn for the corner of a room, a peak of
-    /// the scan; above it for a corner that stands into the room, a dip.
+    /// Angle between the walls on the robot's side (rad): below pi for a concave corner (a peak of the scan),
+    /// above pi for a convex one (a dip).
     pub angle: f64,
 }
 
-/// Something small that stands before what is behind it, in the robot's frame.
+/// A small object in front of its background, in the robot frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScanObject {
-    /// The middle of the circle that fits what is seen of it.
+    /// Centre of the fitted circle (m).
     pub centre: Point,
-    /// That circle's radius in metres.
+    /// Radius of the fitted circle (m).
     pub radius: f64,
-    /// How many beams hit it.
+    /// Number of beams that hit it.
     pub points: usize,
 }
 
-/// What a scan shows.
+/// Features of a scan.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ScanFeatures {
-    /// Straight walls in the order of the scan.
+    /// Straight walls, in scan order.
     pub walls: Vec<ScanWall>,
-    /// Corners in the order of the scan.
+    /// Corners, in scan order.
     pub corners: Vec<ScanCorner>,
-    /// Objects in the order of the scan.
+    /// Objects, in scan order.
     pub objects: Vec<ScanObject>,
 }
 
-/// Finds walls, corners and objects in a scan (book, chapter 4).
+/// Extracts walls, corners and objects from a scan (book, chapter 4).
 ///
-/// The scan is parted where neighbouring beams hit different surfaces; a small part that stands before its neighbours is an
-/// object; in the others walls are found by splitting and merging, and corners where walls meet. Takes time in
-/// proportion to the beams times the logarithm of their number, as a rule.
+/// The scan is split where adjacent beams hit different surfaces. A small part in front of its neighbours is
+/// an object; in the other parts, walls are found by split-and-merge, and corners where walls meet. Typically
+/// O(n log n) for n beams.
 ///
 /// ```
 /// use roverlab::geometry::Pose;
@@ -69,6 +69,10 @@ pub struct ScanFeatures {
 /// # Ok(())
 /// # }
 /// ```
+///
+/// # Errors
+///
+/// If a parameter is out of range.
 pub fn extract_features(scan: &LidarScan, parameters: &ScanFeaturesParameters) -> Result<ScanFeatures> {
     parameters.validate()?;
     let mut features = ScanFeatures::default();
@@ -83,7 +87,7 @@ pub fn extract_features(scan: &LidarScan, parameters: &ScanFeaturesParameters) -
         let parts = straight_parts(&cluster.hits, parameters);
         features.walls.extend(parts.iter().map(|part| wall(&cluster.hits, part)));
     }
-    // In a far corner neighbouring beams may be so far apart that the scan is parted there.
+    // In a distant corner, adjacent beams may be so far apart that the scan is split there.
     let corners = features.walls.windows(2).filter_map(|two| corner(&two[0], &two[1], parameters));
     features.corners = corners.collect();
     close_round(&mut features, parameters);
@@ -99,7 +103,7 @@ fn wall(hits: &[Hit], part: &Part) -> ScanWall {
     }
 }
 
-/// The corner between two walls that follow each other counter-clockwise, if it lies near where they end.
+/// The corner of two consecutive walls (counter-clockwise), if it lies near their ends.
 fn corner(one: &ScanWall, other: &ScanWall, parameters: &ScanFeaturesParameters) -> Option<ScanCorner> {
     let turn = angle_difference(other.line.angle(), one.line.angle());
     let position = one.line.crossing(&other.line)?;
@@ -108,7 +112,7 @@ fn corner(one: &ScanWall, other: &ScanWall, parameters: &ScanFeaturesParameters)
         .then_some(ScanCorner { position, angle: std::f64::consts::PI - turn })
 }
 
-/// Where nothing parts the scan, its first and last wall may meet or be the same.
+/// Closes an unsplit scan: its first and last wall may meet or be the same.
 fn close_round(features: &mut ScanFeatures, parameters: &ScanFeaturesParameters) {
     let [first, .., last] = features.walls.as_slice() else { return };
     let gap = (first.ends[0] - last.ends[1]).norm();
@@ -134,7 +138,7 @@ fn close_round(features: &mut ScanFeatures, parameters: &ScanFeaturesParameters)
     }
 }
 
-/// The object that a cluster is, if it is one.
+/// The object that a cluster represents, if it is one.
 fn object(cluster: &Cluster, scan: &LidarScan, parameters: &ScanFeaturesParameters) -> Option<ScanObject> {
     if cluster.stands_before != [true; 2] {
         return None;
@@ -142,7 +146,7 @@ fn object(cluster: &Cluster, scan: &LidarScan, parameters: &ScanFeaturesParamete
     let hits = &cluster.hits;
     let (first, last) = (hits[0].point, hits[hits.len() - 1].point);
     let range = hits.iter().map(|hit| hit.range).sum::<f64>() / hits.len() as f64;
-    // Beams beside the outermost ones pass it.
+    // The beams next to the outermost ones pass it.
     let seen = (last - first).norm() + range * scan.angle_increment.abs();
     let deepest = hits.iter().map(|hit| hit.range).fold(0.0, f64::max);
     let nearest = hits.iter().map(|hit| hit.range).fold(f64::INFINITY, f64::min);
@@ -155,7 +159,7 @@ fn object(cluster: &Cluster, scan: &LidarScan, parameters: &ScanFeaturesParamete
         hits.iter().map(|hit| hit.point.coords).sum::<nalgebra::Vector2<f64>>() / hits.len() as f64;
     let eye = scan.mount.position().coords;
     let away = (middle - eye).normalize();
-    // On average the front of a disc lies pi/4 of the radius before its middle.
+    // The visible front of a disc lies pi/4 of the radius before its centre, on average.
     let centre = Point::from(middle + away * (radius * std::f64::consts::FRAC_PI_4));
     Some(ScanObject { centre, radius, points: hits.len() })
 }
@@ -176,12 +180,12 @@ mod tests {
         extract_features(&scan, &ScanFeaturesParameters::default()).unwrap()
     }
 
-    /// Metres from where something is to where the scan shows it, in the world.
+    /// Distance from the true position to the nearest detection, in the world frame (m).
     fn off(pose: Pose, seen: impl Iterator<Item = Point>, real: Point) -> f64 {
         seen.map(|point| (pose.to_world(point) - real).norm()).fold(f64::INFINITY, f64::min)
     }
 
-    /// A square with a corner that stands into it.
+    /// A square with a convex corner.
     fn notched() -> World {
         let mut world = World::empty(3.0, 3.0);
         let corners = [(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (1.8, 3.0), (1.8, 1.8), (0.0, 1.8)];
@@ -189,7 +193,7 @@ mod tests {
         world
     }
 
-    /// How many of the places are shown by a corner within 5 cm, and how many corners show none of them.
+    /// Number of true corners detected within 5 cm, and number of false detections.
     fn told(pose: Pose, found: &ScanFeatures, places: &[(f64, f64)]) -> (usize, usize) {
         let near = |corner: &ScanCorner, place: &(f64, f64)| {
             (pose.to_world(corner.position) - Point::new(place.0, place.1)).norm() < 0.05
@@ -206,7 +210,7 @@ mod tests {
         let (world, mut right, mut wrong) = (notched(), 0, 0);
         let places = [(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (1.8, 3.0), (1.8, 1.8), (0.0, 1.8)];
         for seed in 0..20 {
-            // From here all six walls are seen.
+            // From here, all six walls are visible.
             let pose = Pose::new(2.3, 0.9, 0.3 * seed as f64);
             let found = features(&world, pose, 1.0, seed);
             assert!(found.objects.is_empty(), "{seed}");
@@ -240,7 +244,7 @@ mod tests {
         assert!(right >= 74 && wrong <= 8, "{right} of 80 corners, {wrong} that are none");
     }
 
-    /// The number of walls seen in the notched room, and how far their ends are from true walls at most.
+    /// Number of walls detected in the notched room, and maximum distance of their ends from true walls (m).
     fn walls_and_widest_gap(pose: Pose, seed: u64) -> (usize, f64) {
         let (world, mut widest) = (notched(), 0.0_f64);
         let found = features(&world, pose, 1.0, seed);
@@ -264,8 +268,7 @@ mod tests {
         fn walls_lie_where_walls_are(x in 0.4..2.6f64, y in 0.4..1.4f64, heading in -3.1..3.1f64, seed: u64) {
             let (walls, gap) = walls_and_widest_gap(Pose::new(x, y, heading), seed);
             prop_assert!(walls >= 4);
-            // Six standard deviations of a range: along a wall that is seen aslant, it is one reading that
-            // says where it ends.
+            // Six standard deviations of a range: on a slanted wall, a single reading determines the end.
             prop_assert!(gap < 0.06, "{}", gap);
         }
 

@@ -1,4 +1,5 @@
-//! What a laser scan shows (book, chapter 4): walls, corners, objects, and the scan itself on the display.
+//! Interpretation of lidar scans (book, chapter 4): walls, corners, objects, and the scan itself on the
+//! display.
 
 mod clusters;
 mod extrema;

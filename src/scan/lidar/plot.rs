@@ -5,21 +5,40 @@ use crate::geometry::{normalize_angle, units};
 use crate::io::{Display, DisplayOption, Fill, Font, LidarScan, Result};
 use crate::world::Colour;
 
-/// The height of the plot in pixels, as in the book: what is left below is for text and the soft keys.
+/// Height of the plot (pixels), as in the book; text and soft keys are below.
 const BASE: i32 = 250;
-/// Pixels for a scan all round.
+/// Width of a full-turn scan (pixels).
 const WIDTH: i32 = 360;
-/// Beams that are averaged before peaks and dips are looked for.
+/// Number of beams averaged for the peaks and dips.
 const WINDOW: usize = 5;
-/// Metres that a peak or a dip has to stand out.
+/// Minimum prominence of a peak or dip (m).
 const PROMINENCE: f64 = 0.08;
 
-/// Draws a scan on the display as the book does (programs 4.1 and 4.2): a blue line for every beam, from the back over the
-/// left, the front at column 180 and the right to the back again; a red line straight ahead and green ones to the sides.
-/// Circles mark peaks (magenta) and dips (orange), the corners of the room and what stands before it.
+/// Plots a scan on the display as the book does (programs 4.1 and 4.2): a blue line per beam, from the back
+/// over the left, the front at column 180 and the right to the back again; a red line straight ahead and
+/// green ones to the sides. Circles mark peaks (magenta) and dips (orange): corners of the room and objects.
 ///
-/// The longest line stands for `range` metres; without it, for the longest range of the scan. A beam without a return is a
-/// gray line over the whole height.
+/// The full height stands for `range` (m), or by default for the longest range of the scan. A beam without an
+/// echo is a gray line of full height.
+///
+/// ```
+/// use roverlab::io::{Lcd, LidarScan};
+/// use roverlab::scan::plot_scan;
+/// let step = 1_f64.to_radians();
+/// let ranges = (0..360).map(|beam| if beam < 180 { 0.5 } else { 2.0 }).collect();
+/// let (angle_min, angle_increment, range_max) = (-180.0 * step, step, 4.0);
+/// let scan = LidarScan { angle_min, angle_increment, range_max, ranges, ..LidarScan::default() };
+/// let mut display = Lcd::new();
+/// plot_scan(&mut display, &scan, None)?;
+/// let is_blue = |column, row| display.frame().get_pixel(column, row).0 == [0, 0, 255];
+/// let blue = |column| (0..250).filter(|&row| is_blue(column, row)).count();
+/// assert!(blue(40) > 2 * blue(320), "near objects, on the right, have short lines");
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
+///
+/// # Errors
+///
+/// If the display reports one.
 pub fn plot_scan(display: &mut (impl Display + ?Sized), scan: &LidarScan, range: Option<f64>) -> Result<()> {
     let longest = scan.ranges.iter().copied().filter(|range| range.is_finite()).fold(0.0, f64::max);
     let full = range.unwrap_or(longest).max(1e-3);
@@ -53,11 +72,11 @@ pub fn plot_scan(display: &mut (impl Display + ?Sized), scan: &LidarScan, range:
     display.set_display_option(DisplayOption::AutoRefresh, true)
 }
 
-/// Directions under the columns where they are, and what the full height stands for.
+/// Labels of the directions below their columns, and of the full height.
 fn print_scale(display: &mut (impl Display + ?Sized), full: f64) -> Result<()> {
-    /// The display's row below the plot.
+    /// Display row below the plot.
     const LINE: i32 = 19;
-    /// How many letters of the default font are as wide as the display.
+    /// Number of characters of the default font per display width.
     const LETTERS: i32 = 80;
     display.set_font(Font::default())?;
     let width = (display.display_size()?.0 / LETTERS).max(1);
@@ -71,7 +90,7 @@ fn print_scale(display: &mut (impl Display + ?Sized), full: f64) -> Result<()> {
     display.print(&format!("full {:.0} mm", units::to_mm(full)))
 }
 
-/// The column of a direction in radians counter-clockwise from straight ahead.
+/// Column of a bearing (rad, counter-clockwise from straight ahead).
 fn column_of(bearing: f64) -> i32 {
     let turns = (PI - normalize_angle(bearing)) / TAU;
     ((turns * f64::from(WIDTH)).round() as i32).rem_euclid(WIDTH)
@@ -96,7 +115,7 @@ mod tests {
         let blue = |column: i32, height: i32| {
             lcd.frame().get_pixel(column as u32, (BASE - height) as u32).0 == [0, 0, 255]
         };
-        // 100 pixels for a metre; beside the coloured lines.
+        // 100 pixels per metre; next to the coloured lines.
         assert!(blue(181, 90) && !blue(181, 105), "ahead");
         assert!(blue(92, 190) && !blue(92, 205), "left");
         assert!(blue(268, 45) && !blue(268, 60), "right");

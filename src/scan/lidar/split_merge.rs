@@ -6,21 +6,21 @@ use crate::geometry::{FittedLine, Point, angle_difference};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Part {
     pub(super) first: usize,
-    /// One behind the last.
+    /// One past the last hit.
     pub(super) end: usize,
     pub(super) line: FittedLine,
 }
 
-/// Hits that are averaged before their distances from a line are compared, so that one noisy hit splits no wall.
+/// Number of hits averaged before distances from a line are compared, so that one noisy hit splits no wall.
 const SMOOTHING: usize = 3;
 /// Walls whose directions differ by less than this, in radians, may be one, and make no corner.
 pub(super) const ALIKE: f64 = 0.12;
 
-/// Straight parts of a cluster by splitting and merging (T. Pavlidis and S. L. Horowitz, "Segmentation of plane curves",
-/// 1974; V. Nguyen and others compared it to be the fastest and best for scans, 2007).
+/// Straight parts of a cluster by split-and-merge (T. Pavlidis and S. L. Horowitz, "Segmentation of plane
+/// curves", 1974; the fastest and best for scans in the comparison of V. Nguyen et al., 2007).
 ///
-/// A part is split at its farthest point from the line between its ends as long as that is farther than ranges err;
-/// neighbours that one line fits are merged; where two meet, the points beside the joint go to the line that they fit.
+/// A part is split at its farthest point from the chord while that distance exceeds the tolerance. Neighbours
+/// that one line fits are merged. At a joint, points go to the line that fits them better.
 pub(super) fn straight_parts(hits: &[Hit], parameters: &ScanFeaturesParameters) -> Vec<Part> {
     let mut parts = Vec::new();
     split(hits, 0, hits.len(), parameters, &mut parts);
@@ -29,7 +29,7 @@ pub(super) fn straight_parts(hits: &[Hit], parameters: &ScanFeaturesParameters) 
     parts.retain(|part| {
         let long =
             part.end - part.first >= parameters.least_points && part.line.length >= parameters.least_wall;
-        // Where two walls meet, a few points of both may look like a third one; they lie worse on a line.
+        // Where two walls meet, a few points of both may resemble a third one, but fit a line less well.
         long && part.line.rms <= parameters.straightness()
     });
     parts
@@ -40,7 +40,7 @@ fn fit(hits: &[Hit], first: usize, end: usize) -> Option<FittedLine> {
 }
 
 fn split(hits: &[Hit], first: usize, end: usize, parameters: &ScanFeaturesParameters, parts: &mut Vec<Part>) {
-    // By a stack of its own: a scan may have any number of beams.
+    // With an explicit stack, because a scan may have any number of beams.
     let mut stack = vec![(first, end)];
     while let Some((first, end)) = stack.pop() {
         if end - first < 3 {
@@ -56,7 +56,7 @@ fn split(hits: &[Hit], first: usize, end: usize, parameters: &ScanFeaturesParame
     }
 }
 
-/// The hit between the ends that lies farthest from the line between them, and how far.
+/// The hit farthest from the chord, and its distance.
 fn farthest(hits: &[Hit], first: usize, end: usize) -> Option<(usize, f64)> {
     let mean = |range: std::ops::Range<usize>| -> Point {
         let count = range.len().max(1) as f64;
@@ -75,10 +75,10 @@ fn farthest(hits: &[Hit], first: usize, end: usize) -> Option<(usize, f64)> {
         .max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Puts the joints of neighbours to where both lines together fit best: the farthest point, by noise, is rarely the one in
-/// the corner, and one point of the other wall turns the line through a short one.
+/// Moves each joint to where both lines together fit best. With noise, the farthest point is rarely the
+/// corner, and one point of the other wall rotates a short line.
 fn share_joints(hits: &[Hit], parameters: &ScanFeaturesParameters, parts: &mut [Part]) {
-    /// Hits to either side of a joint that may change over.
+    /// Number of hits on either side of a joint that may change over.
     const REACH: usize = 6;
     let misfit = |line: &FittedLine| line.rms * line.rms * line.points as f64;
     for at in 1..parts.len() {

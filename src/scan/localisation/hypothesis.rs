@@ -7,29 +7,29 @@ use crate::io::LidarScan;
 use crate::scan::filter::RANGE_ERROR;
 use crate::world::space::Scanner;
 
-/// A place where the robot may be.
+/// A possible pose of the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hypothesis {
-    /// The pose in the world.
+    /// Pose in the world.
     pub pose: Pose,
-    /// Its covariance: metres along x and y, radians.
+    /// Covariance of x, y and heading (m, rad).
     pub covariance: Matrix3<f64>,
-    /// How probable it is among all hypotheses.
+    /// Probability among all hypotheses.
     pub probability: f64,
-    /// The logarithm of its weight.
+    /// Logarithm of its weight.
     pub(super) log_weight: f64,
-    /// The share of beams that are as expected.
+    /// Fraction of beams as expected.
     pub explained: f64,
 }
 
-/// Memory for one expected scan.
+/// Buffers for one expected scan.
 #[derive(Debug, Clone)]
 pub(super) struct Bench {
     pub(super) scanner: Scanner,
     pub(super) expected: Vec<f64>,
 }
 
-/// What a scan says about a pose near the one where it was expected.
+/// Evidence of a scan about a pose close to the expected one.
 #[derive(Debug, Clone, Copy)]
 struct Evidence {
     information: Matrix3<f64>,
@@ -38,15 +38,15 @@ struct Evidence {
     explained: f64,
 }
 
-/// The flattest angle of a beam to a wall, as a sine, for which it says where the wall is.
+/// Sine of the smallest angle to a wall at which a beam determines the wall's position.
 const GRAZING: f64 = 0.2;
-/// Beams are not independent of each other: so many count as one.
+/// Number of beams that count as one, because beams are not independent.
 const BEAMS_AS_ONE: f64 = 4.0;
-/// The share of beams that may measure anything.
+/// Fraction of beams that may measure anything.
 const OUTLIERS: f64 = 0.1;
-/// What likelihoods are raised to, since an error of the pose is in all beams.
+/// Exponent of the likelihood; a pose error affects all beams.
 const TEMPER: f64 = 0.1;
-/// Hypotheses nearer than this, in metres and radians, are the same.
+/// Difference below which two hypotheses are the same (m, rad).
 const SAME: (f64, f64) = (0.06, 0.06);
 
 impl Hypothesis {
@@ -61,18 +61,18 @@ impl Hypothesis {
         }
     }
 
-    /// Whether it is about the same place as another one.
+    /// Whether two hypotheses are about the same pose.
     pub(super) fn is_same(&self, other: &Self) -> bool {
         self.pose.distance_to(other.pose.position()) <= SAME.0
             && angle_difference(self.pose.heading, other.pose.heading).abs() <= SAME.1
     }
 
-    /// The standard deviation of the position along the axis where it is larger, in metres.
+    /// Standard deviation of the position, along the worse axis (m).
     pub fn deviation(&self) -> f64 {
         self.covariance[(0, 0)].max(self.covariance[(1, 1)]).max(0.0).sqrt()
     }
 
-    /// Moves on with the robot, by its motion in its own frame.
+    /// Moves with the robot, by its motion in its own frame.
     pub(super) fn predict(&mut self, motion: &Pose, parameters: &LocaliserParameters) {
         let before = self.pose;
         self.pose = before.compose(motion);
@@ -84,14 +84,14 @@ impl Hypothesis {
         let along = parameters.odometry_error.0 * distance + 1e-5;
         let turn = parameters.odometry_error.1 * motion.heading.abs() + 0.02 * distance + 1e-5;
         self.covariance = carried * self.covariance * carried.transpose();
-        // Wheels of other than nominal size err in the same way at each step: what is not seen otherwise errs by all steps' sum.
+        // Wheel size errors are the same at each step, so unobserved errors add up linearly.
         for (axis, error) in [along, along, turn].into_iter().enumerate() {
             let before = self.covariance[(axis, axis)].max(0.0).sqrt();
             self.covariance[(axis, axis)] += error * (2.0 * before + error);
         }
     }
 
-    /// Moves to where a scan fits best, near where odometry says, in so many steps.
+    /// Matches the pose to a scan in a number of Gauss-Newton steps, near the pose by odometry.
     pub(super) fn match_scan(
         &mut self,
         map: &LocalisationMap,
@@ -103,7 +103,7 @@ impl Hypothesis {
         let predicted = self.pose;
         let Some(known) = self.covariance.try_inverse() else { return f64::NEG_INFINITY };
         let mut information = known;
-        // What is far off at first is let go of step by step.
+        // Outliers are excluded step by step.
         let mut gate = 0.25;
         for _ in 0..steps {
             let found = evidence(map, scan, bench, &self.pose, parameters, gate);
@@ -131,7 +131,7 @@ impl Hypothesis {
     }
 }
 
-/// Compares a scan with what is expected at a robot's pose.
+/// Compares a scan with the expected one at a robot pose.
 fn evidence(
     map: &LocalisationMap,
     scan: &LidarScan,
@@ -168,7 +168,7 @@ fn evidence(
         if facing.abs() < GRAZING {
             continue;
         }
-        // The measured point lies so far behind the expected surface.
+        // Distance of the measured point behind the expected surface.
         let behind = off * facing;
         let arm = lidar.position() + ray * range - pose.position();
         let swing = normal.y * arm.x - normal.x * arm.y;
@@ -183,9 +183,9 @@ fn evidence(
     found
 }
 
-/// By how much a range differs from the expected one in metres. Nothing within range is the farthest that is reported, so
-/// that noise at the limit of the range makes no difference. Beside an edge a beam meets one side or the other: any range
-/// from the one to the other is as expected.
+/// Difference of a range from the expected one (m). No echo counts as the maximum range, so that noise at
+/// that limit makes no difference. Beside an edge, a beam may hit either side: any range between the two is
+/// as expected.
 fn off(scan: &LidarScan, expected: &[f64], beam: usize, is_smooth: bool) -> f64 {
     let within = |range: f64| range.min(scan.range_max);
     let range = within(scan.ranges[beam]);
@@ -199,7 +199,7 @@ fn off(scan: &LidarScan, expected: &[f64], beam: usize, is_smooth: bool) -> f64 
     range - range.clamp(low, high)
 }
 
-/// The normal of the expected surface that a beam meets, by the beams beside it; `None` at edges and corners.
+/// Normal of the expected surface at a beam, from its neighbours; `None` at edges and corners.
 fn normal(scan: &LidarScan, expected: &[f64], beam: usize, lidar: &Pose) -> Option<Vector> {
     let beams = expected.len();
     let hit = |beam: usize| {
@@ -220,6 +220,6 @@ fn normal(scan: &LidarScan, expected: &[f64], beam: usize, lidar: &Pose) -> Opti
         return None;
     }
     let normal = Vector::new(-along.y, along.x) / length;
-    // The three lie on one straight surface.
+    // The three points lie on one straight surface.
     ((b - a).dot(&normal).abs() < 0.05 * length + 0.001).then_some(normal)
 }

@@ -7,21 +7,20 @@ use super::{Hypothesis, LocalisationMap, LocaliserParameters};
 use crate::geometry::{Pose, angle_difference, math};
 use crate::io::{Error, LidarScan, Result};
 
-/// What a [`Localiser`] knows.
+/// Result of a [`Localiser`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Localisation {
-    /// Nothing yet, or nothing that explains what is seen, or what is seen says too little: the places that explain it are
-    /// too many to count, or none of them is known to within 30 mm.
+    /// Unknown: no scan yet, no pose explains the scans, too many poses do, or none is known to within 30 mm.
     Lost,
-    /// So many places explain what was seen; the most probable one comes along.
+    /// Several poses explain the scans: their number, and the most probable one.
     Several(usize, Hypothesis),
-    /// One place.
+    /// A single pose.
     One(Hypothesis),
 }
 
 impl Localisation {
-    /// The most probable place.
+    /// The most probable pose.
     pub fn best(&self) -> Option<Hypothesis> {
         match self {
             Localisation::Lost => None,
@@ -29,7 +28,7 @@ impl Localisation {
         }
     }
 
-    /// How many places there are.
+    /// Number of possible poses.
     pub fn count(&self) -> usize {
         match self {
             Localisation::Lost => 0,
@@ -39,14 +38,15 @@ impl Localisation {
     }
 }
 
-/// Finds out where a robot is in a known world without being told where it started (the task of section 4.3).
+/// Global localisation in a known world, without a known start (the task of section 4.3).
 ///
-/// All poses in the world are searched for those that explain the first scan, by branch and bound: none that does is left
-/// out. Each becomes a hypothesis: a pose with a covariance, which moves on with odometry, is matched to each scan and
-/// weighed by how well it explains it (P. Jensfelt and S. Kristensen, "Active global localization for a mobile robot using
-/// multiple hypothesis tracking", 2001). Poses that the world cannot tell apart stay equally probable, and are told as
-/// such. Where too many poses explain a scan, as along a bare wall, the robot is lost until it sees more. When none
-/// explains what is seen, as after the robot was carried away, the search begins anew.
+/// A branch-and-bound search finds all poses in the world that explain the first scan. Each becomes a
+/// hypothesis: a pose with a covariance, which moves with odometry, is matched to each scan and weighted by
+/// how well it explains it (P. Jensfelt and S. Kristensen, "Active global localization for a mobile robot
+/// using multiple hypothesis tracking", 2001). Poses that the world does not distinguish remain equally
+/// probable and are reported as several. If too many poses explain a scan, as along a bare wall, the robot is
+/// lost until it sees more. If none explains the scans, for example because the robot was carried away, the
+/// search starts again.
 ///
 /// ```
 /// use roverlab::geometry::{Point, Pose};
@@ -82,42 +82,46 @@ pub struct Localiser {
     hypotheses: Vec<Hypothesis>,
     bench: Option<Bench>,
     odometry: Option<Pose>,
-    /// Where odometry was when weights were changed last.
+    /// Odometry at the last update of the weights.
     viewed: Option<Pose>,
-    /// Where odometry was when the last search found too little or too much.
+    /// Odometry at the last search without a usable result.
     searched: Option<Pose>,
-    /// Scans in a row that nothing explains.
+    /// Number of consecutive unexplained scans.
     unexplained: u32,
-    /// How often the search has begun.
+    /// Number of searches.
     searches: u32,
 }
 
-/// Steps by which candidates of a search are matched.
+/// Number of matching steps for candidates of a search.
 const SEARCH_STEPS: usize = 10;
-/// Steps by which hypotheses on the way are matched.
+/// Number of matching steps while tracking.
 const TRACK_STEPS: usize = 3;
-/// How far a candidate of a search may be off, in metres and radians.
+/// Standard deviation of a candidate's pose (m, rad).
 const CANDIDATE_SPREAD: f64 = 0.15;
-/// The shares of a scan's beams that a search asks for, until some pose explains so many.
+/// Fractions of explained beams that a search requires, tried in this order.
 const SHARES: [f64; 4] = [0.92, 0.8, 0.7, EXPLAINED];
-/// A pose explains a scan as well as the best one does if it explains so little less of it, as a share of all beams: with more, the
-/// next scans leave nothing of its probability.
+/// Fraction of beams by which a pose may explain less than the best one and still count; beyond that, the
+/// next scans leave it no probability.
 const AS_WELL: f64 = 0.06;
-/// Metres and radians that a robot moves before what said too little is looked at again.
+/// Motion after which a failed search is repeated (m, rad).
 const LOOK_AGAIN: (f64, f64) = (0.5, 0.5);
-/// A hypothesis counts if it is this probable in terms of the best one.
+/// Minimum probability of a hypothesis, relative to the best one.
 const COUNTS: f64 = 0.02;
-/// The share of beams that have to be as expected.
+/// Minimum fraction of beams as expected.
 const EXPLAINED: f64 = 0.6;
-/// A place is known with a standard deviation of so many metres, and radians.
+/// Maximum standard deviation of a known pose (m).
 const KNOWN: f64 = 0.03;
-/// Scans in a row without an explanation after which the search begins anew.
+/// Number of consecutive unexplained scans after which the search starts again.
 const PATIENCE: u32 = 8;
-/// The most hypotheses that are kept: what more poses explain says too little.
+/// Maximum number of hypotheses; with more, the scan is too ambiguous.
 const MOST: usize = 64;
 
 impl Localiser {
-    /// A localiser that knows nothing but the map.
+    /// A localiser that knows only the map.
+    ///
+    /// # Errors
+    ///
+    /// If a parameter is out of range.
     pub fn new(map: LocalisationMap, parameters: LocaliserParameters) -> Result<Self> {
         parameters.validate()?;
         Ok(Self {
@@ -133,25 +137,25 @@ impl Localiser {
         })
     }
 
-    /// Begins with a place that is known to within a few centimetres and degrees, instead of looking everywhere.
+    /// Starts at a pose known to within a few centimetres and degrees, instead of searching the whole world.
     pub fn start_at(&mut self, pose: Pose) {
         self.hypotheses = vec![Hypothesis::new(pose, KNOWN)];
         (self.odometry, self.viewed, self.searched, self.unexplained) = (None, None, None, 0);
     }
 
-    /// Where the robot most probably is by now, by odometry since the last scan.
+    /// Most probable pose now, by odometry since the last scan.
     pub fn place(&self, odometry: Pose) -> Option<Pose> {
         let best = self.hypotheses.first()?;
         let last = self.odometry.unwrap_or(odometry);
         Some(best.pose.compose(&last.inverse().compose(&odometry)))
     }
 
-    /// All places where the robot may be, the most probable one first.
+    /// All hypotheses, the most probable one first.
     pub fn hypotheses(&self) -> &[Hypothesis] {
         &self.hypotheses
     }
 
-    /// What is known.
+    /// Result of the localisation.
     pub fn localisation(&self) -> Localisation {
         let Some(best) = self.hypotheses.first().filter(|best| best.explained >= EXPLAINED) else {
             return Localisation::Lost;
@@ -172,14 +176,16 @@ impl Localiser {
         &self.map
     }
 
-    /// How often the robot was looked for everywhere.
+    /// Number of searches of the whole world.
     pub fn searches(&self) -> u32 {
         self.searches
     }
 
-    /// Takes a scan into account that was taken where odometry says.
+    /// Takes a scan made at a pose by odometry.
     ///
-    /// Fails for a pose that is not finite and for a scan without beams.
+    /// # Errors
+    ///
+    /// If the pose is not finite or the scan has fewer than eight beams.
     pub fn update(&mut self, odometry: Pose, scan: &LidarScan) -> Result<()> {
         if !odometry.is_finite() {
             return Err(Error::invalid_input("observed pose", format!("{odometry:?}"), "finite numbers"));
@@ -224,7 +230,7 @@ impl Localiser {
         self.searched.is_none_or(|last| is_beyond(&last, odometry, LOOK_AGAIN))
     }
 
-    /// Makes hypotheses of all poses that explain a scan as well as the best one does.
+    /// Creates hypotheses for all poses that explain a scan about as well as the best one.
     fn search(&mut self, scan: &LidarScan, bench: &mut Bench) {
         self.searches += 1;
         for share in SHARES {
@@ -241,11 +247,11 @@ impl Localiser {
         if self.hypotheses.len() > MOST {
             self.hypotheses.clear();
         }
-        // One scan tells what is possible; the next ones tell how probable that is.
+        // One scan shows what is possible; the following ones how probable it is.
         self.hypotheses.iter_mut().for_each(|hypothesis| hypothesis.log_weight = 0.0);
     }
 
-    /// Makes hypotheses of those poses that explain a share of a scan once they are matched to it.
+    /// Creates hypotheses for those poses that explain a fraction of a scan after matching.
     fn try_poses(&mut self, poses: Vec<Pose>, share: f64, scan: &LidarScan, bench: &mut Bench) {
         for pose in poses {
             let mut hypothesis = Hypothesis::new(pose, CANDIDATE_SPREAD);
@@ -257,7 +263,7 @@ impl Localiser {
         }
     }
 
-    /// Whether nothing is where the robot would be.
+    /// Whether the robot's place is free.
     fn is_possible(&self, hypothesis: &Hypothesis) -> bool {
         self.map.is_free(hypothesis.pose.position(), 0.5 * self.parameters.radius)
     }
@@ -278,7 +284,7 @@ impl Localiser {
         }
     }
 
-    /// Sorts, unites and weighs the hypotheses, and drops the improbable ones.
+    /// Sorts, merges and weights the hypotheses, and drops improbable ones.
     fn tidy(&mut self) {
         self.unite();
         let best = self.hypotheses.first().map_or(0.0, |best| best.log_weight);
@@ -291,7 +297,7 @@ impl Localiser {
         }
     }
 
-    /// Sorts the hypotheses, the best one first, and keeps the best alone of those that are the same.
+    /// Sorts the hypotheses, best first, and keeps only the best of equal ones.
     fn unite(&mut self) {
         self.hypotheses.retain(|hypothesis| hypothesis.log_weight.is_finite());
         self.hypotheses.sort_by(|a, b| b.log_weight.total_cmp(&a.log_weight));
@@ -304,7 +310,7 @@ impl Localiser {
         self.hypotheses = kept;
     }
 
-    /// Begins anew if nothing explains what is seen.
+    /// Starts again if no pose explains the scans.
     fn give_up(&mut self) {
         let Some(best) = self.hypotheses.first() else { return };
         self.unexplained = if best.explained >= EXPLAINED { 0 } else { self.unexplained + 1 };
@@ -314,13 +320,13 @@ impl Localiser {
         }
     }
 
-    /// The covariance of the most probable place.
+    /// Covariance of the most probable pose.
     pub fn covariance(&self) -> Option<Matrix3<f64>> {
         self.hypotheses.first().map(|best| best.covariance)
     }
 }
 
-/// Whether a pose is farther from another one than so many metres or radians.
+/// Whether a pose is farther from another one than a distance or an angle.
 fn is_beyond(last: &Pose, pose: &Pose, (far, turned): (f64, f64)) -> bool {
     last.distance_to(pose.position()) > far || angle_difference(last.heading, pose.heading).abs() > turned
 }

@@ -1,4 +1,4 @@
-//! Where a robot is in a world that it knows (book, section 4.3): by matching scans while it drives.
+//! Localisation in a known world (book, section 4.3): scan matching while driving.
 
 mod hypothesis;
 mod localiser;

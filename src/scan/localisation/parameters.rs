@@ -1,23 +1,23 @@
 use crate::ParameterError;
 use crate::parameter::{require, require_not_negative, require_positive};
 
-/// What a [`Localiser`](super::Localiser) goes by.
+/// Parameters of [`Localiser`](super::Localiser).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LocaliserParameters {
-    /// The standard deviation of a range reading, in metres.
+    /// Standard deviation of a range (m).
     pub range_error: f64,
-    /// The radius of the robot in metres: it cannot be where something else is.
+    /// Radius of the robot (m); it cannot overlap other objects.
     pub radius: f64,
-    /// The share of probability below which a hypothesis is given up while others are better.
+    /// Probability, relative to the best one, below which a hypothesis is dropped.
     pub least_probability: f64,
-    /// Metres and radians that the robot has to move before a scan counts as another view.
+    /// Motion after which a scan counts as a new view (m, rad).
     pub view: (f64, f64),
-    /// The relative error of distances and turns by odometry.
+    /// Relative errors of distances and turns by odometry.
     pub odometry_error: (f64, f64),
 }
 
 impl Default for LocaliserParameters {
-    /// For an S4 with the noise of the real one.
+    /// Values for an S4 with realistic noise.
     fn default() -> Self {
         Self {
             range_error: 0.01,
@@ -30,7 +30,11 @@ impl Default for LocaliserParameters {
 }
 
 impl LocaliserParameters {
-    /// Fails with the name of the parameter that is out of range.
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    ///
+    /// If one is out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         require_positive("radius", self.radius)?;
         require_positive("view (distance)", self.view.0)?;

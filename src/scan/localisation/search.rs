@@ -8,54 +8,54 @@ use crate::io::LidarScan;
 use crate::kinematics::OUTLIER;
 use crate::scan::filter::RANGE_ERROR;
 
-/// A search of all poses for those from which a scan's points lie on surfaces.
+/// Search for all poses at which a scan's points lie on surfaces.
 ///
-/// A block of poses is a square of positions and an interval of headings. No pose of it moves a point farther from where
-/// the block's middle puts it than the block is large; where the nearest surface is farther, the whole block misses that
-/// point. A block that misses too many is left out, others are divided into eight: branch and bound (E. Olson,
-/// *Real-Time Correlative Scan Matching*, 2009; W. Hess et al., *Real-Time Loop Closure in 2D LIDAR SLAM*, 2016), with
-/// distances to surfaces in place of a pyramid of maps.
+/// A block of poses is a square of positions and an interval of headings. Within a block, a point moves from
+/// its position at the block's centre by at most the block's size; if the nearest surface is farther, the
+/// whole block misses that point. Blocks that miss too many points are discarded, others are divided into
+/// eight: branch and bound (E. Olson, *Real-Time Correlative Scan Matching*, 2009; W. Hess et al., *Real-Time
+/// Loop Closure in 2D LIDAR SLAM*, 2016), with a distance map instead of a pyramid of maps.
 struct Search<'a> {
     surfaces: &'a Surfaces,
-    /// In the robot's frame.
+    /// Points in the robot frame (m).
     points: Vec<Point>,
     levels: Vec<Level>,
-    /// How many points may be on no surface.
+    /// Maximum number of points that may miss all surfaces.
     misses: usize,
     found: Vec<Pose>,
 }
 
 /// Blocks of one size.
 struct Level {
-    /// Half the edge in metres, half the interval in radians.
+    /// Half the edge (m), and half the heading interval (rad).
     half: (f64, f64),
-    /// How far each point may be from a surface, in steps.
+    /// Maximum distance of each point from a surface (steps).
     reach: Vec<u8>,
 }
 
-/// A block's middle.
+/// Centre of a block.
 #[derive(Clone, Copy)]
 struct Middle {
     place: Point,
     heading: f64,
 }
 
-/// The edge of the smallest blocks in metres.
+/// Edge of the smallest blocks (m).
 const LEAF: f64 = 0.05;
-/// Metres from which on turning counts as much as it does: in a small round room made of straight pieces, a scan turned by one
-/// piece fits nearly as well, and is another pose.
+/// Minimum lever arm for headings (m). In a small round room built of straight pieces, a scan rotated by one
+/// piece fits nearly as well, but is another pose.
 const NEAREST: f64 = 3.0;
-/// How often the largest blocks are divided.
+/// Number of divisions of the largest blocks.
 const LEVELS: usize = 6;
-/// Of each block that is divided so many times more, one pose is kept.
+/// Level at which one pose per block is kept.
 const KEPT: usize = 2;
-/// The number of points of a scan that are compared.
+/// Number of scan points that are compared.
 const COMPARED: usize = 72;
-/// The most blocks that are told apart.
+/// Maximum number of blocks that may be found.
 const MOST_BLOCKS: usize = 2000;
 
-/// A pose for each small block of poses in which a share of the scan's points may lie on surfaces; `None` if there are more
-/// such blocks than can be looked at: then the scan says too little.
+/// One pose for each small block in which a fraction `share` of the scan's points may lie on surfaces; `None`
+/// if there are too many such blocks, because the scan is too ambiguous.
 pub(super) fn search(
     map: &LocalisationMap,
     scan: &LidarScan,
@@ -73,13 +73,13 @@ pub(super) fn search(
     search.blocks(&map.bounds()).then_some(search.found)
 }
 
-/// Points all round, in an order in which neighbours are far from each other, so that a miss shows early.
+/// Points from all directions, ordered such that neighbours are far apart and a miss shows early.
 fn compared(scan: &LidarScan) -> Vec<Point> {
     let all: Vec<Point> = scan.points().collect();
     let every = all.len().div_ceil(COMPARED).max(1);
     let chosen: Vec<Point> = all.into_iter().step_by(every).collect();
     let count = chosen.len();
-    // The golden ratio's multiples fill a circle evenly.
+    // Multiples of the golden ratio fill a circle evenly.
     let mut order: Vec<usize> = (0..count).collect();
     order.sort_by(|&a, &b| {
         let turn = |i: usize| (i as f64 * 0.618_033_988_749_895).fract();
@@ -88,12 +88,12 @@ fn compared(scan: &LidarScan) -> Vec<Point> {
     order.into_iter().map(|i| chosen[i]).collect()
 }
 
-/// Blocks in which turning moves the farthest point as much as shifting does, the smallest first.
+/// Block sizes in which rotation moves the farthest point as much as translation, smallest first.
 fn levels(points: &[Point], noise: f64) -> Vec<Level> {
     let arms: Vec<f64> = points.iter().map(|point| point.coords.norm()).collect();
     let far = arms.iter().copied().fold(NEAREST, f64::max);
     let largest = 0.5 * LEAF * f64::from(1_u32 << LEVELS);
-    // The largest intervals fill the circle.
+    // The largest intervals cover the full circle.
     let largest_turn = PI / (PI * far / (SQRT_2 * largest)).ceil().max(1.0);
     (0..=LEVELS)
         .map(|level| {
@@ -106,7 +106,7 @@ fn levels(points: &[Point], noise: f64) -> Vec<Level> {
 }
 
 impl Search<'_> {
-    /// Looks at all blocks over a box; false if there is too much to be found.
+    /// Searches all blocks of a box; false if too much is found.
     fn blocks(&mut self, bounds: &Aabb) -> bool {
         let (half, half_turn) = self.levels[LEVELS].half;
         let size = bounds.size();
@@ -124,7 +124,7 @@ impl Search<'_> {
         })
     }
 
-    /// Looks into a block that may hold poses; false if there is too much to be found.
+    /// Divides a block that may contain poses; false if too much is found.
     fn divide(&mut self, level: usize, block: &Middle) -> bool {
         if level == KEPT {
             let best = self.best(level, block);
@@ -134,7 +134,7 @@ impl Search<'_> {
         self.parts(level, block).into_iter().flatten().all(|part| self.divide(level - 1, &part))
     }
 
-    /// The pose in a block that fits best, and how far its points are from surfaces.
+    /// Best pose in a block, and the sum of its points' distances from surfaces.
     fn best(&self, level: usize, block: &Middle) -> Option<(u32, Pose)> {
         if level == 0 {
             let Middle { place, heading } = *block;
@@ -145,7 +145,7 @@ impl Search<'_> {
         parts.filter_map(|part| self.best(level - 1, &part)).min_by_key(|(distance, _)| *distance)
     }
 
-    /// Those of the eight parts of a block that may hold poses.
+    /// The eight parts of a block, those that may contain poses.
     fn parts(&self, level: usize, block: &Middle) -> [Option<Middle>; 8] {
         let (half, half_turn) = self.levels[level - 1].half;
         let headings = [block.heading - half_turn, block.heading + half_turn];
@@ -159,7 +159,7 @@ impl Search<'_> {
         })
     }
 
-    /// Whether no more points than may be are certain to miss all surfaces.
+    /// Whether at most `misses` points certainly miss all surfaces.
     fn may_fit(&self, level: usize, block: &Middle, sin: f64, cos: f64) -> bool {
         let mut left = self.misses;
         self.points.iter().zip(&self.levels[level].reach).all(|(point, &reach)| {
@@ -173,7 +173,7 @@ impl Search<'_> {
         })
     }
 
-    /// The sum of the points' distances to surfaces, each no more than what counts as a miss, in steps.
+    /// Sum of the points' distances to surfaces, each clipped at a miss (steps).
     fn distance(&self, block: &Middle) -> u32 {
         let (sin, cos) = math::sin_cos(block.heading);
         let points = self.points.iter().zip(&self.levels[0].reach);

@@ -3,23 +3,23 @@ use std::f64::consts::FRAC_1_SQRT_2;
 use crate::geometry::Point;
 use crate::world::{Clearance, Raster};
 
-/// A lower bound of the distance from every place to the nearest surface: one raster that serves as all levels of a
-/// pyramid, since what lies within a metre of a place is read off the distance there.
+/// Lower bound of the distance to the nearest surface from any place. One raster replaces all levels of a
+/// pyramid: whether a surface lies within a given distance is read directly.
 #[derive(Debug, Clone)]
 pub(super) struct Surfaces {
     corner: Point,
     per_metre: f64,
     columns: usize,
     rows: usize,
-    /// In steps of [`STEP`], rounded down; the greatest value stands for all distances beyond.
+    /// Distances in steps of [`STEP`], rounded down; the maximum value includes all larger ones.
     steps: Vec<u8>,
 }
 
-/// Metres in a step.
+/// Length of a step (m).
 pub(super) const STEP: f64 = 0.025;
 
 impl Surfaces {
-    /// Measures from the cells that a surface passes through. `clearance` is known up to the cells' own size at least.
+    /// Measures from the cells that contain a surface. `clearance` must cover at least half a cell diagonal.
     pub(super) fn new(clearance: &Clearance) -> Self {
         let raster = clearance.raster();
         let (columns, rows) = (raster.columns(), raster.rows());
@@ -28,7 +28,7 @@ impl Surfaces {
             .map(|cell| if clearance.at(cell) <= slack { 0.0 } else { f32::INFINITY })
             .collect();
         square_distances(&mut squares, columns);
-        // A surface lies that far from the middle of its cell, and a place that far from the middle of its own.
+        // Allow for the offsets of surface and place from the centres of their cells.
         let steps = squares.iter().map(|square| {
             let metres = f64::from(square.sqrt()) * raster.resolution() - 2.0 * slack;
             (metres.max(0.0) / STEP).floor().min(f64::from(u8::MAX)) as u8
@@ -37,7 +37,8 @@ impl Surfaces {
         Self { corner: corner(raster), per_metre: 1.0 / raster.resolution(), columns, rows, steps }
     }
 
-    /// Steps to the nearest surface, or fewer. What lies outside is no nearer than the nearest place inside.
+    /// Lower bound of the distance to the nearest surface (steps). Places outside count as the nearest one
+    /// inside.
     #[inline]
     pub(super) fn at(&self, x: f64, y: f64) -> u8 {
         let index = |along: f64, count: usize| ((along * self.per_metre) as usize).min(count - 1);
@@ -46,15 +47,16 @@ impl Surfaces {
     }
 }
 
-/// The corner of a raster with the least coordinates.
+/// Lower left corner of a raster.
 fn corner(raster: &Raster) -> Point {
     let half = 0.5 * raster.resolution();
     let first = raster.centre(0);
     Point::new(first.x - half, first.y - half)
 }
 
-/// Replaces 0 at seeds and infinity elsewhere by the square of the distance to the nearest seed, in cells, along columns
-/// and then along rows (P. Felzenszwalb, D. Huttenlocher, *Distance Transforms of Sampled Functions*, 2012).
+/// Replaces 0 at seeds and infinity elsewhere by the squared distance to the nearest seed (cells), along
+/// columns and then along rows (P. Felzenszwalb, D. Huttenlocher, *Distance Transforms of Sampled Functions*,
+/// 2012).
 fn square_distances(squares: &mut [f32], columns: usize) {
     let rows = squares.len() / columns;
     let mut since = vec![f32::INFINITY; columns];
@@ -77,8 +79,8 @@ fn square_distances(squares: &mut [f32], columns: usize) {
     }
 }
 
-/// For each place of a row the least sum of a column's value and the square of the distance to the column. `envelope`
-/// holds the parabolas that are lowest somewhere, each with the place from where on it is.
+/// For each place of a row, the minimum over the columns of a column's value plus the squared distance to it.
+/// `envelope` holds the parabolas of the lower envelope, each with its start.
 fn lower_envelope(values: &[f32], envelope: &mut Vec<(usize, f32)>, out: &mut [f32]) {
     envelope.clear();
     for (column, &value) in values.iter().enumerate().filter(|(_, value)| value.is_finite()) {
@@ -112,7 +114,7 @@ mod tests {
     use crate::random::Stream;
     use crate::world::{Wall, World};
 
-    /// Never more than the true distance, and less by no more than the cells' size accounts for.
+    /// Bounds never exceed the true distance, and are below it by no more than the cell size explains.
     #[test]
     fn distances_bound_the_true_ones_from_below() {
         let mut world = World::empty(4.0, 3.0);

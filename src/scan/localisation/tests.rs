@@ -9,7 +9,7 @@ use crate::io::{Lidar, LidarScan, Manoeuvres, Odometry};
 use crate::random::Stream;
 use crate::world::{RobotSpec, Scene, Wall, World};
 
-/// A room that looks the same from nowhere else.
+/// A room without symmetries.
 fn room() -> World {
     let mut world = World::walled(2.4, 1.8);
     world.walls.push(Wall::new(Point::new(0.0, 1.1), Point::new(0.7, 1.1)));
@@ -25,7 +25,7 @@ fn simulation(world: &World, start: Pose, noise: f64, seed: u64) -> Simulation {
     Simulation::new(&scene, SimOptions::with_noise(noise, seed)).unwrap()
 }
 
-/// Turns on the spot and takes a scan now and then.
+/// Turns on the spot and scans after each turn.
 fn look_round(simulation: &Simulation, localiser: &mut Localiser, scans: u32) {
     let mut robot = simulation.robot(0).unwrap();
     for _ in 0..scans {
@@ -42,7 +42,7 @@ fn assert_found(localiser: &Localiser, truth: Pose) {
     let (off, turn) =
         (best.pose.distance_to(truth.position()), angle_difference(best.pose.heading, truth.heading));
     assert!(off < 0.02 && turn.abs() < 0.02, "{off} m, {turn} rad at {truth:?}");
-    // The error is what the covariance says, give or take.
+    // The error agrees with the covariance.
     let deviation = (best.covariance[(0, 0)] + best.covariance[(1, 1)]).sqrt();
     assert!(off < 5.0 * deviation + 0.002, "{off} m with {deviation} m");
 }
@@ -69,7 +69,7 @@ fn a_place_is_found_wherever_it_is() {
     }
 }
 
-/// A round room of straight pieces with a door: turned by one piece it looks nearly the same.
+/// A round room of straight pieces with a door: rotated by one piece, it looks nearly the same.
 #[test]
 fn a_round_room_is_not_taken_for_itself_turned() {
     const PIECES: usize = 40;
@@ -84,7 +84,7 @@ fn a_round_room_is_not_taken_for_itself_turned() {
         look_round(&simulation, &mut localiser, 8);
         assert_eq!(localiser.localisation().count(), 1, "{start:?}");
         let (found, truth) = (localiser.hypotheses()[0].pose, simulation.truth().pose(0).unwrap());
-        // A third of a piece: the door alone tells the heading.
+        // A third of a piece: only the door determines the heading.
         let turn = angle_difference(found.heading, truth.heading).abs();
         assert!(turn < TAU / 120.0 && found.distance_to(truth.position()) < 0.03, "{found:?} at {truth:?}");
     }
@@ -103,7 +103,7 @@ fn symmetric_worlds_leave_as_many_places_as_look_alike() {
         };
         assert_eq!(found, count);
         let truth = simulation.truth().pose(0).unwrap();
-        // Each place is the true one turned about the middle of the room.
+        // Each pose is the true one, rotated about the centre of the room.
         let middle = Point::new(0.5 * size.x, 0.5 * size.y);
         for place in localiser.hypotheses() {
             let turn = angle_difference(place.pose.heading, truth.heading);
@@ -115,7 +115,7 @@ fn symmetric_worlds_leave_as_many_places_as_look_alike() {
     }
 }
 
-/// What a lidar that reaches 10 m measures at a place, with noise of 10 mm.
+/// Scan of a lidar with a range of 10 m and noise of 10 mm.
 fn scan_at(map: &LocalisationMap, pose: &Pose, seed: u64) -> LidarScan {
     let mut scan = LidarScan {
         angle_min: -PI,
@@ -133,7 +133,7 @@ fn scan_at(map: &LocalisationMap, pose: &Pose, seed: u64) -> LidarScan {
     scan
 }
 
-/// In halls in which a corner is seen from where the robot is, all four are told, and each place is the true one turned.
+/// In halls with a visible corner, all four symmetric poses are reported, each the true one rotated.
 #[test]
 fn all_places_of_an_empty_hall_that_look_alike_are_told() {
     for (seed, size, place) in
@@ -158,7 +158,7 @@ fn all_places_of_an_empty_hall_that_look_alike_are_told() {
     }
 }
 
-/// Along a wall, as far as the robot sees it, there is nothing to tell one place from the next, and in the open even less.
+/// Along a long wall, and even more in the open, positions cannot be told apart.
 #[test]
 fn where_little_is_seen_the_robot_is_lost() {
     let world = World::walled(60.0, 60.0);
@@ -167,7 +167,7 @@ fn where_little_is_seen_the_robot_is_lost() {
         let scan = scan_at(localiser.map(), &place, 1);
         localiser.update(Pose::default(), &scan).unwrap();
         assert_eq!(localiser.localisation(), Localisation::Lost, "{place:?}");
-        // Standing still, it does not look again; elsewhere it does.
+        // Standing still, it does not search again; elsewhere it does.
         localiser.update(Pose::new(0.0, 0.01, 0.0), &scan).unwrap();
         assert_eq!(localiser.searches(), 1);
         let corner = scan_at(localiser.map(), &Pose::new(4.0, 3.0, 0.0), 2);
@@ -179,7 +179,7 @@ fn where_little_is_seen_the_robot_is_lost() {
 proptest! {
     #![proptest_config(crate::testing::cases(24))]
 
-    /// Whatever the world, the pose from which a scan was taken is among those that are found, unless there are too many.
+    /// In any world, the true pose is among those found, unless there are too many.
     #[test]
     fn the_search_leaves_no_pose_out(
         ends in proptest::collection::vec(((0.0..9.0), (0.0..7.0), (-2.0..2.0), (-2.0..2.0)), 0..6),

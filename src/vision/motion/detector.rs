@@ -3,66 +3,66 @@ use crate::vision::{GrayView, ImageError, mean_difference, view::require_size};
 
 use super::range::Ranges;
 
-/// What makes motion for a [`MotionDetector`].
+/// Parameters of [`MotionDetector`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotionParameters {
-    /// Pixels on each side of the blocks that are compared.
+    /// Size of the compared blocks (pixels a side).
     pub block: usize,
-    /// Standard deviations of the noise by which blocks may change without motion.
+    /// Change that counts as motion (standard deviations of the noise).
     pub threshold: f64,
-    /// The least noise, as the standard deviation of a white pixel's change in levels of 255: what an image without any
-    /// still owes to its whole levels and pixels.
+    /// Minimum noise: standard deviation of the change of a white pixel (gray levels). Rounding to levels and
+    /// pixels causes that much even in a still image.
     pub least_noise: f64,
 }
 
 impl Default for MotionParameters {
-    /// For a robot that stands.
+    /// Values for a robot that stands.
     fn default() -> Self {
         Self { block: 4, threshold: 6.0, least_noise: 0.8 }
     }
 }
 
-/// How much moved from one image to the next.
+/// Motion between two images.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motion {
-    /// The largest change of blocks in each third of the image: left, middle, right. In standard deviations of the
-    /// noise.
+    /// Largest block change in the left, middle and right third of the image (standard deviations of the
+    /// noise).
     pub sectors: [f64; 3],
-    /// The mean of the absolute difference over all pixels (Programs 11.12 and 11.13).
+    /// Mean absolute difference of all pixels (Programs 11.12 and 11.13).
     pub mean_difference: f64,
-    /// The standard deviation that noise gives to the change of a white pixel, as measured, in levels.
+    /// Measured standard deviation of the change of a white pixel (gray levels).
     pub noise: f64,
-    /// The sector that changed most, if any changed by more than the threshold.
+    /// The third that changed most, if the change exceeds the threshold.
     pub strongest: Option<usize>,
 }
 
 impl Motion {
-    /// The largest change of all.
+    /// Largest change of the three sectors (standard deviations of the noise).
     pub fn largest(&self) -> f64 {
         self.sectors.into_iter().fold(0.0, f64::max)
     }
 
-    /// Whether something moved.
+    /// Whether a change exceeds the threshold.
     pub fn is_moving(&self) -> bool {
         self.strongest.is_some()
     }
 }
 
-/// Compares two images block by block.
+/// Detects motion between two images, block by block.
 ///
-/// The book compares the mean of the absolute differences of all pixels with a fixed number. That mean has a floor, the
-/// camera's noise in every pixel, that hides whatever is small; and a change of the exposure moves all of it. Here the
-/// signed differences are averaged over blocks, where noise cancels and motion does not, after the second image has
-/// been brought to the first one's brightness.
+/// The book compares the mean absolute difference of all pixels with a constant. The camera's noise gives
+/// that mean a floor, which hides small objects, and a change of exposure shifts it. This detector scales the
+/// second image to the brightness of the first and averages signed differences over blocks, where noise
+/// cancels and motion does not.
 ///
-/// What may change without motion is measured in the same two images: most blocks show nothing that moves, and the
-/// median of their changes is the noise. It grows with the square root of the brightness, so the change of a darker block
-/// counts for more. Blocks are looked at one by two, two by two and four in a row, where noise cancels further. Where
-/// light is too bright for the camera, levels end at white and no longer follow the exposure: then a block may follow it
-/// in part, or not at all.
+/// The noise is estimated from the same two images: most blocks show no motion, so the median of their
+/// changes is the noise. It grows with the square root of the brightness, so a change of a dark block weighs
+/// more. Blocks are also examined in pairs, in squares of four and in rows and columns of four, which reduces
+/// noise further. In overexposed images, levels saturate and no longer follow the exposure; a block may then
+/// follow it in part or not at all.
 ///
-/// Compared loosely, a pixel counts only as far as its surroundings in one image have no shade in common with those in
-/// the other: an edge that is a little off is no motion, whatever its contrast.
+/// In a comparison with slack, a pixel counts only as far as the ranges of gray levels around it in the two
+/// images are disjoint: a slightly displaced edge is no motion, whatever its contrast.
 ///
 /// ```
 /// use roverlab::vision::GrayView;
@@ -86,8 +86,8 @@ pub struct MotionDetector {
     second_ranges: Ranges,
 }
 
-/// Sums over the pixels of a block, or of blocks side by side: of both images, of what slack does not explain, of the
-/// brightness for the noise, and the pixels' number.
+/// Sums over the pixels of a block or a group of blocks: both images, the differences that slack does not
+/// explain, the brightness that determines the noise, and the number of pixels.
 #[derive(Debug, Clone, Copy, Default)]
 struct Block {
     first: f64,
@@ -97,8 +97,8 @@ struct Block {
     pixels: f64,
 }
 
-/// What is known of two images: how the second one is brought to the first one's brightness, the noise of a white pixel,
-/// whether edges may be off, and whether there is too much light.
+/// Properties of an image pair: gain from the second image to the first, noise of a white pixel, whether
+/// slack applies, and whether the image is overexposed.
 #[derive(Debug, Clone, Copy)]
 struct Judge {
     gain: f64,
@@ -107,13 +107,13 @@ struct Judge {
     too_bright: bool,
 }
 
-/// How many blocks across and down are looked at as one: what moves is no square.
+/// Sizes of the groups of blocks (across, down) that are examined as one; moving objects are not square.
 const GROUPS: [(usize, usize); 5] = [(1, 2), (2, 1), (2, 2), (1, 4), (4, 1)];
-/// Noise does not fall below that of this level.
+/// Gray level below which the noise no longer falls.
 const DARKEST: f64 = 10.0;
-/// Blocks from this mean on have pixels that noise, or the light, has driven to the end of the levels.
+/// Mean gray level from which on a block contains saturated pixels.
 const CLIPPED: f64 = 240.0;
-/// The standard deviation of normal numbers over the median of their absolute values.
+/// Ratio of the standard deviation of a normal distribution to its median absolute deviation.
 const DEVIATION: f64 = 1.4826;
 
 impl Block {
@@ -129,16 +129,18 @@ impl Block {
         self.first.max(self.second) > CLIPPED * self.pixels
     }
 
-    /// The change in standard deviations of a white pixel's noise, after the second image's levels have been
-    /// multiplied by a gain.
+    /// Change between the images after the second is multiplied by `gain` (standard deviations at white).
     fn change(&self, gain: f64) -> f64 {
         (self.first - gain * self.second) / self.variance.sqrt()
     }
 }
 
 impl MotionDetector {
-    /// A detector. Fails unless blocks have 2 to 256 pixels a side, the threshold is a number of at least 0 and the least
-    /// noise one above 0.
+    /// A detector.
+    ///
+    /// # Errors
+    ///
+    /// If the block size is not 2 to 256, the threshold is negative or `least_noise` is not positive.
     pub fn new(parameters: MotionParameters) -> Result<Self, ImageError> {
         let MotionParameters { block, threshold, least_noise } = parameters;
         require("motion block", block as f64, (2..=256).contains(&block), "2 to 256")?;
@@ -153,12 +155,21 @@ impl MotionDetector {
         })
     }
 
-    /// What moved between two images of one size, by a camera that stood.
+    /// Compares two images of equal size from a camera at rest.
+    ///
+    /// # Errors
+    ///
+    /// If the sizes differ.
     pub fn compare(&mut self, first: GrayView<'_>, second: GrayView<'_>) -> Result<Motion, ImageError> {
         self.compare_loosely(first, second, 0)
     }
 
-    /// What moved between two images of one size, in either of which edges may be off by so many pixels without motion.
+    /// Compares two images of equal size in which edges may be displaced by up to `slack` pixels without
+    /// motion.
+    ///
+    /// # Errors
+    ///
+    /// If the sizes differ.
     pub fn compare_loosely(
         &mut self,
         first: GrayView<'_>,
@@ -185,7 +196,7 @@ impl MotionDetector {
         Ok(Motion { sectors, mean_difference, noise, strongest })
     }
 
-    /// Sums both images' levels over the blocks.
+    /// Sums the levels of both images over the blocks.
     fn sum(&mut self, first: GrayView<'_>, second: GrayView<'_>) {
         let (width, height) = first.size();
         let size = self.parameters.block;
@@ -208,19 +219,19 @@ impl MotionDetector {
         }
     }
 
-    /// The factor that brings the second image to the first one's brightness: the median over the blocks, which motion
-    /// in a few of them does not touch.
+    /// Gain from the second image to the first: the median over the blocks, which motion in a few of them
+    /// does not affect.
     fn gain(&mut self) -> f64 {
         let ratio = |block: &Block| block.first.max(1.0) / block.second.max(1.0);
         self.median(ratio).unwrap_or(1.0)
     }
 
-    /// The standard deviation of a white pixel's change, from the median over the blocks.
+    /// Standard deviation of the change of a white pixel, from the median over the blocks.
     fn noise(&mut self, gain: f64) -> f64 {
         DEVIATION * self.median(|block| block.change(gain).abs()).unwrap_or(0.0)
     }
 
-    /// The median of something over the blocks that are not clipped, if there are any.
+    /// Median over the blocks that are not saturated, if there are any.
     fn median(&mut self, value: impl Fn(&Block) -> f64) -> Option<f64> {
         self.values.clear();
         self.values.extend(self.blocks.iter().filter(|block| !block.is_clipped()).map(value));
@@ -229,7 +240,7 @@ impl MotionDetector {
         (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
     }
 
-    /// Sums what slack leaves of the differences.
+    /// Sums the differences that slack does not explain.
     fn explain(&mut self, first: GrayView<'_>, second: GrayView<'_>, gain: f64, slack: usize) {
         let size = self.parameters.block;
         self.first_ranges.find(first, slack);
@@ -247,7 +258,7 @@ impl MotionDetector {
         }
     }
 
-    /// The largest change in each third of the image.
+    /// Largest change in each third of the image.
     fn sectors(&self, width: usize, judge: Judge) -> [f64; 3] {
         let size = self.parameters.block;
         let across = width.div_ceil(size);
@@ -258,7 +269,7 @@ impl MotionDetector {
                 (0..=down - high).flat_map(|row| (0..=across - wide).map(move |column| (row, column)));
             for (row, column) in places {
                 let change = judge.change(&self.group(across, (row, column), (wide, high)));
-                // A group belongs to the sector of its middle.
+                // A group belongs to the sector of its centre.
                 let middle = ((2 * column + wide) * size / 2).min(width - 1);
                 let sector = &mut sectors[3 * middle / width];
                 *sector = sector.max(change.abs() / judge.noise);
@@ -267,7 +278,7 @@ impl MotionDetector {
         sectors
     }
 
-    /// Blocks from one on as a single one.
+    /// Sum of a rectangle of blocks.
     fn group(&self, across: usize, (row, column): (usize, usize), (wide, high): (usize, usize)) -> Block {
         let mut group = Block::default();
         for line in self.blocks[row * across..].chunks(across).take(high) {
@@ -278,12 +289,12 @@ impl MotionDetector {
 }
 
 impl Judge {
-    /// The change of blocks that is no fault of the camera.
+    /// Change of a group that the camera does not explain.
     fn change(&self, group: &Block) -> f64 {
         if self.loose {
             group.unexplained / group.variance.sqrt()
         } else if self.too_bright {
-            // Blocks that are clipped in part pull the gain towards 1.
+            // Partly saturated blocks pull the gain towards 1.
             least(group.change(self.gain * self.gain), group.change(1.0))
         } else {
             group.change(self.gain)
@@ -291,7 +302,7 @@ impl Judge {
     }
 }
 
-/// The number between two that is nearest to 0.
+/// The number closest to 0 between `a` and `b`.
 fn least(a: f64, b: f64) -> f64 {
     0.0_f64.clamp(a.min(b), a.max(b))
 }

@@ -1,5 +1,4 @@
-//! Seeing motion (book, section 11.5): where in the image something moves, for a robot that stands, and for one that
-//! turns (section 11.6).
+//! Motion detection (book, section 11.5), for a robot that stands and for one that turns (section 11.6).
 
 mod detector;
 mod range;

@@ -1,6 +1,6 @@
 use crate::vision::GrayView;
 
-/// The darkest and the brightest shade around each pixel of an image.
+/// Minimum and maximum gray level around each pixel of an image.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Ranges {
     width: usize,
@@ -9,7 +9,7 @@ pub(super) struct Ranges {
 }
 
 impl Ranges {
-    /// Finds them for the squares that reach so many pixels from their middle: along the rows, then down the columns.
+    /// Computes the ranges over squares of half-width `reach`: first along the rows, then along the columns.
     pub(super) fn find(&mut self, image: GrayView<'_>, reach: usize) {
         let (width, height) = image.size();
         self.width = width;
@@ -32,7 +32,7 @@ impl Ranges {
         }
     }
 
-    /// The ranges of a row.
+    /// Ranges of a row.
     pub(super) fn row(&self, y: usize) -> impl Iterator<Item = (u8, u8)> + '_ {
         self.squares[y * self.width..][..self.width].iter().copied()
     }

@@ -13,7 +13,7 @@ fn detector() -> MotionDetector {
     MotionDetector::new(MotionParameters::default()).unwrap()
 }
 
-/// A picture of smooth hills with the noise of a camera, as bright as asked for.
+/// A smooth pattern with camera noise, at a given brightness.
 fn hills(light: f64, seed: u64) -> GrayImage {
     let mut stream = Stream::new(seed);
     GrayImage::from_fn(160, 120, |x, y| {
@@ -41,7 +41,7 @@ proptest! {
             }
         }
         let motion = detector().compare(view(&before), view(&after)).unwrap();
-        // Where the thing lies across two sectors, either is right.
+        // If the object lies across two sectors, either is right.
         let sector = |x: u32| (3 * x / 160) as usize;
         let strongest = motion.strongest.unwrap();
         prop_assert!((sector(x.saturating_sub(8))..=sector((x + 19).min(159))).contains(&strongest));

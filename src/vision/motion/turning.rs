@@ -2,19 +2,19 @@ use crate::ParameterError;
 use crate::geometry::math;
 use crate::vision::{GrayView, GrayViewMut, ImageError};
 
-/// Takes the robot's own turn out of an image, so that what is left of its change is the motion of others (book, section
-/// 11.6).
+/// Removes the robot's own rotation from an image, so that the remaining change is the motion of others
+/// (book, section 11.6).
 ///
-/// A camera that turns about its own axis sees the world through another rotation, whatever the distances: each pixel's
-/// line of sight is turned back, and the image is read where it came from. Odometry says by how much, and may be wrong by
-/// a slip or a jump; the turn that explains the second image best corrects it. A camera that sits ahead of the axis moves
-/// a little as well, which shifts what is near:
-/// [`MotionDetector::compare_loosely`](super::MotionDetector::compare_loosely) is for that.
+/// For a camera that turns about its own axis, the image change does not depend on distances: each line of
+/// sight is rotated back, and the image is sampled there. Odometry gives the angle, which slip or a jump may
+/// falsify; the angle that best explains the second image corrects it. A camera ahead of the axis also
+/// translates, which displaces near objects; use
+/// [`MotionDetector::compare_loosely`](super::MotionDetector::compare_loosely) for that.
 ///
 /// ```
 /// use roverlab::vision::motion::TurnCompensator;
 /// use roverlab::vision::{GrayView, mean_difference};
-/// // A camera with a field of view of 1 rad turns left by 0.1 rad: what it saw moves to the right.
+/// // A camera with a field of view of 1 rad turns left by 0.1 rad: the scene moves to the right.
 /// let focal = 40.0 / 0.5_f64.tan();
 /// let wall = |turn: f64| -> Vec<u8> {
 ///     let angle = |column: usize| turn - ((column as f64 - 39.5) / focal).atan();
@@ -26,7 +26,7 @@ use crate::vision::{GrayView, GrayViewMut, ImageError};
 /// let turned = compensator.turn(before, after, 0.1)?;
 /// let (corner, width) = ((turned.from, 0), turned.to - turned.from);
 /// let left = mean_difference(turned.image.region(corner, width, 20)?, after.region(corner, width, 20)?)?;
-/// assert!(left < 3.0 && mean_difference(before, after)? > 30.0, "no motion but the camera's own");
+/// assert!(left < 3.0 && mean_difference(before, after)? > 30.0, "only the camera has moved");
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -35,28 +35,32 @@ pub struct TurnCompensator {
     turned: Vec<u8>,
 }
 
-/// An image as the camera would have seen it after a turn.
+/// An image as the camera would see it after a rotation.
 #[derive(Debug, Clone, Copy)]
 pub struct Turned<'a> {
-    /// The image; its columns outside of `from..to` mean nothing.
+    /// The image; columns outside `from..to` are undefined.
     pub image: GrayView<'a>,
-    /// The first column that both images show.
+    /// First column visible in both images.
     pub from: usize,
-    /// The column after the last one that both show.
+    /// One past the last column visible in both images.
     pub to: usize,
-    /// Pixels by which the turn moves what is straight ahead, to either side.
+    /// Displacement of the image centre by the rotation, without sign (pixels).
     pub shift: f64,
 }
 
-/// Pixels by which odometry's turn may be wrong, beside all of the turn.
+/// Search range around the odometry angle, in addition to that angle itself (pixels).
 const SEARCH: f64 = 16.0;
-/// Steps in pixels in which the best turn is looked for, first and then around the best of the first.
+/// Step sizes of the coarse and the fine search (pixels).
 const STEPS: [f64; 2] = [1.0, 0.25];
-/// Levels by which each pixel of the turn that differs from odometry must better the match.
+/// Cost of a deviation from odometry (gray levels per pixel).
 const TRUST: f64 = 0.03;
 
 impl TurnCompensator {
-    /// For a level camera with a horizontal field of view in radians.
+    /// A compensator for a level camera with a horizontal field of view (rad).
+    ///
+    /// # Errors
+    ///
+    /// If the field of view is not between 0 and 3 rad.
     pub fn new(field_of_view: f64) -> Result<Self, ImageError> {
         if !(field_of_view > 0.0 && field_of_view < 3.0) {
             let expected = "more than 0 and below 3 radians";
@@ -65,8 +69,12 @@ impl TurnCompensator {
         Ok(Self { field_of_view, turned: Vec::new() })
     }
 
-    /// The first image as the camera would have seen it after turning left by `angle`: the turn of odometry, which the
-    /// second image corrects.
+    /// Returns `first` as the camera would see it after turning left by `angle` (rad). The angle comes from
+    /// odometry and is corrected by means of `second`.
+    ///
+    /// # Errors
+    ///
+    /// If the sizes differ.
     pub fn turn(
         &mut self,
         first: GrayView<'_>,
@@ -94,8 +102,8 @@ impl TurnCompensator {
     }
 }
 
-/// The turn near that of odometry which explains the second image best. A jump of odometry may be all of its turn, or
-/// may have hidden as much.
+/// Angle near that of odometry which best explains the second image. A jump of odometry may account for all
+/// of its angle, or hide as much.
 fn registered(first: GrayView<'_>, second: GrayView<'_>, angle: f64, focal: f64) -> f64 {
     let cost = |shift: f64| mismatch(first, second, angle + shift / focal, focal) + TRUST * shift.abs();
     let mut reach = (SEARCH + angle.abs() * focal).min(0.5 * first.width() as f64);
@@ -115,10 +123,10 @@ fn registered(first: GrayView<'_>, second: GrayView<'_>, angle: f64, focal: f64)
     angle + best.1 / focal
 }
 
-/// The column of an image that a column of the turned one shows, and the factor of distances from the middle row.
+/// Source column of a column of the rotated image, and the scale of distances from the middle row.
 fn source(x: f64, width: usize, angle: f64, focal: f64) -> Option<(f64, f64)> {
     let middle = 0.5 * (width as f64 - 1.0);
-    // To the left of straight ahead, before the turn.
+    // Line of sight before the rotation, positive to the left of straight ahead.
     let sight = math::atan((middle - x) / focal) + angle;
     let column = middle - focal * math::tan(sight);
     let inside = sight.abs() < 1.5 && (0.0..=width as f64 - 1.0).contains(&column);
@@ -126,7 +134,7 @@ fn source(x: f64, width: usize, angle: f64, focal: f64) -> Option<(f64, f64)> {
     inside.then(|| (column, slant(column) / slant(x)))
 }
 
-/// An image between its pixels, by the four around the place; rows beyond the edge are those at the edge.
+/// Bilinear interpolation; rows outside the image repeat the border.
 fn sample(image: GrayView<'_>, column: f64, row: f64) -> u8 {
     let (width, height) = image.size();
     let row = row.clamp(0.0, height as f64 - 1.0);
@@ -139,7 +147,7 @@ fn sample(image: GrayView<'_>, column: f64, row: f64) -> u8 {
     (upper * (1.0 - v) + lower * v + 0.5) as u8
 }
 
-/// How badly a turn explains the second image, on every eighth row.
+/// Mean absolute difference left by a rotation, on every eighth row.
 fn mismatch(first: GrayView<'_>, second: GrayView<'_>, angle: f64, focal: f64) -> f64 {
     let (width, height) = first.size();
     let middle = 0.5 * (height as f64 - 1.0);
@@ -148,7 +156,7 @@ fn mismatch(first: GrayView<'_>, second: GrayView<'_>, angle: f64, focal: f64) -
         let Some((column, scale)) = source(x as f64, width, angle, focal) else { continue };
         for y in (0..height).step_by(8) {
             let shade = sample(first, column, middle + (y as f64 - middle) * scale);
-            // What others move must not pull the turn along.
+            // Clipped, so that moving objects do not bias the angle.
             sum += f64::from(shade.abs_diff(second.row(y)[x]).min(20));
             count += 1.0;
         }

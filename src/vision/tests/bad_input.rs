@@ -1,4 +1,4 @@
-//! What is refused, and how.
+//! Rejected input and its error messages.
 
 use crate::vision::{
     Border, Canny, CannyThresholds, GaussianKernel, GrayView, GrayViewMut, GrayWeights, HoughLines,
@@ -15,7 +15,7 @@ fn shapes_that_are_none() {
         GrayView::with_stride(&[1; 9], 3, 3, 2).unwrap_err(),
         ImageError::Stride { stride: 2, row: 3 }
     );
-    assert!(GrayView::with_stride(&[1; 11], 3, 3, 4).is_ok(), "the last row needs no gap behind it");
+    assert!(GrayView::with_stride(&[1; 11], 3, 3, 4).is_ok(), "no gap needed after the last row");
     let huge = GrayView::with_stride(&[1; 9], 3, usize::MAX, usize::MAX).unwrap_err();
     assert_eq!(huge, ImageError::Truncated { found: 9, expected: usize::MAX });
     assert!(RgbView::new(&[1; 9], usize::MAX, 2).is_err());

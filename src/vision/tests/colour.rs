@@ -15,7 +15,7 @@ use crate::vision::{
 };
 use crate::world::Colour;
 
-/// The hue of a pixel in whole numbers, step by step.
+/// Hue of a pixel in integer arithmetic, step by step.
 fn naive_hue([red, green, blue]: [u8; 3], scale: HueScale, limits: HueLimits) -> u8 {
     let (r, g, b) = (i64::from(red), i64::from(green), i64::from(blue));
     let largest = r.max(g).max(b);
@@ -184,7 +184,7 @@ proptest! {
             let saturation = 255.0 - 255.0 * red.min(green).min(blue) / intensity;
             prop_assert!((f64::from(hsi.saturation) - saturation).abs() <= 0.5 + 1e-9);
         }
-        // Each of the three is rounded to one part in 255 and moves a channel by up to three times that.
+        // Each of the three is rounded to one part in 255, which moves a channel by up to three levels.
         for (back, channel) in hsi_to_rgb(hsi).iter().zip(pixel) {
             prop_assert!(back.abs_diff(channel) <= 9, "{:?} came back as {:?}", pixel, hsi_to_rgb(hsi));
         }
@@ -192,7 +192,7 @@ proptest! {
 
     #[test]
     fn hue_survives_a_cloud(pixel in any::<[u8; 3]>()) {
-        // Half the light leaves the hue alone, rounding aside.
+        // Half the light preserves the hue, except for rounding.
         let half = pixel.map(|channel| channel / 2);
         let spread = half.iter().max().unwrap() - half.iter().min().unwrap();
         prop_assume!(spread >= 32);
@@ -264,7 +264,7 @@ fn exact_hues_are_the_angles_of_colours() {
 
 #[test]
 fn values_come_back_to_their_colours() {
-    // What OpenCV makes of them where they fill its registers.
+    // Results of OpenCV where rows fill its registers.
     for (hsv, pixel) in [
         ([0, 1, 1], [1, 0, 0]),
         ([1, 135, 170], [170, 83, 79]),
@@ -280,14 +280,14 @@ fn values_come_back_to_their_colours() {
     for _ in 0..20_000 {
         let pixel = [(); 3].map(|()| stream.bits() as u8);
         let back = hsv_to_rgb(rgb_to_hsv(pixel));
-        // Half a hue is up to 255 / 60 levels of a channel; saturation and the channel itself are rounded too.
+        // Half a hue is up to 255 / 60 levels of a channel; saturation and value are rounded as well.
         assert!(back.iter().zip(pixel).all(|(a, b)| a.abs_diff(b) <= 6), "{pixel:?} {back:?}");
     }
 }
 
 #[test]
 fn counts_of_wide_and_of_tall_images() {
-    // Wider than a strip, and taller than counts of 16 bits.
+    // Wider than a strip, and taller than 16-bit counts.
     let (range, limits) = (HueRange::around(42, 10, HueScale::Robios).unwrap(), HueLimits::default());
     for (width, height) in [(1_300, 3), (2, 70_001)] {
         let is_red = |x: usize, y: usize| height > 100 || (x * 7 + y * 3).is_multiple_of(5);
@@ -309,7 +309,7 @@ fn hues_of_pure_colours() {
     assert_eq!(pure([90, 90, 90]), NO_HUE);
     let robios = |pixel| hue::hue(pixel, HueScale::Robios, HueLimits::default());
     assert_eq!([robios([200, 0, 0]), robios([0, 200, 0]), robios([0, 0, 200])], [42, 126, 210]);
-    // The book's example: red in the sun, and the same under a cloud.
+    // The book's example: red in sunlight and under a cloud.
     assert_eq!([robios([210, 20, 10]), robios([105, 10, 5])], [44, 44]);
     assert_eq!([robios([20, 0, 0]), robios([200, 150, 150])], [NO_HUE; 2]);
 }

@@ -1,4 +1,4 @@
-//! Finding a colour, and where on the floor it stands.
+//! Detection of a colour and of its position on the floor.
 
 use image::{Rgb, RgbImage};
 use proptest::prelude::*;

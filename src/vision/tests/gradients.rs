@@ -1,4 +1,4 @@
-//! Histograms of gradients, line segments, and bands on threads.
+//! Histograms of gradients, line segments, and parallel bands.
 
 use std::f64::consts::PI;
 
@@ -12,7 +12,7 @@ use crate::vision::{
     SegmentParameters, hog,
 };
 
-/// The histograms of all whole cells, by angles.
+/// Histograms of all whole cells, by angles.
 fn naive_cells(image: &Image<1>, cell: usize, bins: usize) -> Vec<Vec<u32>> {
     let (across, down) = (image.width / cell, image.height / cell);
     let mut cells = vec![vec![0; bins]; across * down];
@@ -31,7 +31,7 @@ fn naive_cells(image: &Image<1>, cell: usize, bins: usize) -> Vec<Vec<u32>> {
                 let (sin, cos) = math::sin_cos(k as f64 * PI / bins as f64);
                 ((16_384.0 * sin).round() as i32, (16_384.0 * cos).round() as i32)
             };
-            // A gradient of nothing adds nothing, whatever its bin.
+            // A zero gradient adds nothing, whatever its bin.
             let bin = (0..bins).rev().find(|&k| border(k).1 * dy >= border(k).0 * dx).unwrap_or(0);
             cells[y as usize / cell * across + x as usize / cell][bin] += magnitude;
         }
@@ -80,7 +80,7 @@ proptest! {
         prop_assert_eq!(hog.describe(image.view()).unwrap(), &expected[..]);
         let (across, down) = hog.blocks((image.width, image.height));
         prop_assert_eq!(expected.len(), across * down * block * block * bins);
-        // Again, with what the first time left behind.
+        // Again, with the buffers of the first run.
         prop_assert_eq!(hog.describe(image.view()).unwrap(), &expected[..]);
     }
 
@@ -97,7 +97,7 @@ proptest! {
         let (above, row, below) = ([0, north, 0], [west, 0, east], [0, south, 0]);
         hog::orient_portable(&above, &row, &below, &borders, &mut magnitudes, &mut bins);
         let angle = math::atan2(f64::from(dy), f64::from(dx)).rem_euclid(PI) / PI * 9.0;
-        // Angles right at a border may fall to either side.
+        // Angles exactly at a boundary may fall to either side.
         prop_assume!((angle - angle.round()).abs() > 1e-3 || angle == 0.0);
         prop_assert_eq!(f64::from(bins[1]), angle.floor());
         let length = 8.0 * f64::from(dx * dx + dy * dy).sqrt();
@@ -105,7 +105,7 @@ proptest! {
     }
 }
 
-/// Draws a line, pixel by pixel along its longer side.
+/// Draws a line, pixel by pixel along its longer axis.
 fn draw(data: &mut [u8], width: usize, line: ((i32, i32), (i32, i32))) {
     let ((x0, y0), (x1, y1)) = line;
     let steps = (x1 - x0).abs().max((y1 - y0).abs());
@@ -115,15 +115,15 @@ fn draw(data: &mut [u8], width: usize, line: ((i32, i32), (i32, i32))) {
     }
 }
 
-/// Pixels from one end to the other.
+/// Number of steps between two pixels.
 fn reach(a: (i32, i32), b: (i32, i32)) -> i32 {
     (a.0 - b.0).abs().max((a.1 - b.1).abs())
 }
 
-/// Orders in which the pixels of a segment vote.
+/// Number of voting orders.
 const ORDERS: u32 = 20;
 
-/// The share of a drawn segment that is found when its pixels vote in an order; all that is found lies on the
+/// Fraction of a drawn segment that is found with one voting order; asserts that everything found lies on the
 /// segment.
 fn share_found(ends: ((i32, i32), (i32, i32)), seed: u64) -> f64 {
     let mut data = vec![0; 120 * 90];
@@ -136,7 +136,7 @@ fn share_found(ends: ((i32, i32), (i32, i32)), seed: u64) -> f64 {
         assert!([line.from, line.to].iter().all(|end| data[end.1 * 120 + end.0] == 255));
     }
     let covered: i32 = found.iter().map(|line| reach(pixel(line.from), pixel(line.to)) + 1).sum();
-    // Over gaps, parts may count twice.
+    // Across gaps, parts may count twice.
     (f64::from(covered) / f64::from(reach(ends.0, ends.1) + 1)).min(1.0)
 }
 
@@ -169,7 +169,7 @@ fn segments_by_opencvs_definition_are_its_own() {
         let found = find(&data, 64, SegmentParameters { threshold, min_length, max_gap, definition });
         found.iter().map(|s| [s.from.0, s.from.1, s.to.0, s.to.1]).collect::<Vec<_>>()
     };
-    // Of `HoughLinesP` with the same parameters.
+    // Results of `HoughLinesP` with the same parameters.
     assert_eq!(lines(14, 12, 2), [[1, 34, 63, 4], [11, 30, 63, 30], [8, 0, 55, 47], [0, 35, 27, 22]]);
     let shorter = [[4, 32, 63, 4], [10, 30, 63, 30], [8, 0, 55, 47], [42, 13, 62, 4], [12, 29, 27, 22]];
     assert_eq!(lines(10, 8, 1), shorter);
@@ -200,9 +200,8 @@ proptest! {
     fn what_is_found_of_a_segment_lies_on_it(ends in [5_i32..115, 5..85, 5..115, 5..85], seed: u64) {
         let ends = ((ends[0], ends[1]), (ends[2], ends[3]));
         prop_assume!(reach(ends.0, ends.1) >= 40);
-        // Twelve pixels near each other tell an angle badly: what is followed by it is short, leaves the vote
-        // and is no line. In the mean over the orders in which pixels vote, most of the segment is found all
-        // the same.
+        // Twelve pixels close together determine the angle poorly: such lines are followed only a short way,
+        // leave the vote and form no segment. On average over voting orders, most of the segment is found.
         let mut stream = Stream::new(seed);
         let shares = (0..ORDERS).map(|_| share_found(ends, stream.bits()));
         let mean = shares.sum::<f64>() / f64::from(ORDERS);
@@ -243,7 +242,7 @@ fn two_crossing_segments_and_a_gap() {
     };
     let found = find(&data, 100, parameters);
     assert_eq!(found.len(), 2, "{found:?}");
-    // A gap that is too wide parts a line.
+    // A gap that is too wide splits a line.
     let mut parted = vec![0; 100 * 100];
     draw(&mut parted, 100, ((5, 20), (45, 20)));
     draw(&mut parted, 100, ((55, 20), (95, 20)));
@@ -271,7 +270,7 @@ mod bands {
         #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn bands_change_nothing(image in images::<1>(), rgb in images::<3>(), rows in 1_usize..20) {
-            // Images of more rows, so that there is more than one band.
+            // Taller images, so that there is more than one band.
             let mut tall = image.clone();
             tall.height *= rows;
             tall.data = image.data.repeat(rows);

@@ -1,4 +1,5 @@
-//! Every kernel against a naive version of its definition, on random images of all small sizes and strides.
+//! Compares every kernel with a naive version of its definition, on random images of all small sizes and
+//! strides.
 
 mod bad_input;
 mod colour;
@@ -11,7 +12,7 @@ use proptest::prelude::*;
 
 use super::{View, ViewMut};
 
-/// A random image of `C` bytes a pixel.
+/// A random image of `C` bytes per pixel.
 #[derive(Debug, Clone)]
 struct Image<const C: usize> {
     data: Vec<u8>,
@@ -25,7 +26,7 @@ impl<const C: usize> Image<C> {
         View::with_stride(&self.data, self.width, self.height, self.stride).unwrap()
     }
 
-    /// The bytes of a pixel of an image that goes on beyond its border as its mirror image.
+    /// Bytes of a pixel of the image, mirrored beyond its border.
     fn mirrored(&self, x: isize, y: isize) -> [u8; C] {
         let fold = |i: isize, n: usize| {
             let (mut i, last) = (i, n as isize - 1);
@@ -47,12 +48,12 @@ impl<const C: usize> Image<C> {
         self.data[y * self.stride + x * C..][..C].try_into().unwrap()
     }
 
-    /// Bytes reckoned pixel by pixel.
+    /// Bytes computed pixel by pixel.
     fn map<const D: usize>(&self, f: impl Fn(usize, usize) -> [u8; D]) -> Vec<u8> {
         (0..self.height).flat_map(|y| (0..self.width).flat_map(|x| f(x, y)).collect::<Vec<u8>>()).collect()
     }
 
-    /// What a kernel writes, with a stride of its own; fails if it writes between the rows.
+    /// Output of a kernel, with a stride of its own; asserts that nothing is written between the rows.
     fn output<const D: usize>(&self, kernel: impl FnOnce(ViewMut<'_, D>)) -> Vec<u8> {
         let row = self.width * D;
         let stride = row + (self.stride - self.width * C);
@@ -64,7 +65,7 @@ impl<const C: usize> Image<C> {
     }
 }
 
-/// Images from 1 x 1 up: noise, few levels (for ties), or flat areas with steps.
+/// Images from 1 x 1 pixels: noise, few levels (for ties), or flat areas with steps.
 fn images<const C: usize>() -> impl Strategy<Value = Image<C>> {
     let sizes = prop_oneof![3 => 1_usize..12, 2 => 12_usize..150];
     (sizes, 1_usize..12, 0_usize..4, 0_u8..3, any::<u64>()).prop_map(|(width, height, gap, kind, seed)| {

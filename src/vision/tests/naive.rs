@@ -1,4 +1,4 @@
-//! Kernels on shades of gray.
+//! Kernels on gray levels.
 
 use proptest::prelude::*;
 
@@ -155,7 +155,7 @@ proptest! {
         let thresholds = CannyThresholds { low, high: low + more };
         let expected = naive_canny(&image, i32::from(low), i32::from(low + more));
         let mut canny = Canny::new();
-        // Twice: what an image left behind must not show in the next.
+        // Twice: leftovers of the first image must not affect the second.
         for _ in 0..2 {
             let found = image.output(|out| canny.find_into(image.view(), out, thresholds).unwrap());
             prop_assert_eq!(found, &expected[..]);
@@ -185,7 +185,7 @@ proptest! {
     }
 }
 
-/// Canny's detector by recursion on whole images, with the angles as real numbers.
+/// Canny's detector by recursion on whole images, with real-valued angles.
 fn naive_canny(image: &Image<1>, low: i32, high: i32) -> Vec<u8> {
     let (width, height) = (image.width as isize, image.height as isize);
     let at = |x: isize, y: isize| {
@@ -268,7 +268,7 @@ fn strips_of_wide_images_are_smoothed_alike() {
 
 #[test]
 fn differences_of_long_rows() {
-    // More in a row than sums of 16 bits hold.
+    // Rows longer than 16-bit sums allow.
     for width in [65_791, 65_792, 65_793, 140_000] {
         let (white, black) = (vec![255; 2 * width], vec![0; 2 * width]);
         let rows = |data| GrayView::new(data, width, 2).unwrap();

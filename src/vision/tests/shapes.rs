@@ -10,7 +10,7 @@ use super::{Image, images};
 use crate::geometry::math;
 use crate::vision::{Blob, Components, GrayView, HoughLine, HoughLines, maximum};
 
-/// Blobs by flooding from each pixel in turn.
+/// Blobs found by flood fill from each pixel.
 fn naive_blobs(image: &Image<1>, min_area: usize) -> Vec<Blob> {
     let mut seen = vec![false; image.width * image.height];
     let mut blobs = Vec::new();
@@ -52,7 +52,7 @@ proptest! {
         mask.data.iter_mut().for_each(|byte| *byte = u8::from(*byte > density));
         let mut components = Components::new();
         prop_assert_eq!(components.find(mask.view(), min_area), &naive_blobs(&mask, min_area)[..]);
-        // Again, with what the first time left behind.
+        // Again, with the buffers of the first run.
         prop_assert_eq!(components.find(mask.view(), 0), &naive_blobs(&mask, 0)[..]);
         let largest = components.largest(mask.view(), 0).map(|blob| blob.area);
         prop_assert_eq!(largest, naive_blobs(&mask, 0).iter().map(|blob| blob.area).max());
@@ -68,7 +68,7 @@ proptest! {
         prop_assume!(data.iter().filter(|&&pixel| pixel > 0).count() >= 30);
         let lines = HoughLines::new(1.0, 180).unwrap().find(GrayView::new(&data, width, height).unwrap(), 10);
         let found = lines[0];
-        // The same line has a second form: from the other side, half a turn away.
+        // A line has two representations: the other one is half a turn away, with opposite sign.
         let turn = (found.theta - theta).abs();
         let (turn, side) = if turn > 1.5 { (PI - turn, -found.rho) } else { (turn, found.rho) };
         prop_assert!(turn < 0.07 && (side - rho).abs() <= 3.0, "{:?} for {} {}", found, theta, rho);
@@ -76,11 +76,11 @@ proptest! {
     }
 }
 
-/// All peaks of the votes, counted pixel by pixel, angle by angle.
+/// All peaks of the votes, counted pixel by pixel and angle by angle.
 fn naive_lines(edges: &Image<1>, rho: f64, angles: usize, threshold: u32) -> Vec<HoughLine> {
     let votes = |angle: usize| -> BTreeMap<i32, u32> {
         let mut votes = BTreeMap::new();
-        // Steps are added up in single precision.
+        // Steps are accumulated in single precision.
         let step = (PI / angles as f64) as f32;
         let (sin, cos) = math::sin_cos(f64::from((0..angle).fold(0.0_f32, |sum, _| sum + step)));
         let [cos, sin] = [cos, sin].map(|part| (part * f64::from(1.0 / rho as f32)) as f32);

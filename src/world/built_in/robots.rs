@@ -1,7 +1,7 @@
 use crate::geometry::{Aabb, Point, units};
 use crate::world::{
-    Body, CameraSpec, CarDynamics, DriveSpec, Footprint, LidarSpec, Mast, MotorSpec, Mount, PsdSpec,
-    RobotSpec,
+    Body, CameraSpec, CarDynamics, DriveSpec, Footprint, InertialSpec, LidarSpec, Mast, MotorSpec, Mount,
+    PsdSpec, RobotSpec,
 };
 
 impl RobotSpec {
@@ -43,13 +43,14 @@ impl RobotSpec {
             psds: four_psds(0.060, 0.045, 0.030),
             lidar: Some(LidarSpec::default()),
             camera: Some(CameraSpec {
-                mount: Mount { x: 0.062, y: 0.0, z: 0.060, yaw: 0.0 },
+                mount: Mount { x: 0.062, z: 0.060, ..Mount::default() },
                 tilt: 0.0,
                 max_pan: units::from_deg(90.0),
                 max_tilt: units::from_deg(90.0),
                 field_of_view: CameraSpec::DEFAULT_FIELD_OF_VIEW,
                 fisheye: false,
             }),
+            inertial: InertialSpec::default(),
             model: None,
             mesh: None,
             body: Body::default(),
@@ -103,7 +104,8 @@ impl RobotSpec {
         }
     }
 
-    /// A snow truck on two belts, a model in 1:12 (book, section 7.3), with an S4's sensors and a lidar on its roof.
+    /// A snow truck on two belts, a model in 1:12 (book, section 7.3), with an S4's sensors, a lidar on
+    /// its roof and an inertial unit.
     pub fn blizzard() -> Self {
         let (half_length, half_width) = (0.200, 0.130);
         Self {
@@ -128,6 +130,7 @@ impl RobotSpec {
                 mount: Mount { x: 0.120, z: 0.170, ..Mount::default() },
                 ..camera
             }),
+            inertial: InertialSpec::ALL,
             ..Self::s4()
         }
     }
@@ -158,6 +161,51 @@ impl RobotSpec {
             lidar: Some(LidarSpec {
                 mount: Mount { x: 0.5 * wheelbase, z: 0.100, ..Mount::default() },
                 ..LidarSpec::default()
+            }),
+            ..Self::s4()
+        }
+    }
+
+    /// A model car in 1:10 for roads by the rules of the CAuDri-Challenge (book, chapter 13): 3 m/s at most, tyres that slip, and
+    /// a wide camera on a mast above the rear axle, which looks down on the road.
+    pub fn road_car() -> Self {
+        let (wheelbase, half_width) = (0.260, 0.095);
+        Self {
+            name: "RoadCar".into(),
+            drive: DriveSpec::Ackermann {
+                wheel_diameter: 0.066,
+                track: 0.165,
+                wheelbase,
+                max_steering: units::from_deg(28.0),
+                max_wheel_speed: 3.0 / 0.033,
+                ticks_per_turn: 1300.0,
+                // Rubber on the smooth floor of a hall; a servo of 60 degrees in 0.12 s turns the wheels.
+                dynamics: Some(CarDynamics {
+                    mass_centre: 0.125,
+                    gyration: 0.110,
+                    grip: 7.0,
+                    stiffness: 20.0,
+                    balance: 0.95,
+                    brake: 5.0,
+                    steering_rate: 5.0,
+                }),
+            },
+            motor: MotorSpec { time_constant: 0.1, max_acceleration: 3.0 },
+            footprint: Footprint::Rectangle(Aabb::new(
+                Point::new(-0.080, -half_width),
+                Point::new(0.350, half_width),
+            )),
+            height: 0.120,
+            mass: 2.5,
+            psds: Vec::new(),
+            lidar: None,
+            camera: Some(CameraSpec {
+                mount: Mount { x: 0.060, y: 0.0, z: 0.250, yaw: 0.0, ..Mount::default() },
+                tilt: units::from_deg(-25.0),
+                max_pan: 0.0,
+                max_tilt: 0.0,
+                field_of_view: units::from_deg(95.0),
+                fisheye: false,
             }),
             ..Self::s4()
         }
@@ -263,7 +311,7 @@ fn front_and_back(front: f64, back: f64, z: f64) -> Vec<PsdSpec> {
         .map(|(id, name, x, yaw)| PsdSpec {
             id,
             name: name.into(),
-            mount: Mount { x, y: 0.0, z, yaw: units::from_deg(yaw) },
+            mount: Mount { x, z, yaw: units::from_deg(yaw), ..Mount::default() },
             max_range: PsdSpec::DEFAULT_MAX_RANGE,
         })
         .collect()
@@ -281,7 +329,7 @@ fn four_psds(ahead: f64, aside: f64, z: f64) -> Vec<PsdSpec> {
     .map(|(id, name, x, y, yaw)| PsdSpec {
         id,
         name: name.into(),
-        mount: Mount { x, y, z, yaw: units::from_deg(yaw) },
+        mount: Mount { x, y, z, yaw: units::from_deg(yaw), ..Mount::default() },
         max_range: PsdSpec::DEFAULT_MAX_RANGE,
     })
     .collect()

@@ -11,13 +11,16 @@ use crate::world::{ObjectKind, RobotSpec, Scene};
 /// Reads a scene from disk: a `.sim`, or the `.wld`, `.maz`, ROS map (`.yaml`, `.yml`) or MovingAI map (`.map`) of one
 /// without robots.
 ///
-/// ```no_run
-/// let scene = roverlab::world::formats::load_scene("worlds/soccer.sim")?;
+/// ```
+/// let file = std::env::temp_dir().join(format!("roverlab-{}.wld", std::process::id()));
+/// std::fs::write(&file, "floor 2000 1000\n0 0 2000 0\n")?;
+/// let scene = roverlab::world::formats::load_scene(&file)?;
 /// for warning in &scene.warnings {
 ///     eprintln!("{warning}");
 /// }
-/// println!("{} robots", scene.value.robots.len());
-/// # Ok::<(), roverlab::world::formats::FormatError>(())
+/// assert_eq!((scene.value.world.walls.len(), scene.value.robots.len()), (1, 0));
+/// std::fs::remove_file(file)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn load_scene(path: impl AsRef<Path>) -> Result<Parsed<Scene>, FormatError> {
     let path = path.as_ref();
@@ -25,6 +28,19 @@ pub fn load_scene(path: impl AsRef<Path>) -> Result<Parsed<Scene>, FormatError> 
 }
 
 /// Reads a scene from the bytes of its file, whose name says what kind it is, and from the files that it names.
+///
+/// ```
+/// use roverlab::world::formats::{MemoryFiles, parse_scene, parse_scene_tolerantly};
+/// let mut files = MemoryFiles::default();
+/// files.0.insert("room.wld".into(), b"floor 2000 1000\n0 0 2000 0\n".to_vec());
+/// let script = b"world room.wld\nS4 400 500 0\nlamp 900 500 0\n".to_vec();
+/// let scene = parse_scene_tolerantly(script.clone(), "room.sim", &mut files)?;
+/// assert_eq!((scene.value.robots.len(), scene.value.world.walls.len()), (1, 1));
+/// assert!(!scene.warnings.is_empty(), "nobody knows a lamp");
+/// let strict = parse_scene(script, "room.sim", &mut files).map(|parsed| parsed.warnings);
+/// assert!(strict.is_err() || !strict.unwrap().is_empty());
+/// # Ok::<(), roverlab::world::formats::FormatError>(())
+/// ```
 pub fn parse_scene(
     bytes: Vec<u8>,
     file: &str,
@@ -56,24 +72,45 @@ fn scene_of(bytes: Vec<u8>, file: &str, files: &mut Files<'_>) -> Result<Parsed<
 
 /// Reads a robot's description, `.robi`, with its 3D model from disk.
 pub fn load_robot(path: impl AsRef<Path>) -> Result<Parsed<RobotSpec>, FormatError> {
-    robot_from(path.as_ref(), false)
+    let path = path.as_ref();
+    robot_of(read_file(path)?, &path.display().to_string(), &mut Files::new(&mut DiskFiles::new(), false))
 }
 
 /// As [`load_robot`], but that a robot whose model is missing or broken has none.
 pub fn load_robot_tolerantly(path: impl AsRef<Path>) -> Result<Parsed<RobotSpec>, FormatError> {
-    robot_from(path.as_ref(), true)
-}
-
-fn robot_from(path: &Path, tolerant: bool) -> Result<Parsed<RobotSpec>, FormatError> {
-    let read = |text: &str, file: &str| {
-        robi::parse_with_model(text, file, &mut Files::new(&mut DiskFiles::new(), tolerant))
-    };
-    decoded(read_file(path)?, &path.display().to_string(), read)
+    let path = path.as_ref();
+    parse_robot_tolerantly(read_file(path)?, &path.display().to_string(), &mut DiskFiles::new())
 }
 
 /// Reads a robot's description from the bytes of its file, without its 3D model.
+///
+/// ```
+/// use roverlab::world::formats::{load_object, load_robot, load_robot_tolerantly, parse_robot, read_file};
+/// let text = "drive DIFFERENTIAL_DRIVE\nname Mine\nwheel 54 3600 1100 45\npsd 1 FRONT 50 0 20 0 0 0\n";
+/// let robot = parse_robot(text.into(), "mine.robi")?;
+/// assert_eq!((robot.value.psds.len(), robot.value.name.as_str()), (1, "Mine"));
+/// // From the disk; errors name the file.
+/// for error in [load_robot("none.robi").err(), load_robot_tolerantly("none.robi").err()] {
+///     assert!(error.expect("there is none").to_string().contains("none.robi"));
+/// }
+/// assert!(load_object("none.esObj").is_err() && read_file("none.wld").is_err());
+/// # Ok::<(), roverlab::world::formats::FormatError>(())
+/// ```
 pub fn parse_robot(bytes: Vec<u8>, file: &str) -> Result<Parsed<RobotSpec>, FormatError> {
     decoded(bytes, file, robi::parse)
+}
+
+/// As [`load_robot_tolerantly`], from the bytes of the robot's file and from the files that it names.
+pub fn parse_robot_tolerantly(
+    bytes: Vec<u8>,
+    file: &str,
+    files: &mut dyn FileSource,
+) -> Result<Parsed<RobotSpec>, FormatError> {
+    robot_of(bytes, file, &mut Files::new(files, true))
+}
+
+fn robot_of(bytes: Vec<u8>, file: &str, files: &mut Files<'_>) -> Result<Parsed<RobotSpec>, FormatError> {
+    decoded(bytes, file, |text, file| robi::parse_with_model(text, file, files))
 }
 
 /// Reads an object's description, `.esObj`, with its 3D model from disk.

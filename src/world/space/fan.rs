@@ -34,7 +34,7 @@ pub(super) struct Arc {
     pub(super) turn: f64,
 }
 
-/// A range of beams, as fractions counted from the first beam; the start is in the first turn.
+/// A range of beams, as fractions counted from the first beam; the start is in the first turn, or little before it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sector {
     start: f64,
@@ -72,14 +72,17 @@ impl Fan {
         Vector::new(self.cos[beam], self.sin[beam])
     }
 
+    /// The direction of a beam in the beams' own frame.
+    #[inline]
+    pub(super) fn own_direction(&self, beam: usize) -> Vector {
+        Vector::new(self.own_cos[beam], self.own_sin[beam])
+    }
+
     /// Turns the beams' frame to a heading in the world.
     pub(super) fn turn_to(&mut self, heading: f64) {
         let (sin, cos) = math::sin_cos(heading);
-        let own = self.own_cos.iter().zip(&self.own_sin);
-        for ((c, s), (world_c, world_s)) in own.zip(self.cos.iter_mut().zip(&mut self.sin)) {
-            *world_c = cos * c - sin * s;
-            *world_s = sin * c + cos * s;
-        }
+        combine([(cos, &self.own_cos), (-sin, &self.own_sin)], &mut self.cos);
+        combine([(sin, &self.own_cos), (cos, &self.own_sin)], &mut self.sin);
         self.base = normalize_angle(self.first + heading);
     }
 
@@ -97,11 +100,22 @@ impl Fan {
         // From end to end the way it turns, which may come out a little negative for an arc of about nothing.
         let sweep = arc.turn * (to - from);
         let sweep = if sweep < -1.0 { sweep + TAU } else { sweep };
-        // From the first beam to the clockwise end.
-        let from = from + lesser(arc.turn * sweep, 0.0) - self.base;
+        self.sector_from(from + lesser(arc.turn * sweep, 0.0), sweep.abs())
+    }
+
+    /// The beams within some angle, at most a right one, of a direction: a little more than all that are.
+    #[inline]
+    pub(super) fn sector_about(&self, middle: Vector, half: f64) -> Sector {
+        self.sector_from(rough_angle(middle) - half, 2.0 * half)
+    }
+
+    /// The beams from a rough angle on, counter-clockwise.
+    #[inline]
+    fn sector_from(&self, from: f64, sweep: f64) -> Sector {
+        let from = from - self.base;
         let from = from - TAU * lesser(0.0, 1.0_f64.copysign(from));
         let start = from * self.per_radian - self.margin;
-        Sector { start, end: (from + sweep.abs()) * self.per_radian + self.margin }
+        Sector { start, end: (from + sweep) * self.per_radian + self.margin }
     }
 
     /// Visits the runs of beams in a sector, first and last.
@@ -144,6 +158,14 @@ impl Fan {
     fn holds(&self, arc: &Arc, beam: usize) -> bool {
         let direction = self.direction(beam);
         (arc.turn * cross(arc.from, direction) >= 0.0) & (arc.turn * cross(direction, arc.to) >= 0.0)
+    }
+}
+
+/// Adds multiples of two lists. Not inlined: so the compiler knows that the slices do not overlap.
+#[inline(never)]
+fn combine([(a, first), (b, second)]: [(f64, &[f64]); 2], out: &mut [f64]) {
+    for ((x, y), sum) in first.iter().zip(second).zip(out) {
+        *sum = a * x + b * y;
     }
 }
 

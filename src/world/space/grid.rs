@@ -25,11 +25,6 @@ impl Cells {
         (self.x1 - self.x0 + 1) as usize * (self.y1 - self.y0 + 1) as usize
     }
 
-    /// The column and row of each cell, row by row.
-    pub(super) fn iter(self) -> impl Iterator<Item = (i32, i32)> {
-        (self.y0..=self.y1).flat_map(move |y| (self.x0..=self.x1).map(move |x| (x, y)))
-    }
-
     /// Whether this cell is the first that two overlapping rectangles share: the one where a pair is met once.
     #[inline]
     pub(super) fn meets_first_at(&self, other: &Cells, x: i32, y: i32) -> bool {
@@ -343,6 +338,13 @@ impl Grid {
     #[inline]
     pub(super) fn solids_in(&self, cell: usize) -> &[u32] {
         &self.solids[cell]
+    }
+
+    /// The solids of some cells: a solid once for each cell that lists it.
+    #[inline]
+    pub(super) fn solids_of(&self, cells: Cells) -> impl Iterator<Item = &u32> {
+        let row = move |y| self.lattice.index(cells.x0, y)..self.lattice.index(cells.x1, y) + 1;
+        (cells.y0..=cells.y1).flat_map(move |y| self.solids[row(y)].iter().flatten())
     }
 
     /// Visits the walls of some cells: a wall once for each cell that lists it.

@@ -1,10 +1,11 @@
-//! Rays in space over hills: the ground stops them, and what stands on it has its base there.
+//! Rays in space over hills or a level floor: the ground stops them, and what stands on it has its base there.
 
 use super::ray::{Ray, lesser};
+use super::scanner::Scanner;
 use super::shape::{Block, OrientedBox};
 use super::solid::{SolidId, Span};
 use super::store::{Placed, Space};
-use crate::geometry::{Point, Point3, Vector, Vector3, math};
+use crate::geometry::{Point, Point3, Pose3, Vector, Vector3, math};
 use crate::world::HeightField;
 
 /// The least horizontal part of a ray's direction, of which the walk over the cells knows the way.
@@ -12,18 +13,76 @@ const LEAST: f64 = 1e-6;
 /// The heights of a wall whose outline alone is asked for.
 const ENDLESS: Span = Span { bottom: -1e9, top: 1e9 };
 
+/// What things stand on: hills, or the level floor without any.
+#[derive(Debug, Clone, Copy)]
+struct Ground<'a>(Option<&'a HeightField>);
+
+impl Ground<'_> {
+    /// The elevation under a point; beyond the hills, that of the floor.
+    fn height(&self, at: Point) -> f64 {
+        self.0.and_then(|hills| hills.height(at)).unwrap_or(0.0)
+    }
+
+    /// The distance to where a ray first meets the ground.
+    fn cast_ray(&self, origin: Point3, direction: Vector3, max_range: f64) -> f64 {
+        match self.0 {
+            Some(hills) => hills.cast_ray(origin, direction, max_range),
+            None if direction.z < 0.0 && origin.z >= 0.0 => origin.z / -direction.z,
+            None => f64::INFINITY,
+        }
+    }
+}
+
 impl Space {
     /// The distance in metres to what a ray in space meets first: the ground, a wall or a solid; infinite if there is
     /// nothing within `max_range`.
     ///
+    /// `ground` is what is under all of it, or `None` for a level floor at height 0, which stops what comes from above.
     /// `direction` is a unit vector. Walls follow the ground: their top is at each place as high above it. A solid's
     /// heights are above the level that [`set_level`](Space::set_level) has given it. A ray that starts in or on
     /// something measures 0. The solid `except` is overlooked.
-    pub fn cast_ray_over(
+    pub fn cast_ray_over<'a>(
         &self,
-        ground: &HeightField,
+        ground: impl Into<Option<&'a HeightField>>,
         origin: Point3,
         direction: Vector3,
+        max_range: f64,
+        except: Option<SolidId>,
+    ) -> f64 {
+        self.cast_over(Ground(ground.into()), (origin, direction), max_range, except)
+    }
+
+    /// Measures the distance in metres to what each beam of a scanner hits first, and infinity where there is nothing
+    /// within the scanner's range.
+    ///
+    /// `ground` is as for [`cast_ray_over`](Space::cast_ray_over). `pose` is the scanner's own in the world, and
+    /// `except` the solid that carries it. `ranges` takes one number for each beam; without room for all, the first
+    /// ones; beyond them, infinity.
+    pub fn scan_over<'a>(
+        &self,
+        ground: impl Into<Option<&'a HeightField>>,
+        scanner: &Scanner,
+        pose: &Pose3,
+        except: Option<SolidId>,
+        ranges: &mut [f64],
+    ) {
+        let ground = Ground(ground.into());
+        let (rise, run) = math::sin_cos(scanner.tilt);
+        let turned = pose.attitude.to_rotation_matrix();
+        let beams = ranges.len().min(scanner.beams());
+        let (ranges, beyond) = ranges.split_at_mut(beams);
+        beyond.fill(f64::INFINITY);
+        for (beam, range) in ranges.iter_mut().enumerate() {
+            let flat = scanner.buffer.fan.own_direction(beam) * run;
+            let direction = turned * Vector3::new(flat.x, flat.y, rise);
+            *range = self.cast_over(ground, (pose.position, direction), scanner.max_range, except);
+        }
+    }
+
+    fn cast_over(
+        &self,
+        ground: Ground<'_>,
+        (origin, direction): (Point3, Vector3),
         max_range: f64,
         except: Option<SolidId>,
     ) -> f64 {
@@ -38,7 +97,7 @@ impl Space {
     /// The distance on the floor to the first wall or solid within a limit; infinite if there is none.
     fn nearest_over(
         &self,
-        ground: &HeightField,
+        ground: Ground<'_>,
         slanted: &Slanted,
         limit: f64,
         except: Option<SolidId>,
@@ -116,13 +175,13 @@ impl Slanted {
     }
 
     /// Where the ray meets a side of a wall, or its top, which is the ground raised by the wall's height.
-    fn hit_wall(&self, ground: &HeightField, wall: &Block, limit: f64) -> Option<f64> {
+    fn hit_wall(&self, ground: Ground<'_>, wall: &Block, limit: f64) -> Option<f64> {
         let enter = self.ray.hit_box(&wall.shape, &ENDLESS)?;
         if enter > limit {
             return None;
         }
         let at = self.at(enter);
-        let above = self.ray.z + self.ray.slope * enter - ground.height(at).unwrap_or(0.0) - wall.span.top;
+        let above = self.ray.z + self.ray.slope * enter - ground.height(at) - wall.span.top;
         if above <= 0.0 {
             return Some(enter);
         }
@@ -211,6 +270,24 @@ mod tests {
                 &slope(0.0), Point3::new(x, y, z), Vector3::new(flat.x, flat.y, 0.0), 20.0, None,
             );
             prop_assert!(found == expected || (found - expected).abs() < 1e-9, "{} {}", found, expected);
+        }
+
+        /// Rays over a level floor are those over level hills, whatever their direction.
+        #[test]
+        fn the_floor_is_as_good_as_level_hills(
+            (x, y, z) in (1.0..9.0f64, 1.0..9.0f64, 0.01..0.6f64), (dx, dy, dz) in (-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64),
+            (radius, top, height) in (0.05..0.4f64, 0.05..0.5f64, 0.05..0.4f64),
+        ) {
+            let mut space = Space::new(&[Wall { height, ..Wall::new(Point::new(2.0, 1.0), Point::new(7.0, 8.0)) }]);
+            space.add(Solid::new(Footprint::Disc { radius }, Pose::new(5.0, 3.0, 0.0), 0.0, top));
+            let Some(direction) = Vector3::new(dx, dy, dz).try_normalize(1e-3) else { return Ok(()) };
+            let (origin, level) = (Point3::new(x, y, z), slope(0.0));
+            let over = space.cast_ray_over(&level, origin, direction, 20.0, None);
+            let found = space.cast_ray_over(None, origin, direction, 20.0, None);
+            // The hills end, the floor does not.
+            let end = origin + direction * found.min(20.0);
+            let inside = (0.0..=10.0).contains(&end.x) && (0.0..=10.0).contains(&end.y);
+            prop_assert!(!inside || found == over || (found - over).abs() < 1e-9, "{} {}", found, over);
         }
     }
 }

@@ -1,3 +1,5 @@
+use std::f64::consts::FRAC_PI_2;
+
 use super::fan::{Arc, Fan, Sector};
 use super::ray::{greater, lesser};
 use super::shape::{OrientedBox, Shape};
@@ -37,12 +39,19 @@ impl PolarBuffer {
         self.eye = eye;
     }
 
-    /// Writes the ranges of the beams, infinite beyond `max_range`.
+    /// Writes the ranges of the first beams, infinite beyond `max_range`.
     pub(super) fn ranges(&self, max_range: f64, out: &mut [f64]) {
-        for (range, inverse) in out.iter_mut().zip(&self.inverse) {
-            let distance = 1.0 / inverse;
-            *range = if distance <= max_range { distance } else { f64::INFINITY };
+        let (chunks, rest) = self.inverse[..out.len()].as_chunks::<4>();
+        let (ranges, last_ranges) = out.as_chunks_mut::<4>();
+        for (ranges, inverses) in ranges.iter_mut().zip(chunks) {
+            // Most beams of many scans hit nothing, which takes no division to see.
+            if inverses.iter().filter(|&&inverse| inverse > 0.0).count() == 0 {
+                *ranges = [f64::INFINITY; 4];
+            } else {
+                invert(inverses, max_range, ranges);
+            }
         }
+        invert(rest, max_range, last_ranges);
     }
 
     /// The beams that a box may be in; all of them if the eye is in the box.
@@ -72,7 +81,8 @@ impl PolarBuffer {
         let (near, sector) = match shape {
             Shape::Disc { centre, radius } => {
                 let to_centre = centre - self.eye;
-                (to_centre.norm() - radius, self.fan.sector(&disc_arc(to_centre, *radius)))
+                let distance = to_centre.norm();
+                (distance - radius, self.sector_of_disc(to_centre, distance, *radius))
             }
             Shape::Box(shape) => {
                 ((shape.centre - self.eye).norm() - shape.half.norm(), self.stroke(shape).sector)
@@ -130,6 +140,15 @@ impl PolarBuffer {
         });
     }
 
+    /// The beams that a disc may be in whose middle is some distance away, more than its radius.
+    #[inline]
+    fn sector_of_disc(&self, to_centre: Vector, distance: f64, radius: f64) -> Sector {
+        // No less than the arc sine from 0 to 1, and for small discs hardly more.
+        let sine = radius / distance;
+        let half = sine + (FRAC_PI_2 - 1.0) * sine * sine * sine;
+        self.fan.sector_about(to_centre, half)
+    }
+
     /// Draws a disc; true if the eye is in it.
     pub(super) fn draw_disc(&mut self, centre: Point, radius: f64) -> bool {
         let to_centre = centre - self.eye;
@@ -140,9 +159,10 @@ impl PolarBuffer {
         // Near and far distance along any beam have the same product, so the far one gives the near one's inverse.
         let per_product = 1.0 / ((distance - radius) * (distance + radius));
         let fan = &self.fan;
-        fan.for_each_run(fan.sector(&disc_arc(to_centre, radius)), |first, last| {
-            let directions = fan.cos[first..=last].iter().zip(&fan.sin[first..=last]);
-            for ((c, s), nearest) in directions.zip(&mut self.inverse[first..=last]) {
+        fan.for_each_run(self.sector_of_disc(to_centre, distance, radius), |first, last| {
+            let run = first..last + 1;
+            let directions = fan.cos[run.clone()].iter().zip(&fan.sin[run.clone()]);
+            for ((c, s), nearest) in directions.zip(&mut self.inverse[run]) {
                 let aside = c * to_centre.y - s * to_centre.x;
                 let squared = radius * radius - aside * aside;
                 let far = c * to_centre.x + s * to_centre.y + greater(squared, 0.0).sqrt();
@@ -163,6 +183,15 @@ fn draw_lines(cos: &[f64], sin: &[f64], inverse: &mut [f64], [a, b]: &[Vector; 2
     }
 }
 
+/// Writes inverses, infinite where they are more than a limit.
+#[inline]
+fn invert(numbers: &[f64], limit: f64, out: &mut [f64]) {
+    for (range, number) in out.iter_mut().zip(numbers) {
+        let inverse = 1.0 / number;
+        *range = if inverse <= limit { inverse } else { f64::INFINITY };
+    }
+}
+
 /// Whether no number is below a limit.
 #[inline]
 fn all_at_least(numbers: &[f64], limit: f64) -> bool {
@@ -176,13 +205,4 @@ fn all_at_least(numbers: &[f64], limit: f64) -> bool {
 #[inline]
 fn select(x: f64, positive: f64, otherwise: f64) -> f64 {
     if x > 0.0 { positive } else { otherwise }
-}
-
-/// The directions between the two tangents to a disc, from outside it.
-#[inline]
-fn disc_arc(to_centre: Vector, radius: f64) -> Arc {
-    let length = greater(to_centre.norm_squared() - radius * radius, 0.0).sqrt();
-    let across = Vector::new(-to_centre.y, to_centre.x) * radius;
-    let along = to_centre * length;
-    Arc { from: along - across, to: along + across, turn: 1.0 }
 }

@@ -12,12 +12,25 @@ use crate::geometry::{Point, Pose, math};
 const FEW_SOLIDS: usize = 64;
 
 /// A laser scanner's beams, worked out once, and the memory that a scan needs.
+///
+/// ```
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::world::Wall;
+/// use roverlab::world::space::{Scanner, Space};
+/// let space = Space::new(&[Wall::new(Point::new(2.0, -5.0), Point::new(2.0, 5.0))]);
+/// let quarter = std::f64::consts::FRAC_PI_2;
+/// let mut scanner = Scanner::new(-quarter, quarter, 3, 0.1, 0.0, 4.0);
+/// let mut ranges = [0.0; 3];
+/// space.scan(&mut scanner, &Pose::default(), None, &mut ranges);
+/// assert!(ranges[1] < 2.0 && ranges[1] > 1.9, "to the face of a wall ahead; right, ahead, left");
+/// assert!(ranges[0] >= 4.0 && ranges[2] >= 4.0);
+/// ```
 #[derive(Debug, Clone)]
 pub struct Scanner {
-    buffer: PolarBuffer,
+    pub(super) buffer: PolarBuffer,
     z: f64,
-    tilt: f64,
-    max_range: f64,
+    pub(super) tilt: f64,
+    pub(super) max_range: f64,
     /// Whether the beams go round counter-clockwise, at most once or so: what a polar buffer can draw.
     drawn: bool,
     /// What may be seen; its order, nearest first: the distance's leading bits, then a place in `sights`; and which
@@ -158,22 +171,18 @@ impl Space {
 
     /// Draws the solids of some cells, but for those in cells that are hidden.
     fn draw_block(&self, buffer: &mut PolarBuffer, cells: Cells, z: f64, seen: &mut [bool]) -> bool {
-        let lattice = &self.grid.lattice;
-        cells.iter().any(|(x, y)| {
-            let solids = self.grid.solids_in(lattice.index(x, y));
-            solids.iter().any(|&number| {
-                if seen[number as usize] {
-                    return false;
-                }
-                let shape = &self.solids[number as usize].shape;
-                // To draw a disc takes no longer than to see whether it is hidden.
-                if matches!(shape, Shape::Box(_)) {
-                    let (sector, near) = buffer.sector_of(shape);
-                    // What is hidden now stays so.
-                    seen[number as usize] = buffer.hides(sector, near);
-                }
-                self.draw_solid(buffer, number, z, seen)
-            })
+        self.grid.solids_of(cells).any(|&number| {
+            if seen[number as usize] {
+                return false;
+            }
+            let shape = &self.solids[number as usize].shape;
+            // To draw a disc takes no longer than to see whether it is hidden.
+            if matches!(shape, Shape::Box(_)) {
+                let (sector, near) = buffer.sector_of(shape);
+                // What is hidden now stays so.
+                seen[number as usize] = buffer.hides(sector, near);
+            }
+            self.draw_solid(buffer, number, z, seen)
         })
     }
 

@@ -2,7 +2,11 @@
 
 use petgraph::graph::DiGraph;
 use proptest::prelude::*;
-use roverlab::nav::graph::{GraphError, petgraph_shortest_path};
+use roverlab::maze::generate::braided;
+use roverlab::maze::{Unknown, distances_from_start, petgraph_of_maze};
+use roverlab::nav::graph::{GraphError, petgraph_of_grid, petgraph_shortest_path};
+use roverlab::nav::grid::{GridPlanner, JumpPointSearch};
+use roverlab::world::{BitGrid, GridCell};
 
 #[test]
 fn what_makes_no_sense_is_named() {
@@ -45,6 +49,36 @@ proptest! {
                     prop_assert!(!costs.contains_key(&goal));
                 }
             }
+        }
+    }
+
+    /// A grid as a graph has the steps that grid planners take.
+    #[test]
+    fn grids_as_graphs_have_the_costs_of_grid_planners(
+        cells in proptest::collection::vec(prop::bool::weighted(0.7), 9 * 7), from in 0..63usize, to in 0..63usize
+    ) {
+        let grid = BitGrid::from_fn(9, 7, |column, row| cells[row * 9 + column]).unwrap();
+        let cell = |index: usize| GridCell::new(index % 9, index / 9);
+        prop_assume!(cells[from] && cells[to]);
+        let graph = petgraph_of_grid(&grid);
+        let node = |cell: GridCell| graph.node_indices().find(|&node| graph[node] == cell).unwrap();
+        let costs = petgraph::algo::dijkstra(&graph, node(cell(from)), None, |edge| *edge.weight());
+        match JumpPointSearch::new(&grid).plan(cell(from), cell(to)) {
+            Ok(path) => prop_assert!((path.cost - costs[&node(cell(to))]).abs() < 1e-9),
+            Err(_) => prop_assert!(!costs.contains_key(&node(cell(to)))),
+        }
+    }
+
+    /// A maze as a graph has the steps of the flood fill.
+    #[test]
+    fn mazes_as_graphs_have_the_distances_of_the_flood(width in 1..9usize, height in 1..9usize, seed: u64) {
+        let maze = braided(width, height, 0.3, seed).unwrap();
+        let graph = petgraph_of_maze(&maze, Unknown::Closed);
+        let start = graph.node_indices().find(|&node| graph[node] == maze.start()).unwrap();
+        let steps = petgraph::algo::dijkstra(&graph, start, None, |_| 1_u32);
+        let distances = distances_from_start(&maze, Unknown::Closed);
+        for node in graph.node_indices() {
+            prop_assert_eq!(distances.get(graph[node]), steps.get(&node).copied());
         }
     }
 }

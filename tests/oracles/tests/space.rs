@@ -4,12 +4,12 @@ use std::f64::consts::{PI, TAU};
 
 use parry2d_f64::math::{Pose as ParryPose, Vector as ParryVector};
 use parry2d_f64::query::{self, Ray as ParryRay};
-use parry2d_f64::shape::{Ball, Cuboid, Shape as ParryShape};
+use parry2d_f64::shape::SharedShape;
 use proptest::prelude::*;
 
-use roverlab::geometry::{Aabb, Point, Pose, Segment, Vector, cross, direction};
+use roverlab::geometry::{Aabb, Point, Pose, Vector, cross, direction};
 use roverlab::world::space::{Scanner, Solid, SolidId, Space, Span};
-use roverlab::world::{Footprint, Wall};
+use roverlab::world::{Colour, Footprint, Object, ObjectKind, Shape, Wall, World};
 
 const Z: f64 = 0.1;
 const LOW: Span = Span { bottom: 0.0, top: 0.1 };
@@ -54,35 +54,53 @@ fn filled(walls: &[Wall], solids: &[Solid]) -> Space {
 }
 
 /// Everything in a world at a height, as parry has it.
-fn parry_shapes(walls: &[Wall], solids: &[Solid], z: f64) -> Vec<(ParryPose, Box<dyn ParryShape>)> {
-    let walls = walls.iter().filter(|wall| z <= wall.height).map(|wall| {
-        let Segment { a, b } = wall.line;
-        let along = b - a;
-        let middle = a + along * 0.5;
-        let angle = roverlab::geometry::math::atan2(along.y, along.x);
-        let half = ParryVector::new(0.5 * along.norm(), 0.5 * wall.thickness);
-        (
-            ParryPose::new(ParryVector::new(middle.x, middle.y), angle),
-            Box::new(Cuboid::new(half)) as Box<dyn ParryShape>,
-        )
-    });
+fn parry_shapes(walls: &[Wall], solids: &[Solid], z: f64) -> Vec<(ParryPose, SharedShape)> {
+    let world = World { walls: walls.to_vec(), ..World::empty(1.0, 1.0) };
     let solids = solids.iter().filter(|s| s.span().contains(z)).map(|s| parry_shape(&s.outline, &s.pose));
-    walls.chain(solids).collect()
+    world.parry_shapes(z).into_iter().chain(solids).collect()
 }
 
-fn parry_shape(outline: &Footprint, pose: &Pose) -> (ParryPose, Box<dyn ParryShape>) {
+fn parry_shape(outline: &Footprint, pose: &Pose) -> (ParryPose, SharedShape) {
     match outline {
         Footprint::Disc { radius } => {
-            (ParryPose::new(ParryVector::new(pose.x, pose.y), 0.0), Box::new(Ball::new(*radius)))
+            (ParryPose::new(ParryVector::new(pose.x, pose.y), 0.0), SharedShape::ball(*radius))
         }
         Footprint::Rectangle(r) => {
             let middle = pose.to_world(r.min + r.size() * 0.5);
             let half = r.size() * 0.5;
-            let half = ParryVector::new(half.x, half.y);
-            (ParryPose::new(ParryVector::new(middle.x, middle.y), pose.heading), Box::new(Cuboid::new(half)))
+            (
+                ParryPose::new(ParryVector::new(middle.x, middle.y), pose.heading),
+                SharedShape::cuboid(half.x, half.y),
+            )
         }
         _ => unreachable!("no other outline is drawn here"),
     }
+}
+
+#[test]
+fn shapes_of_a_world_come_back_and_others_are_named() {
+    let shapes = [Shape::Sphere { radius: 0.1 }, Shape::Cone { radius: 0.2, top: 0.1, height: 0.2 }];
+    let mut world = World::walled(3.0, 2.0);
+    for (x, shape) in (1..).zip(shapes) {
+        let kind = ObjectKind::new("thing", shape, Colour::RED);
+        world.objects.push(Object::new(kind.into(), Pose::new(f64::from(x), 1.0, 0.5)));
+    }
+    let mut again = World::empty(3.0, 2.0);
+    for (pose, shape) in world.parry_shapes(0.1) {
+        again.add_parry_shape(pose, &*shape).unwrap();
+    }
+    for (wall, back) in world.walls.iter().zip(&again.walls) {
+        assert!((wall.line.a - back.line.a).norm() < 1e-12 && (wall.line.b - back.line.b).norm() < 1e-12);
+        assert_eq!(wall.thickness, back.thickness);
+    }
+    let radii: Vec<f64> = again.objects.iter().map(|object| object.kind.shape.bounding_radius()).collect();
+    assert!((radii[0] - 0.1).abs() < 1e-12 && (radii[1] - 0.15).abs() < 1e-12, "{radii:?} half way up");
+    assert!(world.parry_shapes(0.3).is_empty(), "all is lower");
+    let triangle = SharedShape::triangle([0.0, 0.0].into(), [1.0, 0.0].into(), [0.0, 1.0].into());
+    again.add_parry_shape(ParryPose::default(), &*triangle).unwrap();
+    assert_eq!(again.walls.len(), world.walls.len() + 3);
+    let error = again.add_parry_shape(ParryPose::default(), &*SharedShape::capsule_x(1.0, 0.1)).unwrap_err();
+    assert!(error.to_string().starts_with("found a Capsule; expected segments"), "{error}");
 }
 
 /// The nearest edge of any rectangle's or disc's outline along a ray, one by one.

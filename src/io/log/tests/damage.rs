@@ -1,4 +1,4 @@
-//! Files that were cut off, damaged, joined, or come of another version.
+//! Files that are truncated, damaged, concatenated, or from another version.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// A file with some metadata records of ours.
+/// A file with several of this project's metadata records.
 fn with_metadata(records: &[&[(&str, &str)]]) -> Vec<u8> {
     let mut file = mcap::Writer::new(io::Cursor::new(Vec::new())).unwrap();
     for fields in records {
@@ -46,14 +46,14 @@ fn thorough() -> bool {
 #[test]
 fn every_cut_gives_back_all_complete_chunks() {
     let bytes = recorded(1.3);
-    // Where each chunk's record ends.
+    // Ends of the chunk records.
     let records = super::reader::records(&bytes, mcap::MAGIC.len()).map_while(|record| record);
     let ends: Vec<usize> = records
         .filter(|record| record.opcode == mcap::records::op::CHUNK)
         .map(|record| record.end())
         .collect();
     assert!(ends.len() >= 2, "{ends:?}");
-    // All cuts near the ends of chunks and of the file, and some of the others; or all, if somebody has the time.
+    // All cuts near the ends of chunks and of the file, and some of the others; all of them if thorough.
     let near = |cut: usize| ends.iter().chain([&0, &bytes.len()]).any(|end| end.abs_diff(cut) < 60);
     for cut in (0..bytes.len()).filter(|&cut| cut % 61 == 0 || near(cut) || thorough()) {
         let part = &bytes[..cut];
@@ -118,7 +118,7 @@ fn every_flipped_bit_is_found_out_or_harmless() {
     let bytes = recorded(0.2);
     let log = Log::read(bytes.clone()).unwrap();
     let mut found_out = 0;
-    // Bits of some bytes, each time another one of the byte; or all, if somebody has the time.
+    // Single bits of some bytes, a different one each time; all of them if thorough.
     let bits = (0..8 * bytes.len()).filter(|bit| bit % 401 == 0 || thorough());
     let mut flips = 0;
     for bit in bits {

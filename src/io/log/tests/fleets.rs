@@ -1,4 +1,4 @@
-//! Robots that are stepped together in one thread.
+//! Robots stepped together in one thread.
 
 use super::*;
 
@@ -60,12 +60,12 @@ fn a_troop_replays_to_the_bit() {
     assert_eq!((again, player.rest()), (path, None));
     let second = Log::read(second).unwrap();
     assert!(second.bytes() == bytes, "{}", Difference::between(&log, &second).unwrap());
-    // Viewers and the field's tools want messages in the order of their time.
+    // Viewers and other tools expect messages in the order of their time.
     let times: Vec<u64> = super::reader::whole(&bytes)
         .unwrap()
         .iter()
         .filter(|record| record.opcode == mcap::records::op::CHUNK)
-        .flat_map(|chunk| super::reader::inner(&chunk.body[40..]).unwrap())
+        .flat_map(|chunk| super::reader::inner(&chunk.body[40..]).map(|record| record.unwrap()))
         .filter(|record| record.opcode == mcap::records::op::MESSAGE)
         .map(|record| super::reader::message(record.body).unwrap().header.log_time)
         .collect();
@@ -95,7 +95,7 @@ fn a_troop_that_does_something_else_is_named() {
     fleet.control(0, 0.05, Box::new(|_| Ok(ControlFlow::Continue(())))).unwrap();
     let error = fleet.run_for(0.1).unwrap_err().to_string();
     assert!(error.starts_with("found a step without a call; expected set_speed("), "{error}");
-    // What is left of a recording that was cut off replays as far as it goes.
+    // A truncated recording replays as far as it goes.
     let saved = Log::read(recover(&bytes[..bytes.len() / 2]).unwrap().bytes).unwrap();
     assert_eq!(named(&saved, 0.05, 30).0, ErrorKind::EndOfLog);
 }

@@ -1,8 +1,8 @@
-//! Recordings whose chunks are packed.
+//! Recordings with compressed chunks.
 
 use super::*;
 
-/// A run recorded with packed chunks.
+/// A run recorded with compressed chunks.
 #[cfg(any(feature = "lz4", feature = "zstd"))]
 fn packed(compression: Compression) -> Vec<u8> {
     let simulation = Simulation::new(&scene(), SimOptions::with_noise(1.0, 7)).unwrap();

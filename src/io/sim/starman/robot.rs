@@ -4,7 +4,7 @@ use ambassador::Delegate;
 
 use super::physics::{Figure, StarmanTruth};
 use super::{LIMBS, StarmanSpec};
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::delegate::{
     Colour, DisplayImage, DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, Pixel, Psd, RadioMessage,
     Resolution, Result, RgbImage, Viewport, ambassador_impl_Display,
@@ -12,8 +12,8 @@ use crate::io::delegate::{
 use crate::io::sim::Lcd;
 use crate::io::sim::lockstep::{Lockstep, Program};
 use crate::io::{
-    Camera, Clock, DistanceSensors, Drive, Encoders, Error, ErrorKind, Keys, Lidar, Manoeuvres, Motors,
-    Odometry, Radio, Servos, StallDetector,
+    Attitude, Camera, Clock, DistanceSensors, Drive, Encoders, Error, ErrorKind, Inertial, Keys, Lidar,
+    Manoeuvres, Motors, Odometry, Radio, Servos, StallDetector,
 };
 
 /// A simulated Starman, in virtual time.
@@ -163,6 +163,7 @@ signatures! { Camera => lacks!("camera") }
 signatures! { Radio => lacks!("radio") }
 signatures! { Motors => lacks!("motors") }
 signatures! { Encoders => lacks!("encoders") }
+signatures! { Inertial => lacks!("inertial unit") }
 
 #[cfg(test)]
 mod tests {

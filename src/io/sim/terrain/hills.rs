@@ -1,13 +1,12 @@
 use std::sync::Arc;
 
 use super::{Mishap, RigidBody, Undercarriage, Watch};
-use crate::geometry::{Point, Point3, Pose, Pose3, Vector3, angle_difference, direction};
-use crate::io::LidarSettings;
+use crate::geometry::{Point, Pose, Pose3, angle_difference};
 use crate::io::sim::TICK;
 use crate::io::sim::body::Body;
 use crate::kinematics::{PlanarMotion, PlanarTwist};
-use crate::world::space::{SolidId, Space};
-use crate::world::{HeightField, Mount, RobotPlacement, World};
+use crate::world::space::Space;
+use crate::world::{HeightField, RobotPlacement, World};
 
 /// The ground of a world with hills, and how its robots are on it.
 #[derive(Debug)]
@@ -43,6 +42,11 @@ impl Hills {
         });
         let riders = riders.collect();
         Some(Box::new(Self { ground, riders }))
+    }
+
+    /// Their surface.
+    pub(in crate::io::sim) fn ground(&self) -> &HeightField {
+        &self.ground
     }
 
     /// Where a robot is in space.
@@ -104,40 +108,6 @@ impl Hills {
             body.span.top = above + body.spec.height;
             let level = pose.position.z - space.solid(body.solid).bottom;
             space.set_level(body.solid, level);
-        }
-    }
-
-    /// The distance that a sensor of a robot measures along a direction of its own frame.
-    pub(in crate::io::sim) fn measure(
-        &self,
-        space: &Space,
-        (robot, solid): (usize, SolidId),
-        mount: &Mount,
-        max_range: f64,
-    ) -> f64 {
-        let pose = self.pose(robot);
-        let origin = pose.to_world(Point3::new(mount.x, mount.y, mount.z));
-        let ahead = direction(mount.yaw);
-        let towards = pose.rotate(Vector3::new(ahead.x, ahead.y, 0.0));
-        space.cast_ray_over(&self.ground, origin, towards, max_range, Some(solid))
-    }
-
-    /// The distances that a scanner of a robot measures.
-    pub(in crate::io::sim) fn scan(
-        &self,
-        space: &Space,
-        (robot, solid): (usize, SolidId),
-        (mount, settings, max_range): (&Mount, &LidarSettings, f64),
-        ranges: &mut [f64],
-    ) {
-        let pose = self.pose(robot);
-        let origin = pose.to_world(Point3::new(mount.x, mount.y, mount.z));
-        let (first, increment) = settings.beams();
-        let (rise, run) = crate::geometry::math::sin_cos(settings.tilt);
-        for (beam, range) in ranges.iter_mut().enumerate() {
-            let flat = direction(mount.yaw + first + increment * beam as f64) * run;
-            let towards = pose.rotate(Vector3::new(flat.x, flat.y, rise));
-            *range = space.cast_ray_over(&self.ground, origin, towards, max_range, Some(solid));
         }
     }
 }

@@ -30,4 +30,5 @@ pub use mishap::Mishap;
 pub(super) use hills::Hills;
 use mishap::Watch;
 use rigid_body::RigidBody;
+pub(super) use undercarriage::GRAVITY;
 use undercarriage::Undercarriage;

@@ -8,7 +8,7 @@ use crate::io::{
     Psd, Resolution, Script,
 };
 
-/// A robot whose readings are functions of time and whose calls take none.
+/// A robot whose readings are functions of time and whose calls take no time.
 fn robot() -> MockRobot {
     let scan = |time: f64| LidarScan { range_max: 99.0, ranges: vec![time, 2.0], ..LidarScan::default() };
     MockRobot::new()
@@ -23,7 +23,7 @@ fn faulty(text: &str) -> Faulty<MockRobot> {
     Faulty::new(robot(), text.split(' ').map(|fault| fault.parse().unwrap()).collect())
 }
 
-/// The front distance at each of some times.
+/// The front distances at several times.
 fn front(robot: &mut Faulty<MockRobot>, times: impl IntoIterator<Item = f64>) -> Vec<f64> {
     let mut readings = vec![];
     for time in times {
@@ -126,7 +126,7 @@ fn odometry_jumps_and_goes_on_from_there() {
     robot.wait(1.0).unwrap();
     assert_eq!(robot.pose().unwrap(), Pose::new(1.0, 0.5, jump.heading));
     robot.wait(2.0).unwrap();
-    // It still drives straight on, which is up now.
+    // It keeps driving straight on, which is upwards now.
     let pose = robot.pose().unwrap();
     assert!((pose.x - 1.0).abs() < 1e-12 && (pose.y - 2.5).abs() < 1e-12, "{pose:?}");
     robot.set_pose(Pose::default()).unwrap();
@@ -146,13 +146,13 @@ fn a_jump_that_ends_leaves_the_truth() {
 fn late_readings_are_old() {
     let mut robot = faulty("late:front=1@2");
     let times = [0.0, 0.5, 1.0, 1.5, 2.0, 2.25, 2.5, 4.0];
-    // The newest reading that is at least a second old; at 2.25 s that is the one of 1 s.
+    // The newest reading at least a second old; at 2.25 s this is the one of 1 s.
     assert_eq!(front(&mut robot, times), [0.0, 0.5, 1.0, 1.5, 1.0, 1.0, 1.5, 2.5]);
 
     let mut robot = faulty("late=1@0");
     assert_eq!(robot.scan().unwrap().ranges[0], 0.0);
     robot.wait(0.5).unwrap();
-    // Nothing is old enough yet.
+    // No reading is old enough yet.
     assert_eq!(robot.scan().unwrap().ranges[0], 0.0);
     assert_eq!(robot.pose().unwrap().x, 0.5);
     robot.wait(1.0).unwrap();

@@ -6,7 +6,7 @@ use crate::io::wrappers::{Fault, Faulty, Limited, Limits, Noise, Noisy, Stamp, T
 use crate::io::{MockRobot, RobotIo};
 use crate::random::Stream;
 
-/// Makes the same calls of a bare robot and of a wrapped one; both must answer and command the same.
+/// Makes the same calls on a bare and a wrapped robot; answers and commands must match.
 fn assert_identity<W: RobotIo>(
     numbers: &[u8],
     wrap: impl FnOnce(MockRobot) -> W,
@@ -59,8 +59,7 @@ proptest! {
         );
     }
 
-    /// Faults that wait for their time leave every answer alone but for the time that asking the clock takes, which
-    /// is none here.
+    /// Future faults change no answer; only reading the clock takes time, which is none here.
     #[test]
     fn faults_to_come_change_nothing_yet(numbers in vec(0..CALLS, 0..40)) {
         let all = "stuck@1e6 lost@1e6 nan@1e6 jump@1e6 late@1e6 link@1e6 hang@1e6 clock@1e6 clock=3@1e6";

@@ -17,7 +17,7 @@ fn ideal() -> Manoeuvring<MockRobot> {
     manoeuvring(MockRobot::new().with_ideal_drive())
 }
 
-/// A simulated robot in the open, by itself and with manoeuvres that are made of its speeds.
+/// A simulated robot in the open, by itself and with manoeuvres made of its speeds.
 fn simulated() -> (SimRobot, Manoeuvring<SimRobot>) {
     let spec = RobotSpec::s4();
     let lag = spec.motor.time_constant;
@@ -27,7 +27,7 @@ fn simulated() -> (SimRobot, Manoeuvring<SimRobot>) {
     (robot(), Manoeuvring::new(robot(), parameters).unwrap())
 }
 
-/// A cart on rails with a buffer after a metre, which holds its wheels.
+/// A cart on rails with a buffer after a metre that blocks its wheels.
 #[derive(Default)]
 struct Cart {
     time: f64,
@@ -76,7 +76,7 @@ fn is_near(pose: Pose, goal: Pose, metres: f64, radians: f64) -> bool {
 proptest! {
     #![proptest_config(crate::testing::cases(256))]
 
-    /// A robot that does as it is told ends where the arc does, whatever waits it is moved by.
+    /// A robot without errors ends at the end of the arc, whatever the waits in between.
     #[test]
     fn an_arc_is_driven_to_its_end(
         length in -2.0..2.0f64, angle in -7.0..7.0f64, speed in 0.05..0.8f64, waits in 0.003..0.4f64,
@@ -140,7 +140,7 @@ fn who_is_held_stalls_and_is_free_backwards() {
     cart.stop().unwrap();
     assert!(!cart.is_stalled().unwrap() && cart.is_done().unwrap(), "nothing drives the wheels");
 
-    // Speeds that are told again and again are noticed, too.
+    // Repeated equal speed commands are detected, too.
     let stalls: Vec<_> = (0..10)
         .map(|_| {
             cart.set_speed(Twist::new(0.2, 0.0)).unwrap();
@@ -184,7 +184,7 @@ fn the_last_command_counts() {
     let goal = advance(there, Displacement { length: 0.3, angle: 1.0 });
     assert!(is_near(robot.pose().unwrap(), goal, 1e-9, 1e-9));
 
-    // Odometry that is set anew moves the way with it.
+    // Setting odometry shifts the manoeuvre with it.
     robot.straight(1.0, 0.5).unwrap();
     robot.wait(0.73).unwrap();
     let gone = 1.0 - robot.remaining().unwrap();

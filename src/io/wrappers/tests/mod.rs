@@ -5,14 +5,14 @@ mod manoeuvres;
 mod noise;
 mod traces;
 
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::{
-    DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, MockRobot, Psd, RadioMessage, Resolution,
-    RobotIo, Script, Viewport,
+    Attitude, DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, MockRobot, Psd, RadioMessage,
+    Resolution, RobotIo, Script, Viewport,
 };
 use crate::world::Colour;
 
-/// A mock whose readings all change with time, and whose every call takes a little.
+/// A mock with readings that change with time and calls that take some time.
 fn busy_robot() -> MockRobot {
     let scan = |time: f64| LidarScan {
         angle_min: -1.0,
@@ -31,15 +31,18 @@ fn busy_robot() -> MockRobot {
             Ok(image::RgbImage::from_pixel(4, 3, image::Rgb([(50.0 * time) as u8, 200, 0])))
         }))
         .with_encoder(1, Script::function(|time| Ok((1000.0 * time) as i64)))
+        .with_attitude(Script::function(|time| Ok(Attitude { roll: 0.1 * time, pitch: -0.2, yaw: time })))
+        .with_turn_rates(Script::function(|time| Ok(Vector3::new(time, 0.5, -time))))
+        .with_acceleration(Script::function(|time| Ok(Vector3::new(0.1, time, 9.81))))
         .with_keys([(0.0, Key::Key1), (0.4, Key::Key3), (1.0, Key::Key4)])
         .with_touches([(0.2, (3, 4))])
         .with_radio(1, [1, 2], [message(0.1), message(0.5)])
         .with_ideal_drive()
 }
 
-const CALLS: u8 = 42;
+const CALLS: u8 = 43;
 
-/// Makes one of all the calls that a robot understands and gives what came back.
+/// Makes one of all possible calls and returns its answer.
 fn call(robot: &mut (impl RobotIo + ?Sized), number: u8) -> String {
     let colours = (Colour::RED, Colour::BLUE);
     let image = image::RgbImage::from_pixel(3, 2, image::Rgb([1, 2, 3]));
@@ -86,6 +89,7 @@ fn call(robot: &mut (impl RobotIo + ?Sized), number: u8) -> String {
         38 => format!("{:?} {:?}", robot.set_motor(1, 0.5), robot.set_servo(1, -0.5)),
         39 => format!("{:?} {:?}", robot.encoder(1), robot.reset_encoder(1)),
         40 => format!("{:?} {:?}", robot.set_resolution(Resolution::Vga), robot.resolution()),
+        41 => format!("{:?} {:?} {:?}", robot.attitude(), robot.turn_rates(), robot.acceleration()),
         _ => format!("{:?}", robot.image()),
     }
 }

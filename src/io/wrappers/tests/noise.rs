@@ -100,7 +100,7 @@ fn the_order_of_a_stack_matters() {
     let steady = |robot: &mut dyn DistanceSensors| {
         robot.distance(Psd::FRONT).unwrap() == robot.distance(Psd::FRONT).unwrap()
     };
-    // A stuck sensor repeats its noisy reading; noise over a stuck sensor still moves.
+    // A stuck sensor repeats its noisy reading; noise over a stuck sensor still changes.
     let mut outside = Faulty::new(Noisy::new(busy_robot(), Noise::default(), &stream).unwrap(), stuck());
     let mut inside = Noisy::new(Faulty::new(busy_robot(), stuck()), Noise::default(), &stream).unwrap();
     assert!(steady(&mut outside) && !steady(&mut inside));

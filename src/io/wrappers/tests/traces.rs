@@ -18,7 +18,7 @@ fn trace(numbers: &[u8]) -> (Vec<u8>, u64) {
     (robot.finish().1.unwrap(), digest)
 }
 
-/// FNV-1a as its authors write it, for comparison.
+/// Reference implementation of FNV-1a.
 fn fnv_1a(bytes: &[u8]) -> u64 {
     bytes.iter().fold(14_695_981_039_346_656_037, |hash: u64, &byte| {
         (hash ^ u64::from(byte)).wrapping_mul(1_099_511_628_211)
@@ -47,7 +47,7 @@ proptest! {
     }
 }
 
-/// The digest of one run on a stack of everything.
+/// The digest of one run on a stack of all wrappers.
 fn stacked_digest(seed: u64, numbers: &[u8]) -> u64 {
     let limits = Limits { linear: 0.15, linear_acceleration: 0.5, ..Limits::default() };
     let faults =
@@ -59,7 +59,7 @@ fn stacked_digest(seed: u64, numbers: &[u8]) -> u64 {
     robot.digest()
 }
 
-/// The number must not change, on any platform: recorded runs are compared with it.
+/// This number must never change, on any platform: recorded runs are compared with it.
 #[test]
 fn a_run_on_a_stack_has_a_fixed_digest() {
     let numbers: Vec<u8> = (0..CALLS).chain(0..20).chain([1, 1, 14, 17, 4, 1, 17, 4, 3]).collect();
@@ -153,7 +153,7 @@ fn a_time_that_the_robot_cannot_tell_is_a_question_mark() {
     );
 }
 
-/// Takes some bytes, then fails, each time with another message.
+/// Accepts some bytes, then fails, each time with another message.
 struct Full {
     room: usize,
     failures: usize,

@@ -5,7 +5,8 @@ use crate::geometry::units::from_deg;
 const REACH: f64 = 0.3;
 const ERROR: f64 = 0.003;
 
-/// A thin wall ahead, across the robot's way, as far as half a metre to the left: and another one far behind.
+/// A thin wall ahead, across the robot's way and half a metre long to the left, and another one far
+/// behind.
 fn wall_and_background() -> Vec<Point> {
     let background = (0..60).map(|i| Point::new(-0.3, -0.6 + 0.02 * f64::from(i)));
     (0..40).map(|i| Point::new(0.1, 0.01 * f64::from(i))).chain(background).collect()
@@ -15,7 +16,7 @@ fn background() -> Vec<Point> {
     wall_and_background().split_off(40)
 }
 
-/// What is hidden to a robot that sees what it measures.
+/// The hidden ends, for a robot that sees exactly the measured points.
 fn hidden(ends: &mut WallEnds, pose: &Pose, measured: &[Point]) -> Vec<Point> {
     ends.update(pose, measured, REACH, ERROR);
     ends.hidden(pose, measured, ERROR).collect()
@@ -61,7 +62,8 @@ fn ends_are_forgotten_with_time_and_with_distance() {
     assert_eq!(hidden(&mut ends, &Pose::new(-0.3, 0.0, 0.0), &[]), []);
 }
 
-/// A wall from (0.1, 0.004) straight away from the robot, at a slant of a few degrees, in beams of one degree.
+/// A wall from (0.1, 0.004) straight away from the robot, at a slant of a few degrees, in beams at
+/// intervals of one degree.
 #[test]
 fn a_wall_seen_at_a_slant_may_end_before_the_next_beam() {
     let (end, along) = (Point::new(0.1, 0.004), Vector::new(1.0, 0.2));

@@ -1,34 +1,34 @@
-//! A grid as straight lines of sight meet it: free cells in rows, and the corners on the lines between them.
+//! A grid prepared for lines of sight: free cells in rows, and the corners on the lines between them.
 
 use crate::world::{BitGrid, GridCell};
 
-/// The free cells and the corners of a grid, as bits.
+/// Free cells and corners of a grid, as bits.
 ///
-/// A *corner* is a point of the grid's lines with one blocked cell among the four around it: the only places where a
-/// shortest path turns. Of two kinds of them, those that touch a cell on the *falling* diagonal (upper left or lower
-/// right, rows counted downwards) bend only ways that rise, and the others only ways that fall.
+/// A *corner* is a grid point with exactly one blocked cell among the four around it; shortest paths turn
+/// only there. Corners of a blocked cell on the *falling* diagonal (upper left or lower right, rows counted
+/// downwards) bend only rising paths, the others only falling paths.
 #[derive(Debug, Clone)]
 pub(in crate::nav::grid) struct Field {
     width: usize,
     height: usize,
-    /// Words of a row or line.
+    /// Number of words in a row or line.
     stride: usize,
     /// Rows of cells, column c at bit c + 1, with a blocked row before and after.
     free: Vec<u64>,
     /// Lines of points, x at bit x.
     lines: Vec<Line>,
-    /// How many corners come before each word of a line.
+    /// Number of corners before each word of a line.
     before: Vec<u32>,
 }
 
 /// 64 points of a line.
 #[derive(Debug, Clone, Copy, Default)]
 struct Line {
-    /// Corners of a cell on the falling diagonal.
+    /// Corners with the blocked cell on the falling diagonal.
     falling: u64,
-    /// Corners of a cell on the rising diagonal.
+    /// Corners with the blocked cell on the rising diagonal.
     rising: u64,
-    /// Points at which a way along the line ends, if it comes from lower x.
+    /// Points at which a path along the line ends, coming from lower x.
     end_right: u64,
     /// The same from higher x.
     end_left: u64,
@@ -39,7 +39,7 @@ struct Line {
 pub(super) struct Corner {
     pub(super) x: i32,
     pub(super) y: i32,
-    /// The direction of its blocked cell, (±1, ±1).
+    /// Direction of its blocked cell, (±1, ±1).
     pub(super) blocked: (i8, i8),
 }
 
@@ -76,7 +76,8 @@ impl Field {
         field
     }
 
-    /// The points of a line, by the cells around each: those to the right of point x at bit x, and to the left.
+    /// The points of a line, from the cells around each: those to the right of point x at bit x, and those to
+    /// the left.
     fn line(&self, y: usize, index: usize) -> Line {
         let word = |row: usize, index: usize| {
             if index < self.stride { self.free[row * self.stride + index] } else { 0 }
@@ -108,19 +109,20 @@ impl Field {
         self.free[line * self.stride + at / 64] >> (at % 64) & 1 != 0
     }
 
-    /// The first free column from one on.
+    /// The first free column at or after `column`.
     #[inline]
     pub(super) fn next_free(&self, row: i32, column: i32) -> i32 {
         self.next(row, column, 0)
     }
 
-    /// The first blocked column from one on.
+    /// The first blocked column at or after `column`.
     #[inline]
     pub(super) fn next_blocked(&self, row: i32, column: i32) -> i32 {
         self.next(row, column, u64::MAX)
     }
 
-    /// The first column from one on whose bit is set once the word is flipped; behind the row if there is none.
+    /// The first column at or after `column` whose bit is set once the word is flipped; past the row if there
+    /// is none.
     #[inline]
     fn next(&self, row: i32, column: i32, flip: u64) -> i32 {
         let line = (row + 1) as usize * self.stride;
@@ -137,7 +139,7 @@ impl Field {
         (64 * index) as i32 + word.trailing_zeros() as i32 - 1
     }
 
-    /// The last blocked column up to one, at least -1.
+    /// The last blocked column at or before `column`, at least -1.
     #[inline]
     pub(super) fn last_blocked(&self, row: i32, column: i32) -> i32 {
         let line = (row + 1) as usize * self.stride;
@@ -174,7 +176,7 @@ impl Field {
         }
     }
 
-    /// The nearest corner that a way along a line meets from a point on, to the right.
+    /// The nearest corner on a line to the right of a point, if the way along the line is free.
     pub(super) fn along_right(&self, x: i32, y: i32) -> Option<i32> {
         // The first cell beside the line must be free above or below.
         if !self.is_free(x, y - 1) && !self.is_free(x, y) {
@@ -215,7 +217,7 @@ impl Field {
         }
     }
 
-    /// All corners, line by line: their numbers are their places in this list.
+    /// All corners, line by line; their indices are their numbers.
     pub(super) fn all_corners(&self) -> Vec<Corner> {
         let mut corners = Vec::new();
         for y in 0..=self.height as i32 {
@@ -235,7 +237,7 @@ impl Field {
         corners
     }
 
-    /// The number of a corner.
+    /// Number of a corner.
     #[inline]
     pub(super) fn number(&self, x: i32, y: i32) -> u32 {
         let index = y as usize * self.stride + x as usize / 64;
@@ -245,7 +247,7 @@ impl Field {
     }
 }
 
-/// A point in half cells: the middle of column c is at 2c + 1, the line before it at 2c.
+/// A point in half cells: the centre of column c is at 2c + 1, the line before it at 2c.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::nav::grid) struct HalfPoint {
     pub(in crate::nav::grid) x: i32,

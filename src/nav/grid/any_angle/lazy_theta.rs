@@ -8,15 +8,15 @@ use crate::nav::grid::components::GridComponents;
 use crate::nav::grid::path::{GridPath, GridPlanner, PlanError, SearchStatistics, check};
 use crate::world::{BitGrid, GridCell};
 
-/// Lazy Theta\*: A\* from cell to cell whose paths skip the cells in between that are not needed.
+/// Lazy Theta\*: A\* from cell to cell with paths that skip unnecessary cells in between.
 ///
-/// A cell takes over its predecessor's predecessor in the hope that it is in sight; whether it is gets looked at when the
-/// cell leaves the queue. Paths turn in the middles of cells and are short, but not the shortest: [`AnyAngle`] finds
-/// those. They obey the same rule: corners may be touched, but there is no way between two blocked cells that touch at
-/// one.
+/// A cell takes its predecessor's predecessor as its parent, assuming that it is in sight; this is checked
+/// when the cell leaves the queue. Paths turn at the centres of cells and are short, but not the shortest:
+/// [`AnyAngle`] finds those. The same rule holds for both: paths may touch corners, but not pass between two
+/// blocked cells that touch at a corner.
 ///
-/// A. Nash, S. Koenig, C. Tovey, *Lazy Theta\*: Any-Angle Path Planning and Path Length Analysis in 3D*, AAAI 2010. Time
-/// O(n log n) for n cells, and a line of sight for each cell that leaves the queue; 24 bytes a cell.
+/// A. Nash, S. Koenig, C. Tovey, *Lazy Theta\*: Any-Angle Path Planning and Path Length Analysis in 3D*, AAAI
+/// 2010. Time O(n log n) for n cells, plus one line-of-sight check per expanded cell; 24 bytes per cell.
 ///
 /// [`AnyAngle`]: super::AnyAngle
 ///
@@ -47,7 +47,7 @@ struct Label {
 }
 
 impl LazyThetaStar {
-    /// Takes over a grid.
+    /// Creates a planner for a grid.
     pub fn new(grid: &BitGrid) -> Self {
         Self {
             grid: grid.clone(),
@@ -95,14 +95,14 @@ impl LazyThetaStar {
                 }
                 self.labels[index as usize] = Label { cost, parent, query: self.query, closed: 0 };
                 statistics.generated += 1;
-                // The bits of numbers that are not negative are in their order.
+                // The bit patterns of non-negative numbers have the same order as the numbers.
                 self.queue.push(Reverse(((cost + self.distance(index, last)).to_bits(), index)));
             }
         }
         statistics
     }
 
-    /// Takes a cell as done. If its predecessor turns out not to be in sight, it gets the best neighbour that is done.
+    /// Settles a cell. If its parent is not in sight, the best settled neighbour becomes its parent.
     fn settle(&mut self, node: u32) {
         let parent = self.labels[node as usize].parent;
         let point = |index| HalfPoint::centre(self.cell(index));
@@ -135,7 +135,7 @@ impl LazyThetaStar {
     }
 }
 
-/// The cells that one step leads to, along an edge or along a diagonal whose both side cells are free.
+/// The cells one step away, along an edge or along a diagonal with both side cells free.
 fn neighbours(grid: &BitGrid, cell: GridCell) -> [Option<GridCell>; 8] {
     let at = |dx: isize, dy: isize| {
         GridCell::new(cell.column.wrapping_add_signed(dx), cell.row.wrapping_add_signed(dy))

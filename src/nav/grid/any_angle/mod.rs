@@ -1,4 +1,4 @@
-//! Paths in any direction.
+//! Any-angle paths.
 
 mod field;
 mod lazy_theta;

@@ -1,8 +1,9 @@
-//! What is visible from a point: cones of sight, cut by the free cells of one row after the other, in whole numbers.
+//! Visibility from a point: cones of sight, clipped by the free cells of one row after the other, in
+//! integers.
 
 use super::field::{Field, HalfPoint};
 
-/// A direction within a half plane: so far along x for so far away from the point's row. In half cells.
+/// A direction within a half plane: x per distance from the point's row, in half cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Ray {
     x: i64,
@@ -10,13 +11,13 @@ struct Ray {
 }
 
 impl Ray {
-    /// Whether it lies to the left of another one.
+    /// Whether it lies to the left of another ray.
     fn is_left_of(self, other: Self) -> bool {
         self.x * other.away < other.x * self.away
     }
 }
 
-/// The side of a point that is looked at, along x.
+/// Side of a point along x.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Side {
     Left,
@@ -24,28 +25,28 @@ pub(super) enum Side {
     Both,
 }
 
-/// The rays that have reached a line, through the free cells of one stretch of a row.
+/// The rays that have reached a line through the free cells of one stretch of a row.
 #[derive(Debug, Clone, Copy)]
 struct Cone {
     left: Ray,
     right: Ray,
-    /// Half cells from the point to the line.
+    /// Distance from the point to the line (half cells).
     away: i64,
     /// The row behind the line.
     row: i32,
-    /// The first line and the last line along y of the stretch before it.
+    /// First and last grid line along y of the previous stretch.
     stretch: (i32, i32),
 }
 
-/// Looks around; keeps its memory from one time to the next.
+/// Scans for visible corners; reuses its memory.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Scanner {
     cones: Vec<Cone>,
 }
 
 impl Scanner {
-    /// Calls `found` with the corners that are visible from a point and bend a way that comes from there, among those
-    /// in rows after its own (`down`) or before.
+    /// Calls `found` with the corners that are visible from a point and bend a path from there, among those
+    /// in later rows (`down`) or earlier ones.
     pub(super) fn half(
         &mut self,
         field: &Field,
@@ -76,11 +77,12 @@ struct Sight<'a> {
 }
 
 impl Sight<'_> {
-    /// The cone through the row next to the point, or the half of its own row if it lies in the middle.
+    /// The cone through the row next to the point, or through half of the point's own row if it lies in the
+    /// middle.
     fn first(&self, side: Side) -> Option<Cone> {
         let HalfPoint { x, y } = self.from;
         let row = if self.down || y % 2 != 0 { y.div_euclid(2) } else { y / 2 - 1 };
-        // Of the two cells beside a corner that is looked from, the one on the side that counts.
+        // Of the two cells beside a corner, the one on the relevant side.
         let column = if x % 2 == 0 && side == Side::Left { x / 2 - 1 } else { x.div_euclid(2) };
         if !self.field.is_free(column, row) {
             return None;
@@ -98,14 +100,14 @@ impl Sight<'_> {
         if self.down { row + 1 } else { row - 1 }
     }
 
-    /// Calls `next` with what remains of a cone in each stretch of free cells of the row that it meets.
+    /// Calls `next` with the remainder of a cone in each stretch of free cells of the row it meets.
     #[inline]
     fn pass(&self, cone: &Cone, mut next: impl FnMut(Cone)) {
         if cone.row < 0 || cone.row as usize >= self.field.height() {
             return;
         }
         let (first, last) = self.span(cone);
-        // Cells that touch the cone, and share an edge with the stretch that it comes from.
+        // Cells that touch the cone and share an edge with its previous stretch.
         let mut column = (first - 1).max(cone.stretch.0);
         let end = last.min(cone.stretch.1 - 1);
         let away = cone.away + 2;
@@ -134,13 +136,13 @@ impl Sight<'_> {
     fn report(&self, cone: &Cone, found: &mut impl FnMut(i32, i32)) {
         let (first, last) = self.span(cone);
         let y = if self.down { cone.row } else { cone.row + 1 };
-        // Corners of one kind bend ways that rise, those of the other kind ways that fall.
+        // Corners of one kind bend rising paths, the others falling paths.
         let (left, right) = (last.min(self.from.x.div_euclid(2)), first.max((self.from.x + 1).div_euclid(2)));
         self.field.corners(y, first, left, self.down, |x| found(x, y));
         self.field.corners(y, right, last, !self.down, |x| found(x, y));
     }
 
-    /// The first and the last point of the grid within a cone on the line that it has reached.
+    /// The first and the last grid point within a cone on the line that it has reached.
     #[inline]
     fn span(&self, cone: &Cone) -> (i32, i32) {
         let at = |ray: Ray| (i64::from(self.from.x) * ray.away + ray.x * cone.away, 2 * ray.away);

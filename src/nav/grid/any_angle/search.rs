@@ -8,27 +8,27 @@ use crate::nav::grid::path::{GridPath, GridPlanner, PlanError, SearchStatistics,
 use crate::nav::grid::queue::BucketQueue;
 use crate::world::{BitGrid, GridCell};
 
-/// The shortest paths of all, in any direction: straight from corner to corner of the blocked cells.
+/// The shortest any-angle paths: straight from corner to corner of the blocked cells.
 ///
-/// Paths run from the middle of a cell to that of another one. They may touch corners and run along walls, but do not
-/// squeeze between two blocked cells that touch at a corner.
+/// Paths run from the centre of one cell to the centre of another. They may touch corners and run along
+/// walls, but do not pass between two blocked cells that touch at a corner.
 ///
-/// What is visible from a point is found by cones of sight that are cut by the free cells of one row after the other, as
-/// Anya does, in whole numbers; only corners that can bend a shortest way count. What a corner sees is found out when
-/// a search first comes there, and kept; [`AnyAngle::prepare`] does so for all of them. The search is A\* over corners,
-/// and goes on from each in the directions alone that bend the way around its blocked cell.
+/// Visibility from a point is found as in Anya, in integers: cones of sight are clipped by the free cells of
+/// one row after the other, and only corners that can bend a shortest path count. The corners visible from a
+/// corner are computed when a search first gets there, and kept; [`AnyAngle::prepare`] does so for all of
+/// them. The search is A\* over corners, and continues from each only in the directions that bend the path
+/// around its blocked cell.
 ///
-/// D. Harabor, A. Grastien, D. Öz, V. Aksakalli, *Optimal Any-Angle Pathfinding in Practice*, Journal of Artificial
-/// Intelligence Research 56, 2016; S. Oh, H. W. Leong, *Edge N-Level Sparse Visibility Graphs*, Symposium on
-/// Combinatorial Search 2017 (ways that
-/// are taut at both ends).
+/// D. Harabor, A. Grastien, D. Öz, V. Aksakalli, *Optimal Any-Angle Pathfinding in Practice*, Journal of
+/// Artificial Intelligence Research 56, 2016; S. Oh, H. W. Leong, *Edge N-Level Sparse Visibility Graphs*,
+/// Symposium on Combinatorial Search 2017 (taut paths).
 ///
 /// ```
 /// use roverlab::nav::grid::{AnyAngle, GridPlanner};
 /// use roverlab::world::{BitGrid, GridCell};
 /// let grid = BitGrid::from_text("....\n.##.\n....")?;
 /// let path = AnyAngle::new(&grid).plan(GridCell::new(0, 1), GridCell::new(3, 1)).unwrap();
-/// // By the corners (1, 1) and (3, 1).
+/// // Via the corners (1, 1) and (3, 1).
 /// assert!((path.cost - (2.0 + 2.0 * 0.5f64.sqrt())).abs() < 1e-12);
 /// # Ok::<(), roverlab::world::BitGridError>(())
 /// ```
@@ -39,7 +39,7 @@ pub struct AnyAngle {
     field: Field,
     corners: Vec<Corner>,
     views: Vec<View>,
-    /// What the corners see that have been looked from.
+    /// Corners visible from the corners scanned so far.
     seen: Vec<Seen>,
     scanner: Scanner,
     labels: Vec<Label>,
@@ -47,8 +47,8 @@ pub struct AnyAngle {
     queue: BucketQueue,
 }
 
-/// Where in the list is what a corner sees: first what lies to the right, or straight ahead where it bends ways from the
-/// left; then the rest. Nothing has been looked for if it begins at [`UNKNOWN`].
+/// Range of a corner's visible corners in the list: first those to the right, or straight ahead where it
+/// bends paths from the left; then the rest. A start of [`UNKNOWN`] marks a corner not yet scanned.
 #[derive(Debug, Clone, Copy)]
 struct View {
     first: u32,
@@ -66,20 +66,20 @@ struct Seen {
     y: i32,
 }
 
-/// What is known about a corner.
+/// Search state of a corner.
 #[derive(Debug, Clone, Copy, Default)]
 struct Label {
     cost: f64,
     parent: u32,
     query: u32,
-    /// The query whose goal is in sight.
+    /// The last query for which the goal was in sight.
     sees_goal: u32,
 }
 
 /// The parent of corners in sight of the start.
 const START: u32 = u32::MAX;
 
-/// One query.
+/// State of one query.
 struct Query {
     start: HalfPoint,
     goal: HalfPoint,
@@ -89,7 +89,7 @@ struct Query {
 }
 
 impl AnyAngle {
-    /// Takes over a grid.
+    /// Creates a planner for a grid.
     pub fn new(grid: &BitGrid) -> Self {
         let field = Field::new(grid);
         let corners = field.all_corners();
@@ -108,27 +108,27 @@ impl AnyAngle {
         }
     }
 
-    /// Finds out what every corner sees, which makes the first queries as fast as later ones.
+    /// Computes the visibility of every corner, which makes first queries as fast as later ones.
     pub fn prepare(&mut self) {
         for corner in 0..self.corners.len() as u32 {
             self.look(corner);
         }
     }
 
-    /// How many corners the map has.
+    /// Number of corners of the map.
     pub fn corners(&self) -> usize {
         self.corners.len()
     }
 
-    /// Whether a straight way leads from the middle of a cell to that of another one.
+    /// Whether the centres of two cells are in sight of each other.
     pub fn in_sight(&self, a: GridCell, b: GridCell) -> bool {
         self.grid.is_free(a)
             && self.grid.is_free(b)
             && in_sight(&self.field, HalfPoint::centre(a), HalfPoint::centre(b))
     }
 
-    /// Whether a straight way leads from one point to another one, both given in cells. They have to be middles of cells or
-    /// corners of cells, as those of the planners' paths are; nothing is in sight of other points.
+    /// Whether two points, in units of cells, are in sight of each other. Both must be centres or corners of
+    /// cells, as in the planners' paths; otherwise the answer is `false`.
     pub fn points_in_sight(&self, a: Point, b: Point) -> bool {
         match (self.half_point(a), self.half_point(b)) {
             (Some(a), Some(b)) => in_sight(&self.field, a, b),
@@ -143,7 +143,7 @@ impl AnyAngle {
         (is_point && (x - y) % 2.0 == 0.0).then_some(HalfPoint { x: x as i32, y: y as i32 })
     }
 
-    /// What a corner sees.
+    /// The corners visible from a corner.
     fn look(&mut self, number: u32) -> View {
         let view = self.views[number as usize];
         if view.first != UNKNOWN {
@@ -202,7 +202,7 @@ impl AnyAngle {
         }
     }
 
-    /// Goes on from a corner in the directions that bend the way around its blocked cell.
+    /// Continues from a corner in the directions that bend the path around its blocked cell.
     fn expand(&mut self, query: &mut Query, number: u32, at: Corner, label: Label) {
         let before = match label.parent {
             START => query.start,
@@ -246,7 +246,7 @@ impl AnyAngle {
         }
     }
 
-    /// The corners on the way, from the last one back.
+    /// The corners on the path, from the last one back.
     fn points(&self, start: GridCell, last: u32, goal: GridCell) -> Vec<Point> {
         let (mut points, mut corner) = (vec![goal.centre()], last);
         while corner != START {
@@ -274,7 +274,7 @@ impl GridPlanner for AnyAngle {
     }
 }
 
-/// The distance of two points in cells.
+/// Distance of two points in cells.
 #[inline]
 fn distance(a: HalfPoint, b: HalfPoint) -> f64 {
     let (dx, dy) = (f64::from(a.x - b.x), f64::from(a.y - b.y));

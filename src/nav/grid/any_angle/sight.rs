@@ -1,8 +1,8 @@
-//! Whether one point is in sight of another, in whole numbers.
+//! Line-of-sight checks in integers.
 
 use super::field::{Field, HalfPoint};
 
-/// Whether a straight way leads from one point to another: it may touch corners and run along walls, but not squeeze
+/// Whether a straight line connects two points: it may touch corners and run along walls, but not pass
 /// between two blocked cells that touch at a corner.
 pub(in crate::nav::grid) fn in_sight(field: &Field, a: HalfPoint, b: HalfPoint) -> bool {
     let (a, b) = if a.y <= b.y { (a, b) } else { (b, a) };
@@ -24,13 +24,13 @@ fn along_row(field: &Field, a: HalfPoint, b: HalfPoint) -> bool {
     all_free(field, a.y.div_euclid(2), first.div_euclid(2), last)
 }
 
-/// Whether the cells of a row are free from a column on up to those that begin before `end`, in half cells.
+/// Whether the cells of a row are free from column `first` up to those that begin before `end` (half cells).
 fn all_free(field: &Field, row: i32, first: i32, end: i32) -> bool {
     2 * field.next_blocked(row, first) >= end
 }
 
-/// Along a line of the grid: each stretch of a cell's length has a free cell on one of its sides, and the way changes
-/// sides only where both are free.
+/// Along a grid line: each cell-long stretch has a free cell on one side, and the line changes sides only
+/// where both are free.
 fn along_line(first: i32, last: i32, sides: impl Fn(i32) -> (bool, bool)) -> bool {
     let mut on = (true, true);
     for cell in first.div_euclid(2)..(last + 1).div_euclid(2) {
@@ -46,11 +46,11 @@ fn along_line(first: i32, last: i32, sides: impl Fn(i32) -> (bool, bool)) -> boo
     true
 }
 
-/// Across rows: the cells that the way passes through are free, and where it goes through a point of the grid one of the
-/// cells beside it is free too.
+/// Across rows: the cells that the line crosses are free, and at each grid point on the line one of the cells
+/// beside it is free too.
 fn across_rows(field: &Field, a: HalfPoint, b: HalfPoint) -> bool {
     let (dx, dy) = (i64::from(b.x - a.x), i64::from(b.y - a.y));
-    // Along x at some y, times dy.
+    // x times dy at a given y.
     let at = |y: i32| i64::from(a.x) * dy + i64::from(y - a.y) * dx;
     let cell = 2 * dy;
     let mut row = a.y.div_euclid(2);

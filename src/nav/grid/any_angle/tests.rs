@@ -16,15 +16,15 @@ fn free(grid: &BitGrid, x: i32, y: i32) -> bool {
     x >= 0 && y >= 0 && grid.is_free(GridCell::new(x as usize, y as usize))
 }
 
-/// Whether four cells around a point are blocked and free crosswise.
+/// Whether the four cells around a point are blocked and free crosswise.
 fn is_diagonal(grid: &BitGrid, x: i32, y: i32) -> bool {
     let (nw, ne, sw, se) =
         (free(grid, x - 1, y - 1), free(grid, x, y - 1), free(grid, x - 1, y), free(grid, x, y));
     nw == se && ne == sw && nw != ne
 }
 
-/// Whether a segment meets the inside of a blocked cell: some part of it lies strictly between all four sides.
-/// Coordinates are half cells; times along the segment are fractions.
+/// Whether a segment meets the interior of a blocked cell: part of it lies strictly between all four sides.
+/// Coordinates in half cells; parameters along the segment as fractions.
 fn enters(a: HalfPoint, b: HalfPoint, x: i32, y: i32) -> bool {
     let (mut from, mut to) = ((0i64, 1i64), (1i64, 1i64));
     for (start, end, low) in [(a.x, b.x, 2 * x), (a.y, b.y, 2 * y)] {
@@ -50,7 +50,7 @@ fn enters(a: HalfPoint, b: HalfPoint, x: i32, y: i32) -> bool {
     from.0 * to.1 < to.0 * from.1
 }
 
-/// Lines of sight by their definition, cell by cell and point by point.
+/// Lines of sight by definition, cell by cell and point by point.
 fn sees(grid: &BitGrid, a: HalfPoint, b: HalfPoint) -> bool {
     let (w, h) = (grid.width() as i32, grid.height() as i32);
     let blocked = (-1..=h).any(|y| (-1..=w).any(|x| !free(grid, x, y) && enters(a, b, x, y)));
@@ -75,7 +75,7 @@ fn sees(grid: &BitGrid, a: HalfPoint, b: HalfPoint) -> bool {
     !blocked && !squeezed && !between_walls
 }
 
-/// The shortest path over all points of the grid and the two ends, by lines of sight between every two of them.
+/// The shortest path over all grid points and the two ends, by lines of sight between all pairs.
 fn truth(grid: &BitGrid, start: GridCell, goal: GridCell) -> f64 {
     let (w, h) = (grid.width() as i32, grid.height() as i32);
     let mut points = vec![HalfPoint::centre(start), HalfPoint::centre(goal)];
@@ -122,7 +122,7 @@ proptest! {
         for _ in 0..60 {
             let mut point = || HalfPoint { x: stream.below(2 * width + 1) as i32, y: stream.below(2 * height + 1) as i32 };
             let (a, b) = (point(), point());
-            // Paths are between middles of cells and corners of cells; the middles of edges do not occur.
+            // Paths run between centres and corners of cells; midpoints of edges do not occur.
             let is_point = |p: HalfPoint| p.x % 2 == p.y % 2;
             if is_point(a) && is_point(b) && a != b {
                 prop_assert_eq!(in_sight(&field, a, b), sees(&grid, a, b), "{:?} to {:?} on {:?}", a, b, grid);
@@ -164,7 +164,8 @@ proptest! {
         }
     }
 
-    /// On larger maps the words of the bit scans matter: paths are sound, symmetric, and shorter than all others.
+    /// Larger maps exercise the word boundaries of the bit scans: paths are sound, symmetric, and shorter
+    /// than all others.
     #[test]
     fn long_paths_are_sound(width in 60..200usize, height in 3..30usize, seed in any::<u64>(), share in 0.7..0.99f64) {
         let grid = random_grid(width, height, share, seed);

@@ -4,14 +4,14 @@ use crate::nav::grid::components::GridComponents;
 use crate::nav::grid::path::{GridPath, GridPlanner, PlanError, check};
 use crate::world::{BitGrid, GridCell};
 
-/// Jump point search: the shortest octile paths, found by jumping from one place where a wall ends to the next.
+/// Jump point search: the shortest octile paths, found by jumping from one end of a wall to the next.
 ///
-/// Rows and columns are scanned 64 cells at a time, on bits that tell where a scan ends; laying them out takes a few
-/// operations for each 64 cells. Cells in the middle of a diagonal are passed over.
+/// Rows and columns are scanned 64 cells at a time on bits that mark where a scan ends; preparing them takes
+/// a few operations per 64 cells. Intermediate cells of a diagonal are not nodes.
 ///
-/// D. Harabor, A. Grastien, *Improving Jump Point Search*, ICAPS 2014 (block-based scanning, pruning of intermediate jump
-/// points; here for the rule that no corner is cut). Memory: 6 bits a cell, and 24 bytes for each cell that a search
-/// has touched.
+/// D. Harabor, A. Grastien, *Improving Jump Point Search*, ICAPS 2014 (block-based scanning, pruning of
+/// intermediate jump points; here with the rule that no corner is cut). Memory: 6 bits per cell, plus 24
+/// bytes per cell touched by a search.
 ///
 /// ```
 /// use roverlab::nav::grid::{GridPlanner, JumpPointSearch};
@@ -39,14 +39,14 @@ struct Cells {
 }
 
 impl JumpPointSearch {
-    /// Takes over a grid.
+    /// Creates a planner for a grid.
     pub fn new(grid: &BitGrid) -> Self {
         let stride = grid.width() + 2;
         let cells = Cells { planes: Planes::new(grid), stride, count: stride * (grid.height() + 2) };
         Self { grid: grid.clone(), components: GridComponents::new(grid), cells, search: Search::default() }
     }
 
-    /// Where jumps of the last query ended, in the order of the lengths of the ways there.
+    /// Ends of the last query's jumps, by path length.
     ///
     /// ```
     /// use roverlab::nav::grid::{GridPlanner, JumpPointSearch};
@@ -61,8 +61,8 @@ impl JumpPointSearch {
         self.search.landings()
     }
 
-    /// Makes a cell free or blocked; takes time in proportion to the width and height of the grid, and to the runs of free
-    /// cells. Outside the grid nothing happens.
+    /// Makes a cell free or blocked. Time is proportional to the width and height of the grid and the number
+    /// of runs of free cells. Ignores cells outside the grid.
     pub fn set_free(&mut self, cell: GridCell, free: bool) {
         if self.grid.contains(cell) && self.grid.is_free(cell) != free {
             self.grid.set_free(cell, free);

@@ -1,4 +1,4 @@
-//! Scanning along rows and columns, 64 cells at a time.
+//! Scans along rows and columns, 64 cells at a time.
 
 use crate::world::{BitGrid, GridCell};
 
@@ -6,14 +6,14 @@ use crate::world::{BitGrid, GridCell};
 #[derive(Debug, Clone, Copy, Default)]
 struct Lane {
     free: u64,
-    /// Cells at which a scan towards higher positions ends: blocked, or a jump point.
+    /// Cells at which an upward scan ends: blocked, or a jump point.
     up: u64,
-    /// The same for scans towards lower positions.
+    /// The same for downward scans.
     down: u64,
 }
 
-/// Lines of cells, with a blocked cell before and after each line and a blocked line before the first and after the
-/// last, so that no scan leaves them. Positions count from that border.
+/// Lines of cells with a blocked border on all sides, so that no scan leaves them. Positions count from that
+/// border.
 #[derive(Debug, Clone)]
 pub(super) struct Plane {
     stride: usize,
@@ -40,8 +40,8 @@ impl Plane {
 
     /// Finds the cells of a line at which scans end.
     ///
-    /// Going up a line, a cell beside which a wall has just ended is a jump point: the cell beside it is free, the one
-    /// behind that is not.
+    /// On an upward scan, a cell is a jump point if a wall beside it has just ended: the cell beside it is
+    /// free, and the one before that is not.
     fn mark(&mut self, line: usize) {
         for index in 0..self.stride {
             let free = self.free_word(line, index);
@@ -62,7 +62,7 @@ impl Plane {
         self.free_word_at(line, index, 0)
     }
 
-    /// The free cells of a word beside another one of the same line; none outside.
+    /// The free cells of an adjacent word; none outside.
     fn free_word_at(&self, line: usize, index: usize, beside: isize) -> u64 {
         let index = index.wrapping_add_signed(beside);
         if index >= self.stride || line >= self.lanes.len() / self.stride {
@@ -76,7 +76,7 @@ impl Plane {
         self.lanes[line * self.stride + at / 64].free >> (at % 64) & 1 != 0
     }
 
-    /// The end of a scan from a position upwards, and whether it is a jump point rather than blocked.
+    /// The end of an upward scan from a position, and whether it is a jump point rather than blocked.
     #[inline]
     pub(super) fn scan_up(&self, line: usize, from: usize) -> (usize, bool) {
         let first = from + 1;
@@ -97,7 +97,7 @@ impl Plane {
         }
     }
 
-    /// The end of a scan from a position downwards, and whether it is a jump point rather than blocked.
+    /// The end of a downward scan from a position, and whether it is a jump point rather than blocked.
     #[inline]
     pub(super) fn scan_down(&self, line: usize, from: usize) -> (usize, bool) {
         let first = from - 1;
@@ -118,7 +118,7 @@ impl Plane {
         }
     }
 
-    /// The free cells of a line around one of them: the first position and the last.
+    /// The free stretch of a line around a cell: its first and its last position.
     fn stretch(&self, line: usize, at: usize) -> (usize, usize) {
         let (mut first, mut last) = (at, at);
         while self.is_free(line, first - 1) {
@@ -142,16 +142,16 @@ impl Plane {
 /// A direction: 0 north (the row before), 2 east, 4 south, 6 west, and the diagonals between them.
 pub(super) type Direction = usize;
 
-/// A cell that a jump ends at. Columns and rows count from 1.
+/// The end of a jump. Columns and rows count from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Landing {
     pub(super) x: usize,
     pub(super) y: usize,
-    /// The straight direction of the jump's end.
+    /// Straight direction of the jump's end.
     pub(super) direction: Direction,
 }
 
-/// A grid by rows and by columns, ready to be scanned.
+/// A grid by rows and by columns, ready for scanning.
 #[derive(Debug, Clone)]
 pub(super) struct Planes {
     rows: Plane,
@@ -173,8 +173,8 @@ impl Planes {
         self.columns.set_free(cell.column + 1, cell.row + 1, free);
     }
 
-    /// The directions worth going on in from a jump point that was reached in a straight direction, as bits: on, and
-    /// to each side where a wall has ended also sideways and on the diagonal.
+    /// The directions to continue in from a jump point reached in a straight direction, as bits: straight on,
+    /// and on each side where a wall has ended, sideways and diagonally.
     #[inline]
     pub(super) fn onward(&self, at: Landing) -> u8 {
         let (x, y) = (at.x, at.y);
@@ -201,7 +201,7 @@ impl Planes {
         }
     }
 
-    /// Calls `land` with the jump points that jumps from a cell in some directions end at.
+    /// Calls `land` with the jump points at which jumps from a cell in some directions end.
     #[inline]
     pub(super) fn jumps(&self, x: usize, y: usize, directions: u8, mut land: impl FnMut(Landing)) {
         for direction in [0, 2, 4, 6] {
@@ -237,8 +237,7 @@ impl Planes {
         }
     }
 
-    /// Goes along a diagonal. Each of its cells is passed over, and what straight jumps from there end at is taken for
-    /// the end of this one.
+    /// Follows a diagonal. Its own cells are not reported; the ends of straight jumps from them are.
     #[inline]
     fn diagonal<const EAST: bool, const SOUTH: bool>(
         &self,
@@ -261,7 +260,7 @@ impl Planes {
         }
     }
 
-    /// Whether a cell leads to another one diagonally first, then straight.
+    /// Prepares the test for paths that lead to a cell diagonally first, then straight.
     pub(super) fn target(&self, x: usize, y: usize) -> Target {
         Target { x, y, row: self.rows.stretch(y, x), column: self.columns.stretch(x, y) }
     }
@@ -295,7 +294,7 @@ impl Planes {
         })
     }
 
-    /// The jump points of a row, as words of bits that begin with the border.
+    /// The jump points of a row, as words of bits including the border.
     pub(super) fn jump_points(&self, y: usize, height: usize) -> Vec<u64> {
         let line = &self.rows.lanes[y * self.rows.stride..][..self.rows.stride];
         let mut words: Vec<u64> = line.iter().map(|lane| lane.free & (lane.up | lane.down)).collect();

@@ -4,14 +4,15 @@ use crate::nav::grid::components::GridComponents;
 use crate::nav::grid::path::{GridPath, GridPlanner, PlanError, check};
 use crate::world::{BitGrid, GridCell};
 
-/// Jump point search with all jumps made beforehand: the shortest octile paths on a map that stays as it is.
+/// Jump point search with precomputed jumps: the shortest octile paths on a static map.
 ///
-/// The jump points of the map are the nodes of a graph, and the jumps in the directions that are worth going on in are its
-/// edges, kept side by side. A query scans from its start and follows edges after that; whether the goal lies ahead is
-/// seen from each node.
+/// The map's jump points are the nodes of a graph, and the useful jumps from them its edges, stored
+/// contiguously. A query scans from its start and follows edges after that; each node checks whether it sees
+/// the goal.
 ///
-/// D. Harabor, A. Grastien, *Improving Jump Point Search*, ICAPS 2014 (JPS+). Preparing takes time in proportion to
-/// the jump points and the lengths of the diagonals from them; memory is 32 bytes a jump point and 12 bytes a jump.
+/// D. Harabor, A. Grastien, *Improving Jump Point Search*, ICAPS 2014 (JPS+). Preparation time is
+/// proportional to the number of jump points and the lengths of the diagonals from them; memory is 32 bytes
+/// per jump point plus 12 bytes per jump.
 ///
 /// ```
 /// use roverlab::nav::grid::{GridPlanner, PreparedJumps};
@@ -33,7 +34,7 @@ pub struct PreparedJumps {
 
 #[derive(Debug, Clone, Default)]
 struct Graph {
-    /// The jump points as bits, row by row from the border on, and how many of them come before each word.
+    /// Jump points as bits, row by row including the border, and the number of them before each word.
     points: Vec<u64>,
     before: Vec<u32>,
     stride: usize,
@@ -43,14 +44,14 @@ struct Graph {
 
 #[derive(Debug, Clone, Copy, Default)]
 struct Node {
-    /// Where its edges begin, and the ends of those in each direction after that.
+    /// First edge, and the ends of the edges in each direction relative to it.
     first: u32,
     ends: [u16; 8],
-    /// The directions to go on in after an arrival from south, west, north and east.
+    /// Directions to continue in after an arrival from south, west, north and east.
     onward: [u8; 4],
 }
 
-/// A jump's end; the direction of arrival in the lowest two bits of the node.
+/// End of a jump; the direction of arrival is in the lowest two bits of the node.
 #[derive(Debug, Clone, Copy)]
 struct Edge {
     node: u32,
@@ -67,12 +68,12 @@ impl PreparedJumps {
         Self { grid: grid.clone(), components, planes, graph, search: Search::default() }
     }
 
-    /// How many jump points the map has.
+    /// Number of jump points of the map.
     pub fn jump_points(&self) -> usize {
         self.graph.nodes.len()
     }
 
-    /// How many jumps lead from one to another.
+    /// Number of jumps between them.
     pub fn jumps(&self) -> usize {
         self.graph.edges.len()
     }
@@ -108,7 +109,7 @@ impl Graph {
 
     fn node(&mut self, planes: &Planes, x: usize, y: usize) -> Node {
         let onward = [0, 2, 4, 6].map(|direction| planes.onward(Landing { x, y, direction }));
-        // An arrival that nothing but going on follows is none at a jump point.
+        // An arrival that only continues straight on makes no jump point.
         let all = onward.iter().filter(|mask| mask.count_ones() > 1).fold(0, |all, mask| all | mask);
         let first = self.edges.len() as u32;
         let mut ends = [0; 8];
@@ -128,7 +129,7 @@ impl Graph {
         Edge { node: self.number(at) << 2 | (at.direction / 2) as u32, x: at.x as u32, y: at.y as u32 }
     }
 
-    /// The number of the jump point at some place.
+    /// Number of the jump point at a landing.
     fn number(&self, at: Landing) -> u32 {
         let index = at.y * self.stride + at.x / 64;
         let below = self.points[index] & ((1 << (at.x % 64)) - 1);
@@ -136,7 +137,7 @@ impl Graph {
     }
 }
 
-/// Where jumps lead, scanned from the start and looked up after that.
+/// Jumps, scanned from the start and looked up after that.
 struct Prepared<'a> {
     planes: &'a Planes,
     graph: &'a Graph,
@@ -156,7 +157,7 @@ impl Jumps for Prepared<'_> {
         let node = &self.graph.nodes[node as usize];
         let mut directions = node.onward[at.direction / 2];
         while directions != 0 {
-            // Neighbouring directions have neighbouring edges.
+            // Edges of adjacent directions are contiguous.
             let low = directions.trailing_zeros() as usize;
             let high = low + (directions >> low).trailing_ones() as usize;
             directions = (u16::from(directions) >> high << high) as u8;

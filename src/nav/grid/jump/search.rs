@@ -1,4 +1,4 @@
-//! The search that both forms of jump point search share.
+//! The search shared by both forms of jump point search.
 
 use super::planes::{Landing, Planes};
 use crate::nav::grid::cost::octile;
@@ -6,15 +6,15 @@ use crate::nav::grid::path::SearchStatistics;
 use crate::nav::grid::queue::BucketQueue;
 use crate::world::GridCell;
 
-/// Where jumps lead.
+/// Source of jumps.
 pub(super) trait Jumps {
-    /// How many nodes there are. The node of that number is the start.
+    /// Number of nodes. The start has the next number.
     fn count(&self) -> usize;
 
-    /// The jumps from the start, in all directions.
+    /// Jumps from the start, in all directions.
     fn leave_start(&self, x: usize, y: usize, land: impl FnMut(Arrival));
 
-    /// The jumps from a jump point that was reached in some direction.
+    /// Jumps from a jump point, depending on the direction of arrival.
     fn leave_node(&self, node: u32, at: Landing, land: impl FnMut(Arrival));
 }
 
@@ -25,14 +25,14 @@ pub(super) struct Arrival {
     pub(super) at: Landing,
 }
 
-/// What is known about a node.
+/// Search state of a node.
 #[derive(Debug, Clone, Copy)]
 struct Label {
     cost: u64,
     x: u32,
     y: u32,
     parent: u32,
-    /// The query that this is about, and the direction of arrival in the lowest three bits.
+    /// The query it belongs to, and the direction of arrival in the lowest three bits.
     query: u32,
 }
 
@@ -49,11 +49,11 @@ impl Label {
     }
 }
 
-/// A label as plain numbers: memory for those comes zeroed and takes none before it is written, so a search costs what it
-/// touches, however large the map is.
+/// A label as plain integers: zeroed memory for them is allocated only when written, so a search costs what
+/// it touches, however large the map is.
 type Packed = [u64; 3];
 
-/// Everything that a search keeps from one query to the next.
+/// Search state kept from one query to the next.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Search {
     labels: Vec<Packed>,
@@ -65,8 +65,8 @@ pub(super) struct Search {
 const NO_NODE: u32 = u32::MAX;
 
 impl Search {
-    /// Finds the shortest path, of which there must be one. Returns its turning cells, between which it goes
-    /// diagonally first.
+    /// Finds the shortest path, which must exist. Returns its turning cells, between which it goes diagonally
+    /// first.
     pub(super) fn run(
         &mut self,
         planes: &Planes,
@@ -102,7 +102,7 @@ impl Search {
             }
             statistics.expanded += 1;
             if planes.sees(x, y, &goal) {
-                // Nothing else that comes from here can be shorter.
+                // Nothing else from here can be shorter.
                 (best, last) = (cost + estimate(x, y), node);
                 continue;
             }
@@ -115,7 +115,7 @@ impl Search {
         (self.turns(start, last, goal.x, goal.y), statistics)
     }
 
-    /// The cells that the last query has reached by jumps, nearest first.
+    /// The cells that the last query reached by jumps, nearest first.
     pub(super) fn landings(&self) -> Vec<GridCell> {
         let labels = self.labels.iter().map(|label| Label::unpack(*label));
         let mut reached: Vec<_> =

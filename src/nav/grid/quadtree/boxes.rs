@@ -1,20 +1,29 @@
-//! Straight lines and boxes (book, section 10.5, Figure 10.10), in whole numbers and so without rounding.
+//! Intersection of straight lines and boxes (book, section 10.5, Figure 10.10), in integers and so without
+//! rounding.
 
 use super::tree::{Leaf, Quadtree};
 
 /// Whether touching a box counts as meeting it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Edges {
-    /// A box does not hold its edges: lines may touch them, run along them, and pass through its corners.
+    /// Boxes exclude their edges: lines may touch them, run along them, and pass through corners.
     Open,
-    /// A box holds its edges: lines may not even touch them.
+    /// Boxes include their edges: lines may not even touch them.
     Closed,
 }
 
-/// Whether a segment from `a` to `b` meets a box between two corners, all given as (x, y) in any unit.
+/// Whether the segment from `a` to `b` meets a box between two corners, all given as (x, y) in any unit.
 ///
-/// It does unless all four corners lie on the same side of the line, or the shadows of segment and box on one of the axes
-/// are apart. What touches counts as `edges` says. Exact for coordinates up to 2^30.
+/// It does not if all four corners lie on the same side of the line, or if the projections of segment and box
+/// on one of the axes are disjoint. `edges` decides about touching. Exact for coordinates up to 2^30.
+///
+/// ```
+/// use roverlab::nav::grid::{Edges, segment_meets_box};
+/// let (lower, upper) = ((2, 2), (4, 4));
+/// assert!(segment_meets_box((0, 0), (6, 6), lower, upper, Edges::Open), "through the middle");
+/// assert!(!segment_meets_box((0, 4), (4, 0), lower, upper, Edges::Open), "it touches a corner");
+/// assert!(segment_meets_box((0, 4), (4, 0), lower, upper, Edges::Closed));
+/// ```
 pub fn segment_meets_box(
     a: (i64, i64),
     b: (i64, i64),
@@ -31,7 +40,7 @@ pub fn segment_meets_box(
     {
         return false;
     }
-    // A point that is in both shadows is in the box.
+    // A point in both projections is in the box.
     if a == b {
         return true;
     }
@@ -46,8 +55,8 @@ pub fn segment_meets_box(
 }
 
 impl Quadtree {
-    /// Whether a segment between two points, in half cells, meets a blocked leaf. Looks at squares that it meets alone,
-    /// from large ones to small ones.
+    /// Whether the segment between two points, in half cells, meets a blocked leaf. Descends only into
+    /// squares that it meets.
     pub(super) fn is_met(&self, a: (i64, i64), b: (i64, i64), edges: Edges) -> bool {
         self.levels() > 0 && self.is_met_within(self.levels() - 1, 0, 0, a, b, edges)
     }
@@ -76,13 +85,13 @@ impl Quadtree {
 }
 
 impl Leaf {
-    /// The corners in half cells.
+    /// Corners in half cells.
     pub(super) fn half_cells(&self) -> ((i64, i64), (i64, i64)) {
         let (x, y, size) = (2 * self.column as i64, 2 * self.row as i64, 2 * self.size as i64);
         ((x, y), (x + size, y + size))
     }
 
-    /// The middle in half cells.
+    /// Centre in half cells.
     pub(super) fn half_centre(&self) -> (i64, i64) {
         ((2 * self.column + self.size) as i64, (2 * self.row + self.size) as i64)
     }

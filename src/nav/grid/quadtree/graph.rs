@@ -2,34 +2,34 @@ use super::boxes::Edges;
 use super::tree::{Leaf, Quadtree};
 use crate::nav::grid::any_angle::{Field, HalfPoint, in_sight};
 
-/// A graph over the middles of a quadtree's free leaves.
+/// A graph over the centres of a quadtree's free leaves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LeafGraph {
-    /// The nodes, in the order of [`Quadtree::free_leaves`].
+    /// Nodes, in the order of [`Quadtree::free_leaves`].
     pub leaves: Vec<Leaf>,
-    /// The edges, each once, by their first and then their second leaf.
+    /// Edges, each once, ordered by their first and then their second leaf.
     pub links: Vec<LeafLink>,
 }
 
-/// A straight way between the middles of two leaves.
+/// A straight connection of two leaves' centres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LeafLink {
-    /// The number of the one leaf.
+    /// Number of the first leaf.
     pub from: usize,
-    /// The number of the other one, which is larger.
+    /// Number of the second leaf, which is larger.
     pub to: usize,
-    /// The distance of the two middles, in cells.
+    /// Distance of the two centres (cells).
     pub length: f64,
 }
 
 impl Quadtree {
-    /// The book's graph (sections 10.4 and 10.5): every two free leaves between whose middles a straight line meets no
-    /// blocked leaf.
+    /// The book's graph (sections 10.4 and 10.5): connects every two free leaves if the straight line between
+    /// their centres meets no blocked leaf.
     ///
-    /// With open edges lines may touch blocked leaves, but do not pass between two of them that touch at a corner. With
-    /// closed edges they do not even touch any.
+    /// With open edges, lines may touch blocked leaves but not pass between two of them that touch at a
+    /// corner. With closed edges they may not touch any.
     ///
-    /// Looks at every pair: for n leaves that is n²/2 lines, which suits some thousand leaves. For more there is
+    /// Checks every pair, n²/2 lines for n leaves, which is feasible for a few thousand leaves. For more use
     /// [`Quadtree::neighbour_graph`].
     pub fn all_pairs_graph(&self, edges: Edges) -> LeafGraph {
         let leaves = self.free_leaves();
@@ -50,8 +50,9 @@ impl Quadtree {
         LeafGraph { leaves, links }
     }
 
-    /// The graph that grows with the number of leaves alone: the leaves that share a part of an edge. The line between their
-    /// middles may leave the two of them; a way through the shared part does not, and a planner pulls it straight.
+    /// The graph of adjacent free leaves, whose size grows linearly with the number of leaves. The line
+    /// between two centres may leave both leaves; a path through their shared edge does not, and a planner
+    /// pulls it straight.
     pub fn neighbour_graph(&self) -> LeafGraph {
         let leaves = self.free_leaves();
         let numbers: std::collections::BTreeMap<Leaf, usize> =

@@ -11,11 +11,11 @@ use crate::world::{BitGrid, GridCell};
 
 /// Paths through a quadtree's free leaves, pulled straight (book, section 10.5).
 ///
-/// The search is A\* over points on the parts of edges that neighbouring leaves share: their middles, and the ends of
-/// long ones. It weighs the rest of the way by 1.1 and takes up no point again (I. Pohl, *Heuristic Search Viewed as Path
-/// Finding in a Graph*, Artificial Intelligence 1, 1970). What it finds is then pulled straight within the leaves that it
-/// goes through, and cut short wherever a later point is in sight. Paths may be a little longer than the shortest: on
-/// published maps by 0.1 to 1 % in the mean.
+/// The search is A\* over points on the shared edges of adjacent leaves: their midpoints, and the ends of
+/// long ones. It weights the estimate by 1.1 and expands no point twice (I. Pohl, *Heuristic Search Viewed as
+/// Path Finding in a Graph*, Artificial Intelligence 1, 1970). The path found is pulled straight within its
+/// leaves, then shortcut wherever a later point is in sight. Paths may be slightly longer than the shortest:
+/// by 0.1 to 1 % on average on published maps.
 ///
 /// ```
 /// use roverlab::nav::grid::{GridPlanner, Quadtree, QuadtreePlanner};
@@ -38,12 +38,12 @@ pub struct QuadtreePlanner {
     queue: BucketQueue,
 }
 
-/// What is known about a node.
+/// Search state of a node.
 #[derive(Debug, Clone, Copy, Default)]
 struct Label {
     cost: f64,
     parent: u32,
-    /// The query that this is about, and in the lowest two bits what follows.
+    /// The query it belongs to, and the flags below in the lowest two bits.
     state: u32,
 }
 
@@ -56,8 +56,8 @@ impl Label {
 
 /// The parent of the nodes in the start's leaf.
 const START: u32 = u32::MAX;
-/// How much more than it is at least the rest of a way counts. Where there are many ways this finds one much sooner, which
-/// is longer by that part at the most.
+/// How much more than it is at least the rest of a way counts. Where there are many ways this finds one much
+/// sooner, which is longer by that part at the most.
 const HASTE: f64 = 1.1;
 
 struct Query {
@@ -69,7 +69,7 @@ struct Query {
 }
 
 impl QuadtreePlanner {
-    /// Plans in the free leaves of a quadtree.
+    /// Creates a planner for the free leaves of a quadtree.
     pub fn new(tree: &Quadtree) -> Self {
         let (grid, portals) = (tree.grid(), Portals::new(tree));
         Self {
@@ -84,7 +84,7 @@ impl QuadtreePlanner {
         }
     }
 
-    /// How many free leaves there are.
+    /// Number of free leaves.
     pub fn leaves(&self) -> usize {
         self.portals.leaves.len()
     }
@@ -123,7 +123,7 @@ impl QuadtreePlanner {
         }
     }
 
-    /// Goes from a point to all nodes around a leaf.
+    /// Relaxes all nodes around a leaf from a point.
     fn spread(&mut self, query: &mut Query, from: HalfPoint, leaf: u32, cost: f64, parent: u32) {
         let Self { portals, labels, queue, .. } = self;
         let portal = if parent == START { None } else { Some(portals.nodes[parent as usize].portal) };
@@ -143,7 +143,7 @@ impl QuadtreePlanner {
         }
     }
 
-    /// The portals that the way goes through, each by its left end and its right end.
+    /// The portals on the path, each by its left and its right end.
     fn openings(&self, last: u32) -> Vec<(HalfPoint, HalfPoint)> {
         let mut openings = Vec::new();
         let mut number = last;
@@ -151,8 +151,8 @@ impl QuadtreePlanner {
             let label = self.labels[number as usize];
             let portal = self.portals.all[self.portals.nodes[number as usize].portal as usize];
             let [a, b] = portal.ends.map(|(x, y)| HalfPoint::corner(x, y));
-            // To the right through an upright opening its upper end is on the left; downwards through a level one
-            // its right end is.
+            // Passing a vertical portal to the right, its upper end is on the left; passing a horizontal one
+            // downwards, its right end is.
             let (upright, forward) = (a.x == b.x, label.state & Label::FROM_SECOND == 0);
             openings.push(if upright == forward { (a, b) } else { (b, a) });
             number = label.parent;

@@ -1,10 +1,10 @@
-//! The parts of edges that free leaves share.
+//! The shared edges of free leaves.
 
 use super::tree::{Leaf, Quadtree};
 use crate::nav::grid::any_angle::HalfPoint;
 use crate::world::{BitGrid, GridCell};
 
-/// The part of an edge that two leaves share.
+/// The part of an edge shared by two leaves.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Portal {
     /// The leaf on the left or above, and the one on the right or below.
@@ -13,12 +13,12 @@ pub(super) struct Portal {
     pub(super) ends: [(i32, i32); 2],
 }
 
-/// A point of a portal, which ways go over.
+/// A point of a portal; node of the search.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Node {
     pub(super) at: HalfPoint,
     pub(super) portal: u32,
-    /// The leaves of the portal.
+    /// Leaves of the portal.
     pub(super) leaves: [u32; 2],
 }
 
@@ -31,13 +31,14 @@ pub(super) struct Portals {
     pub(super) leaves: Vec<Leaf>,
     pub(super) all: Vec<Portal>,
     pub(super) nodes: Vec<Node>,
-    /// Where the nodes around each leaf begin in the list after it, and the end.
+    /// Index of the first node around each leaf in the list after it, and the end.
     first: Vec<u32>,
     of_leaf: Vec<u32>,
-    /// The first cells of leaves, row by row, and how many come before each word: for finding a leaf's number.
+    /// First cells of leaves, row by row, and the number of them before each word; used to find a leaf's
+    /// number.
     corners: Option<BitGrid>,
     before: Vec<u32>,
-    /// The numbers of the leaves in the order of their first cells.
+    /// Numbers of the leaves in the order of their first cells.
     order: Vec<u32>,
 }
 
@@ -99,7 +100,7 @@ impl Portals {
         }
     }
 
-    /// The place of a leaf among all of them in the order of their first cells.
+    /// Position of a leaf in the order of first cells.
     fn rank(&self, leaf: Leaf) -> usize {
         let Some(corners) = &self.corners else { return 0 };
         let words = corners.row(leaf.row);
@@ -107,12 +108,12 @@ impl Portals {
         (self.before[leaf.row * words.len() + leaf.column / 64] + below.count_ones()) as usize
     }
 
-    /// The number of a free leaf.
+    /// Number of a free leaf.
     pub(super) fn number_of(&self, leaf: Leaf) -> u32 {
         self.order[self.rank(leaf)]
     }
 
-    /// The nodes around a leaf.
+    /// Nodes around a leaf.
     pub(super) fn around(&self, leaf: u32) -> &[u32] {
         &self.of_leaf[self.first[leaf as usize] as usize..self.first[leaf as usize + 1] as usize]
     }

@@ -1,12 +1,12 @@
-//! Pulling a way straight.
+//! Pulling a path straight.
 
 use crate::nav::grid::any_angle::{Field, HalfPoint, in_sight};
 
-/// The shortest way from a start to a goal through a row of openings, each given by its left end and its right end as seen
-/// from the start: the funnel algorithm. In half cells.
+/// The shortest path from a start to a goal through a sequence of portals, each given by its left and its
+/// right end as seen from the start: the funnel algorithm. In half cells.
 ///
-/// B. Chazelle, *A Theorem on Polygon Cutting with Applications*, FOCS 1982; D. T. Lee, F. P. Preparata, *Euclidean
-/// Shortest Paths in the Presence of Rectilinear Barriers*, Networks 14, 1984.
+/// B. Chazelle, *A Theorem on Polygon Cutting with Applications*, FOCS 1982; D. T. Lee, F. P. Preparata,
+/// *Euclidean Shortest Paths in the Presence of Rectilinear Barriers*, Networks 14, 1984.
 pub(super) fn funnel(
     start: HalfPoint,
     openings: &[(HalfPoint, HalfPoint)],
@@ -19,7 +19,7 @@ pub(super) fn funnel(
     let mut index = 0;
     while index <= openings.len() {
         let (next_left, next_right) = opening(index);
-        // Rows count downwards, so that what turns clockwise has a positive area.
+        // Rows count downwards, so clockwise turns have a positive area.
         if area(apex, right.0, next_right) <= 0 {
             if apex == right.0 || area(apex, left.0, next_right) > 0 {
                 right = (next_right, index);
@@ -49,7 +49,7 @@ pub(super) fn funnel(
     path
 }
 
-/// Twice the area of a triangle; positive if it turns from left to right as seen with rows counted downwards.
+/// Twice the area of a triangle; positive if it turns clockwise, with rows counted downwards.
 fn area(a: HalfPoint, b: HalfPoint, c: HalfPoint) -> i64 {
     let (ux, uy) = (i64::from(b.x - a.x), i64::from(b.y - a.y));
     let (vx, vy) = (i64::from(c.x - a.x), i64::from(c.y - a.y));
@@ -59,8 +59,8 @@ fn area(a: HalfPoint, b: HalfPoint, c: HalfPoint) -> i64 {
 /// How many points further on a shortcut may lead.
 const REACH: usize = 12;
 
-/// The shortest way that goes over some of the points in their order, wherever a straight line leads from one to a later
-/// one. The line from each point to the next is known to be free.
+/// The shortest path over some of the points in their order, using lines of sight to later points.
+/// Consecutive points are known to be in sight.
 pub(super) fn shortcut(field: &Field, points: &[HalfPoint]) -> Vec<HalfPoint> {
     let mut best = vec![(f64::INFINITY, 0); points.len()];
     best[0].0 = 0.0;

@@ -10,7 +10,7 @@ fn random_grid(width: usize, height: usize, share: f64, seed: u64) -> BitGrid {
     BitGrid::from_fn(width, height, |_, _| stream.chance(share)).unwrap()
 }
 
-/// The book's recursion, which looks at every cell of every square.
+/// The book's recursion, which checks every cell of every square.
 fn recursion(grid: &BitGrid, x: usize, y: usize, size: usize, minimum: usize, found: &mut Vec<(Leaf, bool)>) {
     if x >= grid.width() || y >= grid.height() {
         return;
@@ -65,7 +65,7 @@ proptest! {
         prop_assert_eq!(tree.blocked_leaves(), Quadtree::new(&grid).blocked_leaves());
     }
 
-    /// Leaves are neighbours if two cells of theirs share an edge, and know of each other.
+    /// Leaves are neighbours if and only if two of their cells share an edge, and the relation is symmetric.
     #[test]
     fn neighbours_share_an_edge(width in 1..40usize, height in 1..40usize, share in 0.7..1.0f64, seed in any::<u64>()) {
         let tree = Quadtree::new(&random_grid(width, height, share, seed));
@@ -85,7 +85,8 @@ proptest! {
         prop_assert_eq!(found, expected);
     }
 
-    /// Lines that meet no closed leaf meet no open one; those of the open kind meet none, and are more.
+    /// Lines that meet no closed leaf meet no open one; the open graph's lines meet none, and there are more
+    /// of them.
     #[test]
     fn all_pairs_meet_no_blocked_leaf(size in 1..14usize, share in 0.6..1.0f64, seed in any::<u64>()) {
         let tree = Quadtree::new(&random_grid(size, size, share, seed));
@@ -101,7 +102,7 @@ proptest! {
                         segment_meets_box(a, b, lower, upper, *edges)
                     });
                     let linked = links.next_if_eq(&(from, to)).is_some();
-                    // Open boxes can be passed between at a corner, which is no way.
+                    // A line may pass between open boxes that touch at a corner, but a path may not.
                     let right = if *edges == Edges::Closed { linked != met } else { !linked || !met };
                     prop_assert!(right);
                 }
@@ -134,9 +135,9 @@ proptest! {
     }
 }
 
-/// Paths exist where the grid has some, go through free cells, and are together not much longer than the
-/// shortest. Returns the greatest ratio of one alone: a short path may pass an obstacle on the longer side,
-/// as the middles of edges overrate the shorter side by up to a cell at either end.
+/// Paths exist where the grid has some, go through free cells, and are on average not much longer than the
+/// shortest. Returns the largest single ratio: a short path may pass an obstacle on the longer side, as
+/// midpoints of edges overestimate the shorter side by up to a cell at either end.
 fn ten_paths(width: usize, height: usize, share: f64, seed: u64) -> Result<f64, TestCaseError> {
     let grid = random_grid(width, height, share, seed);
     let cells: Vec<GridCell> = grid.free_cells().collect();
@@ -180,7 +181,7 @@ fn a_short_path_may_be_a_quarter_too_long() {
 
 #[test]
 fn the_books_first_rows() {
-    // 64 x 64 cells with the upper half free, as the beginning of the list in section 10.5.
+    // 64 x 64 cells with the upper half free, as at the beginning of the list in section 10.5.
     let grid = BitGrid::from_fn(64, 64, |x, y| y < 32 || (x < 8 && y < 36) || (x < 2 && y == 36)).unwrap();
     let free: Vec<_> = Quadtree::new(&grid).free_leaves().iter().map(|l| (l.column, l.row, l.size)).collect();
     assert_eq!(free[..6], [(0, 0, 32), (32, 0, 32), (0, 32, 4), (4, 32, 4), (0, 36, 1), (1, 36, 1)]);

@@ -2,16 +2,16 @@ use crate::ParameterError;
 use crate::parameter::require;
 use crate::world::{BitGrid, GridCell};
 
-/// The decomposition of a grid into squares that are free or blocked, by quarters.
+/// Decomposition of a grid into free and blocked squares by quartering.
 ///
-/// A square whose side is a power of two is a *leaf* if all of its cells are free, or all are blocked, and that of the
-/// square that it is a quarter of does not hold. Maps of any size do: the root is the smallest power of two that holds
-/// the map, squares that reach beyond the map are divided further, and leaves lie within it. With a minimum leaf,
-/// squares of that size are not divided, and count as blocked if any of their cells is.
+/// A *leaf* is a largest square with a side of a power of two whose cells are all free or all blocked. The
+/// map may have any size: the root is the smallest power of two that contains it, squares that reach beyond
+/// the map are divided further, and leaves lie within it. With a minimum leaf size, squares of that size are
+/// not divided, and count as blocked if any of their cells is.
 ///
-/// There are no nodes and no pointers: for each size one bit tells of each square whether it is free, another one whether it
-/// is blocked. They are found bottom-up, four squares of one size making one of the next, 64 at a time, which takes less
-/// than two operations a cell; a changed cell changes one square of each size.
+/// There are no nodes and no pointers: per level, one bit tells whether a square is free, another one whether
+/// it is blocked. They are computed bottom-up, four squares of one level making one of the next, 64 at a
+/// time, with less than two operations per cell; a changed cell changes one square per level.
 ///
 /// ```
 /// use roverlab::nav::grid::{Leaf, Quadtree};
@@ -28,9 +28,9 @@ use crate::world::{BitGrid, GridCell};
 pub struct Quadtree {
     width: usize,
     height: usize,
-    /// The size of the smallest leaves is two to this power.
+    /// Level of the smallest leaves: their size is two to this power.
     smallest: usize,
-    /// The squares of each size that are free; the first ones are cells.
+    /// Free squares of each level; level 0 are the cells.
     free: Vec<BitGrid>,
     blocked: Vec<BitGrid>,
 }
@@ -38,11 +38,11 @@ pub struct Quadtree {
 /// A square of cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Leaf {
-    /// Its first column.
+    /// First column.
     pub column: usize,
-    /// Its first row.
+    /// First row.
     pub row: usize,
-    /// Cells along its side.
+    /// Side length (cells).
     pub size: usize,
 }
 
@@ -52,7 +52,7 @@ impl Leaf {
         cell.column.wrapping_sub(self.column) < self.size && cell.row.wrapping_sub(self.row) < self.size
     }
 
-    /// Its middle, in cells.
+    /// Centre (cells).
     pub fn centre(&self) -> crate::geometry::Point {
         let half = 0.5 * self.size as f64;
         crate::geometry::Point::new(self.column as f64 + half, self.row as f64 + half)
@@ -60,13 +60,13 @@ impl Leaf {
 }
 
 impl Quadtree {
-    /// Divides a grid down to its cells.
+    /// Decomposes a grid down to its cells.
     pub fn new(grid: &BitGrid) -> Self {
         Self::build(grid, 0)
     }
 
-    /// Divides a grid, but not into squares smaller than `minimum` cells, a power of two. At the far borders of maps whose
-    /// size is no multiple of it, squares may still be smaller.
+    /// Decomposes a grid into squares of at least `minimum` cells, a power of two. At the far borders of a
+    /// map whose size is no multiple of it, squares may be smaller. Fails for any other minimum.
     pub fn with_minimum_leaf(grid: &BitGrid, minimum: usize) -> Result<Self, ParameterError> {
         let good = minimum.is_power_of_two() && minimum <= 1 << 20;
         require("minimum leaf", minimum as f64, good, "a power of two up to 1048576 cells")?;
@@ -87,18 +87,18 @@ impl Quadtree {
         tree
     }
 
-    /// Cells in a row of the map.
+    /// Number of columns of the map.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows of the map.
+    /// Number of rows of the map.
     pub fn height(&self) -> usize {
         self.height
     }
 
-    /// The free leaves, in the order of the book's program: the first quarter, the one beside it along the row, the one below
-    /// it, the last one; each of them likewise.
+    /// The free leaves in the order of the book's program: upper left quarter, upper right, lower left, lower
+    /// right, recursively.
     pub fn free_leaves(&self) -> Vec<Leaf> {
         let mut leaves = Vec::with_capacity(self.at_least(&self.free));
         self.visit(|leaf, free| {
@@ -120,7 +120,7 @@ impl Quadtree {
         leaves
     }
 
-    /// How many leaves there are at least: of each size the squares that are not in one of the next.
+    /// Lower bound on the number of leaves: per level, the squares not contained in one of the next.
     fn at_least(&self, squares: &[BitGrid]) -> usize {
         let counts: Vec<usize> =
             squares[self.smallest.min(squares.len())..].iter().map(BitGrid::count_free).collect();
@@ -128,14 +128,14 @@ impl Quadtree {
         counts.iter().zip(larger).map(|(count, larger)| count - 4 * larger).sum()
     }
 
-    /// Calls `found` with all leaves, and whether they are free, in the order of [`Quadtree::free_leaves`].
+    /// Calls `found` with each leaf and whether it is free, in the order of [`Quadtree::free_leaves`].
     pub fn visit(&self, mut found: impl FnMut(Leaf, bool)) {
         if self.width > 0 && self.height > 0 {
             self.divide(self.free.len() - 1, 0, 0, &mut found);
         }
     }
 
-    /// Squares of each size are numbered by their columns and rows among those of that size.
+    /// Squares are numbered by column and row among those of their level.
     fn divide(&self, level: usize, x: usize, y: usize, found: &mut impl FnMut(Leaf, bool)) {
         let square = GridCell::new(x, y);
         let leaf = Leaf { column: x << level, row: y << level, size: 1 << level };
@@ -167,7 +167,7 @@ impl Quadtree {
         let (free, blocked) = (joined(cells, 1) & FOURS, joined(!cells, 1) & FOURS);
         let fours = free | blocked;
         let sixteens = (joined(free, 4) | joined(blocked, 4)) & SIXTEENS;
-        // A leaf is told at its first cell.
+        // A leaf is reported at its first cell.
         let mut firsts = !((fours * 0xe) | (sixteens * 0xfffe));
         while firsts != 0 {
             let index = firsts.trailing_zeros() as usize;
@@ -181,7 +181,7 @@ impl Quadtree {
         }
     }
 
-    /// The free leaf that a cell lies in, if there is one. Takes time in proportion to the number of sizes.
+    /// The free leaf that contains a cell, if any. Time is proportional to the number of levels.
     pub fn leaf_at(&self, cell: GridCell) -> Option<Leaf> {
         let square = |level: usize| GridCell::new(cell.column >> level, cell.row >> level);
         let free = |level: usize| self.free[level].is_free(square(level));
@@ -190,7 +190,7 @@ impl Quadtree {
         (level >= self.smallest_at(cell)).then_some(leaf)
     }
 
-    /// The blocked leaf that a cell lies in, if there is one.
+    /// The blocked leaf that contains a cell, if any.
     pub fn blocked_leaf_at(&self, cell: GridCell) -> Option<Leaf> {
         if cell.column >= self.width || cell.row >= self.height || self.leaf_at(cell).is_some() {
             return None;
@@ -201,7 +201,7 @@ impl Quadtree {
         Some(square_at(cell, level.max(self.smallest_at(cell))))
     }
 
-    /// The smallest size that leaves around a cell have: less than the minimum at the far borders alone.
+    /// Level of the smallest leaves around a cell; below the minimum only at the far borders.
     fn smallest_at(&self, cell: GridCell) -> usize {
         let is_whole = |level: &usize| self.is_whole(square_at(cell, *level));
         (0..=self.smallest).rev().find(is_whole).unwrap_or(0)
@@ -211,7 +211,7 @@ impl Quadtree {
         leaf.column + leaf.size <= self.width && leaf.row + leaf.size <= self.height
     }
 
-    /// The free leaves that share a part of an edge with a leaf: on the right, below, on the left, above.
+    /// The free leaves that share part of an edge with a leaf: on the right, below, on the left, above.
     pub fn neighbours(&self, leaf: Leaf) -> Vec<Leaf> {
         let mut found = Vec::new();
         let (end_column, end_row) = (leaf.column + leaf.size, leaf.row + leaf.size);
@@ -221,7 +221,7 @@ impl Quadtree {
                 let cell = at(along);
                 let next = self.leaf_at(cell);
                 along += next.map_or(1, |next| {
-                    // A larger neighbour covers the side, a smaller one its own size of it.
+                    // A larger neighbour covers the rest of the side, a smaller one its own size of it.
                     let within = if cell.column == at(along + 1).column {
                         next.row + next.size - cell.row
                     } else {
@@ -243,7 +243,7 @@ impl Quadtree {
         found
     }
 
-    /// Makes a cell free or blocked. Changes one square of each size at most. Outside the map nothing happens.
+    /// Makes a cell free or blocked. Changes at most one square per level. Ignores cells outside the map.
     pub fn set_free(&mut self, cell: GridCell, free: bool) {
         if cell.column >= self.width || cell.row >= self.height {
             return;
@@ -262,7 +262,7 @@ impl Quadtree {
         }
     }
 
-    /// Whether all cells of a square are free; not if it reaches beyond the map.
+    /// Whether all cells of a square are free; `false` if it reaches beyond the map.
     pub(super) fn is_clear(&self, level: usize, x: usize, y: usize) -> bool {
         self.free[level].is_free(GridCell::new(x, y))
     }
@@ -277,7 +277,7 @@ impl Quadtree {
         self.free.len()
     }
 
-    /// The cells that lie in free leaves.
+    /// The cells in free leaves.
     pub(super) fn grid(&self) -> BitGrid {
         if self.smallest == 0 {
             return self.free[0].clone();
@@ -302,18 +302,18 @@ const FOURS: u64 = 0x1111_1111_1111_1111;
 /// In the order of quarters, the first cells of the squares of sixteen cells.
 const SIXTEENS: u64 = 0x0001_0001_0001_0001;
 
-/// The bits that are set together with the three that are so far apart behind them.
+/// The bits that are set together with the three bits at multiples of `apart` above them.
 fn joined(bits: u64, apart: u32) -> u64 {
     bits & bits >> apart & bits >> (2 * apart) & bits >> (3 * apart)
 }
 
-/// The number that the bits 0, 2 and 4 make: of a cell's number in the order of quarters, its column.
+/// The number formed by bits 0, 2 and 4: the column of a cell from its number in the order of quarters.
 fn every_second_bit(number: usize) -> usize {
     number & 1 | number >> 1 & 2 | number >> 2 & 4
 }
 
-/// Eight rows of eight cells, one after the other, in the order of quarters: the first quarter's cells first, each quarter
-/// likewise. The bits of a cell's number are those of its row and then of its column, and become one of each in turn.
+/// Reorders eight rows of eight cells into the order of quarters, recursively. A cell's number has the bits
+/// of its row followed by those of its column; they become interleaved.
 fn by_quarters(rows: u64) -> u64 {
     SWAPS.into_iter().fold(rows, |cells, (mask, shift)| {
         let moved = (cells >> shift ^ cells) & mask;
@@ -321,7 +321,8 @@ fn by_quarters(rows: u64) -> u64 {
     })
 }
 
-/// Exchanges of two bits of the numbers: the places where the higher one is to be set, and how far off the others are.
+/// Exchanges of two bits of the numbers: the places where the higher one is to be set, and how far off the
+/// others are.
 const SWAPS: [(u64, u32); 3] = [swap(4, 2), swap(3, 2), swap(2, 1)];
 
 const fn swap(high: u32, low: u32) -> (u64, u32) {
@@ -340,7 +341,7 @@ const fn numbers(clear: u32, set: u32) -> u64 {
     mask
 }
 
-/// The square of some size around a cell.
+/// The square of a level around a cell.
 fn square_at(cell: GridCell, level: usize) -> Leaf {
     Leaf { column: cell.column >> level << level, row: cell.row >> level << level, size: 1 << level }
 }

@@ -3,7 +3,7 @@ use crate::geometry::direction;
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 
-/// By which a number is changed to see what that does.
+/// Step size of the numerical derivative.
 const STEP: f64 = 1e-6;
 
 fn eight(apart: f64, inner: f64, outer: f64) -> Vec<Cone> {

@@ -10,7 +10,7 @@
 //! | `axis UP FORWARD` | the driven axle |
 //! | `axel drive UP FORWARD`, `axel turn UP FORWARD` | the driven and the steered axle |
 //! | `wheel [drive\|turn] DIAMETER DEG_PER_S TICKS HALF_TRACK` | the wheels |
-//! | `psd ID NAME X Y Z R1 R2 R3`, `psd NAME ID X Y Z R` | a distance sensor |
+//! | `psd ID NAME X Y Z R1 R2 R3`, `psd NAME ID X Y Z R`, `psd NAME ID X Y Z R1 R2 R3` | a distance sensor |
 //! | `camera X Y Z PAN TILT MAX_PAN MAX_TILT` | the camera |
 //! | `fisheye DEG` | its lens is equidistant and sees so much from left to right |
 //! | `lidar [X Y Z R1 R2 R3] RANGE TILT POINTS`, `lidar RANGE POINTS TILT`, `lidar POINTS TILT` | the scanner |
@@ -25,14 +25,18 @@
 //!
 //! The files in use disagree about the columns of `psd`, `lidar` and `camera`. This reader takes them as follows.
 //!
-//! * `psd NAME ID X Y Z R`: forward, left, up; R to the left.
-//! * `psd ID NAME X Y Z R1 R2 R3`: one of the rotations is not zero, and is the yaw. If it is the third in any sensor
-//!   of the file, the columns are side, forward, up and the yaw is clockwise; otherwise they are forward, left, up and
-//!   the yaw is to the left. A sensor called FRONT with X = 0 in a file without any rotation has the former columns.
+//! * `psd NAME ID X Y Z` and one or three rotations: forward, left, up; one rotation is to the left.
+//! * `psd ID NAME X Y Z R1 R2 R3`: R1 turns the sensor down, so that one with 90 looks straight down. Of R2 and R3 one
+//!   turns it aside; the other would turn a single ray about itself and is 0 in all files in use. If R3 is the one in
+//!   any sensor of the file, the columns are side, forward, up, and turns are clockwise; otherwise they are forward,
+//!   left, up, and turns are to the left. A sensor called FRONT with X = 0 in a file without any such turn has the
+//!   former columns.
 //! * A name that says left (LEFT, or L among the letters F, B, R, L as in `PSD_FL`) makes side and yaw left, one that
 //!   says right makes them right.
-//! * `lidar` of nine numbers has the columns of the file's `psd` lines, its own third rotation telling them apart
-//!   without any.
+//! * `lidar` of nine numbers has the columns of the file's `psd` lines that begin with a number, and forward, left, up
+//!   without any. All three rotations turn its plane: down in front, aside, and about the forward axis, which lifts its
+//!   left side if the columns are forward, left, up, and its right side otherwise. Roll comes first, then pitch, then
+//!   yaw. The tilt is the angle of each beam above that plane.
 //! * `camera`: forward, left, up, unless X is 0 and Y is not; then Y is forward.
 //!
 //! # Lines of our own
@@ -50,7 +54,17 @@
 //! | `mast BACK RIGHT FRONT LEFT HEIGHT` | a narrow part that stands up above the rest, which rays meet |
 //! | `psd_range MM` | how far the `psd` of the line before sees |
 //! | `lidar_range MM` | how far the lidar sees |
+//! | `inertial` and 3, 6 or 9 channels | an inertial unit: which channels of `ANALOGRead` tell roll, pitch and yaw, the turn rates, and the accelerations, each about or along forward, left, up: [`InertialSpec`](crate::world::InertialSpec); 0 0 0 for what it does not measure |
 //! | `camera_view DEG` | the camera's horizontal field of view |
+//!
+//! ```
+//! use roverlab::world::formats::robi;
+//! let text = "drive DIFFERENTIAL_DRIVE\nname Tiny\nwheel 54 3600 1100 45\npsd 1 FRONT 50 0 20 0 0 0\n";
+//! let spec = robi::parse(text, "tiny.robi")?.value;
+//! assert_eq!((spec.name.as_str(), spec.psds.len()), ("Tiny", 1));
+//! assert_eq!(robi::parse(&robi::print(&spec), "tiny.robi")?.value, spec);
+//! # Ok::<(), roverlab::world::formats::FormatError>(())
+//! ```
 
 mod mounts;
 mod parts;

@@ -43,34 +43,42 @@ impl Raw {
 
     /// The pose about the driven axle, `ahead` metres before the model's origin, of a sensor of some name.
     pub(super) fn mount(&self, columns: Columns, name: &str, ahead: f64) -> Mount {
-        let [a, b, z] = self.place;
-        let (forward, aside, turn) = match columns {
-            Columns::ForwardLeftUp => (a, b, self.turn([1, 2, 0])),
-            Columns::SideForwardUp => (b, a, -self.turn([2, 1, 0])),
+        let ([a, b, z], [down, second, third]) = (self.place, self.rotation);
+        let (forward, aside, turn, roll) = match columns {
+            Columns::ForwardLeftUp => (a, b, second, third),
+            Columns::SideForwardUp => (b, a, -third, -second),
         };
         let (y, yaw) = match side(name) {
             Some(Side::Left) => (aside.abs(), turn.abs()),
             Some(Side::Right) => (-aside.abs(), -turn.abs()),
             None => (aside, turn),
         };
-        let yaw = if yaw == -180.0 { 180.0 } else { yaw };
-        Mount { x: forward - ahead, y, z, yaw: units::from_deg(yaw) }
+        let [roll, pitch, yaw] = [roll, down, yaw].map(|turn| {
+            // A turn of nothing has no direction, and half a turn has one only.
+            units::from_deg(if turn == -180.0 { 180.0 } else { turn + 0.0 })
+        });
+        Mount { x: forward - ahead, y, z, roll, pitch, yaw }
     }
 
-    /// The first rotation in some order that is not zero.
-    fn turn(&self, order: [usize; 3]) -> f64 {
-        order.into_iter().map(|i| self.rotation[i]).find(|&turn| turn != 0.0).unwrap_or(0.0)
+    /// Which of its last two rotations turns a sensor of one ray aside, if one alone is not zero: the other one would
+    /// turn it about its line of sight.
+    fn yaw_column(&self) -> Option<usize> {
+        match (self.rotation[1] != 0.0, self.rotation[2] != 0.0) {
+            (true, false) => Some(1),
+            (false, true) => Some(2),
+            _ => None,
+        }
     }
 }
 
-/// The columns of a file whose sensors have these names and numbers.
+/// The columns of a file whose distance sensors have these names and numbers.
 pub(super) fn columns<'n>(sensors: &(impl Iterator<Item = (&'n str, Raw)> + Clone)) -> Columns {
-    let turned = |index: usize| sensors.clone().any(|(_, raw)| raw.rotation[index] != 0.0);
+    let says = |column| sensors.clone().any(|(_, raw)| raw.yaw_column() == Some(column));
     let ahead = |(name, raw): (&str, Raw)| {
         name.to_ascii_uppercase().contains("FRONT") && raw.place[0] == 0.0 && raw.place[1] != 0.0
     };
-    let straight = !(turned(0) || turned(1) || turned(2));
-    if turned(2) || (straight && sensors.clone().any(ahead)) {
+    let third = || sensors.clone().any(|(_, raw)| raw.rotation[2] != 0.0);
+    if says(2) || (!says(1) && (third() || sensors.clone().any(ahead))) {
         Columns::SideForwardUp
     } else {
         Columns::ForwardLeftUp
@@ -80,7 +88,7 @@ pub(super) fn columns<'n>(sensors: &(impl Iterator<Item = (&'n str, Raw)> + Clon
 /// A camera's place: forward, left, up, unless it sits at x = 0 beside the middle, which no camera does.
 pub(super) fn camera_place([a, b, z]: [f64; 3], ahead: f64) -> Mount {
     let (forward, left) = if a == 0.0 && b != 0.0 { (b, 0.0) } else { (a, b) };
-    Mount { x: forward - ahead, y: left, z, yaw: 0.0 }
+    Mount { x: forward - ahead, y: left, z, ..Mount::default() }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -5,7 +5,7 @@ use super::super::error::FormatError;
 use super::super::lexer::Line;
 use super::super::limits::MAX_DEGREES;
 use crate::geometry::{Aabb, Point, units};
-use crate::world::{Axis, CarDynamics, Collider, Footprint, Mast};
+use crate::world::{Axis, CarDynamics, Collider, Footprint, InertialSpec, Mast};
 
 /// A `dynamics` line.
 pub(super) fn dynamics(args: &mut Args<'_, '_>) -> Result<CarDynamics, FormatError> {
@@ -101,4 +101,34 @@ fn rectangle(line: &Line<'_>, args: &mut Args<'_, '_>, what: &str) -> Result<Aab
         return Err(line.error(first + 3, format!("the {what}'s left side, apart from its right side")));
     }
     Ok(Aabb::new(Point::new(back, right), Point::new(front, left)))
+}
+
+/// An `inertial` line: three channels for each thing that the unit may measure.
+pub(super) fn inertial(line: &Line<'_>, args: &mut Args<'_, '_>) -> Result<InertialSpec, FormatError> {
+    let numbers = args.left();
+    if ![3, 6, 9].contains(&numbers) {
+        return Err(line.error(1 + numbers.min(9), "3, 6 or 9 channels"));
+    }
+    let mut groups = [None; 3];
+    let mut known = Vec::new();
+    for group in &mut groups[..numbers / 3] {
+        let mut channel = || args.count("a channel of the inertial unit", 0..=255);
+        let channels = [channel()?, channel()?, channel()?].map(|channel| channel as u8);
+        let last = line.words.len() - args.left() - 1;
+        if channels == [0; 3] {
+            continue;
+        }
+        if channels.contains(&0) {
+            return Err(line.error(last, "three channels from 1 to 255, or 0 0 0"));
+        }
+        for channel in channels {
+            if known.contains(&channel) {
+                return Err(line.error(last, "each channel once"));
+            }
+            known.push(channel);
+        }
+        *group = Some(channels);
+    }
+    let [attitude, turn_rates, acceleration] = groups;
+    Ok(InertialSpec { attitude, turn_rates, acceleration })
 }

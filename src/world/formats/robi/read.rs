@@ -14,7 +14,8 @@ use super::parts::{self, Wheel};
 use crate::geometry::{math, units};
 use crate::world::formats::{number, stem};
 use crate::world::{
-    Body, CameraSpec, CarDynamics, DriveSpec, Footprint, LidarSpec, Mast, Mesh, Mount, PsdSpec, RobotSpec,
+    Body, CameraSpec, CarDynamics, DriveSpec, Footprint, InertialSpec, LidarSpec, Mast, Mesh, Mount, PsdSpec,
+    RobotSpec,
 };
 
 /// The largest steering angle of cars that state none, in radians: 30 degrees.
@@ -124,6 +125,7 @@ impl<'f> Reader<'f> {
             psds: Vec::new(),
             lidar: None,
             camera: None,
+            inertial: InertialSpec::default(),
             mast: None,
             ..RobotSpec::s4()
         };
@@ -214,6 +216,7 @@ impl<'f> Reader<'f> {
             "friction" => {
                 self.spec.friction = args.plain("the coefficient of friction", 0.0..=1e9)?;
             }
+            "inertial" => self.spec.inertial = parts::inertial(line, args)?,
             "dynamics" => self.dynamics = Some(parts::dynamics(args)?),
             "outline" => self.outline = Some(parts::outline(line, args)?),
             "mast" => self.mast = Some((parts::mast(line, args)?, line.location(0))),
@@ -298,12 +301,13 @@ impl<'f> Reader<'f> {
         if !shared {
             id = args.count("the sensor's number", 0..=255)?;
         }
-        let one_angle = !shared || args.numbers_ahead() == 4;
+        let numbers = args.numbers_ahead();
+        let one_angle = numbers == 4 || (!shared && numbers != 6);
         let raw =
             if one_angle { Raw::read_with_yaw(args, "the sensor")? } else { Raw::read(args, "the sensor")? };
-        if raw.rotation.iter().filter(|&&turn| turn != 0.0).count() > 1 {
-            self.notes
-                .warn(line.location(6), "a sensor turned about more than one axis; only its yaw counts");
+        if raw.rotation[1] != 0.0 && raw.rotation[2] != 0.0 {
+            let message = "a sensor of one ray turned about its line of sight, which changes nothing";
+            self.notes.warn(line.location(6), message);
         }
         if self.psds.iter().any(|psd| u32::from(psd.id) == id) {
             self.notes.warn(line.location(0), format!("a second sensor with the number {id}"));
@@ -447,15 +451,13 @@ impl<'f> Reader<'f> {
         let ahead = self.spec.body.axle[0];
         let shared = self.psds.iter().filter(|psd| psd.shared).map(|psd| (psd.name.as_str(), psd.raw));
         let columns = mounts::columns(&shared);
-        let any_shared = self.psds.iter().any(|psd| psd.shared);
         for psd in std::mem::take(&mut self.psds) {
             let columns = if psd.shared { columns } else { Columns::ForwardLeftUp };
-            let mount = psd.raw.mount(columns, &psd.name, ahead);
+            let mount = Mount { roll: 0.0, ..psd.raw.mount(columns, &psd.name, ahead) };
             self.spec.psds.push(PsdSpec { id: psd.id, name: psd.name, mount, max_range: psd.max_range });
         }
         if let Some(lidar) = &mut self.spec.lidar {
             if let Some(raw) = self.lidar_mount {
-                let columns = if any_shared { columns } else { mounts::columns(&std::iter::once(("", raw))) };
                 lidar.mount = raw.mount(columns, "", ahead);
             }
             lidar.max_range = self.lidar_range.unwrap_or(lidar.max_range);

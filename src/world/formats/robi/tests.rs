@@ -5,7 +5,8 @@ use crate::geometry::{Aabb, Point, units};
 use crate::world::formats::MemoryFiles;
 use crate::world::formats::source::Files;
 use crate::world::{
-    Axis, Body, CameraSpec, Collider, DriveSpec, Footprint, LidarSpec, MotorSpec, Mount, PsdSpec, RobotSpec,
+    Axis, Body, CameraSpec, Collider, DriveSpec, Footprint, InertialSpec, LidarSpec, MotorSpec, Mount,
+    PsdSpec, RobotSpec,
 };
 
 const DRIVE: &str = "drive DIFFERENTIAL_DRIVE\nwheel 54 3600 1100 45\n";
@@ -129,6 +130,48 @@ fn distance_sensors_of_all_files_in_use() {
     assert_eq!(psds("psd 1 PSD_FRONT 0 60 30 0 0 0"), [(1, 60.0, 0.0, 30.0, 0.0)]);
 }
 
+/// All three rotations of a sensor, in the columns of either kind of file: those of the other sensors tell.
+#[test]
+fn sensors_turn_about_all_axes() {
+    let turns = |lines: &str| {
+        let spec = robot(&format!("{DRIVE}{lines}"));
+        let of = |mount: Mount| [mount.roll, mount.pitch, mount.yaw].map(|turn| units::to_deg(turn).round());
+        (
+            spec.psds.iter().map(|psd| of(psd.mount)).collect::<Vec<_>>(),
+            spec.lidar.map(|lidar| of(lidar.mount)),
+        )
+    };
+    let left = "psd 2 PSD_LEFT 56 45 30 0 90 0\npsd 7 DOWN 60 0 30 90 0 0\npsd 8 AHEAD_DOWN 60 0 30 30 -20 0\n\
+                lidar 0 0 100 -5 10 3 180 0 180";
+    let expected = vec![[0.0, 0.0, 90.0], [0.0, 90.0, 0.0], [0.0, 30.0, -20.0]];
+    assert_eq!(turns(left), (expected.clone(), Some([3.0, -5.0, 10.0])));
+    let clockwise = "psd 2 PSD_LEFT 45 56 30 0 0 -90\npsd 7 DOWN 0 60 30 90 0 0\npsd 8 AHEAD_DOWN 0 60 30 30 0 20\n\
+                     lidar 0 0 100 -5 -3 -10 180 0 180";
+    assert_eq!(turns(clockwise), (expected, Some([3.0, -5.0, 10.0])));
+    assert_eq!(psds("psd 7 PSD_FRONT 0 60 30 0 0 0\npsd 8 DOWN 0 60 30 90 0 0")[1].1, 60.0);
+    assert_eq!(turns("psd DOWN 7 60 0 30 90 0 0").0, [[0.0, 90.0, 0.0]]);
+    assert_eq!(turns("lidar 0 0 100 0 0 4 180 0 180").1, Some([4.0, 0.0, 0.0]));
+    let parsed = parse(&format!("{DRIVE}psd 7 DOWN 60 0 30 0 20 5"), "x.robi").unwrap();
+    assert!(parsed.warnings[0].to_string().contains("its line of sight"), "{:?}", parsed.warnings);
+}
+
+#[test]
+fn an_inertial_unit_has_channels() {
+    let spec = |line: &str| robot(&format!("{DRIVE}{line}")).inertial;
+    assert_eq!(spec("inertial 1 2 3"), InertialSpec { attitude: Some([1, 2, 3]), ..InertialSpec::default() });
+    assert_eq!(spec("inertial 9 10 11 12 13 14 15 16 17"), InertialSpec::ALL);
+    assert_eq!(spec("inertial 0 0 0 4 5 6").turn_rates, Some([4, 5, 6]));
+    for (line, expected) in [
+        ("inertial 1 2", "3, 6 or 9 channels"),
+        ("inertial 1 2 0", "three channels from 1 to 255, or 0 0 0"),
+        ("inertial 1 2 1", "each channel once"),
+        ("inertial 1 2 256", "0 to 255"),
+    ] {
+        let error = parse(&format!("{DRIVE}{line}"), "x.robi").unwrap_err();
+        assert!(error.to_string().contains(expected), "{line}: {error}");
+    }
+}
+
 #[test]
 fn all_forms_of_the_lidar() {
     let lidar = |line: &str| robot(&format!("{DRIVE}{line}")).lidar.unwrap();
@@ -250,12 +293,13 @@ prop_compose! {
 }
 
 prop_compose! {
-    fn psd()(id in any::<u8>(), x in metres(), y in -1.0..1.0f64, z in -1.0..1.0f64, yaw in degrees(180), range in metres())
-        -> PsdSpec
-    {
+    fn psd()(
+        id in any::<u8>(), x in prop_oneof![Just(0.0), metres()], y in -1.0..1.0f64, z in -1.0..1.0f64,
+        (pitch, yaw) in (prop_oneof![Just(0.0), degrees(180)], prop_oneof![Just(0.0), degrees(180)]), range in metres(),
+    ) -> PsdSpec {
         let name = if yaw == 0.0 || yaw == std::f64::consts::PI { "PSD_FRONT" } else if yaw > 0.0 { "PSD_LEFT" } else { "PSD_FR" };
         let y = match name { "PSD_LEFT" => y.abs(), "PSD_FR" => -y.abs(), _ => y };
-        PsdSpec { id, name: name.into(), mount: Mount { x, y, z, yaw }, max_range: range }
+        PsdSpec { id, name: name.into(), mount: Mount { x, y, z, roll: 0.0, pitch, yaw }, max_range: range }
     }
 }
 
@@ -268,7 +312,7 @@ prop_compose! {
     ) -> CameraSpec {
         let angle = |deg| units::from_deg(f64::from(deg));
         CameraSpec {
-            mount: Mount { x, y, z, yaw },
+            mount: Mount { x, y, z, yaw, ..Mount::default() },
             tilt,
             max_pan: angle(max_pan),
             max_tilt: angle(max_tilt),
@@ -279,11 +323,11 @@ prop_compose! {
 }
 
 prop_compose! {
-    fn lidar()(x in metres(), y in -1.0..1.0f64, yaw in degrees(180), fov in 1..=360i32, tilt in degrees(90),
+    fn lidar()(x in metres(), y in -1.0..1.0f64, (roll, pitch, yaw) in (degrees(180), degrees(180), degrees(180)), fov in 1..=360i32, tilt in degrees(90),
                points in 1..9999usize, max_range in metres()) -> LidarSpec
     {
         let field_of_view = units::from_deg(f64::from(fov));
-        LidarSpec { mount: Mount { x, y, z: 0.1, yaw }, field_of_view, tilt, points, max_range }
+        LidarSpec { mount: Mount { x, y, z: 0.1, roll, pitch, yaw }, field_of_view, tilt, points, max_range }
     }
 }
 
@@ -310,12 +354,18 @@ prop_compose! {
         psds in proptest::collection::vec(psd(), 0..4),
         lidar in proptest::option::of(lidar()),
         camera in proptest::option::of(camera()),
+        (tilts, rates, pulls) in (any::<bool>(), any::<bool>(), any::<bool>()),
     ) -> RobotSpec {
         let rectangle = Aabb::new(Point::new(outline.2, outline.3), Point::new(outline.0, outline.1));
         let footprint = if disc { Footprint::Disc { radius: outline.0 } } else { Footprint::Rectangle(rectangle) };
         let motor = MotorSpec { time_constant: motor.0, max_acceleration: motor.1 };
         let model = Some(r"m\a b.obj".into());
-        RobotSpec { name, drive, motor, footprint, height, mast: None, mass, friction, psds, lidar, camera, model, mesh: None, body }
+        let inertial = InertialSpec {
+            attitude: tilts.then_some([1, 2, 3]),
+            turn_rates: rates.then_some([6, 5, 4]),
+            acceleration: pulls.then_some([200, 8, 255]),
+        };
+        RobotSpec { name, drive, motor, footprint, height, mast: None, mass, friction, psds, lidar, camera, inertial, model, mesh: None, body }
     }
 }
 

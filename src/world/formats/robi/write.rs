@@ -5,7 +5,9 @@ use super::super::lexer::{self, quote};
 use super::super::number::{self, degrees, millimetres, undo_shift};
 use super::read::DEFAULT_STEERING;
 use crate::geometry::Aabb;
-use crate::world::{CameraSpec, CarDynamics, Collider, DriveSpec, Footprint, MotorSpec, PsdSpec, RobotSpec};
+use crate::world::{
+    CameraSpec, CarDynamics, Collider, DriveSpec, Footprint, InertialSpec, MotorSpec, PsdSpec, RobotSpec,
+};
 
 /// Writes a robot, so that [`parse`](super::parse) gives it back.
 ///
@@ -34,7 +36,16 @@ fn write_spec(text: &mut String, spec: &RobotSpec) -> Result {
     write_motor(text, spec)?;
     spec.psds.iter().try_for_each(|psd| write_psd(text, psd, spec.body.axle[0]))?;
     write_lidar(text, spec)?;
-    spec.camera.iter().try_for_each(|camera| write_camera(text, camera, spec.body.axle[0]))
+    spec.camera.iter().try_for_each(|camera| write_camera(text, camera, spec.body.axle[0]))?;
+    write_inertial(text, &spec.inertial)
+}
+
+fn write_inertial(text: &mut String, spec: &InertialSpec) -> Result {
+    if *spec == InertialSpec::default() {
+        return Ok(());
+    }
+    let groups = [spec.attitude, spec.turn_rates, spec.acceleration].map(Option::unwrap_or_default);
+    writeln!(text, "inertial {}", groups.concat().iter().map(u8::to_string).collect::<Vec<_>>().join(" "))
 }
 
 fn write_model(text: &mut String, spec: &RobotSpec) -> Result {
@@ -158,12 +169,12 @@ fn write_motor(text: &mut String, spec: &RobotSpec) -> Result {
 fn write_psd(text: &mut String, psd: &PsdSpec, ahead: f64) -> Result {
     let forward = undo_shift(psd.mount.x, ahead);
     let place = [forward, psd.mount.y, psd.mount.z].map(millimetres).join(" ");
-    let (name, yaw) = (quote(&psd.name), degrees(psd.mount.yaw));
+    let (name, turns) = (quote(&psd.name), [psd.mount.pitch, psd.mount.yaw].map(degrees).join(" "));
     // A sensor beside the axle that looks ahead would pass for one of the other columns; the older form has one meaning.
     if forward == 0.0 && psd.mount.y != 0.0 && psd.name.to_ascii_uppercase().contains("FRONT") {
-        writeln!(text, "psd {name} {} {place} {yaw}", psd.id)?;
+        writeln!(text, "psd {name} {} {place} {turns} 0", psd.id)?;
     } else {
-        writeln!(text, "psd {} {name} {place} 0 {yaw} 0", psd.id)?;
+        writeln!(text, "psd {} {name} {place} {turns} 0", psd.id)?;
     }
     if psd.max_range == PsdSpec::DEFAULT_MAX_RANGE {
         return Ok(());
@@ -175,8 +186,9 @@ fn write_lidar(text: &mut String, spec: &RobotSpec) -> Result {
     let Some(lidar) = &spec.lidar else { return Ok(()) };
     let mount = &lidar.mount;
     let place = [undo_shift(mount.x, spec.body.axle[0]), mount.y, mount.z].map(millimetres).join(" ");
-    let (yaw, range, tilt) = (degrees(mount.yaw), degrees(lidar.field_of_view), degrees(lidar.tilt));
-    writeln!(text, "lidar {place} 0 {yaw} 0 {range} {tilt} {}", lidar.points)?;
+    let turns = [mount.pitch, mount.yaw, mount.roll].map(degrees).join(" ");
+    let (range, tilt) = (degrees(lidar.field_of_view), degrees(lidar.tilt));
+    writeln!(text, "lidar {place} {turns} {range} {tilt} {}", lidar.points)?;
     if lidar.max_range == PsdSpec::DEFAULT_MAX_RANGE {
         return Ok(());
     }

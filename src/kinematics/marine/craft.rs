@@ -1,0 +1,375 @@
+use nalgebra::{Matrix3, Matrix6, Rotation3, Vector6};
+
+use super::{CraftSpec, CraftState, Displaced, GRAVITY, HullPart, MAX_THRUSTERS, Thruster};
+use crate::ParameterError;
+use crate::geometry::{Point3, Vector, Vector3, math};
+use crate::parameter::{require, require_positive};
+
+/// A speed through space: of a craft in its own frame, at the middle of its hull's volume.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Motion {
+    /// Metres per second.
+    pub linear: Vector3,
+    /// Radians per second about each axis.
+    pub angular: Vector3,
+}
+
+/// A force and a moment on a craft in its own frame, about the middle of its hull's volume.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wrench {
+    /// Newtons.
+    pub force: Vector3,
+    /// Newton metres.
+    pub moment: Vector3,
+}
+
+impl Motion {
+    /// Rest.
+    pub const STILL: Self =
+        Self { linear: Vector3::new(0.0, 0.0, 0.0), angular: Vector3::new(0.0, 0.0, 0.0) };
+}
+
+impl Wrench {
+    /// No force.
+    pub const NONE: Self = Self { force: Vector3::new(0.0, 0.0, 0.0), moment: Vector3::new(0.0, 0.0, 0.0) };
+
+    /// A force at a place.
+    pub fn at(place: Vector3, force: Vector3) -> Self {
+        Self { force, moment: place.cross(&force) }
+    }
+}
+
+impl std::ops::Add for Wrench {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { force: self.force + other.force, moment: self.moment + other.moment }
+    }
+}
+
+/// The water around a craft.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Water {
+    /// Kilograms in a cubic metre.
+    pub density: f64,
+    /// Metres of the surface above the world's origin, straight above the craft; without water, -∞.
+    pub level: f64,
+    /// Metres that the surface rises in a metre along x and along y.
+    pub slope: Vector,
+    /// Metres per second in the world's frame.
+    pub velocity: Vector3,
+}
+
+impl Water {
+    /// Fresh water that stands at a level.
+    pub fn still(level: f64) -> Self {
+        Self { density: 1000.0, level, slope: Vector::zeros(), velocity: Vector3::zeros() }
+    }
+
+    /// No water: craft fall.
+    pub fn none() -> Self {
+        Self::still(f64::NEG_INFINITY)
+    }
+}
+
+/// A body with six degrees of freedom in water.
+#[derive(Debug, Clone)]
+pub struct Craft {
+    /// The middle of the hull's volume, about which everything else is.
+    pub(super) origin: Vector3,
+    pub(super) mass: f64,
+    pub(super) mass_centre: Vector3,
+    hull: Box<[HullPart]>,
+    pub(super) whole: Displaced,
+    /// No part of the hull is farther from the origin.
+    reach: f64,
+    wet: Inertia,
+    dry: Inertia,
+    linear_damping: Vector6<f64>,
+    quadratic_damping: Vector6<f64>,
+    /// More damping than this would turn a speed around within a step.
+    most_damping: Vector6<f64>,
+    pub(super) thrusters: Box<[Thruster]>,
+    /// What the lag leaves of each thruster's difference to its command after half a step.
+    pub(super) decays: [f64; MAX_THRUSTERS],
+    /// Seconds.
+    pub(super) step: f64,
+}
+
+#[derive(Debug, Clone)]
+struct Inertia {
+    matrix: Matrix6<f64>,
+    inverse: Matrix6<f64>,
+}
+
+impl Craft {
+    /// A craft that moves in steps of some seconds.
+    ///
+    /// Fails with the name of a number that is not what it must be, with an inertia that no body has, and with a
+    /// step above 0.1 s.
+    pub fn new(spec: &CraftSpec, step: f64) -> Result<Self, ParameterError> {
+        spec.validate()?;
+        require_positive("step", step)?;
+        require("step", step, step <= 0.1, "at most 0.1 s")?;
+        let whole: Displaced =
+            spec.hull.iter().map(|part| part.displaced(&Vector3::z(), f64::INFINITY)).sum();
+        let origin = whole.centre().coords;
+        let hull: Box<[HullPart]> = spec.hull.iter().map(|part| part.seen_from(origin)).collect();
+        let reach = hull.iter().map(|part| part.centre().coords.norm() + part.half_size().norm());
+        let thrusters: Box<[Thruster]> =
+            spec.thrusters.iter().map(|thruster| about(thruster, origin)).collect();
+        let mass_centre = spec.centre_of_mass.coords - origin;
+        let rigid = rigid(spec.mass, &mass_centre, &spec.inertia);
+        let wet = rigid + Matrix6::from_diagonal(&Vector6::from(spec.added_mass));
+        let mut decays = [0.0; MAX_THRUSTERS];
+        for (decay, thruster) in decays.iter_mut().zip(&thrusters) {
+            *decay = if thruster.lag > 0.0 { math::exp(-0.5 * step / thruster.lag) } else { 0.0 };
+        }
+        Ok(Self {
+            origin,
+            mass: spec.mass,
+            mass_centre,
+            whole: whole_about(whole, origin),
+            reach: reach.fold(0.0, f64::max),
+            hull,
+            most_damping: rigid.diagonal() / step,
+            wet: Inertia::new(wet)?,
+            dry: Inertia::new(rigid)?,
+            linear_damping: Vector6::from(spec.linear_damping),
+            quadratic_damping: Vector6::from(spec.quadratic_damping),
+            thrusters,
+            decays,
+            step,
+        })
+    }
+
+    /// Seconds that it moves at a time.
+    pub fn step(&self) -> f64 {
+        self.step
+    }
+
+    /// Its thrusters; their places are from the middle of the hull's volume.
+    pub fn thrusters(&self) -> &[Thruster] {
+        &self.thrusters
+    }
+
+    /// The middle of the hull's volume in the frame of the description.
+    pub fn middle(&self) -> Point3 {
+        Point3::from(self.origin)
+    }
+
+    /// Newtons by which buoyancy exceeds the weight when all of the hull is under water.
+    pub fn reserve(&self, density: f64) -> f64 {
+        GRAVITY * (density * self.whole.volume - self.mass)
+    }
+
+    /// The forces that drive it at one axis at a time to a steady speed through the water, damping's: N and N m.
+    pub fn drag(&self, through_water: &Motion) -> Wrench {
+        let speed = stack(&through_water.linear, &through_water.angular);
+        split(&self.damping(&speed)).into()
+    }
+
+    /// The acceleration of a craft under water, through the water, by a force and a moment besides those of inertia
+    /// and damping. A current turns with the craft's frame in addition.
+    pub fn response(&self, through_water: &Motion, wrench: &Wrench) -> Motion {
+        let speed = stack(&through_water.linear, &through_water.angular);
+        let force = stack(&wrench.force, &wrench.moment);
+        let (linear, angular) = split(&self.accelerate(&self.wet, &speed, 1.0, &force));
+        Motion { linear, angular }
+    }
+
+    /// Weight and buoyancy; nothing of a craft without a hull.
+    pub fn restoring(&self, state: &CraftState, water: &Water) -> Wrench {
+        self.restoring_at(&state.position, &state.attitude.to_rotation_matrix(), water).0
+    }
+
+    /// The water that a craft displaces, about the middle of its hull's volume.
+    pub fn displaced(&self, state: &CraftState, water: &Water) -> Displaced {
+        let attitude = state.attitude.to_rotation_matrix();
+        self.displaced_at(&state.position, &attitude, water)
+    }
+
+    /// Joules of motion, weight and buoyancy in still water, above those of rest at the surface with no water
+    /// displaced. Damping lets it fall, and nothing but a thruster or moving water lets it rise.
+    pub fn energy(&self, state: &CraftState, water: &Water) -> f64 {
+        let kinetic = self.kinetic(state, water);
+        let height = |place: Vector3| (state.position + state.attitude * place).z;
+        let weight = self.mass * GRAVITY * height(self.mass_centre);
+        let displaced = self.displaced(state, water);
+        if displaced.volume == 0.0 {
+            return kinetic + weight;
+        }
+        // Displaced water has come from its place to the surface.
+        let raised = water.level - height(displaced.centre().coords);
+        kinetic + weight + water.density * GRAVITY * displaced.volume * raised
+    }
+
+    pub(super) fn kinetic(&self, state: &CraftState, water: &Water) -> f64 {
+        let speed = stack(&state.velocity.linear, &state.velocity.angular);
+        0.5 * speed.dot(&(self.inertia(water).matrix * speed))
+    }
+
+    /// Whether the surface may cross the hull.
+    pub(super) fn is_at_surface(&self, state: &CraftState, water: &Water) -> bool {
+        (water.level - state.position.z).abs()
+            < self.reach * (1.0 + water.slope.x.abs() + water.slope.y.abs())
+    }
+
+    pub(super) fn displaced_at(
+        &self,
+        position: &Point3,
+        attitude: &Rotation3<f64>,
+        water: &Water,
+    ) -> Displaced {
+        let depth = water.level - position.z;
+        let steep = 1.0 + water.slope.x.abs() + water.slope.y.abs();
+        if depth >= self.reach * steep {
+            return self.whole;
+        }
+        if depth <= -self.reach * steep {
+            return Displaced::NOTHING;
+        }
+        let normal = Vector3::new(-water.slope.x, -water.slope.y, 1.0).normalize();
+        let (up, level) = (attitude.inverse() * normal, depth * normal.z);
+        self.hull.iter().map(|part| part.displaced(&up, level)).sum()
+    }
+
+    /// Weight and buoyancy, and how much of the hull is under water. A craft without a hull has neither.
+    #[inline]
+    fn restoring_at(&self, position: &Point3, attitude: &Rotation3<f64>, water: &Water) -> (Wrench, f64) {
+        if self.hull.is_empty() {
+            return (Wrench::NONE, 0.0);
+        }
+        let up = attitude.inverse() * Vector3::new(0.0, 0.0, GRAVITY);
+        let displaced = self.displaced_at(position, attitude, water);
+        let weight = up * -self.mass;
+        let pressure = if water.slope == Vector::zeros() {
+            up
+        } else {
+            attitude.inverse() * Vector3::new(-water.slope.x, -water.slope.y, 1.0) * GRAVITY
+        };
+        let lift = pressure * water.density;
+        let force = weight + lift * displaced.volume;
+        let moment = self.mass_centre.cross(&weight) + displaced.moment.cross(&lift);
+        (Wrench { force, moment }, displaced.volume)
+    }
+
+    /// The acceleration in a state, without thrusters.
+    #[inline]
+    pub(super) fn rates(
+        &self,
+        position: &Point3,
+        attitude: &Rotation3<f64>,
+        speed: &Vector6<f64>,
+        wrench: &Vector6<f64>,
+        water: &Water,
+    ) -> Vector6<f64> {
+        let (restoring, volume) = self.restoring_at(position, attitude, water);
+        let current = attitude.inverse() * water.velocity;
+        let mut relative = *speed;
+        relative.fixed_rows_mut::<3>(0).zip_apply(&current, |speed, current| *speed -= current);
+        let share = self.share(volume, water.density);
+        let total = wrench + stack(&restoring.force, &restoring.moment);
+        let mut rates = self.accelerate(self.inertia(water), &relative, share, &total);
+        let (_, angular) = split(speed);
+        let turned = current.cross(&angular);
+        rates.fixed_rows_mut::<3>(0).zip_apply(&turned, |rate, turned| *rate += turned);
+        rates
+    }
+
+    /// The share of the damping that a craft has of which so much is under water: all of it, if that is what carries
+    /// it or all there is.
+    fn share(&self, volume: f64, density: f64) -> f64 {
+        let most = self.whole.volume.min(self.mass / density);
+        if volume >= most || most == 0.0 { 1.0 } else { volume / most }
+    }
+
+    fn inertia(&self, water: &Water) -> &Inertia {
+        if water.level == f64::NEG_INFINITY { &self.dry } else { &self.wet }
+    }
+
+    #[inline]
+    fn accelerate(
+        &self,
+        inertia: &Inertia,
+        speed: &Vector6<f64>,
+        share: f64,
+        force: &Vector6<f64>,
+    ) -> Vector6<f64> {
+        let (linear, angular) = split(speed);
+        let (impulse, spin) = split(&(inertia.matrix * speed));
+        let coriolis = stack(&angular.cross(&impulse), &(angular.cross(&spin) + linear.cross(&impulse)));
+        inertia.inverse * (force - coriolis - self.damping(speed) * share)
+    }
+
+    #[inline]
+    fn damping(&self, speed: &Vector6<f64>) -> Vector6<f64> {
+        let slope = self.linear_damping + self.quadratic_damping.component_mul(&speed.abs());
+        slope.inf(&self.most_damping).component_mul(speed)
+    }
+}
+
+impl From<(Vector3, Vector3)> for Wrench {
+    fn from((force, moment): (Vector3, Vector3)) -> Self {
+        Self { force, moment }
+    }
+}
+
+impl Inertia {
+    fn new(matrix: Matrix6<f64>) -> Result<Self, ParameterError> {
+        let least = least_pivot(matrix);
+        require("least principal inertia", least, least > 1e-12, "the inertia of a body with some size")?;
+        let inverse = matrix.try_inverse().unwrap_or_else(Matrix6::identity);
+        Ok(Self { matrix, inverse })
+    }
+}
+
+/// The least pivot of a symmetric matrix: positive if and only if it is positive definite. NaN if there is one.
+fn least_pivot(mut matrix: Matrix6<f64>) -> f64 {
+    let mut least = f64::INFINITY;
+    for k in 0..6 {
+        let pivot = matrix[(k, k)];
+        if pivot.is_nan() || pivot <= 0.0 {
+            return pivot;
+        }
+        least = least.min(pivot);
+        for row in k + 1..6 {
+            let factor = matrix[(row, k)] / pivot;
+            for column in k..6 {
+                matrix[(row, column)] -= factor * matrix[(k, column)];
+            }
+        }
+    }
+    least
+}
+
+/// The inertia of a rigid body about a place from which the middle of its mass is at `centre`.
+fn rigid(mass: f64, centre: &Vector3, inertia: &[[f64; 3]; 3]) -> Matrix6<f64> {
+    let cross = centre.cross_matrix();
+    let own = Matrix3::from_fn(|row, column| 0.5 * (inertia[row][column] + inertia[column][row]));
+    let mut matrix = Matrix6::zeros();
+    matrix.fixed_view_mut::<3, 3>(0, 0).fill_diagonal(mass);
+    matrix.fixed_view_mut::<3, 3>(0, 3).copy_from(&(-mass * cross));
+    matrix.fixed_view_mut::<3, 3>(3, 0).copy_from(&(mass * cross));
+    matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&(own - mass * cross * cross));
+    matrix
+}
+
+fn whole_about(whole: Displaced, origin: Vector3) -> Displaced {
+    Displaced { moment: whole.moment - origin * whole.volume, ..whole }
+}
+
+fn about(thruster: &Thruster, origin: Vector3) -> Thruster {
+    let place = thruster.place - origin;
+    Thruster { place, direction: thruster.direction.normalize(), ..thruster.clone() }
+}
+
+#[inline]
+pub(super) fn stack(first: &Vector3, last: &Vector3) -> Vector6<f64> {
+    Vector6::new(first.x, first.y, first.z, last.x, last.y, last.z)
+}
+
+#[inline]
+pub(super) fn split(both: &Vector6<f64>) -> (Vector3, Vector3) {
+    (Vector3::new(both[0], both[1], both[2]), Vector3::new(both[3], both[4], both[5]))
+}

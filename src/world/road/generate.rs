@@ -1,0 +1,349 @@
+use super::alignment::{Alignment, Element};
+use super::course::{
+    Centre, Course, CourseError, Crossing, Direction, Line, Mark, MarkKind, RightOfWay, Traffic,
+};
+use crate::geometry::{Point, Pose, Vector, angle_difference, cross, direction, math};
+use crate::random::Stream;
+
+/// What a generated course is like. Lengths are those of the rules, before the size is applied.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CourseOptions {
+    /// On which side of the road cars drive.
+    pub traffic: Traffic,
+    /// Metres of the course for each metre of the rules.
+    pub size: f64,
+    /// Metres across a lane, from least to most.
+    pub lane_width: [f64; 2],
+    /// Missing lines for each metre of the road.
+    pub gaps: f64,
+    /// Metres of a missing line at most.
+    pub longest_gap: f64,
+    /// The probability that a straight has a crossing or a side road, where there is room.
+    pub crossings: f64,
+    /// The probability that a straight has a crosswalk, where there is room.
+    pub zebras: f64,
+    /// Patches beside the road for each of its metres.
+    pub artefacts: f64,
+}
+
+impl Default for CourseOptions {
+    /// What Free Drive has: all kinds of lines, gaps to 1 m, crossings and side roads, and patches beside the road.
+    fn default() -> Self {
+        Self {
+            traffic: Traffic::Right,
+            size: 1.0,
+            lane_width: [0.35, 0.45],
+            gaps: 0.15,
+            longest_gap: 1.0,
+            crossings: 0.6,
+            zebras: 0.0,
+            artefacts: 0.3,
+        }
+    }
+}
+
+/// A course by the rules: an outline of straights, with bends of clothoids and arcs in its corners, and markings drawn by
+/// chance. The same seed and options give the same course, to the bit. One of three has the form of an eight.
+///
+/// Fails where the options contradict each other, so that no course is found.
+pub fn generate(seed: u64, options: &CourseOptions) -> Result<Course, CourseError> {
+    let mut last = None;
+    for attempt in 0..ATTEMPTS {
+        let mut random = Stream::new(seed).child("course", attempt);
+        match attempt_course(&mut random, options) {
+            Some(Ok(course)) => return Ok(course),
+            Some(Err(error)) => last = Some(error),
+            None => {}
+        }
+    }
+    Err(last.unwrap_or(CourseError::Length { length: 0.0, least: 6.0, most: 500.0 }))
+}
+
+/// Outlines that are tried: about one in twenty leaves room for all bends.
+const ATTEMPTS: u64 = 2000;
+/// Metres of a straight at least.
+const SHORTEST: f64 = 0.3;
+/// Radians of a bend at least.
+const GENTLEST: f64 = 0.15;
+/// The least radius of a road's inner edge, by the rules.
+const INNER: f64 = 1.0;
+
+/// A corner's bend: its elements, and metres from the corner to where they begin and end.
+struct Bend {
+    elements: [Element; 3],
+    tangent: f64,
+}
+
+fn attempt_course(random: &mut Stream, options: &CourseOptions) -> Option<Result<Course, CourseError>> {
+    let lane = random.between(options.lane_width[0], options.lane_width[1]);
+    let least = INNER + lane + 0.03;
+    let eight = random.chance(0.33);
+    let corners = if eight { eight_corners(random) } else { star_corners(random) };
+    let turns = turns(&corners);
+    if turns.iter().any(|turn| turn.abs() < GENTLEST) {
+        return None;
+    }
+    let bends: Vec<Bend> = turns.into_iter().map(|turn| bend(turn, least, random)).collect();
+    let count = corners.len();
+    let free = |i: usize| {
+        let edge = (corners[(i + 1) % count] - corners[i]).norm();
+        edge - bends[i].tangent - bends[(i + 1) % count].tangent
+    };
+    if (0..count).any(|i| free(i) < SHORTEST) {
+        return None;
+    }
+    // The road begins in the middle of its longest straight; of an eight, on none that is crossed.
+    let first =
+        (0..count).filter(|i| !eight || (i + 1) % 3 != 0).max_by(|&a, &b| free(a).total_cmp(&free(b)))?;
+    if free(first) < 1.6 {
+        return None;
+    }
+    let mut elements = vec![Element::straight(0.5 * free(first))];
+    for i in (first + 1..=first + count).map(|i| i % count) {
+        elements.extend(bends[i].elements);
+        elements.push(Element::straight(if i == first { 0.5 * free(i) } else { free(i) }));
+    }
+    let way = corners[(first + 1) % count] - corners[first];
+    let along = way / way.norm();
+    let place = corners[first] + along * (bends[first].tangent + 0.5 * free(first));
+    let start = Pose::new(place.x, place.y, math::atan2(along.y, along.x));
+    Some(finished(random, options, lane, (start, elements)))
+}
+
+/// Corners around a middle.
+fn star_corners(random: &mut Stream) -> Vec<Point> {
+    let count = 4 + random.below(5);
+    let clockwise = random.chance(0.5);
+    let (wide, high) = (random.between(3.5, 6.5), random.between(3.0, 5.0));
+    let turn = std::f64::consts::TAU / count as f64;
+    let mut corners: Vec<Point> = (0..count)
+        .map(|i| {
+            let angle = turn * (i as f64 + random.between(-0.2, 0.2));
+            let out = direction(angle) * random.between(0.55, 1.0);
+            Point::new(out.x * wide, out.y * high)
+        })
+        .collect();
+    if clockwise {
+        corners.reverse();
+    }
+    corners
+}
+
+/// Corners of two loops whose way crosses itself at the origin: between the third corner and the fourth, and between the
+/// sixth and the first.
+fn eight_corners(random: &mut Stream) -> Vec<Point> {
+    let half = 0.5 * random.between(70.0, 90.0_f64).to_radians();
+    let (up, down) = (direction(half), direction(-half));
+    let mut near = || random.between(4.2, 5.5);
+    let [a, c, d, f] = [up * near(), down * near(), down * -near(), up * -near()];
+    let mut far = || Vector::new(random.between(6.0, 7.5), random.between(-0.5, 0.5));
+    let (b, e) = (far(), -far());
+    // Out along one line, back along the other, and on across the origin.
+    [a, b, c, d, e, f].map(Point::from).to_vec()
+}
+
+/// By how much a way around some corners turns in each of them.
+fn turns(corners: &[Point]) -> Vec<f64> {
+    let count = corners.len();
+    let heading = |i: usize| {
+        let way = corners[(i + 1) % count] - corners[i];
+        math::atan2(way.y, way.x)
+    };
+    (0..count).map(|i| angle_difference(heading(i), heading((i + count - 1) % count))).collect()
+}
+
+fn bend(turn: f64, least: f64, random: &mut Stream) -> Bend {
+    let angle = turn.abs();
+    let radius = least * random.between(1.0, 1.5);
+    let ease = random.between(0.3, 0.9).min(0.8 * radius * angle);
+    let bend = turn.signum() / radius;
+    let arc = Element::arc(radius, turn.signum() * (angle - ease / radius));
+    let elements = [Element::clothoid(ease, 0.0, bend), arc, Element::clothoid(ease, bend, 0.0)];
+    let end = elements.iter().fold(Pose::default(), |pose, element| pose.compose(&element.end()));
+    // The way out leads back to the corner.
+    let tangent = end.x - end.y / math::tan(turn.signum() * angle);
+    Bend { elements, tangent }
+}
+
+/// The course with its markings.
+fn finished(
+    random: &mut Stream,
+    options: &CourseOptions,
+    lane: f64,
+    (start, elements): (Pose, Vec<Element>),
+) -> Result<Course, CourseError> {
+    let line = Alignment::new(start, elements);
+    let mut course = Course { lane_width: lane, traffic: options.traffic, ..Course::new_unchecked(line) };
+    Marker { random, options, course: &mut course, taken: vec![(-1.2, 0.3)] }.mark();
+    let course = course.scaled(options.size);
+    course.check().map(|()| course)
+}
+
+/// Puts markings on a course of the rules' size.
+struct Marker<'c> {
+    random: &'c mut Stream,
+    options: &'c CourseOptions,
+    course: &'c mut Course,
+    /// Where something is already: metres along the road, from and to.
+    taken: Vec<(f64, f64)>,
+}
+
+impl Marker<'_> {
+    fn mark(&mut self) {
+        self.put(0.0, MarkKind::Start);
+        self.own_crossing();
+        self.straights();
+        self.centre_line();
+        self.gaps();
+        self.artefacts();
+        self.course.marks.sort_by(|a, b| a.at.total_cmp(&b.at));
+    }
+
+    fn put(&mut self, at: f64, kind: MarkKind) {
+        self.course.marks.push(Mark { at, kind });
+    }
+
+    /// Takes a part of the road, if it is free.
+    fn take(&mut self, from: f64, to: f64) -> bool {
+        let length = self.course.line.length();
+        let apart =
+            |&(a, b): &(f64, f64)| [0.0, length, -length].iter().all(|turn| to < a + turn || from > b + turn);
+        let is_free = from >= 0.0 && to <= length && self.taken.iter().all(apart);
+        if is_free {
+            self.taken.push((from, to));
+        }
+        is_free
+    }
+
+    /// A crossing where the road crosses itself: at both of its places.
+    fn own_crossing(&mut self) {
+        let line = self.course.line.clone();
+        let count = (line.length() / 0.02) as usize;
+        let place = |i: usize| 0.02 * i as f64;
+        let near = |i: usize| {
+            let station = line.at(place(i));
+            station.curvature == 0.0 && station.pose.position().coords.norm() < 0.4
+        };
+        let runs: Vec<usize> = (0..count).filter(|&i| near(i)).collect();
+        let Some(&first) = runs.first() else { return };
+        let Some(&second) = runs.iter().find(|&&i| place(i - first) > 2.0) else { return };
+        let meet = crossing_of(&line.at(place(first)).pose, &line.at(place(second)).pose);
+        let Some((on_first, on_second)) = meet else { return };
+        let (a, b) = (place(first) + on_first, place(second) + on_second);
+        let turn = |from: f64, to: f64| {
+            let angle = angle_difference(line.at(to).pose.heading, line.at(from).pose.heading);
+            // The other road has no direction.
+            if angle < 0.0 { angle + std::f64::consts::PI } else { angle }
+        };
+        for (at, other, right_of_way) in [
+            (a, b, RightOfWay::Priority),
+            (b, a, if self.random.chance(0.5) { RightOfWay::Stop } else { RightOfWay::GiveWay }),
+        ] {
+            self.taken.push((at - 1.3, at + 1.3));
+            let angle = turn(at, other);
+            self.put(at, MarkKind::Crossing(Crossing { angle, arms: [0.0; 2], right_of_way }));
+        }
+    }
+
+    /// What stands on straights: crossings, side roads, crosswalks, numbers.
+    fn straights(&mut self) {
+        let mut begun = 0.0;
+        for element in self.course.line.elements().to_vec() {
+            let (from, to) = (begun, begun + element.length);
+            begun = to;
+            if element.curvature != [0.0; 2] || element.length < 1.2 {
+                continue;
+            }
+            let middle = self.random.between(0.35, 0.65) * element.length + from;
+            if element.length > 2.4 && self.random.chance(self.options.crossings) {
+                if self.room_for_arms(middle) && self.take(middle - 1.0, middle + 1.0) {
+                    let angle = self.random.between(70.0, 110.0).to_radians();
+                    let arms = [[0.8, 0.8], [0.8, 0.0], [0.0, 0.8]][self.random.below(3)];
+                    let right_of_way =
+                        [RightOfWay::Priority, RightOfWay::Stop, RightOfWay::GiveWay][self.random.below(3)];
+                    self.put(middle, MarkKind::Crossing(Crossing { angle, arms, right_of_way }));
+                } else if self.take(middle - 0.5, middle + 0.5) {
+                    let side = [Direction::Left, Direction::Right][self.random.below(2)];
+                    self.put(middle - 0.45, MarkKind::SideRoad(side, 0.9));
+                }
+            } else if self.random.chance(self.options.zebras) && self.take(middle - 0.7, middle + 0.7) {
+                self.put(middle - 0.2, MarkKind::Zebra);
+            } else if self.random.chance(0.3 * self.options.crossings)
+                && self.take(middle - 0.3, middle + 0.5)
+            {
+                let value = 10 * (1 + self.random.below(8)) as u8;
+                let struck = self.random.chance(0.5);
+                self.put(middle, MarkKind::Speed(value, struck));
+            }
+        }
+    }
+
+    /// Whether nothing of the road is where the arms of a crossing would be.
+    fn room_for_arms(&self, at: f64) -> bool {
+        let line = &self.course.line;
+        let pose = line.at(at).pose;
+        let far = 0.8 + 2.6 * self.course.edge();
+        line.stations().iter().all(|station| {
+            let own = pose.to_local(station.pose.position());
+            own.x.abs() > 1.6 || own.y.abs() < 0.3 || own.y.abs() > far
+        })
+    }
+
+    /// Kinds of the centre line, each for 1 m at least.
+    fn centre_line(&mut self) {
+        let length = self.course.line.length();
+        let kinds = [Centre::Dashed, Centre::Double, Centre::SolidLeft, Centre::SolidRight];
+        let mut at = self.random.between(1.0, 6.0);
+        while at < length - 1.5 {
+            let kind = if self.random.chance(0.5) { Centre::Dashed } else { kinds[self.random.below(4)] };
+            self.course.centre.push((at, kind));
+            at += self.random.between(1.0, 6.0);
+        }
+        self.course.centre.push(((at - 0.5).min(length - 0.2), Centre::Dashed));
+        self.course.centre.sort_by(|a, b| a.0.total_cmp(&b.0));
+    }
+
+    fn gaps(&mut self) {
+        let length = self.course.line.length();
+        let lines = [Line::Left, Line::Centre, Line::Right];
+        for _ in 0..(self.options.gaps * length) as usize {
+            let at = self.random.uniform() * length;
+            let long = self.random.between(0.2, 1.0) * self.options.longest_gap;
+            if long > 0.0 && self.take(at - 0.5, at + long + 0.5) {
+                let first = self.random.below(3);
+                self.put(at, MarkKind::Gap(lines[first], long));
+                if self.random.chance(0.25) {
+                    self.put(at, MarkKind::Gap(lines[(first + 1) % 3], long));
+                }
+            }
+        }
+    }
+
+    fn artefacts(&mut self) {
+        let length = self.course.line.length();
+        for _ in 0..(self.options.artefacts * length) as usize {
+            let at = self.random.uniform() * length;
+            let (long, wide) = (self.random.between(0.03, 0.5), self.random.between(0.02, 0.2));
+            let out = self.course.edge() + 0.12 + wide + self.random.between(0.0, 0.5);
+            let left = if self.random.chance(0.5) { out } else { -out };
+            let place = self.course.line.beside(at, left);
+            let (_, aside) = self.course.line.locate(place, None);
+            let reach = self.course.edge() + 0.12 + 0.5 * (long + wide);
+            let near_crossing = self
+                .course
+                .crossings()
+                .any(|(middle, _)| (self.course.line.at(middle).pose.position() - place).norm() < 2.2);
+            if aside.abs() > reach && !near_crossing {
+                self.put(at, MarkKind::Artefact(left, long, wide));
+            }
+        }
+    }
+}
+
+/// Where two straight ways meet: metres along each of them.
+fn crossing_of(first: &Pose, second: &Pose) -> Option<(f64, f64)> {
+    let between: Vector = second.position() - first.position();
+    let (a, b) = (first.forward(), second.forward());
+    let sine = cross(a, b);
+    (sine.abs() > 0.1).then(|| (cross(between, b) / sine, cross(between, a) / sine))
+}

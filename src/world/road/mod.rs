@@ -1,0 +1,33 @@
+//! Roads for model cars (book, chapter 13): closed courses of two lanes by the rules of the CAuDri-Challenge, the successor
+//! of the Carolo-Cup.
+//!
+//! The middle of the road is an [`Alignment`] of straights, arcs and clothoids; a [`Course`] has the markings beside it and
+//! what is painted on it, finds the place of a car on its lane, and is drawn as the floor of a [`World`](super::World). Courses
+//! come from [`generate`], or from files in a plain format of ours: see [`formats::course`](super::formats::course) and `docs/courses.md`.
+//!
+//! ```
+//! use roverlab::world::road::{Appearance, CourseOptions, generate};
+//!
+//! let course = generate(1, &CourseOptions::default())?;
+//! let world = course.world(&Appearance::default())?;
+//! let start = course.start();
+//! assert!(world.floor.contains(start.position()));
+//! assert!(course.locate(&start, None).offset.abs() < 1e-6, "the middle of its lane");
+//! # Ok::<(), roverlab::world::road::CourseError>(())
+//! ```
+
+mod alignment;
+mod course;
+mod crossings;
+mod generate;
+mod paint;
+mod raster;
+#[cfg(test)]
+mod tests;
+
+pub use alignment::{Alignment, Element, Station};
+pub use course::{
+    Centre, Course, CourseError, Crossing, Direction, LanePose, Line, Mark, MarkKind, RightOfWay, Traffic,
+};
+pub use generate::{CourseOptions, generate};
+pub use raster::Appearance;
