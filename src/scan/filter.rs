@@ -53,6 +53,8 @@ pub(super) const RANGE_ERROR: f64 = 0.010;
 const UNKNOWN: Beam = Beam { range: f64::INFINITY, weight: 0.0 };
 /// Maximum weight of an estimate, so that it follows small changes.
 const MAX_WEIGHT: f64 = 20.0;
+/// Flattest angle, in radians, at which a beam says where a wall is.
+pub(super) const GRAZING: f64 = 0.2;
 /// Beams next to each other whose ranges differ by less than this part of the range see one surface.
 pub(super) const SURFACE_STEP: f64 = 0.1;
 /// Beams whose hits lie closer together than this, in metres, see the same piece of surface; seen at a slant, it moves by as much

@@ -124,8 +124,6 @@ pub struct EventRacer {
 const LOOKS: f64 = 0.3;
 /// Metres before the origin of a skidpad, and behind the start of a strip, at which lines begin.
 const BEFORE: f64 = 30.0;
-/// Metres before the origin of a skidpad up to which it is entered slowly.
-const ENTERED: f64 = 2.0;
 /// Metres by which a number of the layout changes before the line is planned again.
 const CHANGED: f64 = 0.02;
 /// Metres between a cone and the side of a car that passes it.
@@ -284,7 +282,7 @@ impl EventRacer {
             EventShape::Eight { apart, .. } => {
                 let room = p.outline.half_width + ConeColour::Unknown.radius() + p.outline.room;
                 let ends = [-BEFORE, p.stop[1] - behind];
-                (line::smooth_eight(apart, line::radius(shape, room), ends), -ENTERED)
+                (line::smooth_eight(apart, line::radius(shape, room), ends), -STRIDE)
             }
         };
         let mut profile = SpeedProfile::open(&points, &p.limits, p.limits.top_speed, 0.0)?;

@@ -2,6 +2,7 @@ use super::ScanFeaturesParameters;
 use crate::geometry::{Point, direction, math};
 use crate::io::LidarScan;
 use crate::kinematics::OUTLIER;
+use crate::scan::filter::GRAZING;
 
 /// A beam with an echo.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,8 +21,6 @@ pub(super) struct Cluster {
     pub(super) stands_before: [bool; 2],
 }
 
-/// Smallest angle at which beams are expected to hit a wall (rad).
-const GRAZING: f64 = 0.1;
 
 /// Splits a scan where adjacent beams hit different surfaces (G. A. Borges and M.-J. Aldon, "Line extraction
 /// in 2D range images for mobile robotics", 2004). In a full-turn scan, a cluster across the scan's ends

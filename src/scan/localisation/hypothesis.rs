@@ -4,7 +4,7 @@ use super::LocaliserParameters;
 use super::map::LocalisationMap;
 use crate::geometry::{Pose, Vector, angle_difference, direction, math, normalize_angle};
 use crate::io::LidarScan;
-use crate::scan::filter::RANGE_ERROR;
+use crate::scan::filter::{GRAZING, RANGE_ERROR};
 use crate::world::space::Scanner;
 
 /// A possible pose of the robot.
@@ -38,8 +38,6 @@ struct Evidence {
     explained: f64,
 }
 
-/// Sine of the smallest angle to a wall at which a beam determines the wall's position.
-const GRAZING: f64 = 0.2;
 /// Number of beams that count as one, because beams are not independent.
 const BEAMS_AS_ONE: f64 = 4.0;
 /// Fraction of beams that may measure anything.
