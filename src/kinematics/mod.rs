@@ -22,4 +22,6 @@ pub use omni::{Omni, RollerWheel};
 pub use planar::{PlanarMotion, PlanarTwist, advance_planar};
 pub use tracked::Tracked;
 pub use uncertainty::{OdometryErrors, OdometryUncertainty};
-pub(crate) use uncertainty::{OdometryStep, arc_between};
+pub(crate) use uncertainty::{
+    DISTANCE_ERROR, LEAST_RANGE_ERROR, OUTLIER, OdometryStep, SCALE_ERROR, TURN_ERROR, arc_between,
+};

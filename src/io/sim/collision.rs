@@ -18,16 +18,14 @@ const TOUCH_MARGIN: f64 = 5e-4;
 /// Attempts to push a robot out of what it ran into before it stays where it was.
 const PUSH_ATTEMPTS: usize = 4;
 /// The largest depth, in metres, that counts as pushed out.
-const PUSH_TOLERANCE: f64 = 1e-6;
-/// What a push may add to a robot's own motion in a tick.
-const SLACK: f64 = 2.0 * PUSH_TOLERANCE;
+pub(super) const PUSH_TOLERANCE: f64 = 1e-6;
 
 impl Engine {
     /// Moves all robots by their motions of this tick.
     pub(super) fn move_bodies(&mut self, motions: &[PlanarMotion]) {
         // No robot moves farther than this in this tick.
         let reaches = self.bodies.iter().zip(motions).map(|(body, &motion)| reach(body, motion));
-        let farthest = reaches.fold(0.0, f64::max) + SLACK;
+        let farthest = reaches.fold(0.0, f64::max) + 2.0 * PUSH_TOLERANCE;
         for (index, &motion) in motions.iter().enumerate() {
             self.bodies[index].solid_budget -= farthest;
             if motion == PlanarMotion::default() {
@@ -130,11 +128,11 @@ impl Engine {
     fn free(&mut self, index: usize, before: Course, wished: Course, reach: f64) {
         let pushed = self.pushed_out(index, wished);
         let way = |course: &Course| (course.pose().position() - before.pose().position()).norm();
-        let within_reach = pushed.as_ref().is_some_and(|course| way(course) <= reach + SLACK);
+        let within_reach = pushed.as_ref().is_some_and(|course| way(course) <= reach + 2.0 * PUSH_TOLERANCE);
         let end = match pushed {
             Some(course) if within_reach => course,
             // One that was put into something gets out of it at once.
-            Some(course) if self.depth_at(index, &before.pose()) > SLACK => {
+            Some(course) if self.depth_at(index, &before.pose()) > 2.0 * PUSH_TOLERANCE => {
                 self.look_around_again();
                 course
             }

@@ -9,7 +9,7 @@ use super::options::ticks_in;
 use super::terrain::Hills;
 use super::watch::{Onlooking, Watcher};
 use super::{LONGEST, SimOptions, TICKS_PER_SECOND, TrailPoint};
-use crate::geometry::{Pose, Pose3, Twist, Vector3};
+use crate::geometry::{Pose, Pose3, Twist, Vector3, units};
 use crate::io::{
     Attitude, Error, ErrorKind, Key, LidarScan, LidarSettings, Psd, RadioMessage, Resolution, Result,
 };
@@ -68,8 +68,6 @@ struct Letter {
 const MAX_MESSAGE: usize = 65_536;
 /// Messages that may wait for one robot; the oldest are lost beyond it.
 const MAX_MAILBOX: usize = 10_000;
-/// The fastest speeds, in metres or radians per second, that a command may name.
-const MAX_COMMAND: f64 = 1e9;
 
 impl Ticking for Engine {
     fn time(&self) -> u64 {
@@ -283,8 +281,8 @@ impl Engine {
 
     pub(super) fn set_twist(&mut self, index: usize, twist: Twist) -> Result<()> {
         for (name, speed) in [("linear speed", twist.linear), ("angular speed", twist.angular)] {
-            if speed.is_nan() || speed.abs() > MAX_COMMAND {
-                return Err(Error::invalid_input(name, speed, "a finite number of at most 1e9 either way"));
+            if speed.is_nan() || speed.abs() > units::FARTHEST {
+                return Err(Error::invalid_input(name, speed, "a finite number of at most 1e6 either way"));
             }
         }
         let drive = self.bodies[index].drive.get_mut();

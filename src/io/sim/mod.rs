@@ -71,6 +71,8 @@ pub use super::{Lcd, RobotTruth, TrailPoint};
 pub const TICK: f64 = 0.010;
 /// How many of them make a second; the inverse, which is exact.
 const TICKS_PER_SECOND: f64 = 100.0;
+/// Degrees per second at which a servo turns.
+const SERVO_RATE: f64 = 30.0;
 
 /// The longest time, in seconds, that one call may let pass: twelve days. Beyond it a program waits by mistake.
 const LONGEST: f64 = 1e6;

@@ -2,7 +2,8 @@
 
 use saphyr_parser::Event;
 
-use super::{FARTHEST, MOST};
+use super::MOST;
+use crate::geometry::units::FARTHEST;
 use crate::geometry::Point;
 use crate::world::formats::{FormatError, Location, YamlEvents};
 
