@@ -1,4 +1,4 @@
-//! Programs in C, C++ and Python against the library, through the runner.
+//! Programs in C, C++ and Python with the library, through the runner.
 //!
 //! Without a C compiler, or without Python, the tests that need one say so and pass.
 
@@ -50,7 +50,7 @@ fn python() -> bool {
     found
 }
 
-/// A folder of a test's own.
+/// A test's own folder.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -61,7 +61,7 @@ impl Folder {
         Self(path)
     }
 
-    /// Copies a program here, under a name.
+    /// Copies a program from here, under a name.
     fn copy(&self, program: &str, name: &str) -> PathBuf {
         std::fs::copy(programs().join("check.h"), self.0.join("check.h")).unwrap();
         std::fs::copy(programs().join(program), self.0.join(name)).unwrap();
@@ -82,7 +82,7 @@ fn library() -> PathBuf {
     built.max().expect("a library").1
 }
 
-/// Compiles a program as the script for it does, beside its source text.
+/// Compiles a program beside its source text, like the appropriate script.
 fn compiled(file: &Path) -> PathBuf {
     let program = file.with_extension("x");
     let done = Command::new(Path::new(env!("CARGO_MANIFEST_DIR")).join("bin/gccsim"))
@@ -110,7 +110,7 @@ fn report(arguments: &[&str]) -> Value {
     value
 }
 
-/// Runs one of the programs here and expects that it finds nothing wrong.
+/// Runs one of the programs here, which must find no errors.
 fn check(program: &str, options: &[&str]) -> Value {
     let folder = Folder::new(&format!("check-{program}"));
     let file = folder.copy(program, program);
@@ -120,7 +120,7 @@ fn check(program: &str, options: &[&str]) -> Value {
     report
 }
 
-/// What `keys.c` and `keys.py` expect.
+/// Key presses expected by `keys.c` and `keys.py`.
 const SCRIPT: &str = "KEY2@1s,KEY1@2s,KEY4@4s,TOUCH:12:34@5s,IRTV_OK@6s";
 
 #[test]
@@ -134,7 +134,7 @@ fn every_group_of_functions_does_what_it_should() {
     check("system.c", &[]);
     check("clocks.c", &[]);
     check("lines.c", &[]);
-    // The motors are set in one frame after the other, as on EyeSim, and the robot turns a little meanwhile.
+    // The motors are set in successive frames, as on EyeSim, and the robot turns a little in between.
     check("motors.c", &["--call-costs", "free"]);
     check("driving.c", &[]);
     check("threads.c", &[]);
@@ -293,7 +293,7 @@ fn runs_are_recorded_and_drawn() {
         ["run.mcap", "run.svg", "lcd.png"].map(|name| folder.0.join(name).display().to_string());
     let watched = report(&["--record", &log, "--picture", &picture, "--lcd", &lcd, "--noise", "1", &file]);
     let alone = report(&["--noise", "1", &file]);
-    // It is the same run, in the runner's process and in the program's own.
+    // The run is the same in the runner's process and in the program's own.
     for field in ["outcome", "pose", "odometry", "path_length_mm", "sim_time_s", "lcd_text"] {
         assert_eq!(watched[field], alone[field], "{field}");
     }
@@ -375,18 +375,18 @@ fn programs_are_compiled_as_their_authors_meant() {
     folder.write("helper.h", "int twice(int number);\n");
     folder.write("helper.c", "#include \"helper.h\"\nint twice(int number) { return 2 * number; }\n");
     for (name, text) in [
-        // A main function that returns nothing, functions without prototypes, types that go without saying.
+        // A main function without a return value, functions without prototypes, implicit types.
         (
             "lax.c",
             "#include \"eyebot.h\"\nvoid main() { start(3); LCDPrintf(\"good\"); PSDGet(PSD_FRONT); }\nstart(n) { }\n",
         ),
-        // Names of its own that headers of other years have.
+        // Own names that occur in headers of other years.
         (
             "names.c",
             "#include \"eyebot.h\"\nenum { NONE, WALKER };\nconst int PSD_FRONT = 1;\nint LCDInit(char *text)\n\
              { return LCDPrintf(\"%s\", text); }\nint main() { return LCDInit(\"good\") + NONE; }\n",
         ),
-        // Prototypes of its own, and names of the X window system.
+        // Own prototypes, and names of the X window system.
         (
             "prototypes.c",
             "#include \"eyebot.h\"\nvoid LIDARSet(int range, int tilt, int points);\nint RADIOCheck(int *id);\n\
@@ -396,7 +396,7 @@ fn programs_are_compiled_as_their_authors_meant() {
             "window.c",
             "#include \"eyebot.h\"\nBool found = True;\nint main() { if (found) LCDPrintf(\"good\"); return 0; }\n",
         ),
-        // The same beside names of sensors that are the header's.
+        // The same beside sensor names of the header.
         (
             "directions.c",
             "#include \"eyebot.h\"\nenum way { NONE, LEFT, RIGHT };\nint main() { enum way way = NONE;\n\
@@ -407,7 +407,7 @@ fn programs_are_compiled_as_their_authors_meant() {
             "as_c.cpp",
             "extern \"C\" {\n#include \"eyebot.h\"\n}\nint main() { LCDPrintf(\"good\"); return RADIOCheck(); }\n",
         ),
-        // A source text of its own behind a header.
+        // An own source text behind a header.
         (
             "parts.c",
             "#include \"eyebot.h\"\n#include \"helper.h\"\nint main() { if (twice(2) == 4) LCDPrintf(\"good\"); return 0; }\n",

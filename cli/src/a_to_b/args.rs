@@ -5,7 +5,7 @@ use super::chase::parse_moving;
 use crate::common::{CommonArgs, OF_ONE_RUN, parse_point};
 use crate::driving::Way;
 
-/// The command line of `a-to-b`.
+/// Command line of `a-to-b`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Drives a robot to a goal: turn and straight, arc, dog curve or spline, with feedback all the way",
@@ -35,23 +35,23 @@ JSON fields:
 Outcomes: reached, caught (a moving goal), blocked, timed_out, collided, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
-    /// How to get there.
+    /// Method of driving to the goal.
     #[arg(long, value_enum, default_value = "spline")]
     pub(crate) method: Way,
 
-    /// How the path is followed.
+    /// Steering law along the path.
     #[arg(long, value_enum, default_value = "cross-track")]
     pub(crate) follower: Follower,
 
-    /// Length of a spline's tangents in terms of the distance to the goal: the book's k.
+    /// Tangent length of a spline as a multiple of the distance to the goal: the book's k.
     #[arg(long, value_name = "K", default_value_t = 1.0, value_parser = parse_scale, allow_hyphen_values = true)]
     pub(crate) scale: f64,
 
-    /// A place that a spline passes on its way; may be repeated, in this order.
+    /// A point that a spline passes; may be repeated, in this order.
     #[arg(long, value_name = "X,Y", value_parser = parse_point, allow_hyphen_values = true)]
     pub(crate) via: Vec<Point>,
 
-    /// The goal moves at so many millimetres, and turns by so many degrees, a second.
+    /// Let the goal move, in millimetres and degrees per second.
     #[arg(long, value_name = "MM[,DEG]", value_parser = parse_moving, allow_hyphen_values = true)]
     pub(crate) moving: Option<Twist>,
 
@@ -85,10 +85,10 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("moving", &["follower"]),
 ]);
 
-/// A way to follow a path by its name on the command line.
+/// Path follower by its name on the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Follower {
-    /// By heading error and distance to the path.
+    /// By heading error and cross-track error.
     CrossTrack,
     /// Along the arc to a point ahead on the path.
     PurePursuit,

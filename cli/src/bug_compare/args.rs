@@ -5,7 +5,7 @@ use roverlab::world::generate::CourseFamily;
 
 use crate::common::CommonArgs;
 
-/// The command line of `bug-compare`.
+/// Command line of `bug-compare`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Compares the algorithms of the bug family: path lengths by kind of world, and verdicts against the truth",
@@ -33,7 +33,8 @@ Intervals are [low, high]: 95 %, by the bootstrap over courses.
 Outcomes: compared, wrong (a verdict of an algorithm that is proved complete, or a bound), passed, collided."
 )]
 pub(crate) struct Args {
-    /// Courses of each family, or runs in the world of --world [default: 10], or courses of the campaign [default: 1000].
+    /// Courses of each family, or runs in the world of --world [default: 10], or courses of the campaign
+    /// [default: 1000].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000_000), allow_hyphen_values = true)]
     pub(crate) runs: Option<u64>,
 
@@ -67,7 +68,7 @@ impl Args {
         if self.bugs.is_empty() { &BugKind::ALL } else { &self.bugs }
     }
 
-    /// The families of courses to compare them on.
+    /// The families of courses.
     pub(crate) fn families(&self) -> &[CourseFamily] {
         if self.families.is_empty() { &CourseFamily::ALL } else { &self.families }
     }

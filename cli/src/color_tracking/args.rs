@@ -2,7 +2,7 @@ use roverlab::vision::FindMethod;
 
 use crate::common::{CommonArgs, OF_ONE_RUN};
 
-/// The command line of `color-tracking`.
+/// Command line of `color-tracking`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Teaches the robot a hue at a key press, then lets it find what has it, drive there, or push it home",
@@ -26,19 +26,19 @@ Outcomes: reached, home, missed (if the true distance is above 200 mm), blocked,
 --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
-    /// What the robot does.
+    /// Task of the robot.
     #[arg(long, value_enum, default_value = "reach")]
     pub(crate) job: Job,
 
-    /// How it finds the colour in an image.
+    /// Method of finding the colour in an image.
     #[arg(long, value_enum, default_value = "blob")]
     pub(crate) method: Method,
 
-    /// Hue to look for, instead of a taught one: RoBIOS's scale, red 42, green 126, blue 210.
+    /// Hue to look for instead of a taught one, on RoBIOS's scale: red 42, green 126, blue 210.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(..252))]
     pub(crate) hue: Option<u8>,
 
-    /// Hues less than this away from it match.
+    /// Hue tolerance: smaller differences match.
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u8).range(1..))]
     pub(crate) tolerance: u8,
 
@@ -46,11 +46,11 @@ pub(crate) struct Args {
     #[arg(long, value_name = "F", value_parser = parse_light, allow_hyphen_values = true)]
     pub(crate) light: Option<f64>,
 
-    /// Drive in many scenes and print how many went well.
+    /// Drive in many scenes and print the number of successes.
     #[arg(long)]
     pub(crate) campaign: bool,
 
-    /// Scenes of a campaign.
+    /// Number of scenes in a campaign.
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) scenes: u64,
 
@@ -64,7 +64,7 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("!campaign", &["scenes"]),
 ]);
 
-/// What the robot does.
+/// Task of the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Job {
     /// Drive to the object.
@@ -82,12 +82,12 @@ impl Job {
     }
 }
 
-/// How a colour is found.
+/// Method of finding a colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Method {
-    /// By the fullest column.
+    /// By the fullest column of the histogram.
     Histogram,
-    /// By the largest group of pixels.
+    /// By the largest connected blob.
     Blob,
 }
 

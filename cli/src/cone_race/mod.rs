@@ -15,7 +15,7 @@ use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
 use crate::cones::{Course, Spoils, check_race, refuse};
 use race::{Ending, Settings};
 
-/// The command line of `cone-race`.
+/// Command line of `cone-race`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Races on a track of cones that the car does not know: a map in the first lap, then the racing line",
@@ -63,15 +63,15 @@ stops), missed (the car stands, but not in the lane behind its event's finish, o
 raced (a campaign), planned (a log)."
 )]
 pub(crate) struct Args {
-    /// Track to race on [default: one of our own].
+    /// Track to race on [default: a generated one].
     #[arg(long, value_name = "FILE")]
     pub(crate) track: Option<PathBuf>,
 
-    /// Laps to drive, the first one for the map. An acceleration or a skidpad is driven once.
+    /// Number of laps, the first one for the map. Acceleration and skidpad have a single run.
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=100))]
     pub(crate) laps: u16,
 
-    /// What sees the cones.
+    /// Sensors that detect the cones.
     #[arg(long, value_enum, default_value = "lidar")]
     pub(crate) sensors: Sensors,
 
@@ -79,23 +79,23 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     pub(crate) line: Option<PathBuf>,
 
-    /// Cones beside the track that belong to none of its edges, as a share.
+    /// Fraction of additional cones beside the track that belong to neither edge.
     #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = share)]
     pub(crate) false_cones: f64,
 
-    /// Cones that are missing, as a share.
+    /// Fraction of missing cones.
     #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = share)]
     pub(crate) missing: f64,
 
-    /// Metres over which one side of the track has no cones.
+    /// Length over which one side of the track has no cones, in metres.
     #[arg(long, value_name = "M", default_value_t = 0.0, value_parser = metres)]
     pub(crate) gap: f64,
 
-    /// A second car drives ahead at a stroll, in the middle of the lane that it sees. Only a lidar sees it.
+    /// A slow second car drives ahead, in the middle of the lane that it sees. Only a lidar detects it.
     #[arg(long)]
     pub(crate) other: bool,
 
-    /// Race on so many tracks of our own, from --seed on, and print a table.
+    /// Race on this many generated tracks, starting with --seed, and print a table.
     #[arg(long, value_name = "TRACKS", conflicts_with = "track", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) campaign: Option<u32>,
 
@@ -104,7 +104,7 @@ pub(crate) struct Args {
 }
 
 impl Args {
-    /// What a race is made of, beside its course.
+    /// Settings of a race apart from its course.
     fn settings(&self, seed: u64) -> Settings {
         let (noise, limit) = (self.common.noise, self.common.time_limit);
         Settings {
@@ -120,14 +120,14 @@ impl Args {
 
 crate::common::shares_options!(Args, common: CommonArgs);
 
-/// What sees the cones.
+/// Sensors that detect the cones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Sensors {
-    /// The low lidar: places, no colours.
+    /// The low lidar: positions without colours.
     Lidar,
-    /// The camera above the driver: colours, and places that are the less certain the farther they are.
+    /// The camera above the driver: colours, and positions whose uncertainty grows with distance.
     Camera,
-    /// Places by the lidar, colours by the camera; what has no cone's colour is none.
+    /// Positions by lidar, colours by camera; things without a cone's colour are discarded.
     Both,
 }
 
@@ -141,7 +141,7 @@ fn metres(text: &str) -> Result<f64, String> {
     value.ok_or_else(|| "expected 0 to 200 m".into())
 }
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     check_race(common)?;
@@ -181,7 +181,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(common.draw(report, "cone_race.svg", || drawing::picture(&course, &outcome)))
 }
 
-/// What is told about a track on which no race begins.
+/// Report on a track on which no race can start.
 fn impassable(course: &Course, reason: String) -> Report {
     let report = Report::new(Outcome::failure("impassable"))
         .field("event", event_name(course))
@@ -194,7 +194,7 @@ fn impassable(course: &Course, reason: String) -> Report {
     Report { error: Some(reason), ..report }
 }
 
-/// The event of a course, as it is told.
+/// Name of a course's event.
 fn event_name(course: &Course) -> &'static str {
     match course.event.as_ref().map(EventCourse::event) {
         None | Some(Event::Laps) => "laps",
@@ -216,7 +216,7 @@ fn lost(course: &Course, outcome: &race::Outcome) -> String {
     format!("at ({:.1}, {:.1}) m the car {found}, and stopped; expected {expected}", place.x, place.y)
 }
 
-/// What is told about a race.
+/// Report on a race.
 fn report(course: &Course, outcome: &race::Outcome) -> Report {
     let verdict = &outcome.verdict;
     let (word, lacking) = match &outcome.ending {
@@ -271,10 +271,10 @@ fn published(common: &CommonArgs, file: &Path) -> Result<Vec<Point>, Failure> {
     }
 }
 
-/// Metres from the middle of a track within which a line may be one of it, beside half its width.
+/// Maximum distance of a line from the middle of its track, beyond half the width (m).
 const OFF_TRACK: f64 = 10.0;
 
-/// Fails where a line is not one of a course.
+/// Fails if a line does not belong to a course.
 fn check_line(course: &Course, line: &[Point]) -> Result<(), Failure> {
     let stations = course.corridor.stations();
     let half_width = stations.iter().map(|station| station.left.max(station.right)).fold(0.0, f64::max);
@@ -290,7 +290,7 @@ fn check_line(course: &Course, line: &[Point]) -> Result<(), Failure> {
     )))
 }
 
-/// The root of the mean squared distance of a racing line from another one. `None` without one.
+/// Root mean square distance of a racing line from another one. `None` without one.
 fn distance(other: &[Point], line: &[Point]) -> Option<f64> {
     let spline = ClosedSpline::through(line).ok()?;
     let n = other.len();
@@ -304,7 +304,7 @@ fn distance(other: &[Point], line: &[Point]) -> Option<f64> {
     Some((sum / places.len() as f64).sqrt())
 }
 
-/// Fails when an option has no meaning for an acceleration or a skidpad.
+/// Fails for an option without meaning for an acceleration or skidpad.
 fn check_event(args: &Args) -> Result<(), Failure> {
     let given = [("--other", args.other), ("--line", args.line.is_some())];
     refuse(

@@ -3,7 +3,7 @@ use std::path::PathBuf;
 
 use crate::common::{CommonArgs, parse_noise};
 
-/// The command line of `distbug`.
+/// Command line of `distbug`.
 #[derive(Debug, clap::Parser)]
 #[command(
     about = "Drives a robot with a lidar to a goal among unknown obstacles, or proves that there is no way (DistBug)",
@@ -32,24 +32,24 @@ JSON fields:
 Outcomes: reached, unreachable, no_room (the robot's own size forbids the goal), timed_out, collided, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
-    /// Drive through many generated courses and compare the verdicts with the truth. Their noise is that of
-    /// --levels, and the time of each is generous for its size.
+    /// Drive through many generated courses and compare the verdicts with the truth. Their noise levels are
+    /// given by --levels, and their time limits depend on their size.
     #[arg(long, conflicts_with_all = ["noise", "time_limit", "realtime", "quantised", "supervised"])]
     pub(crate) campaign: bool,
 
-    /// How many courses a campaign draws. Each has the next seed.
+    /// Number of courses in a campaign. Each has the next seed.
     #[arg(long, value_name = "N", default_value_t = 1000, requires = "campaign", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) worlds: u64,
 
-    /// Levels of noise of a campaign.
+    /// Noise levels of a campaign.
     #[arg(long, value_name = "F,...", default_value = "0,1,2", requires = "campaign", value_delimiter = ',', value_parser = parse_noise, allow_hyphen_values = true)]
     pub(crate) levels: Vec<f64>,
 
-    /// How many threads drive in a campaign [default: one for each core].
+    /// Number of threads in a campaign [default: one per core].
     #[arg(long, value_name = "N", requires = "campaign", allow_hyphen_values = true)]
     pub(crate) threads: Option<NonZero<usize>>,
 
-    /// Write the courses of a campaign that went wrong into this folder, as .sim and .wld.
+    /// Write the failed courses of a campaign into this folder, as .sim and .wld.
     #[arg(long, value_name = "DIR", requires = "campaign")]
     pub(crate) save: Option<PathBuf>,
 

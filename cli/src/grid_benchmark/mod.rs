@@ -11,7 +11,7 @@ use std::path::PathBuf;
 
 use crate::common::PlainArgs;
 
-/// The command line of `grid-benchmark`.
+/// Command line of `grid-benchmark`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Answers the queries of a scenario file on a grid map and compares the paths' lengths with the published ones",
@@ -42,11 +42,11 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE.scen", requires = "map")]
     pub(crate) scen: Option<PathBuf>,
 
-    /// The planner.
+    /// Planner.
     #[arg(long, value_enum, default_value = "jps_plus")]
     pub(crate) algorithm: Algorithm,
 
-    /// Answer every query so often and count the fastest time.
+    /// Number of times to answer every query; the fastest time counts.
     #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true)]
     pub(crate) repeat: NonZero<u32>,
 
@@ -56,7 +56,7 @@ pub(crate) struct Args {
 
 crate::common::shares_options!(Args, plain: PlainArgs, unheeded: [("map", &["seed"])]);
 
-/// The planners.
+/// Planner by its name on the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 #[value(rename_all = "snake_case")]
 pub(crate) enum Algorithm {
@@ -66,16 +66,16 @@ pub(crate) enum Algorithm {
     Astar,
     /// Jump point search without preparation.
     Jps,
-    /// Jump point search with all jumps prepared.
+    /// Jump point search with precomputed jumps.
     JpsPlus,
-    /// The shortest paths in any direction.
+    /// The shortest any-angle paths.
     AnyAngle,
     /// Paths through a quadtree's free squares, pulled straight.
     Quadtree,
 }
 
 impl Algorithm {
-    /// Its name on the command line.
+    /// Name on the command line.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Dijkstra => "dijkstra",
@@ -87,7 +87,7 @@ impl Algorithm {
         }
     }
 
-    /// Whether its paths are of the kind whose lengths scenario files hold.
+    /// Whether its paths are octile, like those of scenario files.
     pub(crate) fn is_octile(self) -> bool {
         matches!(self, Self::Dijkstra | Self::Astar | Self::Jps | Self::JpsPlus)
     }

@@ -10,7 +10,7 @@ use super::{campaign, picture, worlds};
 use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres, rounded};
 use crate::driving::{Conditions, Run, check_lidar, paced, world_with_others};
 
-/// The command line of `localise`.
+/// Command line of `localise`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Finds out where the robot is in a world that it knows, by matching scans while it drives about",
@@ -60,7 +60,7 @@ fn parse_patience(text: &str) -> Result<f64, String> {
     patience.ok_or_else(|| "expected 1 to 100000 s".into())
 }
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     if args.campaign {
         return campaign(args);
@@ -75,7 +75,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(common.draw(report, "localise.svg", || picture::of(&scene, &run, conditions.noise, conditions.seed)))
 }
 
-/// The office, with a robot somewhere in it.
+/// The office, with a robot at a random pose.
 fn own_scene(seed: u64) -> Scene {
     let (world, spec) = (worlds::office(), RobotSpec::s4());
     let starts = worlds::Starts::new(&world, spec.footprint.bounding_radius());
@@ -83,7 +83,7 @@ fn own_scene(seed: u64) -> Scene {
     Scene::with_robot(world, spec, start)
 }
 
-/// Lets the robot find out.
+/// Lets the robot localise itself.
 pub(super) fn run(
     args: &Args,
     scene: &Scene,
@@ -105,7 +105,7 @@ pub(super) fn run(
     conditions.run(scene, pace, |robot, step| drive(robot, &options, step))
 }
 
-/// Metres and radians from the most probable place to the robot.
+/// Position (m) and heading error (rad) of the most probable place.
 pub(super) fn errors(run: &Run<Finding>) -> Option<(f64, f64)> {
     let best = run.ending.as_ref().ok()?.localisation.best()?;
     let truth = run.truth.pose;

@@ -9,7 +9,7 @@ use super::place::{Place, unexplored};
 use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres, rounded};
 use crate::driving::{Conditions, paced};
 
-/// The command line of `maze-explore`.
+/// Command line of `maze-explore`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Explores a whole maze by recursion, then drives to the goal by the shortest way and back",
@@ -31,11 +31,11 @@ JSON fields:
 Outcomes: returned, unreachable, missed, timed_out, collided, failed."
 )]
 pub(crate) struct ExploreArgs {
-    /// Go into every cell, also into those that are known on all sides.
+    /// Enter every cell, even those known on all sides.
     #[arg(long)]
     pub(crate) thorough: bool,
 
-    /// A micromouse in a maze of competition size.
+    /// Use a micromouse in a maze of competition size.
     #[arg(long)]
     pub(crate) micromouse: bool,
 
@@ -45,7 +45,7 @@ pub(crate) struct ExploreArgs {
 
 crate::common::shares_options!(ExploreArgs, common: CommonArgs);
 
-/// What the robot says after its drive.
+/// The robot's result.
 #[derive(Debug, Clone)]
 struct Told {
     exploration: Exploration,
@@ -55,7 +55,7 @@ struct Told {
     pose: Pose,
 }
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &ExploreArgs) -> Result<Report, Failure> {
     args.common.check_picture()?;
     let place = Place::new(&args.common, args.micromouse)?;

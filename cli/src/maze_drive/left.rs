@@ -6,18 +6,18 @@ use super::place::Place;
 use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres};
 use crate::driving::{Conditions, paced};
 
-/// How to drive from cell to cell.
+/// Method of driving from cell to cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Drive {
-    /// By odometry alone, as the book's first program.
+    /// By odometry alone, like the book's first program.
     Open,
-    /// In the middle between the walls, by a proportional controller as the book's second program: it swings.
+    /// Centred between the walls by a proportional controller, like the book's second program; it oscillates.
     P,
-    /// The same by a PID controller, which odometry helps to see through the noise of the readings.
+    /// Centred by a PID controller, with odometry to reduce the noise of the readings.
     Pid,
 }
 
-/// The command line of `maze-left`.
+/// Command line of `maze-left`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Keeps the left hand on the wall of a maze until the goal or the start is reached",
@@ -36,11 +36,11 @@ JSON fields:
 Outcomes: goal, returned, lost (it is not where it takes itself to be), stuck, timed_out, collided, failed."
 )]
 pub(crate) struct LeftArgs {
-    /// How to drive from cell to cell.
+    /// Method of driving from cell to cell.
     #[arg(long, value_enum, default_value_t = Drive::Pid)]
     pub(crate) drive: Drive,
 
-    /// A micromouse in a maze of competition size.
+    /// Use a micromouse in a maze of competition size.
     #[arg(long)]
     pub(crate) micromouse: bool,
 
@@ -50,7 +50,7 @@ pub(crate) struct LeftArgs {
 
 crate::common::shares_options!(LeftArgs, common: CommonArgs);
 
-/// How a robot drives through a place.
+/// Driving parameters in a maze.
 fn parameters(
     args: &LeftArgs,
     place: &Place,
@@ -72,7 +72,7 @@ fn parameters(
     })
 }
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &LeftArgs) -> Result<Report, Failure> {
     args.common.check_picture()?;
     let place = Place::new(&args.common, args.micromouse)?;

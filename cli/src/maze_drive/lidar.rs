@@ -10,7 +10,7 @@ use super::place::Place;
 use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres};
 use crate::driving::{Conditions, paced};
 
-/// The command line of `maze-lidar`.
+/// Command line of `maze-lidar`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Follows the left wall of a maze by a lidar until the goal or the start is reached, and draws what it saw",
@@ -34,7 +34,7 @@ pub(crate) struct LidarArgs {
 
 crate::common::shares_options!(LidarArgs, common: CommonArgs);
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &LidarArgs) -> Result<Report, Failure> {
     args.common.check_picture()?;
     let place = Place::new(&args.common, false)?;
@@ -85,11 +85,11 @@ pub(crate) fn work(args: &LidarArgs) -> Result<Report, Failure> {
     }))
 }
 
-/// Walls by the squares of a grid that they come near, as a map has millions of points.
+/// Walls indexed by the grid squares near them, as a map has millions of points.
 struct NearWalls<'a> {
     walls: &'a [Wall],
     side: f64,
-    /// By column and row, the walls that are less than a side away from anywhere in the square.
+    /// By column and row, the walls less than one side length away from the square.
     squares: BTreeMap<(i64, i64), Vec<&'a Wall>>,
 }
 
@@ -109,12 +109,12 @@ impl<'a> NearWalls<'a> {
         Self { walls, side, squares }
     }
 
-    /// Metres from a point to the nearest wall; 0 within one.
+    /// Distance of a point from the nearest wall (m); 0 within one.
     fn distance(&self, point: Point) -> f64 {
         let square = ((point.x / self.side).floor() as i64, (point.y / self.side).floor() as i64);
         let near = self.squares.get(&square).map_or(&[][..], Vec::as_slice);
         let distance = nearest(near.iter().copied(), point);
-        // Farther than a side, another wall may be nearer.
+        // Beyond a side length, another wall may be nearer.
         if distance <= self.side { distance } else { nearest(self.walls.iter(), point) }
     }
 }

@@ -3,7 +3,7 @@ use std::path::PathBuf;
 
 use crate::common::{CommonArgs, OF_ONE_RUN, parse_seconds};
 
-/// The command line of `micromouse`.
+/// Command line of `micromouse`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Explores a maze of any format with a robot until the best way is proved, and drives it as fast as the robot can",
@@ -59,47 +59,47 @@ unsolved, failed."
 )]
 #[allow(clippy::struct_excessive_bools, reason = "a switch each")]
 pub(crate) struct Args {
-    /// The maze.
+    /// Maze file.
     #[arg(long, value_name = "FILE")]
     pub(crate) maze: Option<PathBuf>,
 
-    /// Plan the way and do not drive.
+    /// Only plan the route.
     #[arg(long, conflicts_with = "explore")]
     pub(crate) plan: bool,
 
-    /// Explore and race: the default.
+    /// Explore and race (default).
     #[arg(long)]
     pub(crate) explore: bool,
 
-    /// An EyeBot S4 in a maze of twice the size, as in the book.
+    /// Use an EyeBot S4 in a maze of twice the size, as in the book.
     #[arg(long)]
     pub(crate) doubled: bool,
 
-    /// Explore and race through all mazes in a folder and those below it, and print a table.
+    /// Explore and race through all mazes in a folder and its subfolders, and print a table.
     #[arg(long, value_name = "FOLDER", conflicts_with_all = ["maze", "plan", "explore", "world"])]
     pub(crate) campaign: Option<PathBuf>,
 
-    /// Runs through each maze of a campaign, with seeds from --seed on.
+    /// Runs through each maze of a campaign, with seeds starting at --seed.
     #[arg(long, value_name = "N", default_value_t = 1, requires = "campaign")]
     pub(crate) runs: u64,
 
-    /// How many threads drive a campaign [default: one for each core].
+    /// Number of threads in a campaign [default: one per core].
     #[arg(long, value_name = "N", requires = "campaign")]
     pub(crate) threads: Option<NonZero<usize>>,
 
-    /// Be a mouse for the simulator mms: commands on standard output, answers on standard input.
+    /// Act as a mouse for the simulator mms: commands on standard output, answers on standard input.
     #[arg(long, conflicts_with_all = ["maze", "plan", "explore", "campaign", "mms_run"])]
     pub(crate) mms: bool,
 
-    /// Run a mouse that was written for mms, with its arguments after blanks, in the maze.
+    /// Run a mouse written for mms in the maze, with its arguments after blanks.
     #[arg(long, value_name = "PROGRAM", conflicts_with_all = ["plan", "explore", "campaign"])]
     pub(crate) mms_run: Option<String>,
 
-    /// Seconds without a word from the program after which it is stopped.
+    /// Seconds without output from the program after which it is stopped.
     #[arg(long, value_name = "S", value_parser = parse_seconds, default_value = "10", allow_hyphen_values = true)]
     pub(crate) patience: f64,
 
-    /// Seconds after which the program is stopped in any case.
+    /// Total time limit of the program in seconds.
     #[arg(long, value_name = "S", value_parser = parse_seconds, default_value = "600", allow_hyphen_values = true)]
     pub(crate) mms_limit: f64,
 
@@ -108,7 +108,7 @@ pub(crate) struct Args {
 }
 
 impl Args {
-    /// How many threads drive.
+    /// Number of threads.
     pub(crate) fn threads(&self) -> usize {
         let cores = || std::thread::available_parallelism().map_or(1, NonZero::get);
         self.threads.map_or_else(cores, NonZero::get)

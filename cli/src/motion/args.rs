@@ -1,6 +1,6 @@
 use crate::common::{CommonArgs, OF_ONE_RUN};
 
-/// The command line of `motion`.
+/// Command line of `motion`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Watches for motion in three sectors of the image and turns to where most of it is, also while turning",
@@ -24,7 +24,7 @@ JSON fields:
 Outcomes: watched, collided, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
-    /// The other robot stands still.
+    /// Keep the other robot still.
     #[arg(long)]
     pub(crate) still: bool,
 
@@ -32,11 +32,11 @@ pub(crate) struct Args {
     #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = parse_light, allow_hyphen_values = true)]
     pub(crate) light: f64,
 
-    /// Compare many pairs of images and print what is found in them.
+    /// Compare many pairs of images and print the detection rates.
     #[arg(long)]
     pub(crate) campaign: bool,
 
-    /// Pairs of each kind in a campaign.
+    /// Number of pairs of each kind in a campaign.
     #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) pairs: u64,
 

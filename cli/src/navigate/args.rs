@@ -3,7 +3,7 @@ use std::num::NonZero;
 use crate::common::{CommonArgs, Failure, OF_ONE_RUN};
 use roverlab::geometry::units;
 
-/// The command line of `navigate`.
+/// Command line of `navigate`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Drives a robot with a lidar to a goal in a known world, past what the world is not known to hold",
@@ -32,15 +32,15 @@ JSON fields:
 Outcomes: reached, unreachable, stuck, timed_out, collided, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
-    /// Room to be kept beside the robot where there is enough [default: 0.65 of its radius].
+    /// Clearance beside the robot where there is room [default: 0.65 of its radius].
     #[arg(long, value_name = "MM", value_parser = parse_length, allow_hyphen_values = true)]
     pub(crate) clearance: Option<f64>,
 
-    /// Room beside the robot that a passage must leave on either side [default: 0.2 of its radius].
+    /// Clearance required on either side of a passage [default: 0.2 of its radius].
     #[arg(long, value_name = "MM", value_parser = parse_length, allow_hyphen_values = true)]
     pub(crate) least_clearance: Option<f64>,
 
-    /// Obstacles that the robot is not told of [default: 0 with --world].
+    /// Number of obstacles missing from the robot's map [default: 0 with --world].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=100), allow_hyphen_values = true)]
     pub(crate) unmapped: Option<u32>,
 
@@ -48,11 +48,11 @@ pub(crate) struct Args {
     #[arg(long)]
     pub(crate) campaign: bool,
 
-    /// Worlds of a campaign; each has the next seed.
+    /// Number of worlds in a campaign; each has the next seed.
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) runs: u64,
 
-    /// How many threads drive in a campaign [default: one for each core].
+    /// Number of threads in a campaign [default: one per core].
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) threads: Option<NonZero<usize>>,
 

@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use crate::common::{Heeds, Unheeded, parse_picture};
 
-/// The command line of `replay`.
+/// Command line of `replay`.
 #[derive(Debug, clap::Parser)]
 #[command(
     about = "Replays recordings, shows what is in them, saves what is left of damaged ones",
@@ -28,22 +28,22 @@ impl Heeds for Args {
     const UNHEEDED: &'static [Unheeded] = &[];
 }
 
-/// What to do.
+/// Task of the command.
 #[derive(Debug, Clone, clap::Subcommand)]
 pub(crate) enum Command {
-    /// Runs the program that a recording names on what it recorded, and compares the new recording byte for byte.
+    /// Runs the recording's program on the recorded inputs, and compares the new recording byte for byte.
     Check {
         /// The recording.
         file: PathBuf,
     },
-    /// Gives back every complete chunk of a recording that was cut off or damaged.
+    /// Recovers every complete chunk of a truncated or damaged recording.
     Recover {
         /// The damaged recording.
         file: PathBuf,
         /// The file to write.
         out: PathBuf,
     },
-    /// Shows what a recording holds.
+    /// Shows the content of a recording.
     Info {
         /// The recording.
         file: PathBuf,

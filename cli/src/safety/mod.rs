@@ -15,7 +15,7 @@ use crate::cones::{Course, check_race, drawing};
 use crew::Event;
 use drive::{Driven, Stopped};
 
-/// The command line of `safety`.
+/// Command line of `safety`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "A racing car under its safety system: it is armed and started, something happens, it stands, and is set going again",
@@ -33,15 +33,15 @@ JSON fields:
 Outcomes: stood (every stop within its bound), overran, late (something was not answered in time), timed_out."
 )]
 pub(crate) struct Args {
-    /// Track to drive on [default: one of our own].
+    /// Track to drive on [default: a generated one].
     #[arg(long, value_name = "FILE")]
     pub(crate) track: Option<PathBuf>,
 
-    /// What happens, one after the other [default: everything]. May be repeated.
+    /// Events, in this order [default: all]. May be repeated.
     #[arg(long, value_enum)]
     pub(crate) event: Vec<Event>,
 
-    /// Metres from the start that the car must not leave, in both directions of both axes.
+    /// Distance from the start that the car must not exceed along either axis, in metres.
     #[arg(long, value_name = "M")]
     pub(crate) fence: Option<f64>,
 
@@ -51,7 +51,7 @@ pub(crate) struct Args {
 
 crate::common::shares_options!(Args, common: CommonArgs);
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
@@ -107,7 +107,7 @@ fn report(course: &Course, driven: &Driven) -> Report {
     }
 }
 
-/// The way, coloured by speed, and where the car stood.
+/// The path, coloured by speed, and the stops.
 fn picture(course: &Course, driven: &Driven) -> Picture {
     let mut picture = Picture::new(&course.ground());
     picture.title("Stops under the safety system");

@@ -6,20 +6,19 @@ use crate::world::{CarDynamics, MotorSpec};
 
 /// A fast car by the dynamic bicycle model: tyres slip, and their forces stay within the friction circle.
 ///
-/// Its odometry takes the speed from the wheels and the heading from a gyroscope; that the car slides is
-/// beyond it.
+/// Odometry takes the speed from the wheels and the heading from a gyroscope; it cannot measure sideslip.
 #[derive(Debug, Clone)]
 pub(super) struct Bicycle {
     spec: CarDynamics,
     motor: MotorSpec,
     wheelbase: f64,
     speeds: Speeds,
-    /// What the present tick's motion is if nothing is in the way.
+    /// Motion of the present tick without obstacles.
     wish: PlanarMotion,
     senses: Senses,
 }
 
-/// Speeds of the centre of mass along the car and to its left, and the rate of its heading.
+/// Speeds of the centre of mass forwards and to the left, and the yaw rate.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Speeds {
     along: f64,
@@ -27,7 +26,7 @@ struct Speeds {
     yaw_rate: f64,
 }
 
-/// The errors of a tachometer and a rate gyroscope.
+/// Errors of a tachometer and a rate gyroscope.
 #[derive(Debug, Clone)]
 struct Senses {
     scale: f64,
@@ -37,21 +36,20 @@ struct Senses {
     stream: Stream,
 }
 
-/// Steps of the tyres in a tick.
+/// Integration steps of the tyre forces per tick.
 const SUBSTEPS: u32 = 5;
 /// Metres per second below which wheels roll.
 const ROLLS: f64 = 2.0;
 /// The rate in rad/s that a gyroscope reads standing, for noise 1.
 const GYRO_BIAS: f64 = 0.001;
-/// The deviation in rad/s from reading to reading, for noise 1.
+/// Standard deviation of a gyroscope reading at noise 1 (rad/s).
 const GYRO_NOISE: f64 = 0.003;
 /// The speed, in m/s, below which a car that shall stand does.
 const STANDING: f64 = 1e-6;
 
 impl Senses {
     fn new(noise: &NoiseModel, mut stream: Stream) -> Self {
-        // Relative errors of the drive are given for robots with small wheels: what is left of them is a
-        // tyre's.
+        // Noise level relative to the real robot, for the gyroscope.
         let size = noise.wheel_mismatch / NoiseModel::real().wheel_mismatch;
         Self {
             scale: 1.0 + noise.wheel_scale * stream.normal(),
@@ -81,13 +79,13 @@ impl Bicycle {
         Self { spec, motor, wheelbase, speeds: Speeds::default(), wish: PlanarMotion::default(), senses }
     }
 
-    /// Radians per second at which the steering turns.
+    /// Rate at which the steering turns (rad/s).
     pub(super) fn steering_rate(&self) -> f64 {
         self.spec.steering_rate
     }
 
-    /// Lets a speed act that is commanded, while the steering angle turns from one to another, and returns
-    /// how the middle of the rear axle moves in a tick if nothing is in the way.
+    /// Applies a speed command while the steering angle changes from one value to another. Returns the motion
+    /// of the middle of the rear axle in one tick without obstacles.
     pub(super) fn step(&mut self, speed: f64, steering: [f64; 2]) -> PlanarMotion {
         let dt = TICK / f64::from(SUBSTEPS);
         let mut wish = PlanarMotion::default();
@@ -102,8 +100,7 @@ impl Bicycle {
         wish
     }
 
-    /// Goes on with the speeds that the car's true motion in this tick leaves it, and returns what is
-    /// measured of them.
+    /// Takes over the speeds that follow from the car's true motion in this tick; returns their measurement.
     pub(super) fn settle(&mut self, moved: PlanarMotion) -> Twist {
         if moved != self.wish {
             self.collide(moved);
@@ -111,18 +108,18 @@ impl Bicycle {
         if self.speeds == Speeds::default() { Twist::STOP } else { self.senses.measure(&self.speeds) }
     }
 
-    /// The speed along the car, at its wheels.
+    /// Forward speed at the wheels.
     pub(super) fn speed(&self) -> f64 {
         self.speeds.along
     }
 
-    /// Metres per second to the left, at the rear axle.
+    /// Lateral speed at the rear axle, to the left (m/s).
     fn slip(&self) -> f64 {
         self.speeds.across - self.spec.mass_centre * self.speeds.yaw_rate
     }
 
-    /// Nothing bounces: what is left of the motion is left of the speeds. What pushes a car out of a wall
-    /// makes it no faster.
+    /// Collisions are inelastic: speeds shrink like the motion. Being pushed out of a wall does not increase
+    /// them.
     fn collide(&mut self, moved: PlanarMotion) {
         let (length, most) = (moved.length(), self.wish.length());
         let share = if length > most { most / length } else { 1.0 };
@@ -136,11 +133,11 @@ impl Bicycle {
         self.speeds = Speeds { along: forward, across, yaw_rate: angular };
     }
 
-    /// Lets a command act for some seconds, in one step of at most 2 ms or so.
+    /// Applies a command for `dt` seconds, at most about 2 ms, in one step.
     fn substep(&mut self, speed: f64, steering: f64, dt: f64) {
         let before = self.speeds;
         let wish = (speed - before.along) / self.motor.time_constant.max(dt);
-        // Towards standing it brakes, away from it it drives.
+        // It brakes towards standstill and drives away from it.
         let slows = wish * before.along < 0.0;
         let limit = if slows { self.spec.brake } else { self.motor.max_acceleration };
         let push = wish.clamp(-limit, limit).clamp(-self.spec.grip, self.spec.grip);
@@ -158,7 +155,7 @@ impl Bicycle {
         }
     }
 
-    /// The part of the speeds that is not of tyres that slip is of wheels that roll.
+    /// Blends the slipping-tyre speeds with those of rolling wheels.
     fn roll(&mut self, along: f64, steering: f64, share: f64) {
         let yaw_rate = along * math::tan(steering) / self.wheelbase;
         let mix = |slides: f64, rolls: f64| share * slides + (1.0 - share) * rolls;
@@ -169,8 +166,8 @@ impl Bicycle {
         };
     }
 
-    /// Keeps what has changed since before within what the tyres can hold: wheels that roll do not begin to
-    /// at once.
+    /// Limits the change of the speeds since `before` to what the tyres can transmit, also in the transition
+    /// to rolling.
     fn hold(&mut self, before: &Speeds, dt: f64) {
         let turned = |rate: f64, along: f64, across: f64| {
             let (sin, cos) = math::sin_cos(dt * rate);
@@ -180,7 +177,7 @@ impl Bicycle {
         let (along, across) = turned(now.yaw_rate, now.along, now.across);
         let change = (along - before.along, across - before.across);
         let excess = math::hypot(change.0, change.1) / (self.spec.grip * dt);
-        // Rounding is none.
+        // Rounding errors need no correction.
         if excess <= 1.001 {
             return;
         }
@@ -190,19 +187,19 @@ impl Bicycle {
         self.speeds = Speeds { along, across, yaw_rate };
     }
 
-    /// The forces of the tyres act on the speeds.
+    /// Applies the tyre forces to the speeds.
     fn slide(&mut self, push: f64, steering: f64, dt: f64) {
         let (spec, base) = (&self.spec, self.wheelbase);
         let (rear_arm, front_arm) = (spec.mass_centre, base - spec.mass_centre);
         let Speeds { along, across, yaw_rate } = self.speeds;
         let v = along.abs().max(0.5);
-        // Backwards a wheel that is turned leads to the other side.
+        // In reverse, a turned wheel steers to the other side.
         let steered = steering * (along / 0.5).clamp(-1.0, 1.0);
         let slips = [
             math::atan2(across + front_arm * yaw_rate, v) - steered,
             math::atan2(across - rear_arm * yaw_rate, v),
         ];
-        // Without transfer of load, each axle carries what the levers give it, and drives in proportion.
+        // Without load transfer, each axle carries its static share of the weight and drives in proportion.
         let loads = [rear_arm / base, front_arm / base];
         let [front, rear] = [0, 1].map(|axle| {
             let (along, circle) = (push * loads[axle], spec.grip * loads[axle]);
@@ -216,7 +213,7 @@ impl Bicycle {
         let force = (front.0 * cos - front.1 * sin + rear.0, front.0 * sin + front.1 * cos + rear.1);
         let turn = front_arm * (front.0 * sin + front.1 * cos) - rear_arm * rear.1;
         let yaw_rate = yaw_rate + dt * turn / (spec.gyration * spec.gyration);
-        // The frame turns under the velocity.
+        // The frame rotates under the velocity.
         let (sin, cos) = math::sin_cos(dt * yaw_rate);
         let (x, y) = (along + dt * force.0, across + dt * force.1);
         self.speeds = Speeds { along: cos * x + sin * y, across: cos * y - sin * x, yaw_rate };

@@ -11,7 +11,7 @@ use crate::kinematics::{Ackermann, Differential, Omni, PlanarMotion, Tracked};
 use crate::random::Stream;
 use crate::world::{DriveSpec, RobotSpec};
 
-/// A robot's drive of any kind. Most robots have two wheels; the larger ones lie elsewhere.
+/// A drive of any kind. Most robots have two wheels; the larger variants are boxed.
 #[derive(Debug, Clone)]
 #[allow(clippy::large_enum_variant, reason = "nearly all robots have this one, and it is stepped most")]
 pub(super) enum Powertrain {
@@ -20,11 +20,11 @@ pub(super) enum Powertrain {
     Omni(Box<OmniDrive>),
 }
 
-/// The fastest robot, in metres per second.
+/// Highest top speed of a robot (m/s).
 const MAX_TOP_SPEED: f64 = 100.0;
 
 impl Powertrain {
-    /// The drive of a description, with errors drawn for one robot.
+    /// The drive of a description, with random errors for one robot.
     pub(super) fn new(
         spec: &RobotSpec,
         noise: &NoiseModel,
@@ -60,7 +60,7 @@ impl Powertrain {
         })
     }
 
-    /// Lets the motors follow their commands for one tick and returns the robot's true motion.
+    /// Lets the motors follow their commands for one tick; returns the robot's true motion.
     pub(super) fn step(&mut self) -> PlanarMotion {
         match self {
             Self::Differential(drive) => drive.step().into(),
@@ -69,7 +69,7 @@ impl Powertrain {
         }
     }
 
-    /// Takes notice of the robot's true motion in this tick: walls may have been in the way.
+    /// Records the robot's true motion in this tick, which obstacles may have changed.
     pub(super) fn settle(&mut self, moved: PlanarMotion) {
         if let Self::Car(drive) = self {
             drive.settle(moved);

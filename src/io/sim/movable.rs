@@ -1,15 +1,15 @@
 use crate::world::World;
 use crate::world::space::SolidId;
 
-/// An object and what it takes to push it or to knock it over.
+/// An object, with the data for pushing it or knocking it over.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Movable {
     pub(super) solid: SolidId,
-    /// Kilograms; infinite for what is fixed.
+    /// Mass (kg); infinite for fixed objects.
     pub(super) mass: f64,
     /// Whether it falls instead of being pushed.
     pub(super) falls: bool,
-    /// Metres from the floor to its top while it stands.
+    /// Height of its top above the floor while upright (m).
     pub(super) top: f64,
 }
 

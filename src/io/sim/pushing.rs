@@ -1,4 +1,4 @@
-//! Things that robots push or knock over.
+//! Pushing and knocking over objects.
 
 use super::engine::Engine;
 use super::movable::Movable;
@@ -11,7 +11,8 @@ const CLEAR: f64 = 1e-6;
 const TOLERANCE: f64 = 1e-5;
 
 impl Engine {
-    /// Pushes what a robot at a pose would be in, as far as it can be pushed. Returns whether anything moved.
+    /// Pushes the objects that a robot at a pose would overlap, as far as possible. Returns whether anything
+    /// moved.
     pub(super) fn push(&mut self, index: usize, pose: &Pose) -> bool {
         self.depth_at(index, pose);
         let strength = self.bodies[index].spec.mass;
@@ -28,8 +29,8 @@ impl Engine {
         moved
     }
 
-    /// Knocks over what a robot at a pose would be in and what falls. Each is a contact. Returns whether
-    /// anything fell.
+    /// Knocks over the falling objects that a robot at a pose would overlap; each is a contact. Returns
+    /// whether anything fell.
     pub(super) fn topple(&mut self, index: usize, pose: &Pose) -> bool {
         self.depth_at(index, pose);
         let strength = self.bodies[index].spec.mass;
@@ -47,12 +48,12 @@ impl Engine {
         fell
     }
 
-    /// The object that a solid is; robots are none.
+    /// The object of a solid; `None` for robots.
     fn movable(&self, solid: SolidId) -> Option<&Movable> {
         self.movables.get(solid.index())
     }
 
-    /// Moves a thing unless that takes it into a wall, another thing, or a robot other than the one that pushes.
+    /// Moves an object, unless it would hit a wall, another object or a robot other than the pusher.
     fn shift(&mut self, solid: SolidId, way: Vector, pusher: usize) -> bool {
         let thing = *self.space.solid(solid);
         let place = thing.pose.position() + way;

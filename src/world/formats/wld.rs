@@ -4,19 +4,20 @@
 //! |---|---|
 //! | `floor W H`, or `width W` and `height H` | a floor from (0, 0) |
 //! | `floor_texture FILE` | an image stretched over it: PNG, JPEG or BMP |
-//! | `X1 Y1 X2 Y2 [THICKNESS HEIGHT [R G B]]` | a wall; other counts of numbers use the first four |
-//! | `push X Y PHI` … `pop` | moves the walls between them: by (X, Y), then turned **clockwise** by PHI |
+//! | `X1 Y1 X2 Y2 [THICKNESS HEIGHT [R G B]]` | a wall; with other counts, the first four numbers are used |
+//! | `push X Y PHI` … `pop` | moves the walls between them by (X, Y), then turns them **clockwise** by PHI |
 //! | `position X Y PHI` | the start pose, PHI counter-clockwise |
 //! | `terrain W H TOP FILE` | hills, which carry robots and stop rays; sets the floor's size too |
 //! | `water_level Z` | water, in pictures, and in which robots on hills drown |
 //!
-//! The hills' elevations come from a gray PNG, JPEG or BMP image, black at 0 and white at TOP, or from an ESRI ASCII
-//! grid (`.asc`), its lowest place at 0 and its highest at TOP. The image lies as the floor's does, its first row at the
-//! greatest y; its outer pixels are the elevations on the border. Beyond the hills there is no ground.
+//! The elevations come from a gray PNG, JPEG or BMP image, with black at 0 and white at TOP, or from an ESRI
+//! ASCII grid (`.asc`), with its lowest point at 0 and its highest at TOP. Like a floor image, the image has
+//! its first row at the largest y; its outer pixels are the elevations on the border. Beyond the hills there
+//! is no ground.
 //!
-//! Keywords are read in any case. A line that begins with anything else is skipped with a warning, and so is a wall
-//! of fewer than four numbers, as EyeSim does. A world without a floor gets one that reaches from (0, 0) as far as
-//! its walls. Objects, marks and places do not belong into this format: simulation scripts hold them.
+//! Keywords are case-insensitive. As in EyeSim, a line that begins with anything else is skipped with a
+//! warning, and so is a wall with fewer than four numbers. The default floor extends from (0, 0) to the
+//! walls' extent. Objects, marks and places are not part of this format; simulation scripts contain them.
 //!
 //! ```
 //! use roverlab::world::formats::wld;
@@ -42,7 +43,7 @@ use super::terrain_file;
 use crate::geometry::{Aabb, Point, Pose, Segment, math, units};
 use crate::world::{Terrain, Wall, World};
 
-/// Reads a world, without the images that it names: [`load_scene`](super::load_scene) reads these too.
+/// Reads a world without the images that it names; [`load_scene`](super::load_scene) also reads these.
 pub fn parse(text: &str, file: &str) -> Result<Parsed<World>, FormatError> {
     let (world, _) = read(text, file)?;
     Ok(world)
@@ -72,7 +73,7 @@ pub(super) fn parse_with_images(
     Ok(notes.finish(world))
 }
 
-/// Where the names of images stand.
+/// Locations of image names.
 struct Places {
     texture: Location,
     terrain: Location,
@@ -208,7 +209,7 @@ impl<'f> Reader<'f> {
         Ok(())
     }
 
-    /// A point of the innermost pushed frame in the world.
+    /// A point of the innermost pushed frame, in world coordinates.
     fn place(&self, point: Point, line: &Line<'_>) -> Result<Point, FormatError> {
         let Some(frame) = self.frames.last() else { return Ok(point) };
         let placed = frame.to_world(point);
@@ -268,10 +269,10 @@ fn pose(args: &mut Args<'_, '_>) -> Result<Pose, FormatError> {
     Ok(Pose::new(x, y, args.direction("the start's heading")?))
 }
 
-/// Writes a world, so that [`parse`] gives it back.
+/// Writes a world in a form that [`parse`] reads back.
 ///
-/// The format's floors begin at (0, 0): of one that begins elsewhere only the upper right corner is kept. Objects,
-/// marks and places are left out.
+/// The format's floors begin at (0, 0); of other floors, only the upper right corner is kept. Objects, marks
+/// and places are left out.
 pub fn print(world: &World) -> String {
     lexer::written(|text| write_world(text, world))
 }

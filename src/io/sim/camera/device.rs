@@ -15,15 +15,15 @@ use crate::world::space::Space;
 #[derive(Debug)]
 pub(in crate::io::sim) struct CameraDevice {
     spec: CameraSpec,
-    /// Metres between the world's floor and the robot's foot.
+    /// Height of the robot's foot above the world's floor (m).
     elevation: f64,
     pub(in crate::io::sim) resolution: Resolution,
     pan: Servo,
     tilt: Servo,
     film: Film,
-    /// The lens, unless the camera is a pinhole.
+    /// The lens; `None` for a pinhole camera.
     fisheye: Option<Box<Fisheye>>,
-    /// The last image, and the number of its frame.
+    /// The last image and its frame number.
     last: Option<(u64, RgbImage)>,
 }
 
@@ -34,7 +34,7 @@ const SERVO_RATE: f64 = 30.0;
 /// Pictures of a pinhole camera grow without end towards 180 degrees.
 const WIDEST: f64 = 170.0;
 
-/// When and under what light an image is taken.
+/// Time and light of an image.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::io::sim) struct Moment<'a> {
     pub(in crate::io::sim) tick: u64,
@@ -42,7 +42,7 @@ pub(in crate::io::sim) struct Moment<'a> {
     pub(in crate::io::sim) noise: &'a NoiseModel,
 }
 
-/// A servo that turns evenly from where it was to where it was told to go.
+/// A servo that turns at a constant rate from its old position to the commanded one.
 #[derive(Debug, Clone, Copy, Default)]
 struct Servo {
     from: f64,
@@ -77,7 +77,7 @@ impl CameraDevice {
         }
     }
 
-    /// Turns the head: the first servo pans, the second one tilts. Servos count to the right and upwards.
+    /// Turns the head: servo 1 pans, servo 2 tilts. Positive positions are to the right and up.
     pub(in crate::io::sim) fn set_servo(&mut self, servo: u8, position: f64, tick: u64) -> Result<()> {
         let (head, angle) = match servo {
             1 => (&mut self.pan, -position * self.spec.max_pan),
@@ -91,8 +91,7 @@ impl CameraDevice {
         Ok(())
     }
 
-    /// The image of the present frame for the robot of an index, which is at a pose: taken when the first one
-    /// asks for it.
+    /// The image of the present frame for a robot at a pose; taken at the first request.
     pub(in crate::io::sim) fn take(
         &mut self,
         studio: &mut Studio,
@@ -147,7 +146,7 @@ impl CameraDevice {
     }
 }
 
-/// Copies an image, into the memory of the other one if that is as large.
+/// Copies an image, reusing the destination's memory if the size is equal.
 fn copy(from: &RgbImage, to: &mut RgbImage) {
     if from.dimensions() == to.dimensions() {
         to.copy_from_slice(from);

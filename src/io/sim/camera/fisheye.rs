@@ -7,11 +7,11 @@ use crate::geometry::math;
 use crate::io::Result;
 use crate::world::space::Space;
 
-/// An equidistant lens: a place in the picture is as far from the middle as its angle from the line of sight
-/// says.
+/// An equidistant lens: the distance of an image point from the centre is proportional to its angle from the
+/// line of sight.
 ///
-/// Straight lines become curves in its picture, so what is to be seen is drawn on the sides of an upright
-/// cube about the camera, flat as they are, and looked at through the lens from there.
+/// Straight lines become curves, so the scene is drawn on the flat sides of an upright cube about the camera,
+/// which are then sampled through the lens.
 #[derive(Debug)]
 pub(super) struct Fisheye {
     /// Width and height of the picture, the angle across it, and the tilt, for which the sides were worked
@@ -19,19 +19,19 @@ pub(super) struct Fisheye {
     of: (usize, usize, f64, f64),
     /// Pixels along each edge of the cube.
     edge: usize,
-    /// For each side of the cube, the picture's pixels that show it, and those of the side that they show.
+    /// For each side of the cube, the picture's pixels that show it and the corresponding pixels of the side.
     sides: [Vec<(u32, u32)>; SIDES.len()],
 }
 
-/// The sides of the cube: how far to the left of the camera's heading each is, and how far up.
+/// Sides of the cube as angles to the left of the camera's heading and up.
 const SIDES: [(f64, f64); 6] =
     [(0.0, 0.0), (FRAC_PI_2, 0.0), (PI, 0.0), (-FRAC_PI_2, 0.0), (0.0, FRAC_PI_2), (0.0, -FRAC_PI_2)];
-/// Pixels of a side for each of the picture's that it spans in its middle.
+/// Pixels of a side per pixel of the picture at its centre.
 const FINENESS: f64 = 1.25;
-/// Pixels along an edge of a side at most.
+/// Largest number of pixels along an edge.
 const LONGEST_EDGE: f64 = 2048.0;
 
-/// Where a camera with such a lens is and looks.
+/// Position and direction of a camera with such a lens.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Gaze {
     pub(super) eye: Place,
@@ -47,7 +47,7 @@ impl Fisheye {
         Self { of: (0, 0, 0.0, 0.0), edge: 0, sides: [const { Vec::new() }; SIDES.len()] }
     }
 
-    /// Draws what the camera on a robot sees. `side` is memory.
+    /// Draws the view of a robot's camera. `side` is a buffer.
     pub(super) fn draw(
         &mut self,
         (picture, side): (&mut Canvas, &mut Canvas),
@@ -62,7 +62,7 @@ impl Fisheye {
             self.work_out(of);
         }
         picture.reset(width, height);
-        // Behind the camera there is nothing but the lens.
+        // Directions beyond 180 degrees stay black.
         picture.colours.fill(0);
         for (pixels, (left, up)) in self.sides.iter().zip(SIDES) {
             if pixels.is_empty() {
@@ -104,8 +104,8 @@ impl Fisheye {
     }
 }
 
-/// The direction, ahead, to the left and up, of a place so many radians to the right and down in the picture
-/// of a camera that looks up by `tilt`; `None` beyond straight behind it.
+/// Direction (ahead, left, up) of a picture point at angles to the right and down, for a camera tilted up by
+/// `tilt`; `None` beyond straight behind it.
 fn ray(right: f64, down: f64, tilt: f64) -> Option<Place> {
     let angle = math::hypot(right, down);
     if angle > PI {

@@ -6,12 +6,12 @@ use super::view::{NEAR, Place, Seen, View};
 use crate::geometry::{Pose, Vector, direction};
 use crate::world::{Colour, Face, Mesh};
 
-/// The surface of things of one kind.
+/// Surface of things of one kind.
 #[derive(Debug)]
 pub(super) struct Model {
     faces: Vec<Face>,
     coats: Vec<Coat>,
-    /// The radius of the ball about the foot that holds all.
+    /// Radius of the enclosing ball about the foot.
     reach: f64,
 }
 
@@ -76,7 +76,7 @@ impl Stand {
     }
 }
 
-/// The part of the light that the side of a triangle gives back that an eye sees.
+/// Brightness of the side of a triangle that faces the eye.
 fn brightness([a, b, c]: [Place; 3], eye: Place) -> f64 {
     let minus = |p: Place, q: Place| Seen { x: p[0] - q[0], y: p[1] - q[1], z: p[2] - q[2] };
     let normal = minus(b, a).cross(minus(c, a));
@@ -85,7 +85,7 @@ fn brightness([a, b, c]: [Place; 3], eye: Place) -> f64 {
     shade(towards * normal.dot(sun) / normal.norm().max(f64::MIN_POSITIVE))
 }
 
-/// Draws a triangle with an image on it where it is nearer than what is there.
+/// Draws a textured triangle with the depth test.
 fn draw_image(
     cutter: &mut Cutter,
     canvas: &mut Canvas,
@@ -101,7 +101,7 @@ fn draw_image(
     let (whole, _) = texture.level(0.0);
     let size = [whole.width as f64, whole.height as f64];
     let seen = corners.map(|corner| view.see(corner));
-    // Texels times nearness: what is even over the picture.
+    // Texture coordinates times inverse depth are linear in the picture.
     let texels =
         [0, 1].map(|axis| over_picture(view, &seen, image_corners.map(|c| c[axis] * size[axis]), &near));
     let light = (256.0 * light) as u32;
@@ -131,14 +131,14 @@ fn draw_image(
     }
 }
 
-/// The change over the picture of a number that changes evenly over a triangle, times the nearness.
+/// Inverse depth times a linear function on a triangle, as a function on the picture.
 fn over_picture(view: &View, [a, b, c]: &[Seen; 3], values: [f64; 3], near: &Slope) -> Slope {
     let (along, across) = (b.minus(*a), c.minus(*a));
     let normal = along.cross(across);
     let squared = normal.dot(normal);
     let (first, second) = (across.cross(normal), normal.cross(along));
     let (one, other) = ((values[1] - values[0]) / squared, (values[2] - values[0]) / squared);
-    // The change in a metre to the right, down and ahead.
+    // Gradient per metre to the right, down and ahead.
     let gradient = Seen {
         x: one * first.x + other * second.x,
         y: one * first.y + other * second.y,
@@ -155,7 +155,7 @@ fn over_picture(view: &View, [a, b, c]: &[Seen; 3], values: [f64; 3], near: &Slo
     }
 }
 
-/// Texels from a pixel to the next one, along the row or across, whichever are more.
+/// Texels from a pixel to the next along the row or column, whichever is larger.
 fn step(place: impl Fn(usize, usize) -> [f64; 2], column: usize, row: usize) -> f64 {
     let here = place(column, row);
     let beside = |there: [f64; 2]| (there[0] - here[0]).abs().max((there[1] - here[1]).abs());

@@ -5,9 +5,9 @@ use super::view::{NEAR, Place, View};
 use crate::geometry::direction;
 use crate::world::{Billboard, Colour};
 
-/// The back of a billboard.
+/// Colour of a billboard's back.
 const BACK: Colour = Colour::from_hex(0x80_80_80);
-/// Texels at least this opaque are seen.
+/// Smallest visible opacity of a texel.
 const OPAQUE: u8 = 128;
 
 /// Draws a picture on a board where it is nearer than what is there.
@@ -17,7 +17,7 @@ pub(super) fn draw_poster(cutter: &mut Cutter, canvas: &mut Canvas, view: &View,
         return;
     }
     let facing = direction(board.pose.heading);
-    // From the board's left to its right as seen by who stands before it.
+    // From the board's left to its right, as seen from the front.
     let across = [-facing.y * board.width, facing.x * board.width, 0.0];
     let top = board.elevation + board.height;
     let corner: Place = [board.pose.x - 0.5 * across[0], board.pose.y - 0.5 * across[1], top];

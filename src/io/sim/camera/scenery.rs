@@ -15,19 +15,19 @@ use crate::world::{
     Billboard, Colour, Footprint, Marker, Mast, Mesh, Object, RobotPlacement, Scene, Shape, Texture, Wall,
 };
 
-/// All that a camera may see of a scene.
+/// Everything visible in a scene.
 #[derive(Debug)]
 pub(super) struct Scenery {
     floor: Aabb,
-    /// The image on the floor.
+    /// The floor's image.
     floor_texture: Option<Texture>,
-    /// Floor and sky, once something is to be seen.
+    /// Floor and sky; `None` before the first picture.
     ground: Option<Ground>,
     walls: Vec<([Point; 4], Standing)>,
     markers: Vec<Marker>,
     billboards: Vec<Billboard>,
     things: Vec<Thing>,
-    /// The surfaces of things, each once, and the models of them once something is to be seen.
+    /// Distinct surfaces of things, and their models after the first picture.
     meshes: Vec<Arc<Mesh>>,
     models: Vec<Model>,
     robots: Vec<Thing>,
@@ -35,7 +35,7 @@ pub(super) struct Scenery {
     cutter: Cutter,
 }
 
-/// Something whose place the space knows.
+/// A thing whose pose is in the space.
 #[derive(Debug)]
 struct Thing {
     solid: SolidId,
@@ -43,7 +43,7 @@ struct Thing {
     height: f64,
     colour: Colour,
     mast: Option<Mast>,
-    /// The index of its surface, if that is not its form's.
+    /// Index of its surface, if it differs from the form.
     model: Option<usize>,
 }
 
@@ -51,12 +51,12 @@ struct Thing {
 enum Form {
     Ball(f64),
     Cylinder(f64),
-    /// The radii of its foot and its top.
+    /// Radii of foot and top.
     Cone(f64, f64),
     Cuboid(Aabb),
 }
 
-/// Robots are told apart by their colours: the n-th takes the n-th, in a circle.
+/// Colours that distinguish robots, assigned cyclically.
 const ROBOTS: [Colour; 5] = [
     Colour::from_hex(0x2f_6d_b5),
     Colour::from_hex(0x2d_9b_6b),
@@ -64,15 +64,15 @@ const ROBOTS: [Colour; 5] = [
     Colour::from_hex(0xb8_8a_1e),
     Colour::from_hex(0x3a_9f_c4),
 ];
-/// The lower part of a robot, with its wheels, and its share of the height.
+/// Colour of a robot's lower part with the wheels, and its fraction of the height.
 const CHASSIS: (Colour, f64) = (Colour::from_hex(0x2a_2a_2e), 0.4);
 /// Between which shares of its height a robot's front is.
 const FRONT: (f64, f64) = (0.5, 0.92);
-/// Metres from a marker's middle to its rim.
+/// Radius of a marker (m).
 const MARKER: f64 = 0.010;
 
 impl Scenery {
-    /// What is seen of a scene whose objects and robots are solids of a space.
+    /// The visible part of a scene; `objects` and `robots` are its solids in the space.
     pub(super) fn new(scene: &Scene, objects: &[SolidId], robots: &[SolidId]) -> Self {
         let world = &scene.world;
         let robots = robots.iter().zip(&scene.robots).enumerate();
@@ -119,7 +119,7 @@ impl Scenery {
         for thing in &self.things {
             let solid = space.solid(thing.solid);
             match thing.model.and_then(|model| self.models.get(model)) {
-                // What has fallen is not seen.
+                // Fallen things are not drawn.
                 _ if solid.top <= solid.bottom => {}
                 Some(model) => model.draw(&mut self.cutter, canvas, view, (&solid.pose, solid.bottom)),
                 None => thing.draw(&mut self.carpenter, canvas, view, space),
@@ -153,7 +153,7 @@ impl Thing {
         let upper = Standing { bottom: waist, top: solid.bottom + self.height, colour: self.colour };
         self.draw_part(carpenter, canvas, view, &solid.pose, lower);
         self.draw_part(carpenter, canvas, view, &solid.pose, upper);
-        // A white front and a dark back, so that one sees which way it looks, and that it turns.
+        // A white front and a dark back show a robot's heading and rotation.
         let (low, high) = (solid.bottom + FRONT.0 * self.height, solid.bottom + FRONT.1 * self.height);
         for (plate, colour) in self.plates().into_iter().zip([Colour::from_hex(0xf2_f2_f2), CHASSIS.0]) {
             let part = Self { form: Form::Cuboid(plate), ..*self };
@@ -230,7 +230,7 @@ fn thing(solid: SolidId, object: &Object, meshes: &mut Vec<Arc<Mesh>>) -> Thing 
     Thing { solid, form, height: kind.shape.height(), colour: kind.colour, mast: None, model }
 }
 
-/// The number of a surface, which has one as soon as somebody asks for it.
+/// Index of a surface in `meshes`, where it is added if missing.
 fn number(mesh: &Arc<Mesh>, meshes: &mut Vec<Arc<Mesh>>) -> usize {
     meshes.iter().position(|known| Arc::ptr_eq(known, mesh)).unwrap_or_else(|| {
         meshes.push(Arc::clone(mesh));
@@ -248,7 +248,7 @@ fn robot(index: usize, solid: SolidId, placed: &RobotPlacement, meshes: &mut Vec
     Thing { solid, form, height: placed.spec.height, colour, mast: placed.spec.mast, model }
 }
 
-/// The pixels of the floor's image, which have been read with the world's file.
+/// Pixels of the floor's image, which were read with the world's file.
 fn pixels(texture: &Texture) -> Result<&image::RgbaImage> {
     texture.image.as_deref().ok_or_else(|| {
         let message = format!("the floor's image {} has not been read", texture.file.display());
