@@ -8,7 +8,7 @@ use crate::kinematics::{PlanarMotion, PlanarTwist};
 use crate::world::space::Space;
 use crate::world::{HeightField, RobotPlacement, World};
 
-/// The ground of a world with hills, and how its robots are on it.
+/// The ground of a world with hills, and the motion of its robots on it.
 #[derive(Debug)]
 pub(in crate::io::sim) struct Hills {
     ground: Arc<HeightField>,
@@ -23,15 +23,15 @@ struct Rider {
     watch: Watch,
 }
 
-/// A body whose outline something has moved aside by more than this, in metres or radians, was in its way.
+/// Displacement of an outline above which an obstacle was in its way (m or rad).
 const MOVED_ASIDE: f64 = 1e-9;
-/// Metres or radians that are no motion.
+/// Motion that counts as rest (m or rad).
 const STILL: f64 = 1e-11;
-/// A robot less than this above the ground stands on it.
+/// Height above the ground up to which a robot counts as standing (m).
 const STANDING: f64 = 2e-3;
 
 impl Hills {
-    /// The hills of a world, if it has any.
+    /// The hills of a world, if there are any.
     pub(in crate::io::sim) fn of(world: &World, robots: &[RobotPlacement]) -> Option<Box<Self>> {
         let ground = Arc::clone(world.terrain.as_ref()?.surface.as_ref()?);
         let riders = robots.iter().map(|robot| {
@@ -49,31 +49,31 @@ impl Hills {
         &self.ground
     }
 
-    /// Where a robot is in space.
+    /// Pose of a robot in space.
     pub(in crate::io::sim) fn pose(&self, robot: usize) -> Pose3 {
         let rider = &self.riders[robot];
         rider.body.pose(&rider.carriage)
     }
 
-    /// What has become of a robot that can drive no more.
+    /// Mishap of a robot that can no longer drive.
     pub(in crate::io::sim) fn mishap(&self, robot: usize) -> Option<Mishap> {
         self.riders[robot].watch.mishap()
     }
 
-    /// The elevation of the ground under a point; beyond the hills, that of the floor.
+    /// Elevation of the ground at a point; beyond the hills, that of the floor.
     pub(in crate::io::sim) fn level(&self, point: Point) -> f64 {
         self.ground.height(point).unwrap_or(0.0)
     }
 
-    /// Puts a robot on the ground, or so many metres above it.
+    /// Places a robot on the ground, or `elevation` metres above it.
     pub(in crate::io::sim) fn place(&mut self, robot: usize, pose: Pose, elevation: f64) {
         let rider = &mut self.riders[robot];
         rider.body = standing(&self.ground, &rider.carriage, pose, elevation);
         rider.watch.forget();
     }
 
-    /// Lets all robots move for a tick, and puts how their frames move over the plane in place of how their wheels
-    /// turned. Returns whether any moves.
+    /// Moves all robots for a tick, and replaces the motions of their wheels by those of their frames in the
+    /// plane. Returns whether any robot moves.
     pub(in crate::io::sim) fn ride(&mut self, bodies: &[Body], motions: &mut [PlanarMotion]) -> bool {
         let mut moving = false;
         for ((rider, body), motion) in self.riders.iter_mut().zip(bodies).zip(motions) {
@@ -92,7 +92,7 @@ impl Hills {
         moving
     }
 
-    /// Takes notice of what was in the robots' way, and puts their solids where they are.
+    /// Takes obstacles in the robots' way into account, and updates the robots' solids.
     pub(in crate::io::sim) fn yield_to(&mut self, bodies: &mut [Body], space: &mut Space) {
         for (rider, body) in self.riders.iter_mut().zip(bodies) {
             let pose = rider.body.pose(&rider.carriage);
@@ -122,7 +122,7 @@ impl Rider {
     }
 }
 
-/// A body at rest on the ground, or above it.
+/// A body at rest on the ground or above it.
 fn standing(ground: &HeightField, carriage: &Undercarriage, pose: Pose, elevation: f64) -> RigidBody {
     if elevation <= 0.0 && ground.height(pose.position()).is_some() {
         return RigidBody::resting(ground, carriage, pose, TICK);
