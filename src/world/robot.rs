@@ -48,7 +48,7 @@ pub struct RobotSpec {
     pub body: Body,
 }
 
-/// Kind of drive.
+/// How a robot moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum DriveSpec {
@@ -111,7 +111,7 @@ pub enum DriveSpec {
 }
 
 impl DriveSpec {
-    /// Highest rim speed of its wheels (m/s).
+    /// The fastest rim speed of its wheels, in metres per second.
     pub fn top_speed(&self) -> f64 {
         match *self {
             Self::Differential { wheel_diameter, max_wheel_speed, .. }

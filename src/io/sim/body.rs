@@ -228,7 +228,7 @@ impl Body {
         self.touch.held_ticks = if held { self.touch.held_ticks.saturating_add(1) } else { 0 };
     }
 
-    /// Index of the motor for a motor or encoder number.
+    /// The motor that a motor's or an encoder's number means.
     pub(super) fn motor_index(&self, number: u8, device: &str) -> Result<usize> {
         let motors = self.drive.get().motors();
         let index = usize::from(number).checked_sub(1).filter(|&index| index < motors);

@@ -17,9 +17,9 @@ const LOOK_AHEAD: f64 = 0.25;
 const TOUCH_MARGIN: f64 = 5e-4;
 /// Attempts to push a robot out of an obstacle before it stays in place.
 const PUSH_ATTEMPTS: usize = 4;
-/// Largest depth that counts as pushed out (m).
+/// The largest depth, in metres, that counts as pushed out.
 const PUSH_TOLERANCE: f64 = 1e-6;
-/// Extra motion per tick that a push may cause.
+/// What a push may add to a robot's own motion in a tick.
 const SLACK: f64 = 2.0 * PUSH_TOLERANCE;
 
 impl Engine {
@@ -204,7 +204,7 @@ impl Engine {
     pub(super) fn place_object(&mut self, object: usize, pose: Pose) {
         let movable = self.movables[object];
         self.put(movable.solid, pose);
-        // Placing an object sets it upright.
+        // A hand puts it upright.
         self.space.set_top(movable.solid, movable.top);
         self.look_around_again();
     }

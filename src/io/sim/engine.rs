@@ -9,10 +9,8 @@ use super::options::ticks_in;
 use super::terrain::Hills;
 use super::watch::{Onlooking, Watcher};
 use super::{LONGEST, SimOptions, TICKS_PER_SECOND, TrailPoint};
-use crate::geometry::{Pose, Pose3, Twist, Vector3};
-use crate::io::{
-    Attitude, Error, ErrorKind, Key, LidarScan, LidarSettings, Psd, RadioMessage, Resolution, Result,
-};
+use crate::geometry::{Pose, Pose3, Twist};
+use crate::io::{Error, ErrorKind, Key, LidarScan, LidarSettings, Psd, RadioMessage, Resolution, Result};
 use crate::kinematics::{Displacement, PlanarMotion};
 use crate::parameter::{require_finite, require_positive};
 use crate::random::Stream;
@@ -68,7 +66,7 @@ struct Letter {
 const MAX_MESSAGE: usize = 65_536;
 /// Largest number of messages waiting for a robot; older ones are dropped.
 const MAX_MAILBOX: usize = 10_000;
-/// Highest commanded speed (m/s or rad/s).
+/// The fastest speeds, in metres or radians per second, that a command may name.
 const MAX_COMMAND: f64 = 1e9;
 
 impl Ticking for Engine {
@@ -129,7 +127,7 @@ impl Engine {
         hills.yield_to(&mut self.bodies, &mut self.space);
     }
 
-    /// Places a solid at a pose, at its height above the ground there.
+    /// Puts a solid somewhere else, at its height above the ground there.
     pub(super) fn put(&mut self, solid: SolidId, pose: Pose) {
         self.space.set_pose(solid, pose);
         if let Some(hills) = &self.hills {

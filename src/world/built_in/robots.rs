@@ -289,7 +289,7 @@ impl RobotSpec {
         Self { name: "LidarBot".into(), psds, lidar: Some(lidar), ..s4 }
     }
 
-    /// A robot of [`PREDEFINED`](Self::PREDEFINED), case-insensitive.
+    /// A robot of [`PREDEFINED`](Self::PREDEFINED), without regard to case.
     pub fn predefined(name: &str) -> Option<Self> {
         let name = Self::PREDEFINED.into_iter().find(|known| known.eq_ignore_ascii_case(name))?;
         let spec = match name {

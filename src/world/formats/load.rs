@@ -106,7 +106,7 @@ pub fn parse_robot(bytes: Vec<u8>, file: &str) -> Result<Parsed<RobotSpec>, Form
     decoded(bytes, file, robi::parse)
 }
 
-/// Reads an object's description (`.esObj`) and its 3D model from files.
+/// Reads an object's description, `.esObj`, with its 3D model from disk.
 pub fn load_object(path: impl AsRef<Path>) -> Result<Parsed<ObjectKind>, FormatError> {
     let path = path.as_ref();
     let read = |text: &str, file: &str| {

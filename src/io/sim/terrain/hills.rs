@@ -8,7 +8,7 @@ use crate::kinematics::{PlanarMotion, PlanarTwist};
 use crate::world::space::Space;
 use crate::world::{HeightField, RobotPlacement, World};
 
-/// The ground of a world with hills, and the motion of its robots on it.
+/// The ground of a world with hills, and how its robots are on it.
 #[derive(Debug)]
 pub(in crate::io::sim) struct Hills {
     ground: Arc<HeightField>,
@@ -31,7 +31,7 @@ const STILL: f64 = 1e-11;
 const STANDING: f64 = 2e-3;
 
 impl Hills {
-    /// The hills of a world, if there are any.
+    /// The hills of a world, if it has any.
     pub(in crate::io::sim) fn of(world: &World, robots: &[RobotPlacement]) -> Option<Box<Self>> {
         let ground = Arc::clone(world.terrain.as_ref()?.surface.as_ref()?);
         let riders = robots.iter().map(|robot| {
@@ -60,20 +60,20 @@ impl Hills {
         self.riders[robot].watch.mishap()
     }
 
-    /// Elevation of the ground at a point; beyond the hills, that of the floor.
+    /// The elevation of the ground under a point; beyond the hills, that of the floor.
     pub(in crate::io::sim) fn level(&self, point: Point) -> f64 {
         self.ground.height(point).unwrap_or(0.0)
     }
 
-    /// Places a robot on the ground, or `elevation` metres above it.
+    /// Puts a robot on the ground, or so many metres above it.
     pub(in crate::io::sim) fn place(&mut self, robot: usize, pose: Pose, elevation: f64) {
         let rider = &mut self.riders[robot];
         rider.body = standing(&self.ground, &rider.carriage, pose, elevation);
         rider.watch.forget();
     }
 
-    /// Moves all robots for a tick, and replaces the motions of their wheels by those of their frames in the
-    /// plane. Returns whether any robot moves.
+    /// Lets all robots move for a tick, and puts how their frames move over the plane in place of how their wheels
+    /// turned. Returns whether any moves.
     pub(in crate::io::sim) fn ride(&mut self, bodies: &[Body], motions: &mut [PlanarMotion]) -> bool {
         let mut moving = false;
         for ((rider, body), motion) in self.riders.iter_mut().zip(bodies).zip(motions) {

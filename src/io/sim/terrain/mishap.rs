@@ -5,17 +5,17 @@ use crate::io::sim::TICK;
 use crate::kinematics::PlanarTwist;
 use crate::world::HeightField;
 
-/// Why a robot on hills no longer drives, or drives without effect.
+/// What becomes of a robot on hills that drives no more, or in vain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Mishap {
-    /// It lies on its side or back.
+    /// It lies on its side or on its back.
     Tipped,
     /// It fell by more than its own height, or off the world.
     Fell,
-    /// Its wheels have turned for two seconds almost without effect. The state ends when it moves again.
+    /// Its wheels have turned for two seconds and moved it next to nothing. It is over when it moves again.
     Stuck,
-    /// Its centre of mass is below the water surface.
+    /// The middle of its mass is below the water's surface.
     Drowned,
 }
 
@@ -30,7 +30,7 @@ impl std::fmt::Display for Mishap {
     }
 }
 
-/// Detects mishaps of a robot.
+/// Who watches a robot for mishaps.
 #[derive(Debug, Clone)]
 pub(super) struct Watch {
     height: f64,

@@ -40,7 +40,7 @@
 //!   otherwise. The order is roll, pitch, yaw. The tilt is the angle of each beam above that plane.
 //! * `camera`: forward, left, up, unless X is 0 and Y is not; then Y is forward.
 //!
-//! # Our extensions
+//! # Lines of our own
 //!
 //! EyeSim skips unknown keywords, so a description can contain data here that EyeSim's formats cannot
 //! express:
@@ -51,7 +51,7 @@
 //! | `steering DEG` | largest steering angle; default 30 |
 //! | `dynamics MASS GYRATION GRIP STIFFNESS BALANCE BRAKE STEERING` | a fast car's mass and tyres: [`CarDynamics`](crate::world::CarDynamics), in millimetres, their products with 1/s², and degrees per second |
 //! | `tracks LENGTH WIDTH` | a tracked robot's belts: their length on the ground, and their width |
-//! | `friction MU` | coefficient of friction on hills; default 0.8 |
+//! | `friction MU` | the coefficient of friction on hills; 0.8 without it |
 //! | `outline disc R HEIGHT`, `outline rectangle BACK RIGHT FRONT LEFT HEIGHT` | footprint about the driven axle |
 //! | `mast BACK RIGHT FRONT LEFT HEIGHT` | a narrow part above the rest, for rays |
 //! | `psd_range MM` | range of the preceding `psd` |
