@@ -9,8 +9,10 @@ use super::options::ticks_in;
 use super::terrain::Hills;
 use super::watch::{Onlooking, Watcher};
 use super::{LONGEST, SimOptions, TICKS_PER_SECOND, TrailPoint};
-use crate::geometry::{Pose, Pose3, Twist};
-use crate::io::{Error, ErrorKind, Key, LidarScan, LidarSettings, Psd, RadioMessage, Resolution, Result};
+use crate::geometry::{Pose, Pose3, Twist, Vector3};
+use crate::io::{
+    Attitude, Error, ErrorKind, Key, LidarScan, LidarSettings, Psd, RadioMessage, Resolution, Result,
+};
 use crate::kinematics::{Displacement, PlanarMotion};
 use crate::parameter::{require_finite, require_positive};
 use crate::random::Stream;
