@@ -16,8 +16,8 @@ use crate::maze_drive::{explore as maze_explore, left as maze_left, lidar as maz
 use crate::starman;
 use crate::{
     a_to_b, ackermann, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug, edges,
-    follow_me, genetic, grid_benchmark, lidar_scan, localise, micromouse, motion, navigate, omni, quadtree,
-    random_drive, replay, safety, wall_following,
+    follow_me, genetic, grid_benchmark, lane_keeping, lidar_scan, localise, micromouse, motion, navigate,
+    omni, quadtree, random_drive, replay, safety, wall_following,
 };
 
 /// Runs a command with its command line and its two output streams. Returns the exit status.
@@ -75,6 +75,7 @@ commands!(
     follow_me by run,
     genetic by run,
     grid_benchmark by run_plain,
+    lane_keeping by run,
     lidar_scan by run,
     localise by run,
     maze_explore by run,

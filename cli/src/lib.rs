@@ -20,6 +20,7 @@ mod edges;
 mod follow_me;
 mod genetic;
 mod grid_benchmark;
+mod lane_keeping;
 mod lidar_scan;
 mod localise;
 mod maze_drive;

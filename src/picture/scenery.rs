@@ -9,10 +9,8 @@ use super::text;
 use crate::geometry::{Aabb, Point, Vector, direction};
 use crate::world::{Colour, Object, Shape, Terrain, Wall, World};
 
-/// No wall is drawn thinner than this many pixels.
-const THINNEST_WALL: f64 = 2.2;
-/// No object is drawn smaller than this many pixels.
-const SMALLEST_OBJECT: f64 = 2.5;
+/// Pixels that nothing is drawn smaller or thinner than.
+pub(super) const SMALLEST: f64 = 2.5;
 
 /// The name of the pattern that fills hills.
 const HATCH: &str = "hills";
@@ -112,7 +110,7 @@ fn letter(letter: char, at: Pixel) -> svg::node::element::Text {
 fn walls(walls: &[Wall], frame: &Frame) -> Group {
     let mut group = Group::new();
     for alike in walls.chunk_by(|a, b| a.colour == b.colour && a.thickness == b.thickness) {
-        let width = frame.length(alike[0].thickness).max(THINNEST_WALL);
+        let width = frame.length(alike[0].thickness).max(SMALLEST);
         let chains = alike.chunk_by(|a, b| a.line.b == b.line.a);
         let data = chains.map(|chain| chain_data(chain, frame)).collect();
         let mut path = line(data, wall_colour(alike[0].colour), width);
@@ -144,7 +142,7 @@ fn wall_colour(colour: Colour) -> Colour {
 
 fn object(object: &Object, frame: &Frame) -> Group {
     let (at, colour) = (frame.at(object.pose.position()), object.kind.colour);
-    let pixels = |metres: f64| frame.length(metres).max(SMALLEST_OBJECT);
+    let pixels = |metres: f64| frame.length(metres).max(SMALLEST);
     match object.kind.shape {
         Shape::Cylinder { radius, .. } | Shape::Cone { radius, .. } => solid_disc(at, pixels(radius), colour),
         Shape::Sphere { radius } => ball(at, pixels(radius), colour),

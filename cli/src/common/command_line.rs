@@ -33,7 +33,7 @@ const NOT_RECORDED: [&str; 13] = [
 const MET: [&str; 4] = ["seed", "noise", "quantised", "fault"];
 
 /// Options with names of input files.
-const FILES: [&str; 5] = ["world", "robot", "maze", "track", "line"];
+const FILES: [&str; 6] = ["world", "robot", "maze", "track", "line", "course"];
 
 /// Options without a single driving robot to record: many runs at once, or none.
 const UNRECORDED: [&str; 5] = ["campaign", "plan", "input", "compare", "steps"];

@@ -7,8 +7,12 @@ use roverlab::world::{RobotSpec, Scene};
 
 use super::{CommonArgs, onlooker};
 
-/// Name of an option's file in recordings: that of the option, with the file's extension.
+/// Name of an option's file in recordings: that of the option, with the file's extension. A number is no file but a
+/// seed, and stays as it is.
 pub(crate) fn recorded_name(option: &str, path: &Path) -> String {
+    if let Some(seed) = path.to_str().filter(|text| text.parse::<u64>().is_ok()) {
+        return seed.to_owned();
+    }
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     let plain = !ending.is_empty() && ending.chars().all(|c| c.is_ascii_alphanumeric());
     if plain { format!("{option}.{}", ending.to_ascii_lowercase()) } else { option.to_owned() }
@@ -41,19 +45,29 @@ impl CommonArgs {
 
     /// The scene in an option's file, as found by [`read`](Self::read), with its companion files.
     pub(crate) fn load_scene(&self, option: &str, path: &Path) -> Result<Parsed<Scene>, FormatError> {
+        self.load(option, path, formats::parse_scene)
+    }
+
+    /// The robot in the file of an option, with its 3D model where that is found.
+    pub(crate) fn load_robot(&self, option: &str, path: &Path) -> Result<Parsed<RobotSpec>, FormatError> {
+        self.load(option, path, formats::parse_robot_tolerantly)
+    }
+
+    /// Reads the file of an option with those that it names; they go into the recording that is made.
+    fn load<T>(
+        &self,
+        option: &str,
+        path: &Path,
+        parse: impl FnOnce(Vec<u8>, &str, &mut dyn FileSource) -> Result<T, FormatError>,
+    ) -> Result<T, FormatError> {
         let bytes = self.read(option, path)?;
         let name = recorded_name(option, path);
         let log = self.origin.facts().log.filter(|log| log.header().attachment(&name).is_some());
         let log = log.filter(|_| path.to_str() == Some(&name));
         let mut files = Companions { main: name, log, disk: DiskFiles::new(), found: Vec::new() };
-        let scene = formats::parse_scene(bytes, &path.display().to_string(), &mut files);
+        let parsed = parse(bytes, &path.display().to_string(), &mut files);
         files.found.into_iter().for_each(|file| self.origin.attach(file));
-        scene
-    }
-
-    /// The robot in an option's file.
-    pub(crate) fn load_robot(&self, option: &str, path: &Path) -> Result<Parsed<RobotSpec>, FormatError> {
-        formats::parse_robot(self.read(option, path)?, &path.display().to_string())
+        parsed
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::support::{DATA, Ended, run, temporary, text};
 use crate::commands::COMMANDS;
-use roverlab::io::log::{Header, LogWriter};
+use roverlab::io::log::{Header, Log, LogWriter};
 use roverlab::world::{LidarSpec, RobotSpec, formats};
 
 fn file(name: &str) -> PathBuf {
@@ -261,6 +261,19 @@ fn a_recording_has_no_files_written() {
     fs::write(&log, LogWriter::new(Vec::new(), &header).unwrap().finish().unwrap()).unwrap();
     let (status, _, err) = run("a_to_b", &["--replay", name]);
     assert!(status == 2 && err.contains("no such file in the recording"), "{err}");
+}
+
+/// A robot has its 3D model, a recording has it too, and a robot whose model is missing drives without.
+#[test]
+fn the_model_of_a_robot_is_recorded() {
+    let robot = Path::new(DATA).join("formats/cart.robi");
+    let log = assert_replays("a_to_b", &["--robot", text(&robot), "--time-limit", "1"]);
+    let log = Log::read(fs::read(log).unwrap()).unwrap();
+    assert!(log.header().attachment("robot.robi 001 cart.obj").is_some());
+    let bare = file("bare.robi");
+    fs::copy(robot, &bare).unwrap();
+    let (status, _, err) = run("a_to_b", &["--robot", text(&bare)]);
+    assert!(status == 0 && err.contains("bare.robi:3:") && err.contains("cart.obj"), "{status} {err}");
 }
 
 /// Small stored recordings, perhaps from another machine. After an intended change of runs, the first one is

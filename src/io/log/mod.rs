@@ -53,6 +53,7 @@ mod entry;
 mod error;
 mod fleet;
 mod header;
+mod lengths;
 mod messages;
 mod open_loop;
 mod parts;

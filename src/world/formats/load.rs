@@ -73,19 +73,14 @@ fn scene_of(bytes: Vec<u8>, file: &str, files: &mut Files<'_>) -> Result<Parsed<
 
 /// Reads a robot's description (`.robi`) and its 3D model from files.
 pub fn load_robot(path: impl AsRef<Path>) -> Result<Parsed<RobotSpec>, FormatError> {
-    robot_from(path.as_ref(), false)
+    let path = path.as_ref();
+    robot_of(read_file(path)?, &path.display().to_string(), &mut Files::new(&mut DiskFiles::new(), false))
 }
 
 /// Like [`load_robot`], but a missing or broken model is left out.
 pub fn load_robot_tolerantly(path: impl AsRef<Path>) -> Result<Parsed<RobotSpec>, FormatError> {
-    robot_from(path.as_ref(), true)
-}
-
-fn robot_from(path: &Path, tolerant: bool) -> Result<Parsed<RobotSpec>, FormatError> {
-    let read = |text: &str, file: &str| {
-        robi::parse_with_model(text, file, &mut Files::new(&mut DiskFiles::new(), tolerant))
-    };
-    decoded(read_file(path)?, &path.display().to_string(), read)
+    let path = path.as_ref();
+    parse_robot_tolerantly(read_file(path)?, &path.display().to_string(), &mut DiskFiles::new())
 }
 
 /// Reads a robot's description from the bytes of its file, without its 3D model.
@@ -104,6 +99,19 @@ fn robot_from(path: &Path, tolerant: bool) -> Result<Parsed<RobotSpec>, FormatEr
 /// ```
 pub fn parse_robot(bytes: Vec<u8>, file: &str) -> Result<Parsed<RobotSpec>, FormatError> {
     decoded(bytes, file, robi::parse)
+}
+
+/// As [`load_robot_tolerantly`], from the bytes of the robot's file and from the files that it names.
+pub fn parse_robot_tolerantly(
+    bytes: Vec<u8>,
+    file: &str,
+    files: &mut dyn FileSource,
+) -> Result<Parsed<RobotSpec>, FormatError> {
+    robot_of(bytes, file, &mut Files::new(files, true))
+}
+
+fn robot_of(bytes: Vec<u8>, file: &str, files: &mut Files<'_>) -> Result<Parsed<RobotSpec>, FormatError> {
+    decoded(bytes, file, |text, file| robi::parse_with_model(text, file, files))
 }
 
 /// Reads an object's description, `.esObj`, with its 3D model from disk.

@@ -29,8 +29,8 @@ mod yaml_events;
 
 pub use error::{FormatError, Location, Parsed, Warning};
 pub use load::{
-    load_object, load_robot, load_robot_tolerantly, load_scene, parse_robot, parse_scene,
-    parse_scene_tolerantly, read_file,
+    load_object, load_robot, load_robot_tolerantly, load_scene, parse_robot, parse_robot_tolerantly,
+    parse_scene, parse_scene_tolerantly, read_file,
 };
 pub use source::{DiskFiles, FileSource, MemoryFiles, SourceFile, in_any_case};
 

@@ -49,7 +49,7 @@ impl Default for CourseOptions {
 /// Fails if the options are contradictory, so that no course is found.
 pub fn generate(seed: u64, options: &CourseOptions) -> Result<Course, CourseError> {
     let mut last = None;
-    for attempt in 0..400 {
+    for attempt in 0..ATTEMPTS {
         let mut random = Stream::new(seed).child("course", attempt);
         match attempt_course(&mut random, options) {
             Some(Ok(course)) => return Ok(course),
@@ -60,6 +60,8 @@ pub fn generate(seed: u64, options: &CourseOptions) -> Result<Course, CourseErro
     Err(last.unwrap_or(CourseError::Length { length: 0.0, least: 6.0, most: 500.0 }))
 }
 
+/// Number of attempted outlines; about one in twenty has room for all bends.
+const ATTEMPTS: u64 = 2000;
 /// Shortest straight (m).
 const SHORTEST: f64 = 0.3;
 /// Smallest bend (rad).
@@ -114,7 +116,7 @@ fn attempt_course(random: &mut Stream, options: &CourseOptions) -> Option<Result
 fn star_corners(random: &mut Stream) -> Vec<Point> {
     let count = 4 + random.below(5);
     let clockwise = random.chance(0.5);
-    let (wide, high) = (random.between(3.0, 5.5), random.between(2.6, 4.5));
+    let (wide, high) = (random.between(3.5, 6.5), random.between(3.0, 5.0));
     let turn = std::f64::consts::TAU / count as f64;
     let mut corners: Vec<Point> = (0..count)
         .map(|i| {
@@ -154,7 +156,7 @@ fn turns(corners: &[Point]) -> Vec<f64> {
 
 fn bend(turn: f64, least: f64, random: &mut Stream) -> Bend {
     let angle = turn.abs();
-    let radius = least * random.between(1.0, 1.7);
+    let radius = least * random.between(1.0, 1.5);
     let ease = random.between(0.3, 0.9).min(0.8 * radius * angle);
     let bend = turn.signum() / radius;
     let arc = Element::arc(radius, turn.signum() * (angle - ease / radius));

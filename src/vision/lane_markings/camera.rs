@@ -1,0 +1,71 @@
+use crate::ParameterError;
+use crate::geometry::{Point, Vector, math};
+use crate::parameter::{require, require_finite, require_positive};
+
+/// Where a camera sits that looks at the road, and how its lens maps places on level ground to pixels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RoadCamera {
+    /// The horizontal field of view in radians.
+    pub field_of_view: f64,
+    /// Whether the lens is equidistant, as a fisheye's; otherwise it is a pinhole.
+    pub fisheye: bool,
+    /// Radians above the horizontal: negative where it looks down.
+    pub tilt: f64,
+    /// Metres above the ground.
+    pub height: f64,
+    /// Metres ahead of the robot's origin.
+    pub ahead: f64,
+}
+
+impl RoadCamera {
+    /// Fails with the name of the field that is out of range.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        let widest = if self.fisheye { std::f64::consts::TAU } else { std::f64::consts::PI };
+        let view = self.field_of_view;
+        require(
+            "field of view",
+            view,
+            view > 0.0 && view < widest,
+            "more than 0, and less than the lens can show",
+        )?;
+        require("camera tilt", self.tilt, self.tilt.abs() < 1.5, "between -1.5 and 1.5 rad")?;
+        require_positive("camera height", self.height)?;
+        require_finite("camera ahead", self.ahead)
+    }
+
+    /// Pixels for a radian, of a fisheye, or for a metre a metre away.
+    fn focal(&self, width: u32) -> f64 {
+        let width = f64::from(width);
+        if self.fisheye {
+            width / self.field_of_view
+        } else {
+            0.5 * width / math::tan(0.5 * self.field_of_view)
+        }
+    }
+
+    /// Column and row of a point of the ground, in the robot's frame, in an image of a size; pixel (0, 0) has its middle at
+    /// (0.5, 0.5). `None` behind the camera. `pitch` is added to the tilt.
+    pub fn project(&self, place: Point, pitch: f64, (width, height): (u32, u32)) -> Option<(f64, f64)> {
+        let (sin, cos) = math::sin_cos(self.tilt + pitch);
+        let (ahead, up) = (place.x - self.ahead, -self.height);
+        // Right, down and along the line of sight.
+        let (x, y, z) = (-place.y, ahead * sin - up * cos, ahead * cos + up * sin);
+        let focal = self.focal(width);
+        let scale = if self.fisheye {
+            let aside = math::hypot(x, y);
+            let angle = math::atan2(aside, z);
+            if aside > 1e-9 { focal * angle / aside } else { focal / z }
+        } else if z > 1e-3 {
+            focal / z
+        } else {
+            return None;
+        };
+        Some((0.5 * f64::from(width) + scale * x, 0.5 * f64::from(height) + scale * y))
+    }
+
+    /// How a point of the ground seems to move, in metres for each radian, when the camera looks up.
+    pub(super) fn lift(&self, place: Point) -> Vector {
+        let ahead = place.x - self.ahead;
+        Vector::new((ahead * ahead + self.height * self.height) / self.height, ahead * place.y / self.height)
+    }
+}
