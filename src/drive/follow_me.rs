@@ -159,8 +159,7 @@ impl Follower {
         let (towards, free) = way.towards(&obstacles, bearing, AHEAD.min(distance));
         let along = crate::geometry::direction(seen.pose.heading + bearing).dot(&target.velocity);
         // A lost robot is looked for where it was last seen.
-        let closing =
-            if lost { parameters.speed } else { (distance - parameters.gap) / BRAKING + along };
+        let closing = if lost { parameters.speed } else { (distance - parameters.gap) / BRAKING + along };
         let turn = normalize_angle(towards);
         let facing = math::cos(turn).max(0.0);
         // Obstacles straight ahead limit the speed as well.
@@ -195,8 +194,8 @@ impl Follower {
         let since = (seen.time - target.seen).max(1e-3);
         let moved = target.velocity * since.min(1.0);
         let expected = target.place + moved;
-        let Some(found) =
-            nearest_to(expected).filter(|found| (found - expected).norm() < GATE + self.parameters.speed * since)
+        let Some(found) = nearest_to(expected)
+            .filter(|found| (found - expected).norm() < GATE + self.parameters.speed * since)
         else {
             return;
         };

@@ -1,9 +1,9 @@
 use std::f64::consts::TAU;
 
+use super::cone::RUN_UP;
 use super::corridor::Corridor;
 use super::error::LineError;
 use super::racing_line::curvature;
-use super::cone::RUN_UP;
 use super::{ClosedSpline, Cone, ConeColour, ConeTrack};
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Vector, cross, direction, math};

@@ -275,12 +275,8 @@ impl<'c> Search<'c> {
         if cost > DEAREST {
             return None;
         }
-        let end = End {
-            cone: Some(leg.to),
-            place: leg.ends[1],
-            heading: leg.heading,
-            share: own.share * LESS,
-        };
+        let end =
+            End { cone: Some(leg.to), place: leg.ends[1], heading: leg.heading, share: own.share * LESS };
         let mut ends = pair.ends;
         ends[side] = end;
         let worth = pair.worth + own.share * (1.0 - cost);

@@ -4,7 +4,6 @@ use crate::geometry::units::NEGLIGIBLE;
 use crate::geometry::{Point, Vector};
 use crate::world::{BitGrid, GridCell};
 
-
 /// The first blocked or outside cell whose interior a segment enters.
 pub(super) fn entered(grid: &BitGrid, a: Point, b: Point) -> Option<GridCell> {
     let bounds = |a: f64, b: f64, cells: usize| {

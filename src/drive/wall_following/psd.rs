@@ -219,8 +219,7 @@ impl WallFollower {
             return self.meet(left, right, ahead);
         }
         let wish = SWAY * math::sin(TAU * (self.driven - since) / slow);
-        let rate =
-            SWAY * TAU * math::cos(TAU * (self.driven - since + lag * slow) / slow);
+        let rate = SWAY * TAU * math::cos(TAU * (self.driven - since + lag * slow) / slow);
         let error = angle_difference(heading + wish, pose.heading);
         Twist::new(slow, rate + 2.0 * error)
     }

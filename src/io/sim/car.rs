@@ -32,7 +32,6 @@ pub(super) struct Car {
     measured: Twist,
 }
 
-
 impl Car {
     pub(super) fn new(
         nominal: Ackermann,

@@ -109,7 +109,11 @@ fn pose(pose: Pose) -> Pose {
 
 fn range(metres: f64) -> f64 {
     let millimetres = units::to_mm(metres).round();
-    if millimetres < units::to_mm(PsdSpec::DEFAULT_MAX_RANGE) { units::from_mm(millimetres.max(0.0)) } else { f64::INFINITY }
+    if millimetres < units::to_mm(PsdSpec::DEFAULT_MAX_RANGE) {
+        units::from_mm(millimetres.max(0.0))
+    } else {
+        f64::INFINITY
+    }
 }
 
 impl<R: Clock> Clock for Quantised<R> {

@@ -3,7 +3,6 @@ use std::f64::consts::FRAC_PI_2;
 use crate::geometry::{Pose, angle_difference, math};
 use crate::kinematics::{DISTANCE_ERROR, OUTLIER, SCALE_ERROR, TURN_ERROR};
 
-
 /// Scale error of odometry (wheel wear), as a fraction of the distance.
 #[derive(Debug, Clone, Copy)]
 struct Stretch {

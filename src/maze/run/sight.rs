@@ -40,7 +40,6 @@ pub(super) struct Crossings<'a> {
     lines: [i64; 2],
 }
 
-
 impl<'a> Crossings<'a> {
     pub(super) fn new(maze: &'a Maze, scale: Scale, origin: Point, direction: Vector) -> Self {
         let half = 0.5 * scale.wall;

@@ -13,7 +13,6 @@ pub(super) struct Sweep {
     twist: Twist,
 }
 
-
 impl Sweep {
     /// The outline inflated by `margin` metres; a rectangle keeps its corners.
     pub(super) fn new(footprint: &Footprint, margin: f64, twist: Twist) -> Self {

@@ -51,12 +51,9 @@ fn where_a_little_larger_robot_is_free_a_smaller_one_is_on_the_same_cells() {
         Point::new(0.227_983_789_037_898_76, 0.491_513_279_303_407_6),
     );
     world.walls.push(Wall::new(a, b));
-    let (point, large) = (
-        Point::new(1.009_324_555_896_596_6, 1.003_882_048_723_805_6),
-        RADIUS + 0.008_120_689_208_133_025,
-    );
-    let own =
-        [RADIUS, large].map(|radius| Reachability::new(&world, radius, 0.02).unwrap().is_free(point));
+    let (point, large) =
+        (Point::new(1.009_324_555_896_596_6, 1.003_882_048_723_805_6), RADIUS + 0.008_120_689_208_133_025);
+    let own = [RADIUS, large].map(|radius| Reachability::new(&world, radius, 0.02).unwrap().is_free(point));
     assert_eq!(own, [false, true]);
     let (small, large) = on_the_same_cells(&world, RADIUS, large);
     assert_eq!([small, large].map(|space| space.is_free(point)), [true, true]);

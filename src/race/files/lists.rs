@@ -3,8 +3,8 @@
 use saphyr_parser::Event;
 
 use super::MOST;
-use crate::geometry::units::FARTHEST;
 use crate::geometry::Point;
+use crate::geometry::units::FARTHEST;
 use crate::world::formats::{FormatError, Location, YamlEvents};
 
 /// A list of items read by `item`.

@@ -21,7 +21,6 @@ pub(super) struct Cluster {
     pub(super) stands_before: [bool; 2],
 }
 
-
 /// Splits a scan where adjacent beams hit different surfaces (G. A. Borges and M.-J. Aldon, "Line extraction
 /// in 2D range images for mobile robotics", 2004). In a full-turn scan, a cluster across the scan's ends
 /// stays whole.

@@ -38,9 +38,7 @@ fn slow_cars_roll_in_circles() {
 
 #[test]
 fn no_force_leaves_the_friction_circle() {
-    for (speed, steering) in
-        [(8.0, 0.1), (12.0, 0.2), (20.0, 0.4), (25.0, 0.05), (-25.0, 0.2), (-6.0, 0.6)]
-    {
+    for (speed, steering) in [(8.0, 0.1), (12.0, 0.2), (20.0, 0.4), (25.0, 0.05), (-25.0, 0.2), (-6.0, 0.6)] {
         let mut car = bicycle();
         for _ in 0..4000 {
             let before = car.speeds;
@@ -94,8 +92,7 @@ fn balances(spec: &CarDynamics, across: f64) -> bool {
 #[test]
 fn no_steering_gives_more_across_than_the_balance() {
     let spec = CarDynamics::default();
-    let bound =
-        (0..1200).map(|k| 0.01 * f64::from(k)).take_while(|&a| balances(&spec, a)).last().unwrap();
+    let bound = (0..1200).map(|k| 0.01 * f64::from(k)).take_while(|&a| balances(&spec, a)).last().unwrap();
     for curvature in [0.03, 0.08, 0.15, 0.25] {
         // Of all circles that the car comes to drive at some speeds, those of about that curvature.
         let mut best = 0.0_f64;
