@@ -1,5 +1,6 @@
 use std::f64::consts::FRAC_PI_4;
 
+pub(in crate::io::sim) use crate::geometry::units::GRAVITY;
 use crate::geometry::{Vector, Vector3, direction, math, units};
 use crate::kinematics::{PlanarTwist, Tracked};
 use crate::world::{DriveSpec, Footprint, RobotSpec};
@@ -44,8 +45,6 @@ pub(super) enum Grip {
 
 /// Metres by which a body sinks in that stands on all its wheels.
 const SAG: f64 = 1e-4;
-/// Metres per second squared.
-pub(in crate::io::sim) const GRAVITY: f64 = 9.81;
 /// The angles from straight down, in degrees, of the points of a wheel that may meet the ground.
 const RIM: [f64; 5] = [-60.0, -30.0, 0.0, 30.0, 60.0];
 /// The share of the way from the axle to the castor at which the mass has its middle.
