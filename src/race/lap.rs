@@ -1,8 +1,10 @@
 //! The corridor of a driven lap.
 
-use super::corridor::Corridor;
+use super::corridor::{Corridor, CrossSection};
 use super::error::LineError;
 use super::lane_model::LaneParameters;
+use super::map::SHORTEST_LAP;
+use super::round::BESIDE;
 use super::spline::ClosedSpline;
 use crate::geometry::{Point, Pose, math};
 
@@ -65,6 +67,35 @@ fn between(asides: &[Option<f64>], at: usize, usual: f64, p: &LaneParameters) ->
             Some(one + (other - one) * share)
         }
         (one, other) => one.or(other).map(|(_, aside)| aside),
+    }
+}
+
+/// Rounds in which kinks are taken out of a line.
+const ROUNDS: usize = 4;
+
+/// Whether a corridor is a loop that follows a driven lap everywhere, and nothing else.
+pub(super) fn holds(corridor: &Corridor, lap: &[Point]) -> bool {
+    let stations = corridor.stations();
+    let near = |a: Point, b: Point, most: f64| (a - b).norm_squared() < most * most;
+    let inside = |place: &Point| stations.iter().any(|station| near(station.position, *place, BESIDE));
+    let driven =
+        |station: &CrossSection| lap.iter().any(|place| near(station.position, *place, BESIDE + 1.0));
+    corridor.is_closed()
+        && corridor.length() > SHORTEST_LAP
+        && lap.iter().all(inside)
+        && stations.iter().all(driven)
+}
+
+/// Removes kinks of a loop, caused by narrow places: no car steers so fast, and centimetres suffice.
+pub(super) fn without_kinks(points: &mut [Point]) {
+    let n = points.len();
+    // Towards the midpoints of the neighbours, and then outwards by as much, to preserve the size of bends.
+    for share in [0.5, -0.51].repeat(ROUNDS) {
+        let old = points.to_vec();
+        for (i, point) in points.iter_mut().enumerate() {
+            let middle = nalgebra::center(&old[(i + n - 1) % n], &old[(i + 1) % n]);
+            *point += (middle - old[i]) * share;
+        }
     }
 }
 

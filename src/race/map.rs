@@ -4,8 +4,9 @@ use super::cone::{APART, Cone, ConeColour};
 use super::landmark::Landmark;
 use super::registration::{Expected, GATE, register, spread};
 use super::sight::ConeSighting;
+use super::view::{VIEW, hides, in_view};
 use crate::ParameterError;
-use crate::geometry::{Point, Pose, Vector, cross, math, normalize_angle};
+use crate::geometry::{Point, Pose, normalize_angle};
 use crate::parameter::{require_finite, require_not_negative, require_positive};
 
 /// Parameters of [`ConeMap`].
@@ -92,8 +93,6 @@ pub struct ConeMap {
 
 /// Cones with colours that there have to be for each thing that a camera shows to have none.
 const MANY: usize = 4;
-/// Metres from the sensor, and radians from straight ahead, within which a cone that is not seen is missed.
-const VIEW: (f64, f64) = (9.0, 0.8);
 /// Metres that the car goes while a cone is fresh: so far, odometry and sightings are good. The first cones were seen in so many
 /// metres, at most.
 pub(super) const FRESH: f64 = 25.0;
@@ -495,20 +494,6 @@ fn is_part(new: &ConeSighting, other: &ConeSighting) -> bool {
 /// Possible error of a pose after a distance (m).
 fn wrong_after(way: f64) -> f64 {
     WRONG.0 + WRONG.1 * way
-}
-
-/// Whether a cone at a position relative to the sensor would be seen.
-fn in_view(place: Vector) -> bool {
-    let distance = place.norm();
-    distance < VIEW.0 && distance > 1.0 && math::atan2(place.y, place.x).abs() < VIEW.1
-}
-
-/// Whether an object hides a position; `place` is relative to the sensor, `thing` in the car frame.
-fn hides(thing: &ConeSighting, sensor: f64, place: Vector) -> bool {
-    let beside = APART + if thing.is_cone() { 0.0 } else { 0.5 * thing.size };
-    let thing = thing.position.coords - Vector::new(sensor, 0.0);
-    let (distance, along) = (place.norm(), thing.dot(&place) / place.norm());
-    along > 0.0 && along < distance - APART && (cross(place, thing) / distance).abs() < beside
 }
 
 #[cfg(test)]

@@ -1,18 +1,16 @@
 use super::ClosedSpline;
 use super::centre_line::CentreLine;
 use super::cone::{Cone, RUN_UP};
-use super::corridor::{Corridor, CrossSection};
 use super::error::LineError;
 use super::grip::GripLimit;
 use super::lane::lane_where;
 use super::lane_model::{Lane, LaneParameters, Way};
-use super::lap::around_lap;
+use super::lap::{around_lap, holds, without_kinks};
 use super::map::{ConeMap, ConeMapParameters, FRESH, SHORTEST_LAP, STRIDE};
 use super::pair::CentreLineParameters;
 use super::profile::{CarLimits, SpeedProfile};
 use super::racing_line::{CarOutline, LineSolver, RacingLineParameters};
 use super::reckoning::Reckoning;
-use super::round::BESIDE;
 use super::sight::{ConeSighting, sightings};
 use super::tracker::{CRAWL, LineTracker, LineTrackerParameters};
 use super::tyres::Tyres;
@@ -176,8 +174,6 @@ const LOOKS: u32 = 10;
 const BEFORE_LAP: f64 = 15.0;
 /// Metres per second that are next to none: a curvature is kept by them as well.
 const NEXT_TO_NONE: f64 = 1e-3;
-/// Rounds in which kinks are taken out of a line.
-const ROUNDS: usize = 4;
 /// Metres that it feels its way before it is lost.
 pub(super) const ASTRAY: f64 = 10.0;
 /// Seconds of sights that do not fit the map before it is lost.
@@ -487,32 +483,6 @@ impl Racer {
             return Err(LineError::NoWay);
         }
         Ok(LineTracker::new(points, profile, true, p.tracker)?)
-    }
-}
-
-/// Whether a corridor is a loop that follows a driven lap everywhere, and nothing else.
-fn holds(corridor: &Corridor, lap: &[Point]) -> bool {
-    let stations = corridor.stations();
-    let near = |a: Point, b: Point, most: f64| (a - b).norm_squared() < most * most;
-    let inside = |place: &Point| stations.iter().any(|station| near(station.position, *place, BESIDE));
-    let driven =
-        |station: &CrossSection| lap.iter().any(|place| near(station.position, *place, BESIDE + 1.0));
-    corridor.is_closed()
-        && corridor.length() > SHORTEST_LAP
-        && lap.iter().all(inside)
-        && stations.iter().all(driven)
-}
-
-/// Removes kinks of a loop, caused by narrow places: no car steers so fast, and centimetres suffice.
-fn without_kinks(points: &mut [Point]) {
-    let n = points.len();
-    // Towards the midpoints of the neighbours, and then outwards by as much, to preserve the size of bends.
-    for share in [0.5, -0.51].repeat(ROUNDS) {
-        let old = points.to_vec();
-        for (i, point) in points.iter_mut().enumerate() {
-            let middle = nalgebra::center(&old[(i + n - 1) % n], &old[(i + 1) % n]);
-            *point += (middle - old[i]) * share;
-        }
     }
 }
 

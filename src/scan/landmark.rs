@@ -62,8 +62,6 @@ pub struct LandmarkFilter {
 
 /// Maximum distance of a hit from a landmark's expected surface (m).
 const GATE: f64 = 0.12;
-/// The standard deviation of a bearing in beams, and its least value in radians.
-const BEARING_BEAMS: f64 = 0.4;
 
 impl LandmarkFilter {
     /// A filter for a robot at a known pose, whose odometry reads `odometry`. `range_error` is the standard
@@ -221,11 +219,12 @@ fn sighting(landmark: &Landmark, lidar: &Pose, scan: &LidarScan, range_error: f6
     };
     let distance = hits.iter().map(|(_, _, hit)| to_axis(hit)).sum::<f64>() / count;
     let range_variance = range_error * range_error / count + LEAST_RANGE_ERROR * LEAST_RANGE_ERROR;
-    let bearing_error = BEARING_BEAMS * scan.angle_increment.abs();
+    // A beam may meet it anywhere within its width: the variance of even numbers.
+    let bearing_variance = scan.angle_increment * scan.angle_increment / 12.0;
     Some(Sighting {
         distance,
         bearing,
-        variances: Vector2::new(range_variance, bearing_error * bearing_error),
+        variances: Vector2::new(range_variance, bearing_variance),
     })
 }
 

@@ -1,5 +1,6 @@
 use std::f64::consts::FRAC_PI_4;
 
+pub(in crate::io::sim) use crate::geometry::units::GRAVITY;
 use crate::geometry::{Vector, Vector3, direction, math, units};
 use crate::kinematics::{PlanarTwist, Tracked};
 use crate::world::{DriveSpec, Footprint, RobotSpec};
@@ -44,8 +45,6 @@ pub(super) enum Grip {
 
 /// Sinking of a body on all its wheels (m).
 const SAG: f64 = 1e-4;
-/// Standard gravity (m/s²).
-pub(in crate::io::sim) const GRAVITY: f64 = 9.81;
 /// Angles from straight down of the points of a wheel that may touch the ground (degrees).
 const RIM: [f64; 5] = [-60.0, -30.0, 0.0, 30.0, 60.0];
 /// Position of the centre of mass between axle and castor, as a fraction.
