@@ -5,6 +5,7 @@ use std::cell::RefCell;
 use std::ops::ControlFlow;
 
 use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
+use roverlab::drive::marine::{Dive, DiveParameters};
 use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
 use roverlab::drive::{
     AToB, AToBParameters, AlongWall, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters, Goal,
@@ -18,6 +19,7 @@ use roverlab::io::control::{Behaviour, Command, Decision, Halt, Run, Senses, run
 use roverlab::io::sim::{Fleet, SimOptions, SimRobot, Simulation};
 use roverlab::io::wrappers::Faulty;
 use roverlab::io::{Call, Clock, Drive, Error, ErrorKind, MockRobot, Odometry, Result};
+use roverlab::kinematics::marine::CraftSpec;
 use roverlab::kinematics::{Ackermann, OdometryErrors, Omni};
 use roverlab::maze::{
     Direction, LeftHand, LeftHandParameters, LidarLeft, LidarLeftParameters, Maze, MazeRunner,
@@ -51,7 +53,7 @@ where
     Ok(format!("{outcome:?}"))
 }
 
-const CASES: [Case; 25] = [
+const CASES: [Case; 26] = [
     ("turn", RobotSpec::s4, |robot, limit, stop| a_to_b(Method::Turn, robot, limit, stop)),
     ("spline", RobotSpec::s4, |robot, limit, stop| a_to_b(Method::Spline, robot, limit, stop)),
     ("by another estimate", RobotSpec::s4, |robot, limit, stop| {
@@ -73,6 +75,9 @@ const CASES: [Case; 25] = [
         let driver = OmniDriver::new(Omni::mecanum(0.2, 0.2).unwrap(), 0.5).unwrap();
         let tracker = OmniTracker::new(Pose::default(), &[GOAL], OmniParameters::default())?;
         driven(robot, &mut tracker.by(driver), limit, stop)
+    }),
+    ("dive", RobotSpec::mako, |robot, limit, stop| {
+        driven(robot, &mut Dive::new(&CraftSpec::mako(), DiveParameters::default())?, limit, stop)
     }),
     ("tour", RobotSpec::s4, |robot, limit, stop| {
         let corners = [START.position(), Point::new(5.0, 5.0), Point::new(1.0, 5.0)];

@@ -1,4 +1,5 @@
 use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
+use roverlab::drive::marine::{DepthHoldParameters, Dive, DiveParameters};
 use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
 use roverlab::drive::{
     AToB, AToBParameters, AlongWall, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters,
@@ -9,6 +10,7 @@ use roverlab::drive::{
     TwoLevelWallFollower, WallFollower, WallFollowerParameters, WallSensors,
 };
 use roverlab::geometry::{Point, Pose};
+use roverlab::kinematics::marine::CraftSpec;
 use roverlab::kinematics::{Ackermann, Omni};
 use roverlab::random::Stream;
 use roverlab::vision::motion::MotionParameters;
@@ -141,4 +143,14 @@ fn walls() {
     for (safe, speed) in [(f64::NAN, 0.2), (0.0, 0.2), (0.3, -1.0), (0.3, f64::INFINITY)] {
         assert!(TwoLevelWallFollower::new(safe, speed).is_err(), "{safe} {speed}");
     }
+}
+
+#[test]
+fn diving() {
+    let dive = |p: DiveParameters| Dive::new(&CraftSpec::mako(), p);
+    check!(DiveParameters = DiveParameters::default(), |p| dive(p)?,
+        { NotNegative: depth; Finite: heading; Positive: duration, turning, period; } but hold);
+    check!(DepthHoldParameters = DepthHoldParameters::default(),
+        |p| dive(DiveParameters { hold: p, ..DiveParameters::default() })?,
+        { Positive: speed, approach, control, observer; });
 }

@@ -9,6 +9,7 @@ mod driving;
 mod evolution;
 mod grids;
 mod loops;
+mod marine;
 mod mazes;
 mod pictures;
 mod races;
@@ -90,6 +91,7 @@ pub(crate) fn scenarios() -> impl Iterator<Item = &'static Scenario> {
         vision::SCENARIOS,
         evolution::SCENARIOS,
         loops::SCENARIOS,
+        marine::SCENARIOS,
         pictures::SCENARIOS,
     ];
     wings.into_iter().flatten()
