@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 
 use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
 use roverlab::drive::lane_keeping::{BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters};
+use roverlab::drive::marine::{Dive, DiveParameters};
 use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
 use roverlab::drive::terrain::{Ascent, AscentParameters, SlopeSensor};
 use roverlab::drive::{
@@ -20,6 +21,7 @@ use roverlab::io::control::{Behaviour, Command, Decision, Halt, Run, Senses, run
 use roverlab::io::sim::{Fleet, SimOptions, SimRobot, Simulation};
 use roverlab::io::wrappers::Faulty;
 use roverlab::io::{Call, Clock, Drive, Error, ErrorKind, MockRobot, Odometry, Result};
+use roverlab::kinematics::marine::CraftSpec;
 use roverlab::kinematics::{Ackermann, OdometryErrors, Omni};
 use roverlab::maze::{
     Direction, LeftHand, LeftHandParameters, LidarLeft, LidarLeftParameters, Maze, MazeRunner,
@@ -56,7 +58,7 @@ where
     Ok(format!("{outcome:?}"))
 }
 
-const CASES: [Case; 29] = [
+const CASES: [Case; 30] = [
     ("lane", RobotSpec::s4, |robot, limit, stop| {
         let camera = RobotSpec::s4().camera.as_ref().unwrap().into();
         let mut behaviour = LaneKeeper::new(camera, RoadModel::default(), LaneKeeperParameters::default())?;
@@ -88,6 +90,9 @@ const CASES: [Case; 29] = [
         let driver = OmniDriver::new(Omni::mecanum(0.2, 0.2).unwrap(), 0.5).unwrap();
         let tracker = OmniTracker::new(Pose::default(), &[GOAL], OmniParameters::default())?;
         driven(robot, &mut tracker.by(driver), limit, stop)
+    }),
+    ("dive", RobotSpec::mako, |robot, limit, stop| {
+        driven(robot, &mut Dive::new(&CraftSpec::mako(), DiveParameters::default())?, limit, stop)
     }),
     ("tour", RobotSpec::s4, |robot, limit, stop| {
         let corners = [START.position(), Point::new(5.0, 5.0), Point::new(1.0, 5.0)];

