@@ -165,7 +165,7 @@ fn lanes() {
         |p| ends(RobotSpec::s4(), BookLaneKeeper::new(p)?),
         { Positive: period, speed, gain; BoundedFromZero: horizon; });
     check!(RoadModel = RoadModel::default(), |p| LaneKeeper::new(camera(), p, LaneKeeperParameters::default())?,
-        { Bounded: size; } but left_hand);
+        { Bounded: size, line_width; } but left_hand);
     check!(RoadCamera = camera(), |p| LaneKeeper::new(p, RoadModel::default(), LaneKeeperParameters::default())?,
         { Bounded: field_of_view; AroundZero: tilt; Positive: height; Finite: ahead; } but fisheye);
 }

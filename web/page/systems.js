@@ -10,6 +10,7 @@ export const CHAPTERS = [
   ["Navigation", ["distbug", "bug-compare", "navigate"]],
   ["Robot vision", ["camera", "edges", "color-tracking", "motion"]],
   ["Evolution", ["genetic"]],
+  ["Driverless cars", ["lane-keeping"]],
   ["Formula SAE", ["cone-race", "cone-drive", "safety"]],
 ];
 
@@ -32,7 +33,7 @@ export const FILES = ["world", "robot", "track", "maze", "line", "input"];
 const HIDDEN = new Set([
   "record", "force", "fsync", "replay", "picture", "robios", "json", "timing", "realtime", "threads", "processes", "checkpoint", "campaign", "worlds",
   "levels", "save", "runs", "animation", "output", "lcd", "plan", "compare", "steps", "mms", "mms-run", "mms-limit", "rooms",
-  "starts", "scenes", "pairs", "second", "families", "explore", "repeat",
+  "starts", "scenes", "pairs", "courses", "second", "families", "explore", "repeat",
 ]);
 
 export function isShown(option) {
