@@ -221,11 +221,7 @@ fn sighting(landmark: &Landmark, lidar: &Pose, scan: &LidarScan, range_error: f6
     let range_variance = range_error * range_error / count + LEAST_RANGE_ERROR * LEAST_RANGE_ERROR;
     // A beam may meet it anywhere within its width: the variance of even numbers.
     let bearing_variance = scan.angle_increment * scan.angle_increment / 12.0;
-    Some(Sighting {
-        distance,
-        bearing,
-        variances: Vector2::new(range_variance, bearing_variance),
-    })
+    Some(Sighting { distance, bearing, variances: Vector2::new(range_variance, bearing_variance) })
 }
 
 #[cfg(test)]
