@@ -38,7 +38,7 @@ pub struct RobotSpec {
     pub lidar: Option<LidarSpec>,
     /// Its camera, if it has one.
     pub camera: Option<CameraSpec>,
-    /// What its inertial unit measures.
+    /// Quantities that its inertial unit measures.
     pub inertial: InertialSpec,
     /// The file of its 3D model, if it has one.
     pub model: Option<PathBuf>,
@@ -269,21 +269,21 @@ pub struct Mount {
     pub y: f64,
     /// Metres above the floor.
     pub z: f64,
-    /// Radians by which its left side is above its right one.
+    /// Roll (rad): positive lifts its left side. No effect on a single ray.
     pub roll: f64,
-    /// Radians by which it looks down.
+    /// Pitch (rad): positive points it downwards.
     pub pitch: f64,
     /// Radians counter-clockwise from straight ahead.
     pub yaw: f64,
 }
 
 impl Mount {
-    /// The sensor's frame in that of the robot: roll, pitch and yaw turn it about fixed axes in this order.
+    /// Pose of the sensor in the robot's frame. Roll, pitch and yaw rotate it about fixed axes, in this order.
     pub fn frame(&self) -> Pose3 {
         Pose3::from_angles(Point3::new(self.x, self.y, self.z), self.roll, self.pitch, self.yaw)
     }
 
-    /// Whether the sensor's plane is that of the robot's floor.
+    /// Whether the sensor is parallel to the robot's floor.
     pub fn is_level(&self) -> bool {
         self.roll == 0.0 && self.pitch == 0.0
     }
@@ -328,7 +328,7 @@ pub struct LidarSpec {
     pub mount: Mount,
     /// The angle that a scan covers, in radians, at most a full turn.
     pub field_of_view: f64,
-    /// Radians by which each beam points above the scanner's plane, so that they make a cone.
+    /// Elevation of every beam above the scanner's plane (rad): the beams form a cone.
     pub tilt: f64,
     /// Beams in a scan.
     pub points: usize,
@@ -390,27 +390,27 @@ impl CameraSpec {
     }
 }
 
-/// What a robot's inertial unit measures, and the channels by which RoBIOS programs read it with `ANALOGRead`. The
-/// default measures nothing: a robot without a unit.
+/// Quantities of an inertial unit, and the `ANALOGRead` channels by which RoBIOS programs read them. The default, no
+/// quantities, is a robot without a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct InertialSpec {
-    /// The channels of roll, pitch and yaw, in tenths of degrees.
+    /// Channels of roll, pitch and yaw (tenths of degrees).
     pub attitude: Option<[u8; 3]>,
-    /// The channels of the turn rates about the forward, left and upright axes, in tenths of degrees per second.
+    /// Channels of the turn rates about the forward, left and upright axes (tenths of degrees per second).
     pub turn_rates: Option<[u8; 3]>,
-    /// The channels of the accelerations along these axes, in mm/s².
+    /// Channels of the accelerations along these axes (mm/s²).
     pub acceleration: Option<[u8; 3]>,
 }
 
 impl InertialSpec {
-    /// A unit that measures all, on channels behind those that RoBIOS itself has.
+    /// All quantities, on channels above RoBIOS's own 0 to 8.
     pub const ALL: Self = Self {
         attitude: Some([9, 10, 11]),
         turn_rates: Some([12, 13, 14]),
         acceleration: Some([15, 16, 17]),
     };
 
-    /// Fails unless channels have numbers of their own, from 1.
+    /// Fails unless channel numbers are positive and distinct.
     pub fn validate(&self) -> Result<(), ParameterError> {
         let groups = [self.attitude, self.turn_rates, self.acceleration];
         let channels: Vec<u8> = groups.into_iter().flatten().flatten().collect();

@@ -31,12 +31,12 @@ pub struct NoiseModel {
     pub exposure: f64,
     /// Blur of the camera, in pixels of an image 320 pixels wide; in proportion for others.
     pub blur: f64,
-    /// Error of the inertial unit's roll, pitch and yaw, in radians: one is drawn once, and one for each reading. The
-    /// yaw's wanders besides, as much in a minute.
+    /// Error of the inertial unit's roll, pitch and yaw (rad): standard deviation of the constant bias and of the white
+    /// noise, and of the yaw's random walk after one minute.
     pub attitude: f64,
-    /// The same of its turn rates, in radians per second; all three wander.
+    /// The same for its turn rates (rad/s); the random walk applies to all three.
     pub turn_rate: f64,
-    /// The same of its accelerations, in metres per second squared; all three wander.
+    /// The same for its accelerations (m/s²).
     pub acceleration: f64,
 }
 
