@@ -1,4 +1,4 @@
-//! Rays against hills, beside parry3d's answers to the same.
+//! Rays against hills, beside parry3d's answers to the same; a tracked robot on hills, and its camera.
 
 use std::hint::black_box;
 
@@ -7,9 +7,11 @@ use parry3d_f64::math::Vector as ParryVector;
 use parry3d_f64::query::{Ray as ParryRay, RayCast};
 use parry3d_f64::shape::{HeightField as ParryField, HeightFieldCellStatus};
 use parry3d_f64::utils::Array2;
-use roverlab::geometry::{Aabb, Point, Point3, Vector, Vector3, math};
+use roverlab::geometry::{Aabb, Point, Point3, Pose, Twist, Vector, Vector3, math};
+use roverlab::io::sim::{SimOptions, Simulation};
+use roverlab::io::{Camera, Clock, DistanceSensors, Drive, Lidar, LidarScan, Psd, Resolution};
 use roverlab::random::Stream;
-use roverlab::world::HeightField;
+use roverlab::world::{HeightField, RobotSpec, Scene, Terrain, World};
 
 const SIDE: f64 = 5.0;
 const TOP: f64 = 0.5;
@@ -132,9 +134,54 @@ fn rays(c: &mut Criterion) {
     }
 }
 
+/// A tracked robot on a field of 512 by 512 samples.
+fn simulation() -> Simulation {
+    let terrain = Terrain::new("hills.png", hills(512));
+    let world = World { terrain: Some(terrain), ..World::empty(SIDE, SIDE) };
+    let scene = Scene::with_robot(world, RobotSpec::blizzard(), Pose::new(2.5, 2.5, 0.6));
+    Simulation::new(&scene, SimOptions::ideal()).expect("a good scene")
+}
+
+/// Ten seconds of driving, to and fro so that nobody leaves the field, with four PSDs at 10 Hz, and a lidar of 360 beams.
+fn driving(c: &mut Criterion) {
+    for (name, lidar) in [("terrain drive 10 s, 4 PSDs", false), ("terrain drive 10 s, 360 beams", true)] {
+        let mut robot = simulation().robot(0).expect("the robot");
+        let (mut scan, mut speed) = (LidarScan::default(), 0.2);
+        c.bench_function(name, |b| {
+            b.iter(|| {
+                robot.set_speed(Twist::new(speed, 0.1)).expect("a drive");
+                speed = -speed;
+                for _ in 0..100 {
+                    for psd in [Psd::FRONT, Psd::LEFT, Psd::RIGHT, Psd::BACK] {
+                        black_box(robot.distance(psd).expect("a distance"));
+                    }
+                    if lidar {
+                        robot.scan_into(&mut scan).expect("a scan");
+                    }
+                    robot.wait(0.1).expect("time");
+                }
+            });
+        });
+    }
+}
+
+/// An image of QVGA, and the tenth of a second to the next.
+fn camera(c: &mut Criterion) {
+    let mut robot = simulation().robot(0).expect("the robot");
+    robot.set_resolution(Resolution::Qvga).expect("a camera");
+    robot.set_speed(Twist::new(0.0, 0.5)).expect("a drive");
+    let mut image = robot.image().expect("an image");
+    c.bench_function("terrain image, QVGA", |b| {
+        b.iter(|| {
+            robot.wait(0.1).expect("time");
+            robot.image_into(&mut image).expect("an image");
+        });
+    });
+}
+
 criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(20);
-    targets = rays
+    targets = rays, driving, camera
 }
 criterion_main!(benches);

@@ -1,7 +1,7 @@
 use super::Result;
 use crate::geometry::{Point3, Pose3, Vector3};
 
-/// How a robot is turned in space, in radians, as [`Pose3`] has it: a positive pitch lowers the nose, a positive roll
+/// Attitude of a robot (rad), with the conventions of [`Pose3`]: a positive pitch lowers the nose, a positive roll
 /// lifts the left side.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Attitude {
@@ -9,7 +9,7 @@ pub struct Attitude {
     pub roll: f64,
     /// About the axis to the left.
     pub pitch: f64,
-    /// About the upright axis, counter-clockwise; 0 along the world's x axis.
+    /// About the upright axis, counter-clockwise from the world's x axis.
     pub yaw: f64,
 }
 
@@ -32,19 +32,18 @@ impl Attitude {
     }
 }
 
-/// An inertial unit: how the robot is turned, how it turns, and what pulls at it.
+/// An inertial measurement unit.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Inertial {
-    /// How the robot is turned. Fails on a robot whose unit does not measure it.
+    /// Attitude in the world. Fails on a robot whose unit does not measure it.
     fn attitude(&mut self) -> Result<Attitude>;
 
-    /// The speeds, in radians per second, at which the robot turns about its own axes: forward, to the left, up. Fails
-    /// on a robot whose unit does not measure it.
+    /// Turn rates about the robot's forward, left and upright axes (rad/s). Fails on a robot whose unit does not measure
+    /// them.
     fn turn_rates(&mut self) -> Result<Vector3>;
 
-    /// What accelerates the robot besides its weight, in metres per second squared along its own axes: forward, to the
-    /// left, up. At rest on level ground it is 9.81 up, in free fall nothing. Fails on a robot whose unit does not
-    /// measure it.
+    /// Specific force along the robot's forward, left and upright axes (m/s²): (0, 0, 9.81) at rest on level ground, 0 in
+    /// free fall. Fails on a robot whose unit does not measure it.
     fn acceleration(&mut self) -> Result<Vector3>;
 }

@@ -273,21 +273,21 @@ pub struct Mount {
     pub y: f64,
     /// Height above the floor (m).
     pub z: f64,
-    /// Roll, positive with the left side up (rad).
+    /// Roll (rad): positive lifts its left side. No effect on a single ray.
     pub roll: f64,
-    /// Pitch, positive downwards (rad).
+    /// Pitch (rad): positive points it downwards.
     pub pitch: f64,
     /// Yaw, counter-clockwise from straight ahead (rad).
     pub yaw: f64,
 }
 
 impl Mount {
-    /// The sensor's frame in the robot's frame: roll, pitch and yaw rotate it about fixed axes in this order.
+    /// Pose of the sensor in the robot's frame. Roll, pitch and yaw rotate it about fixed axes, in this order.
     pub fn frame(&self) -> Pose3 {
         Pose3::from_angles(Point3::new(self.x, self.y, self.z), self.roll, self.pitch, self.yaw)
     }
 
-    /// Whether the sensor's plane is parallel to the robot's floor.
+    /// Whether the sensor is parallel to the robot's floor.
     pub fn is_level(&self) -> bool {
         self.roll == 0.0 && self.pitch == 0.0
     }
@@ -332,7 +332,7 @@ pub struct LidarSpec {
     pub mount: Mount,
     /// Field of view (rad), at most a full turn.
     pub field_of_view: f64,
-    /// Elevation of each beam above the scanner's plane (rad), which makes the scan a cone.
+    /// Elevation of every beam above the scanner's plane (rad): the beams form a cone.
     pub tilt: f64,
     /// Number of beams per scan.
     pub points: usize,
@@ -407,23 +407,23 @@ pub struct DepthSensorSpec {
 /// `ANALOGRead`. The default has no measurements: a robot without a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct InertialSpec {
-    /// Channels of roll, pitch and yaw (0.1 degrees).
+    /// Channels of roll, pitch and yaw (tenths of degrees).
     pub attitude: Option<[u8; 3]>,
-    /// Channels of the turn rates about the forward, left and up axes (0.1 degrees/s).
+    /// Channels of the turn rates about the forward, left and upright axes (tenths of degrees per second).
     pub turn_rates: Option<[u8; 3]>,
     /// Channels of the accelerations along these axes (mm/s²).
     pub acceleration: Option<[u8; 3]>,
 }
 
 impl InertialSpec {
-    /// A unit with all measurements, on channels after those of RoBIOS itself.
+    /// All quantities, on channels above RoBIOS's own 0 to 8.
     pub const ALL: Self = Self {
         attitude: Some([9, 10, 11]),
         turn_rates: Some([12, 13, 14]),
         acceleration: Some([15, 16, 17]),
     };
 
-    /// Fails unless the channels are distinct and start from 1.
+    /// Fails unless channel numbers are positive and distinct.
     pub fn validate(&self) -> Result<(), ParameterError> {
         let groups = [self.attitude, self.turn_rates, self.acceleration];
         let channels: Vec<u8> = groups.into_iter().flatten().flatten().collect();

@@ -38,6 +38,37 @@ fn robots_and_objects_are_numbered_as_they_were_placed() {
     assert_eq!(texts(&run(&script)), ["2", "4"]);
 }
 
+/// A sensor that looks straight down, and an inertial unit, on a ramp of 10 %.
+#[test]
+fn programs_feel_hills_and_see_the_ground() {
+    if !python() {
+        return;
+    }
+    let folder = Folder::new("hills");
+    folder.write("ramp.png", "P6 2 2 255 \0\0\0\x7f\x7f\x7f\0\0\0\x7f\x7f\x7f");
+    folder.write("ramp.wld", "terrain 4000 4000 803 ramp.png\n");
+    folder.write(
+        "probe.robi",
+        "drive DIFFERENTIAL_DRIVE\nname Probe\nwheel 54 3600 1100 45\npsd 5 DOWN 90 0 80 90 0 0\n\
+         inertial 1 2 3 4 5 6 7 9 10\n",
+    );
+    folder.write(
+        "feel.py",
+        "from eye import *\nOSWait(1000)\n\
+         LCDPrintf('%d %d', PSDGet(5), SIMGetRobot(0)[2].value)\n\
+         for channel in (1, 2, 3, 4, 5, 6, 7, 9, 10, 8):\n    LCDPrintf(' %d', ANALOGRead(channel))\n",
+    );
+    let script = folder.write("hills.sim", "world ramp.wld\nrobot probe.robi\nProbe 2000 2000 0 feel.py\n");
+    let shown = run(&script);
+    let numbers: Vec<i32> =
+        texts(&shown)[0].split_whitespace().map(|number| number.parse().unwrap()).collect();
+    let expected = [80, 200, 0, -57, 0, 0, 0, 0, 976, 0, 9761, 0];
+    assert_eq!(numbers.len(), expected.len(), "{numbers:?}");
+    for (found, expected) in numbers.iter().zip(expected) {
+        assert!((found - expected).abs() <= 2 + expected.abs() / 100, "{numbers:?}");
+    }
+}
+
 #[test]
 fn what_programs_move_does_not_hang_on_who_is_faster() {
     if !python() {

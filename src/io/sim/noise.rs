@@ -38,9 +38,9 @@ pub struct NoiseModel {
     /// Error of the inertial unit's roll, pitch and yaw (rad): a constant one and one for each reading. The
     /// yaw also drifts, by the same amount per minute.
     pub attitude: f64,
-    /// The same for its turn rates (rad/s); all three drift.
+    /// The same for its turn rates (rad/s); the random walk applies to all three.
     pub turn_rate: f64,
-    /// The same for its accelerations (m/s²); all three drift.
+    /// The same for its accelerations (m/s²).
     pub acceleration: f64,
 }
 

@@ -1,21 +1,21 @@
-//! Things that slide and roll down hills.
+//! Objects that slide and roll down hills.
 
 use super::TICK;
 use super::engine::Engine;
 use super::terrain::{GRAVITY, Hills};
 use crate::geometry::{Pose, Vector};
 
-/// The coefficient of friction between things and the ground: wood on earth.
+/// Coefficient of friction between objects and ground: wood on earth.
 const FRICTION: f64 = 0.5;
-/// The same for balls, which roll.
+/// Coefficient of rolling resistance of balls.
 const ROLLING: f64 = 0.02;
-/// The share of its weight that moves a rolling ball and does not turn it.
+/// Acceleration of a solid ball that rolls, relative to one that slides without friction.
 const OF_A_BALL: f64 = 5.0 / 7.0;
-/// The deepest that a thing may come to lie in another one on its way down.
+/// Maximum penetration of another solid (m).
 const TOLERANCE: f64 = 1e-5;
 
 impl Engine {
-    /// Lets everything that is neither fixed nor falls over when it is hit move down the hills for a tick.
+    /// Moves all objects on hills for a tick, except fixed ones and those that topple when hit.
     pub(super) fn slide_things(&mut self) {
         for thing in 0..self.movables.len() {
             let movable = self.movables[thing];
@@ -33,8 +33,8 @@ impl Engine {
         }
     }
 
-    /// Moves a thing at a velocity, and returns that which is left to it: what is in its way stops it, and so does the
-    /// end of the hills.
+    /// Moves an object and returns its remaining velocity. Obstacles take the part towards them; the edge of the hills
+    /// stops it.
     fn advance(&mut self, thing: usize, velocity: Vector) -> Vector {
         let solid = self.movables[thing].solid;
         let before = *self.space.solid(solid);
@@ -60,7 +60,7 @@ impl Engine {
     }
 }
 
-/// The velocity over the plane, after a tick, of a thing on a slope.
+/// Horizontal velocity of an object on a slope after a tick.
 fn slide(velocity: Vector, slope: Vector, rolls: bool) -> Vector {
     let steep = 1.0 + slope.norm_squared();
     let (friction, share) = if rolls { (ROLLING, OF_A_BALL) } else { (FRICTION, 1.0) };

@@ -25,27 +25,35 @@ pub(super) struct RigidBody {
 #[derive(Debug, Clone)]
 struct Contact {
     foot: usize,
-    /// Vector from the centre of mass.
-    arm: Vector3,
     /// Height above the ground at the start of the tick (m).
     gap: f64,
-    normal: Vector3,
-    /// Directions in which it is held, and the rim's speeds along them.
-    tangents: [Vector3; 2],
+    /// Along the normal, and along the directions in which it is held.
+    axes: [Axis; 3],
     held: usize,
+    /// The rim's speeds along the latter.
     rim: [f64; 2],
-    /// Impulses along the normal and tangents, and the impulse's speed change along each.
+    /// Impulses along the axes.
     impulse: Vector3,
-    effort: Vector3,
 }
 
-/// Ground checks per tick: the second one uses the positions of the feet predicted by the first.
-const LOOKS: usize = 2;
-/// Largest number of rounds over all contacts, and the impulse change below which they end (m/s).
-const MOST_ROUNDS: usize = 60;
-const SETTLED: f64 = 1e-10;
+/// What an impulse at a foot does to a body, along one direction.
+#[derive(Debug, Clone, Copy, Default)]
+struct Axis {
+    direction: Vector3,
+    /// Its moment about the middle of the mass, and how fast it spins the body.
+    moment: Vector3,
+    spin: Vector3,
+    /// The speed that it gives the foot.
+    effort: f64,
+}
+
+/// Rounds over all contacts, at most, in each look at the ground of a tick: the first says about where feet will be, and
+/// there the second looks.
+const ROUNDS: [usize; 2] = [10, 60];
+/// The change of an impulse below which rounds end, in m/s.
+const SETTLED: f64 = 1e-9;
 /// Height above which feet of a body at rest are not considered (m).
-const MARGIN: f64 = 5e-3;
+const MARGIN: f64 = 2e-3;
 /// Depth of a foot above which its point of entry into the ground is computed (m).
 const DEEP: f64 = 1.5e-3;
 /// Kinetic energy of a body at rest (J/kg): 10 µm/s.
@@ -127,9 +135,9 @@ impl RigidBody {
     fn advance(&mut self, ground: &HeightField, carriage: &Undercarriage, drive: &PlanarTwist, tick: f64) {
         let free = self.velocity - Vector3::z() * (GRAVITY * tick);
         let (mut velocity, mut spin) = (self.velocity, self.spin);
-        for _ in 0..LOOKS {
+        for rounds in ROUNDS {
             self.look(ground, carriage, drive, (velocity, spin), tick);
-            (velocity, spin) = self.solve(carriage, (free, self.spin), tick);
+            (velocity, spin) = self.solve(carriage, (free, self.spin), rounds, tick);
         }
         (self.velocity, self.spin) = (velocity, spin);
         self.place += velocity * tick;
@@ -173,20 +181,15 @@ impl RigidBody {
                 self.impulses[number] = Vector3::zeros();
                 continue;
             }
-            let impulse = self.impulses[number];
             let mut contact = Contact {
                 foot: number,
-                arm,
                 gap: gap.max(-EMERGING * tick),
-                normal,
-                tangents: [Vector3::zeros(); 2],
+                axes: [Axis::default(); 3],
                 held: 0,
                 rim: [0.0; 2],
-                impulse,
-                effort: Vector3::zeros(),
+                impulse: self.impulses[number],
             };
-            contact.hold(foot.grip, forward, drive);
-            contact.weigh(carriage.gyration);
+            contact.hold(foot.grip, (arm, normal), forward, drive, carriage.gyration);
             self.contacts.push(contact);
         }
     }
@@ -195,38 +198,33 @@ impl RigidBody {
     fn solve(
         &mut self,
         carriage: &Undercarriage,
-        (mut velocity, mut spin): (Vector3, Vector3),
+        mut speeds: (Vector3, Vector3),
+        rounds: usize,
         tick: f64,
     ) -> (Vector3, Vector3) {
-        let (inertia, softness) = (1.0 / carriage.gyration, carriage.softness / (tick * tick));
-        let push = |contact: &Contact, impulse: Vector3, speeds: &mut (Vector3, Vector3)| {
-            speeds.0 += impulse;
-            speeds.1 += contact.arm.cross(&impulse) * inertia;
-        };
-        let mut speeds = (velocity, spin);
+        let softness = carriage.softness / (tick * tick);
         for contact in &self.contacts {
-            push(contact, contact.whole(), &mut speeds);
+            for (axis, impulse) in contact.axes.iter().zip(contact.impulse.iter()) {
+                axis.push(*impulse, &mut speeds);
+            }
         }
-        for _ in 0..MOST_ROUNDS {
+        for _ in 0..rounds {
             let mut change = 0.0_f64;
             for contact in &mut self.contacts {
-                let moving = speeds.0 + speeds.1.cross(&contact.arm);
-                let pressed = contact.press(&moving, softness, tick);
-                push(contact, contact.normal * pressed, &mut speeds);
-                let moving = speeds.0 + speeds.1.cross(&contact.arm);
-                let rubbed = contact.rub(&moving, carriage.friction);
-                push(contact, rubbed, &mut speeds);
-                change = change.max(pressed.abs()).max(rubbed.norm());
+                change = change.max(contact.press(&mut speeds, softness, tick));
+                // Nothing rubs that is not pressed.
+                if contact.held > 0 && contact.impulse != Vector3::zeros() {
+                    change = change.max(contact.rub(&mut speeds, carriage.friction));
+                }
             }
             if change < SETTLED {
                 break;
             }
         }
-        (velocity, spin) = speeds;
         for contact in &self.contacts {
             self.impulses[contact.foot] = contact.impulse;
         }
-        (velocity, spin)
+        speeds
     }
 
     /// Displaces the body like an obstacle in the way of its outline, and removes the speed in that
@@ -319,83 +317,107 @@ fn turn(by: Vector3) -> UnitQuaternion<f64> {
     UnitQuaternion::new_unchecked(Quaternion::new(cos, axis.x, axis.y, axis.z))
 }
 
+impl Axis {
+    /// The axis along a direction at a foot on an arm from the middle of the mass.
+    fn new(direction: Vector3, arm: &Vector3, gyration: f64) -> Self {
+        let moment = arm.cross(&direction);
+        let effort = 1.0 + moment.norm_squared() / gyration;
+        Self { direction, moment, spin: moment / gyration, effort }
+    }
+
+    /// How fast a foot moves along the axis.
+    #[inline]
+    fn speed(&self, (velocity, spin): &(Vector3, Vector3)) -> f64 {
+        self.direction.dot(velocity) + self.moment.dot(spin)
+    }
+
+    #[inline]
+    fn push(&self, impulse: f64, (velocity, spin): &mut (Vector3, Vector3)) {
+        *velocity += self.direction * impulse;
+        *spin += self.spin * impulse;
+    }
+}
+
 impl Contact {
-    /// Determines the directions in which a foot is held, and the rim's speeds along them.
-    fn hold(&mut self, grip: Grip, forward: Vector3, drive: &PlanarTwist) {
-        let along = forward - self.normal * forward.dot(&self.normal);
+    /// Finds the directions in which a foot is held, and how fast its rim moves along them.
+    fn hold(
+        &mut self,
+        grip: Grip,
+        (arm, normal): (Vector3, Vector3),
+        forward: Vector3,
+        drive: &PlanarTwist,
+        gyration: f64,
+    ) {
+        let along = forward - normal * forward.dot(&normal);
         // If the robot's nose points along the normal, any direction is valid.
-        let along = along.try_normalize(1e-9).unwrap_or_else(|| {
-            Vector3::z().cross(&self.normal).try_normalize(1e-9).unwrap_or_else(Vector3::x)
-        });
-        let left = self.normal.cross(&along);
+        let along = along
+            .try_normalize(1e-9)
+            .unwrap_or_else(|| Vector3::z().cross(&normal).try_normalize(1e-9).unwrap_or_else(Vector3::x));
+        let left = normal.cross(&along);
         let rim = grip.rim_speed(drive);
         let single = |axis: crate::geometry::Vector| (along * axis.x + left * axis.y, axis.dot(&rim));
+        let mut tangents = [Vector3::zeros(); 2];
         match grip {
             Grip::Free => {}
             Grip::Driven(_) | Grip::Body => {
-                (self.tangents, self.held, self.rim) = ([along, left], 2, [rim.x, rim.y]);
+                (tangents, self.held, self.rim) = ([along, left], 2, [rim.x, rim.y]);
             }
             Grip::Rolling(_) => {
                 let rolls = rim.try_normalize(1e-6).unwrap_or_else(crate::geometry::Vector::x);
                 let across = crate::geometry::Vector::new(-rolls.y, rolls.x);
-                (self.tangents[0], self.rim[0]) = single(across);
+                (tangents[0], self.rim[0]) = single(across);
                 self.held = 1;
             }
             Grip::Roller(_, axis) => {
-                (self.tangents[0], self.rim[0]) = single(axis);
+                (tangents[0], self.rim[0]) = single(axis);
                 self.held = 1;
             }
         }
-    }
-
-    /// Speed change at the foot per unit impulse, along the normal and tangents.
-    fn weigh(&mut self, gyration: f64) {
-        let effort = |axis: &Vector3| 1.0 + self.arm.cross(axis).norm_squared() / gyration;
-        self.effort =
-            Vector3::new(effort(&self.normal), effort(&self.tangents[0]), effort(&self.tangents[1]));
-        if self.held < 2 {
-            self.impulse.z = 0.0;
+        self.axes[0] = Axis::new(normal, &arm, gyration);
+        for (axis, tangent) in self.axes[1..].iter_mut().zip(tangents).take(self.held) {
+            *axis = Axis::new(tangent, &arm, gyration);
         }
-        if self.held == 0 {
-            self.impulse.y = 0.0;
-        }
-    }
-
-    /// Its impulse in the world.
-    fn whole(&self) -> Vector3 {
-        self.normal * self.impulse.x + self.tangents[0] * self.impulse.y + self.tangents[1] * self.impulse.z
+        let held = [self.held > 0, self.held > 1].map(|held| f64::from(u8::from(held)));
+        self.impulse.component_mul_assign(&Vector3::new(1.0, held[0], held[1]));
     }
 
     /// Applies the normal force required by the foot's speed; returns the change of the impulse.
     #[inline]
-    fn press(&mut self, moving: &Vector3, softness: f64, tick: f64) -> f64 {
-        let missing = -(self.normal.dot(moving) + self.gap / tick + softness * self.impulse.x);
-        let pressed = (self.impulse.x + missing / (self.effort.x + softness)).max(0.0);
+    fn press(&mut self, speeds: &mut (Vector3, Vector3), softness: f64, tick: f64) -> f64 {
+        let axis = &self.axes[0];
+        let missing = -(axis.speed(speeds) + self.gap / tick + softness * self.impulse.x);
+        let pressed = (self.impulse.x + missing / (axis.effort + softness)).max(0.0);
         let change = pressed - self.impulse.x;
-        self.impulse.x = pressed;
-        change
+        if change != 0.0 {
+            self.impulse.x = pressed;
+            axis.push(change, speeds);
+        }
+        change.abs()
     }
 
     /// Applies the friction required by the foot's sliding, up to its limit; returns the change of the
     /// impulse.
     #[inline]
-    fn rub(&mut self, moving: &Vector3, friction: f64) -> Vector3 {
+    fn rub(&mut self, speeds: &mut (Vector3, Vector3), friction: f64) -> f64 {
         let limit = friction * self.impulse.x;
-        let slides = |axis: usize| self.tangents[axis].dot(moving) - self.rim[axis];
+        let [_, along, left] = &self.axes;
         let (before_y, before_z) = (self.impulse.y, self.impulse.z);
-        let (mut y, mut z) = (0.0, 0.0);
-        if self.held > 0 {
-            y = before_y - slides(0) / self.effort.y;
-        }
+        let mut y = before_y - (along.speed(speeds) - self.rim[0]) / along.effort;
+        let mut z = 0.0;
         if self.held > 1 {
-            z = before_z - slides(1) / self.effort.z;
+            z = before_z - (left.speed(speeds) - self.rim[1]) / left.effort;
         }
-        let size = math::hypot(y, z);
-        if size > limit {
-            let share = limit / size;
+        let squared = y * y + z * z;
+        if squared > limit * limit {
+            let share = limit / squared.sqrt();
             (y, z) = (y * share, z * share);
         }
         (self.impulse.y, self.impulse.z) = (y, z);
-        self.tangents[0] * (y - before_y) + self.tangents[1] * (z - before_z)
+        let (dy, dz) = (y - before_y, z - before_z);
+        along.push(dy, speeds);
+        if self.held > 1 {
+            left.push(dz, speeds);
+        }
+        dy.abs().max(dz.abs())
     }
 }
