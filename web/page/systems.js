@@ -5,7 +5,7 @@ export const CHAPTERS = [
   ["Lidar", ["lidar-scan", "localise"]],
   ["Swarms", ["follow-me"]],
   ["Walls", ["wall-following"]],
-  ["Other drives", ["ackermann", "omni", "summit"]],
+  ["Other drives", ["ackermann", "omni"]],
   ["Mazes", ["maze-left", "maze-lidar", "maze-explore", "micromouse"]],
   ["Navigation", ["distbug", "bug-compare", "navigate"]],
   ["Robot vision", ["camera", "edges", "color-tracking", "motion"]],

@@ -6,6 +6,14 @@ use crate::world::{Mount, PsdSpec, RobotSpec};
 
 /// What tells how the ground around a robot slopes: a lidar whose beams look down, or distance sensors that do.
 ///
+/// ```
+/// use roverlab::drive::terrain::SlopeSensor;
+/// use roverlab::world::RobotSpec;
+/// let plain = RobotSpec::blizzard();
+/// assert!(SlopeSensor::lidar(&plain).is_some() && SlopeSensor::psds(&plain).is_none());
+/// assert!(SlopeSensor::psds(&SlopeSensor::equip(plain)).is_some());
+/// ```
+///
 /// Either measures points of the ground in the robot's frame; the inertial unit says how that is turned. Without it they would
 /// show how the ground bends, and not how it slopes, as the robot lies on it.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,6 +6,15 @@ use crate::parameter::{require, require_not_negative, require_positive};
 use crate::world::{DriveSpec, RobotSpec};
 
 /// The ground on which a robot can stand and turn, whichever way it looks.
+///
+/// ```
+/// use roverlab::nav::elevation::Climber;
+/// use roverlab::world::RobotSpec;
+///
+/// // Belts hold on steeper ground than a robot on two wheels and a castor, which tips over.
+/// let (belts, wheels) = (Climber::of(&RobotSpec::blizzard()), Climber::of(&RobotSpec::labbot()));
+/// assert!(belts.slope > wheels.slope && belts.slope < 0.5);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Climber {
     /// The steepest slope in radians, measured over the robot's size.

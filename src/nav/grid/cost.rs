@@ -21,6 +21,12 @@ pub trait StepCosts {
 }
 
 /// Steps cost their length.
+///
+/// ```
+/// use roverlab::nav::grid::{StepCosts, Uniform};
+/// use roverlab::world::GridCell;
+/// assert_eq!(Uniform.cost(GridCell::new(0, 0), GridCell::new(1, 0)), 1.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Uniform;
 

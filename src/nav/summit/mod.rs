@@ -1,6 +1,7 @@
 //! The search for the highest place that a robot can reach (book, section 7.4).
 
 mod align;
+mod drive;
 mod parameters;
 mod reckoning;
 mod search;

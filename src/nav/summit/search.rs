@@ -1,13 +1,12 @@
 use std::ops::ControlFlow;
 
 use super::align::{Shift, align};
+use super::drive::{Drive, Step, cut, length};
 use super::parameters::SummitParameters;
 use super::reckoning::Reckoning;
 use super::sight_map::{Chart, SightMap};
 use super::sweep::Sweep;
-use crate::geometry::{
-    Point, Point3, Pose, Twist, Vector, angle_difference, direction, math, normalize_angle,
-};
+use crate::geometry::{Point, Point3, Pose, Twist, Vector, angle_difference, direction, math};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
 use crate::io::{Attitude, Error, Inertial, Lidar, LidarScan, LidarSettings, Odometry, Result};
 use crate::nav::grid::{GridComponents, GridPlanner, GridSearch};
@@ -104,20 +103,6 @@ enum State {
     BackingOff { from: Point, sign: f64 },
 }
 
-#[derive(Debug, Clone)]
-struct Drive {
-    way: Vec<Point>,
-    /// Whether it leads back, so that the robot need not turn round: belts slide in turns.
-    backwards: bool,
-    /// The point that was passed last.
-    passed: usize,
-    /// The least distance to the end so far, and since when.
-    nearest: (f64, f64),
-    /// The heading before, and by how much it has changed on the spot in all.
-    heading: f64,
-    turned: f64,
-}
-
 /// What a [`SummitSearch`] sees at a step.
 #[derive(Debug, Clone, Default)]
 pub struct SummitObservation {
@@ -131,20 +116,8 @@ pub struct SummitObservation {
 
 /// Seconds in which the robot comes to rest.
 const REST: f64 = 0.6;
-/// Metres ahead on its way that the robot steers to.
-const AHEAD: f64 = 0.18;
-/// Metres to the end of a way at which it has arrived.
-const ARRIVED: f64 = 0.04;
-/// Radians beyond which it turns on the spot.
-const ASIDE: f64 = 0.9;
-/// Radians of turning after which it looks around to see where it is: belts slide in turns.
-const UNSURE: f64 = 0.9;
 /// Radians by which a half turn may be missed.
 const ALIGNED: f64 = 0.1;
-/// Seconds without getting nearer after which it does not get on.
-const PATIENCE: f64 = 8.0;
-/// Radians above the slope limit at which it backs off.
-const TOO_STEEP: f64 = 0.1;
 /// Metres that it backs off.
 const BACK: f64 = 0.15;
 /// Metres within which a look is compared with the map.
@@ -224,7 +197,7 @@ impl SummitSearch {
     /// The way that it drives, from its start.
     pub fn way(&self) -> &[Point] {
         match &self.state {
-            State::Driving(drive) => &drive.way,
+            State::Driving(drive) => drive.way(),
             _ => &[],
         }
     }
@@ -403,7 +376,7 @@ impl SummitSearch {
     }
 
     fn height(&self, cell: GridCell) -> f64 {
-        self.map.height(self.map.index_of(cell)).unwrap_or(f64::NEG_INFINITY)
+        self.map.smoothed(cell).unwrap_or(f64::NEG_INFINITY)
     }
 
     /// The highest cell to which a safe way leads.
@@ -444,7 +417,7 @@ impl SummitSearch {
         let way = self.way_over(&chart.safe, chart, start, top).unwrap_or_default();
         let gain = self.height(top) - self.reckoning.elevation;
         let there =
-            length(&way) <= 1.5 * self.parameters.resolution || gain < 0.5 * self.parameters.tolerance;
+            length(&way) <= 1.5 * self.parameters.resolution || gain < 0.25 * self.parameters.tolerance;
         if there || self.approaches >= MOST_APPROACHES {
             return ControlFlow::Break(SummitOutcome::Highest);
         }
@@ -454,82 +427,15 @@ impl SummitSearch {
     }
 
     fn drive(&mut self, time: f64, way: &[Point]) -> Twist {
-        let way = cut(way, 2.0 * self.parameters.stride).to_vec();
-        let ahead = way.iter().find(|point| self.reckoning.pose.distance_to(**point) > AHEAD);
-        let bearing = ahead.map_or(0.0, |&point| self.reckoning.pose.bearing_to(point));
-        self.state = State::Driving(Drive {
-            way,
-            backwards: bearing.abs() > std::f64::consts::FRAC_PI_2,
-            passed: 0,
-            nearest: (f64::INFINITY, time),
-            heading: self.reckoning.pose.heading,
-            turned: 0.0,
-        });
+        let way = cut(way, 2.0 * self.parameters.stride);
+        self.state = State::Driving(Drive::along(way, self.reckoning.pose, time));
         Twist::STOP
-    }
-
-    /// The next speed along a way; `None` at its end, or where the robot does not get on.
-    fn follow(&mut self, time: f64, attitude: Attitude) -> Option<Twist> {
-        let pose = self.reckoning.pose;
-        let turned = self.reckoning.corrected(attitude);
-        let State::Driving(drive) = &mut self.state else { return None };
-        let end = *drive.way.last()?;
-        let rest = pose.distance_to(end);
-        if rest < ARRIVED {
-            return None;
-        }
-        if rest < drive.nearest.0 - 0.02 {
-            drive.nearest = (rest, time);
-        }
-        let too_steep = turned.frame().tilt() > self.parameters.climber.slope + TOO_STEEP;
-        let lost = time - drive.nearest.1 > PATIENCE + 4.0 * length(&drive.way) / self.parameters.speed;
-        if too_steep || lost {
-            let sign = if drive.backwards { -1.0 } else { 1.0 };
-            let ahead = pose.position() + direction(pose.heading) * (sign * AHEAD);
-            self.map.shun(ahead, 0.1);
-            self.state = State::BackingOff { from: pose.position(), sign };
-            return Some(Twist::STOP);
-        }
-        while drive.passed + 1 < drive.way.len() && pose.distance_to(drive.way[drive.passed]) < AHEAD {
-            drive.passed += 1;
-        }
-        let sign = if drive.backwards { -1.0 } else { 1.0 };
-        let aside = pose.bearing_to(drive.way[drive.passed]);
-        let bearing = if drive.backwards { normalize_angle(aside + std::f64::consts::PI) } else { aside };
-        drive.turned += angle_difference(pose.heading, drive.heading).abs();
-        drive.heading = pose.heading;
-        if drive.turned > UNSURE && bearing.abs() < 0.3 * ASIDE {
-            return None;
-        }
-        let SummitParameters { speed, turn_rate, .. } = self.parameters;
-        let turn = (2.0 * bearing).clamp(-turn_rate, turn_rate);
-        let fast = speed.min(0.03 + 0.8 * rest);
-        Some(if bearing.abs() > ASIDE {
-            Twist::new(0.0, turn)
-        } else {
-            Twist::new(sign * fast * math::cos(bearing), turn)
-        })
     }
 }
 
 /// What ways are to cost little of: climbing costs as much as ten times the way.
 const OBJECTIVE: crate::nav::elevation::Objective =
     crate::nav::elevation::Objective::Energy { resistance: 0.5 };
-
-fn length(way: &[Point]) -> f64 {
-    way.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum()
-}
-
-/// The beginning of a way.
-fn cut(way: &[Point], most: f64) -> &[Point] {
-    let mut left = most;
-    let steps = way.windows(2).take_while(|pair| {
-        left -= (pair[1] - pair[0]).norm();
-        left > 0.0
-    });
-    let points = steps.count() + 1;
-    &way[..points.min(way.len())]
-}
 
 impl Behaviour for SummitSearch {
     type Observation = SummitObservation;
@@ -573,10 +479,17 @@ impl Behaviour for SummitSearch {
                 let rate = self.parameters.turn_rate;
                 go_on(Twist::new(0.0, (2.0 * rest).clamp(-rate, rate)))
             }
-            State::Driving(_) => {
-                let next = self.follow(time, seen.attitude);
-                let twist = next.unwrap_or_else(|| self.settle());
-                go_on(twist)
+            State::Driving(drive) => {
+                let tilt = self.reckoning.corrected(seen.attitude).frame().tilt();
+                match drive.step(time, self.reckoning.pose, tilt, &self.parameters) {
+                    Step::Go(twist) => go_on(twist),
+                    Step::Arrived => go_on(self.settle()),
+                    Step::NoWay { ahead, sign } => {
+                        self.map.shun(ahead, 0.1);
+                        self.state = State::BackingOff { from: self.reckoning.pose.position(), sign };
+                        go_on(Twist::STOP)
+                    }
+                }
             }
             State::BackingOff { from, sign } => {
                 if self.reckoning.pose.distance_to(*from) > BACK {

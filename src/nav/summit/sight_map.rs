@@ -97,6 +97,15 @@ impl SightMap {
         (weight > 0.0).then_some(height)
     }
 
+    /// The mean elevation of a cell and of those around it that have been seen, if it has: the highest of many readings is one
+    /// that errs upwards.
+    pub(super) fn smoothed(&self, cell: GridCell) -> Option<f64> {
+        let own = self.height(self.index_of(cell))?;
+        let around = self.neighbours(self.index_of(cell)).filter_map(|near| self.height(near));
+        let (sum, count) = around.fold((own, 1.0), |(sum, count), height| (sum + height, count + 1.0));
+        Some(sum / count)
+    }
+
     /// Elevation and gradient at a place all around which the ground has been seen.
     pub(super) fn surface(&self, place: Point) -> Option<(f64, Vector)> {
         let cell = self.cell_at(place)?;

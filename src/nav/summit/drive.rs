@@ -1,0 +1,114 @@
+use super::parameters::SummitParameters;
+use crate::geometry::{Point, Pose, Twist, angle_difference, direction, math, normalize_angle};
+
+/// A way that a [`SummitSearch`](super::SummitSearch) drives.
+#[derive(Debug, Clone)]
+pub(super) struct Drive {
+    way: Vec<Point>,
+    /// Whether it leads back, so that the robot need not turn round: belts slide in turns.
+    backwards: bool,
+    /// The point that was passed last.
+    passed: usize,
+    /// The least distance to the end so far, and since when.
+    nearest: (f64, f64),
+    /// The heading before, and by how much it has changed on the spot in all.
+    heading: f64,
+    turned: f64,
+}
+
+/// What comes of a step on a way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Step {
+    /// On, at a speed.
+    Go(Twist),
+    /// It is at the end, or unsure of where it is.
+    Arrived,
+    /// It does not get on, or the ground is too steep.
+    NoWay {
+        /// The place that it does not get to.
+        ahead: Point,
+        /// 1 forwards, -1 backwards.
+        sign: f64,
+    },
+}
+
+/// Metres ahead on its way that the robot steers to.
+const AHEAD: f64 = 0.18;
+/// Metres to the end of a way at which it has arrived.
+const ARRIVED: f64 = 0.04;
+/// Radians beyond which it turns on the spot.
+const ASIDE: f64 = 0.9;
+/// Radians of turning after which it looks around to see where it is: belts slide in turns.
+const UNSURE: f64 = 0.9;
+/// Seconds without getting nearer after which it does not get on.
+const PATIENCE: f64 = 8.0;
+/// Radians above the slope limit at which it backs off.
+const TOO_STEEP: f64 = 0.1;
+
+impl Drive {
+    pub(super) fn along(way: &[Point], pose: Pose, time: f64) -> Self {
+        let ahead = way.iter().find(|point| pose.distance_to(**point) > AHEAD);
+        let bearing = ahead.map_or(0.0, |&point| pose.bearing_to(point));
+        Self {
+            way: way.to_vec(),
+            backwards: bearing.abs() > std::f64::consts::FRAC_PI_2,
+            passed: 0,
+            nearest: (f64::INFINITY, time),
+            heading: pose.heading,
+            turned: 0.0,
+        }
+    }
+
+    pub(super) fn way(&self) -> &[Point] {
+        &self.way
+    }
+
+    /// The next speed for a pose, and the angle by which the robot is tilted.
+    pub(super) fn step(&mut self, time: f64, pose: Pose, tilt: f64, parameters: &SummitParameters) -> Step {
+        let SummitParameters { speed, turn_rate, climber, .. } = *parameters;
+        let Some(&end) = self.way.last() else { return Step::Arrived };
+        let rest = pose.distance_to(end);
+        if rest < ARRIVED {
+            return Step::Arrived;
+        }
+        if rest < self.nearest.0 - 0.02 {
+            self.nearest = (rest, time);
+        }
+        let sign = if self.backwards { -1.0 } else { 1.0 };
+        let lost = time - self.nearest.1 > PATIENCE + 4.0 * length(&self.way) / speed;
+        if tilt > climber.slope + TOO_STEEP || lost {
+            let ahead = pose.position() + direction(pose.heading) * (sign * AHEAD);
+            return Step::NoWay { ahead, sign };
+        }
+        while self.passed + 1 < self.way.len() && pose.distance_to(self.way[self.passed]) < AHEAD {
+            self.passed += 1;
+        }
+        let aside = pose.bearing_to(self.way[self.passed]);
+        let bearing = if self.backwards { normalize_angle(aside + std::f64::consts::PI) } else { aside };
+        self.turned += angle_difference(pose.heading, self.heading).abs();
+        self.heading = pose.heading;
+        if self.turned > UNSURE && bearing.abs() < 0.3 * ASIDE {
+            return Step::Arrived;
+        }
+        let turn = (2.0 * bearing).clamp(-turn_rate, turn_rate);
+        let fast = speed.min(0.03 + 0.8 * rest);
+        let ahead = if bearing.abs() > ASIDE { 0.0 } else { sign * fast * math::cos(bearing) };
+        Step::Go(Twist::new(ahead, turn))
+    }
+}
+
+/// Metres along a way.
+pub(super) fn length(way: &[Point]) -> f64 {
+    way.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum()
+}
+
+/// The beginning of a way.
+pub(super) fn cut(way: &[Point], most: f64) -> &[Point] {
+    let mut left = most;
+    let steps = way.windows(2).take_while(|pair| {
+        left -= (pair[1] - pair[0]).norm();
+        left > 0.0
+    });
+    let points = steps.count() + 1;
+    &way[..points.min(way.len())]
+}
