@@ -1,8 +1,7 @@
 //! The program `roverlab`: every system of the library as a command.
 //!
-//! A command is a module with a command line and a function that does the work; `common` has what all share,
-//! and
-//! `commands` is the list of them all.
+//! A command is a module with a command line and a work function; `common` contains the shared parts, and
+//! `commands` lists them all.
 
 mod a_to_b;
 mod ackermann;
@@ -16,11 +15,13 @@ mod cone_race;
 mod cones;
 mod coverage;
 mod distbug;
+mod dive;
 mod driving;
 mod edges;
 mod follow_me;
 mod genetic;
 mod grid_benchmark;
+mod lane_keeping;
 mod lidar_scan;
 mod localise;
 mod maze_drive;
@@ -35,6 +36,9 @@ mod room;
 mod safety;
 #[cfg(feature = "native")]
 mod starman;
+mod summit;
+mod terrain;
+mod terrain_plan;
 #[cfg(test)]
 mod tests;
 mod wall_following;

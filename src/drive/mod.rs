@@ -17,7 +17,10 @@
 //! - [`WallFollower`]: along walls of any shape by three distance sensors (chapter 6), besides
 //!   [`PidWallFollower`], [`LidarWallFollower`] and the book's [`TwoLevelWallFollower`];
 //! - [`colour`]: to an object of a taught colour, and home with it (chapter 11);
+//! - [`lane_keeping`]: along the lane of a road by camera, and [`traffic`]: its referee (chapter 13);
+//! - [`marine`]: craft in water (chapter 8);
 //! - [`motion_watch`]: turning towards motion (chapter 11);
+//! - [`terrain`]: up the steepest way (chapter 7);
 //! - [`Pid`] and [`RelayTuner`]: a PID controller and its automatic tuning.
 
 mod a_to_b;
@@ -31,6 +34,8 @@ mod dubins;
 mod follow_me;
 mod follower;
 mod formation;
+pub mod lane_keeping;
+pub mod marine;
 pub mod motion_watch;
 mod omni;
 mod path;
@@ -38,6 +43,8 @@ mod pid;
 mod random_drive;
 mod relay;
 mod spline;
+pub mod terrain;
+pub mod traffic;
 mod wall_following;
 mod way;
 

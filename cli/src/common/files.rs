@@ -7,8 +7,12 @@ use roverlab::world::{RobotSpec, Scene};
 
 use super::{CommonArgs, onlooker};
 
-/// The name that a file of an option has in recordings: that of the option, with the file's ending.
+/// Name of an option's file in recordings: that of the option, with the file's extension. A number is no file but a
+/// seed, and stays as it is.
 pub(crate) fn recorded_name(option: &str, path: &Path) -> String {
+    if let Some(seed) = path.to_str().filter(|text| text.parse::<u64>().is_ok()) {
+        return seed.to_owned();
+    }
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     let plain = !ending.is_empty() && ending.chars().all(|c| c.is_ascii_alphanumeric());
     if plain { format!("{option}.{}", ending.to_ascii_lowercase()) } else { option.to_owned() }
@@ -25,14 +29,14 @@ pub(crate) fn recording_bytes(file: &Path) -> io::Result<Vec<u8>> {
 }
 
 impl CommonArgs {
-    /// The bytes of the file that an option names: from the recording that is replayed, or else from disk; they go
-    /// into the recording that is made. The option must be one of those that `command_line` lists as files.
+    /// The bytes of an option's file, from the replayed recording or from disk; they are added to a new
+    /// recording. The option must be among the files listed in `command_line`.
     pub(crate) fn read(&self, option: &str, path: &Path) -> Result<Vec<u8>, FormatError> {
         let name = recorded_name(option, path);
         let replayed = path.to_str() == Some(&name);
         let log = self.origin.facts().log.filter(|_| replayed);
         if let Some(log) = log {
-            // What a recording lacks is not looked for elsewhere.
+            // A file missing from a recording is not searched elsewhere.
             let lost = || {
                 FormatError::new(&name, Location::START, "no such file in the recording", "its attachment")
             };
@@ -49,13 +53,17 @@ impl CommonArgs {
         Ok(bytes)
     }
 
-    /// The scene in the file of an option, as [`read`](Self::read) finds it, with the files that it names.
+    /// The scene in an option's file, as found by [`read`](Self::read), with its companion files.
     pub(crate) fn load_scene(&self, option: &str, path: &Path) -> Result<Parsed<Scene>, FormatError> {
         self.load(option, path, formats::parse_scene)
     }
 
-    /// The robot in the file of an option, with its 3D model where that is found.
+    /// The robot in the file of an option, with its 3D model where that is found, or the built-in robot of that name.
     pub(crate) fn load_robot(&self, option: &str, path: &Path) -> Result<Parsed<RobotSpec>, FormatError> {
+        let built_in = path.to_str().filter(|_| !path.exists()).and_then(RobotSpec::predefined);
+        if let Some(value) = built_in {
+            return Ok(Parsed { value, warnings: Vec::new() });
+        }
         self.load(option, path, formats::parse_robot_tolerantly)
     }
 
@@ -88,7 +96,7 @@ fn attachment(name: &str, bytes: &[u8]) -> Attachment {
     Attachment { name: name.into(), media_type: media_type.into(), data: bytes.to_vec() }
 }
 
-/// The files that a file names: those of a recording in the order in which they were read, or those on disk.
+/// The files named in a file: from a recording in the order of their reading, or from disk.
 struct Companions {
     main: String,
     log: Option<Log>,

@@ -14,14 +14,14 @@ use serde_json::{Value, json};
 use crate::common::{Failure, Printed, recording_bytes};
 pub(crate) use args::{Args, Command};
 
-/// What a command found out: its report, and whether it is good.
+/// Result of a command: its report, and whether it succeeded.
 struct Found {
     fields: Value,
     text: String,
     good: bool,
 }
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Printed, Failure> {
     let found = match &args.command {
         Command::Check { file } => check::check(file),

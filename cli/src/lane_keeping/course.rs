@@ -1,0 +1,88 @@
+//! The course that is driven, and what it looks like.
+
+use std::path::Path;
+
+use roverlab::io::sim::SimOptions;
+use roverlab::random::Stream;
+use roverlab::world::formats::course;
+use roverlab::world::road::{Appearance, Course, CourseOptions, generate};
+use roverlab::world::{RobotSpec, Scene};
+
+use super::Args;
+use crate::common::Failure;
+
+/// A course, the light, and the state of the paint.
+#[derive(Debug, Clone)]
+pub(super) struct Setting {
+    pub(super) name: String,
+    pub(super) course: Course,
+    pub(super) look: Appearance,
+    pub(super) light: f64,
+    pub(super) seed: u64,
+}
+
+impl Setting {
+    /// What a command line describes.
+    pub(super) fn of(args: &Args) -> Result<Self, Failure> {
+        let (name, seed) = (args.course.clone(), args.common.seed);
+        let course = match name.parse::<u64>() {
+            Ok(seed) => generated(seed)?,
+            Err(_) => {
+                let path = Path::new(&name);
+                let bytes = args.common.read("course", path).map_err(Failure::input)?;
+                let text = String::from_utf8_lossy(&bytes);
+                course::parse(&text, &path.display().to_string()).map_err(Failure::input)?
+            }
+        };
+        let setting = Self {
+            name,
+            course,
+            look: Appearance { seed, ..Appearance::default() },
+            light: args.light,
+            seed,
+        };
+        setting.check()?;
+        Ok(setting)
+    }
+
+    /// The one of a campaign with a seed: its own course, light, and wear.
+    pub(super) fn drawn(seed: u64) -> Result<Self, Failure> {
+        let mut random = Stream::new(seed).child("lane keeping", 0);
+        let light = random.between(0.5, 1.5);
+        let look = Appearance {
+            wear: random.between(0.0, 0.35),
+            glare: random.below(6),
+            seed,
+            ..Appearance::default()
+        };
+        let setting = Self { name: seed.to_string(), course: generated(seed)?, look, light, seed };
+        setting.check()?;
+        Ok(setting)
+    }
+
+    /// Fails where the car does not fit in its lane.
+    fn check(&self) -> Result<(), Failure> {
+        let outline = RobotSpec::road_car().footprint;
+        let width = match outline {
+            roverlab::world::Footprint::Rectangle(outline) => outline.size().y,
+            other => 2.0 * other.bounding_radius(),
+        };
+        self.course
+            .check_car(width)
+            .map_err(|error| Failure::input(format!("--course {}: {error}", self.name)))
+    }
+
+    /// The car at the start of the course.
+    pub(super) fn scene(&self) -> Result<Scene, Failure> {
+        let world = self.course.world(&self.look).map_err(Failure::input)?;
+        Ok(Scene::with_robot(world, RobotSpec::road_car(), self.course.start()))
+    }
+
+    pub(super) fn options(&self, args: &Args) -> SimOptions {
+        SimOptions { light: self.light, ..SimOptions::with_noise(args.common.noise, self.seed) }
+    }
+}
+
+fn generated(seed: u64) -> Result<Course, Failure> {
+    generate(seed, &CourseOptions::default()).map_err(Failure::input)
+}

@@ -1,0 +1,154 @@
+//! One drive, with the referee who looks on.
+
+use roverlab::drive::lane_keeping::{
+    BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters, LaneObservation, LaneOutcome,
+};
+use roverlab::drive::traffic::{FreeDrive, FreeDriveScore};
+use roverlab::geometry::{Pose, Twist, math};
+use roverlab::io::control::{Behaviour, Senses, run, until};
+use roverlab::io::log::GroundTruth;
+use roverlab::io::sim::RobotTruth;
+use roverlab::io::{self, Clock, Drive as _};
+use roverlab::vision::lane_markings::{RoadCamera, RoadModel};
+use roverlab::world::RobotSpec;
+use roverlab::world::road::{Course, Traffic};
+
+use super::course::Setting;
+use super::{Args, Driver, rules};
+use crate::common::{Driven, Failure, Stage, StageTruth};
+use crate::driving::paced;
+
+/// What came of a drive.
+#[derive(Debug, Clone)]
+pub(super) struct Drive {
+    pub(super) score: FreeDriveScore,
+    pub(super) truth: RobotTruth,
+    pub(super) ending: Result<(), String>,
+    /// When the car was where, and how fast.
+    pub(super) trail: Vec<(f64, Pose, f64)>,
+}
+
+/// Drives on a course for as long as the command line says.
+pub(super) fn drive(args: &Args, setting: &Setting, stage: &Stage) -> Result<Drive, Failure> {
+    let spec = RobotSpec::road_car();
+    let camera = spec.camera.as_ref().map(RoadCamera::from);
+    let camera = camera.ok_or_else(|| Failure::run("a car without a camera"))?;
+    let seconds = 60.0 * args.minutes;
+    let seconds = args.common.time_limit.map_or(seconds, |limit| limit.min(seconds));
+    let mut car = stage.robot(0)?;
+    let mut watch = Watch {
+        truth: stage.truth(0)?,
+        referee: FreeDrive::new(setting.course.clone(), &spec, rules()),
+        trail: Vec::new(),
+        pace: Box::new(paced(&args.common)),
+    };
+    let driven = match args.driver {
+        Driver::Ours => {
+            let defaults = LaneKeeperParameters::default();
+            let parameters = LaneKeeperParameters { speed: args.speed.unwrap_or(defaults.speed), ..defaults };
+            let left_hand = setting.course.traffic == Traffic::Left;
+            let Course { size, line_width, .. } = setting.course;
+            let road = RoadModel { size, line_width, left_hand };
+            let mut keeper = LaneKeeper::new(camera, road, parameters).map_err(Failure::input)?;
+            watch.keep(&mut car, &mut keeper, seconds, LaneKeeper::forget)
+        }
+        Driver::Book => {
+            let defaults = BookLaneParameters::default();
+            let parameters = BookLaneParameters { speed: args.speed.unwrap_or(defaults.speed), ..defaults };
+            let mut keeper = BookLaneKeeper::new(parameters).map_err(Failure::input)?;
+            watch.keep(&mut car, &mut keeper, seconds, |_| ())
+        }
+    };
+    drop(car);
+    Ok(Drive {
+        score: *watch.referee.score(),
+        truth: watch.truth.robot(0)?,
+        ending: driven.map_err(|error| Failure::from(error).to_string()),
+        trail: watch.trail,
+    })
+}
+
+/// Who looks on: the referee, and the hand at the remote control.
+struct Watch<'c> {
+    truth: StageTruth,
+    referee: FreeDrive,
+    trail: Vec<(f64, Pose, f64)>,
+    pace: Box<dyn FnMut(f64) + 'c>,
+}
+
+/// Seconds for which a car stands still before it is driven by remote control, and before it is given back.
+const STILL: f64 = 1.0;
+/// Metres per second by remote control at most.
+const REMOTE: f64 = 0.3;
+/// Seconds from one command of the remote control to the next.
+const PERIOD: f64 = 0.05;
+/// Metres and radians within which a car is back in its lane.
+const BACK: (f64, f64) = (0.04, 0.1);
+
+impl Watch<'_> {
+    /// Lets a behaviour drive until time is over, and takes the car back into its lane where it strays.
+    fn keep<B>(
+        &mut self,
+        car: &mut Driven,
+        keeper: &mut B,
+        seconds: f64,
+        forget: impl Fn(&mut B),
+    ) -> io::Result<()>
+    where
+        B: Behaviour<Observation = LaneObservation, Command = Twist, Outcome = LaneOutcome> + Senses<Driven>,
+    {
+        loop {
+            let left = seconds - self.truth.time()?;
+            if left <= 0.0 {
+                return Ok(());
+            }
+            let outcome = run(car, keeper, left, |_, _, _| self.look().map(until))?;
+            if outcome == LaneOutcome::TimedOut {
+                return Ok(());
+            }
+            self.bring_back(car, seconds)?;
+            forget(keeper);
+        }
+    }
+
+    /// Looks at the car. Returns whether it has to be taken over.
+    fn look(&mut self) -> io::Result<bool> {
+        let (time, pose) = (self.truth.time()?, self.truth.pose(0)?);
+        let speed = self.trail.last().map_or(0.0, |(before, last, _)| {
+            let passed = time - before;
+            if passed > 0.0 { pose.distance_to(last.position()) / passed } else { 0.0 }
+        });
+        self.trail.push((time, pose, speed));
+        (self.pace)(time);
+        Ok(self.referee.see(time, &pose))
+    }
+
+    /// Drives a car back into its lane by remote control, as the rules say: it stands before and after.
+    fn bring_back(&mut self, car: &mut Driven, seconds: f64) -> io::Result<()> {
+        car.stop()?;
+        self.wait(car, STILL)?;
+        while self.truth.time()? < seconds {
+            let lane = *self.referee.lane();
+            if lane.offset.abs() < BACK.0 && lane.heading.abs() < BACK.1 {
+                break;
+            }
+            let towards = (lane.offset / 0.3).clamp(-1.0, 1.0);
+            let bend = lane.curvature - 4.0 * math::sin(lane.heading + 0.9 * towards);
+            car.set_speed(Twist::new(REMOTE, REMOTE * bend.clamp(-2.0, 2.0)))?;
+            self.wait(car, PERIOD)?;
+        }
+        car.stop()?;
+        self.wait(car, STILL)?;
+        self.referee.give_back();
+        Ok(())
+    }
+
+    /// Lets time pass while the referee looks on.
+    fn wait(&mut self, car: &mut Driven, seconds: f64) -> io::Result<()> {
+        for _ in 0..(seconds / PERIOD).round() as u32 {
+            car.wait(PERIOD)?;
+            self.look()?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,174 @@
+use std::ops::ControlFlow;
+
+use super::{LaneObservation, LaneOutcome};
+use crate::ParameterError;
+use crate::geometry::{Pose, Twist, angle_difference, math};
+use crate::io::control::{Behaviour, Decision, Senses};
+use crate::io::{self, Camera, Odometry, Resolution};
+use crate::parameter::require_positive;
+use crate::vision::lane_markings::{LaneEstimate, LaneFinder, RoadCamera, RoadModel};
+use crate::vision::{GrayView, GrayViewMut, GrayWeights, ImageError, RgbView, gray_into};
+
+/// Parameters of a [`LaneKeeper`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LaneKeeperParameters {
+    /// Seconds from one step to the next: one image each.
+    pub period: f64,
+    /// The fastest speed in m/s.
+    pub speed: f64,
+    /// The greatest acceleration across in bends, in m/s².
+    pub across: f64,
+    /// The deceleration before bends, in m/s².
+    pub brake: f64,
+    /// Metres in which an offset is steered away at low speed, and how many more for each m/s.
+    pub settling: [f64; 2],
+    /// Seconds from a command to its effect.
+    pub delay: f64,
+    /// Metres of the road that are seen ahead, at most, to be driven by.
+    pub sight: f64,
+}
+
+impl Default for LaneKeeperParameters {
+    /// For a model car in 1:10 with a camera of 30 images a second.
+    fn default() -> Self {
+        Self {
+            period: 1.0 / 30.0,
+            speed: 2.6,
+            across: 3.6,
+            brake: 2.0,
+            settling: [0.25, 0.16],
+            delay: 0.06,
+            sight: 1.8,
+        }
+    }
+}
+
+impl LaneKeeperParameters {
+    fn validate(&self) -> Result<(), ParameterError> {
+        require_positive("control period", self.period)?;
+        require_positive("speed", self.speed)?;
+        require_positive("acceleration across", self.across)?;
+        require_positive("deceleration", self.brake)?;
+        require_positive("settling", self.settling[0])?;
+        crate::parameter::require_not_negative("settling by speed", self.settling[1])?;
+        crate::parameter::require_not_negative("delay", self.delay)?;
+        require_positive("sight", self.sight)
+    }
+}
+
+/// Keeps a car, or a robot on two wheels, in the middle of its lane by its camera and its odometry. Where the lane is lost, it
+/// stands and looks.
+#[derive(Debug, Clone)]
+pub struct LaneKeeper {
+    parameters: LaneKeeperParameters,
+    finder: LaneFinder,
+    gray: Vec<u8>,
+    /// Odometry at the last image.
+    before: Option<Pose>,
+    lane: Option<LaneEstimate>,
+}
+
+/// Metres from place to place at which the road ahead is looked at for its bends.
+const STRIDE: f64 = 0.1;
+/// Metres per second with which the road is driven where next to nothing of it is known.
+const CREEP: f64 = 0.3;
+
+impl LaneKeeper {
+    /// A keeper for a camera and a road. Fails where a parameter makes no sense.
+    pub fn new(
+        camera: RoadCamera,
+        road: RoadModel,
+        parameters: LaneKeeperParameters,
+    ) -> Result<Self, ParameterError> {
+        parameters.validate()?;
+        let finder = LaneFinder::new(camera, road)?;
+        Ok(Self { parameters, finder, gray: Vec::new(), before: None, lane: None })
+    }
+
+    /// What it knows of the lane since the last step.
+    pub fn lane(&self) -> Option<&LaneEstimate> {
+        self.lane.as_ref()
+    }
+
+    /// The finder, with the points of the last image.
+    pub fn finder(&self) -> &LaneFinder {
+        &self.finder
+    }
+
+    /// Forgets the road: for a car that has been carried away.
+    pub fn forget(&mut self) {
+        self.finder.forget();
+        self.before = None;
+    }
+
+    /// Looks at an image, taken at a pose of odometry.
+    pub fn see(&mut self, image: &image::RgbImage, odometry: Pose) -> Result<&LaneEstimate, ImageError> {
+        let (width, height) = (image.width() as usize, image.height() as usize);
+        self.gray.resize(width * height, 0);
+        let rgb = RgbView::new(image.as_raw(), width, height)?;
+        gray_into(rgb, GrayViewMut::new(&mut self.gray, width, height)?, GrayWeights::default())?;
+        let driven = self.before.map_or((0.0, 0.0), |before| {
+            let turn = angle_difference(odometry.heading, before.heading);
+            (before.to_local(odometry.position()).x, turn)
+        });
+        self.before = Some(odometry);
+        let lane = self.finder.see(GrayView::new(&self.gray, width, height)?, driven);
+        Ok(self.lane.insert(lane))
+    }
+
+    /// The command for what is known of the lane, at a speed.
+    fn steer(&self, lane: &LaneEstimate, speed: f64) -> Twist {
+        let p = &self.parameters;
+        if lane.lost {
+            return Twist::STOP;
+        }
+        let wanted = self.fastest(lane, speed);
+        // Where the car will be when the command acts.
+        let ahead = (p.delay * speed).max(0.0);
+        let settling = p.settling[0] + p.settling[1] * speed.max(0.0);
+        let offset = lane.offset + ahead * math::sin(lane.heading);
+        let back = offset.clamp(-0.3, 0.3) / (settling * settling) + 2.0 * math::sin(lane.heading) / settling;
+        let bend = lane.curvature_at(ahead) - back;
+        Twist::new(wanted, wanted * bend)
+    }
+
+    /// The fastest speed that bends ahead and sight allow.
+    fn fastest(&self, lane: &LaneEstimate, speed: f64) -> f64 {
+        let p = &self.parameters;
+        let mut most = p.speed;
+        for i in 0..(p.sight / STRIDE) as u32 {
+            let ahead = STRIDE * f64::from(i);
+            let bend = lane.curvature_at(ahead).abs().max(1e-6);
+            let free = (ahead - p.delay * speed).max(0.0);
+            most = most.min((p.across / bend + 2.0 * p.brake * free).sqrt());
+        }
+        // A lane that is known by guess is driven slowly.
+        let doubt = lane.sigmas[0] / 0.03 + lane.sigmas[1] / 0.08;
+        (most / (1.0 + doubt * doubt)).max(CREEP.min(p.speed))
+    }
+}
+
+impl Behaviour for LaneKeeper {
+    type Observation = LaneObservation;
+    type Command = Twist;
+    type Outcome = LaneOutcome;
+
+    fn period(&self) -> f64 {
+        self.parameters.period
+    }
+
+    fn step(&mut self, _time: f64, seen: &LaneObservation) -> Decision<Self> {
+        let lane = self.see(&seen.image, seen.odometry).map_err(io::Error::caused_by)?.clone();
+        Ok(ControlFlow::Continue(self.steer(&lane, seen.speed)))
+    }
+}
+
+impl<R: Camera + Odometry + ?Sized> Senses<R> for LaneKeeper {
+    fn prepare(&mut self, robot: &mut R) -> io::Result<()> {
+        robot.set_resolution(Resolution::Qvga)
+    }
+
+    fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut LaneObservation) -> io::Result<()> {
+        seen.read(robot)
+    }
+}

@@ -1,0 +1,255 @@
+use crate::geometry::{Point, Pose};
+use crate::world::road::{Course, LanePose};
+use crate::world::{DriveSpec, RobotSpec};
+
+/// The rules of Free Drive that are open in their text, or differ from release to release.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FreeDriveRules {
+    /// Whether metres outside the own lane are subtracted: so in the release of 2025, no longer in that of 2026.
+    pub subtract_outside: bool,
+    /// Metres that leaving the lane with two wheels costs, as does each time that the car is taken over by remote control.
+    pub penalty: f64,
+    /// Seconds that an intervention costs in the measure of autonomy (M. Bojarski et al., "End to end learning for self-driving
+    /// cars", 2016).
+    pub intervention: f64,
+    /// The farthest that the car's middle may be from its lane's middle, in widths of a lane, before it is taken over.
+    pub astray: f64,
+    /// Seconds for which a car may stand before it is taken over.
+    pub standing: f64,
+}
+
+impl Default for FreeDriveRules {
+    /// Those of 2025.
+    fn default() -> Self {
+        Self { subtract_outside: true, penalty: 5.0, intervention: 6.0, astray: 1.0, standing: 5.0 }
+    }
+}
+
+/// What a car has done in Free Drive.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FreeDriveScore {
+    /// Seconds since the start.
+    pub time: f64,
+    /// Metres along the lane, those under remote control aside.
+    pub distance: f64,
+    /// Metres of these with two wheels outside.
+    pub outside: f64,
+    /// How often the lane was left with two wheels or more.
+    pub departures: u32,
+    /// How often the car had to be taken over.
+    pub interventions: u32,
+    /// Seconds to the first departure, or to the end (Duckietown's survival time).
+    pub survival: f64,
+    /// The sum of squared offsets from the lane's middle by metres driven, and of absolute ones (Duckietown's deviation).
+    squares: f64,
+    deviation: f64,
+}
+
+impl FreeDriveScore {
+    /// The root of the mean squared offset of the car's middle from its lane's, in metres.
+    pub fn offset_rms(&self) -> f64 {
+        (self.squares / self.distance.max(1e-9)).sqrt()
+    }
+
+    /// The mean distance of the car's middle from its lane's, in metres.
+    pub fn mean_deviation(&self) -> f64 {
+        self.deviation / self.distance.max(1e-9)
+    }
+
+    /// The result in metres: the distance with what is subtracted.
+    pub fn result(&self, rules: &FreeDriveRules) -> f64 {
+        let outside = if rules.subtract_outside { self.outside } else { 0.0 };
+        let faults = self.departures + self.interventions;
+        (self.distance - outside - rules.penalty * f64::from(faults)).max(0.0)
+    }
+
+    /// The share of the time that is driven without help, in percent.
+    pub fn autonomy(&self, rules: &FreeDriveRules) -> f64 {
+        let helped = rules.intervention * f64::from(self.interventions);
+        100.0 * (1.0 - helped / self.time.max(1e-9)).max(0.0)
+    }
+}
+
+/// The referee of Free Drive: sees the true pose of a car on a course, and never tells it.
+#[derive(Debug, Clone)]
+pub struct FreeDrive {
+    course: Course,
+    rules: FreeDriveRules,
+    /// Where the wheels touch the ground, in the car's frame, and its middle.
+    wheels: [Point; 4],
+    middle: Point,
+    score: FreeDriveScore,
+    lane: LanePose,
+    /// Whether two wheels are outside, since when the car stands, and whether it is under remote control.
+    is_outside: bool,
+    stands_since: Option<f64>,
+    is_remote: bool,
+}
+
+/// Metres per second below which a car stands.
+const STANDS: f64 = 0.02;
+
+impl FreeDrive {
+    /// A referee for a car that starts at the beginning of a course.
+    pub fn new(course: Course, car: &RobotSpec, rules: FreeDriveRules) -> Self {
+        let (length, track) = match car.drive {
+            DriveSpec::Ackermann { wheelbase, track, .. } | DriveSpec::Omni { wheelbase, track, .. } => {
+                (wheelbase, track)
+            }
+            DriveSpec::Tracked { length, track, .. } => (length, track),
+            DriveSpec::Differential { track, .. } => (0.0, track),
+            DriveSpec::Craft(_) => (0.0, 0.0),
+        };
+        let half = 0.5 * track;
+        let wheels = [(0.0, half), (0.0, -half), (length, half), (length, -half)];
+        let lane = course.locate(&course.start(), Some(0.0));
+        Self {
+            course,
+            rules,
+            wheels: wheels.map(|(x, y)| Point::new(x, y)),
+            middle: Point::new(0.5 * length, 0.0),
+            score: FreeDriveScore::default(),
+            lane,
+            is_outside: false,
+            stands_since: None,
+            is_remote: false,
+        }
+    }
+
+    /// What the car has done so far.
+    pub fn score(&self) -> &FreeDriveScore {
+        &self.score
+    }
+
+    /// Where the car's middle is on its lane.
+    pub fn lane(&self) -> &LanePose {
+        &self.lane
+    }
+
+    /// Whether the car is under remote control.
+    pub fn is_remote(&self) -> bool {
+        self.is_remote
+    }
+
+    /// Looks at the car at a time. Returns whether it has to be taken over now.
+    pub fn see(&mut self, time: f64, pose: &Pose) -> bool {
+        let passed = time - self.score.time;
+        self.score.time = time;
+        let before = self.lane;
+        self.lane = self.on_lane(pose, self.middle);
+        let around = self.course.line.length();
+        let metres = self.lane.along - before.along;
+        // The shorter way around.
+        let metres = metres - around * (metres / around).round();
+        if self.is_remote {
+            return false;
+        }
+        self.count(metres, pose);
+        let stands = metres.abs() < STANDS * passed;
+        let since = *self.stands_since.get_or_insert(time);
+        if !stands {
+            self.stands_since = None;
+        }
+        let is_astray = self.lane.offset.abs() > self.rules.astray * self.course.lane_width
+            || self.lane.heading.abs() > 2.0;
+        let is_over = is_astray || (stands && time - since > self.rules.standing);
+        if is_over {
+            self.score.interventions += 1;
+            self.is_remote = true;
+        }
+        is_over
+    }
+
+    /// The car is given back: it drives by itself again.
+    pub fn give_back(&mut self) {
+        (self.is_remote, self.is_outside, self.stands_since) = (false, false, None);
+    }
+
+    fn count(&mut self, metres: f64, pose: &Pose) {
+        let course = &self.course;
+        let most = 0.5 * course.edge();
+        let over = |wheel: &&Point| self.on_lane(pose, **wheel).offset.abs() > most;
+        let is_outside = self.wheels.iter().filter(over).count() >= 2;
+        let score = &mut self.score;
+        score.distance += metres;
+        score.squares += metres.max(0.0) * self.lane.offset * self.lane.offset;
+        score.deviation += metres.max(0.0) * self.lane.offset.abs();
+        if is_outside {
+            score.outside += metres.max(0.0);
+        }
+        score.departures += u32::from(is_outside && !self.is_outside);
+        if score.departures == 0 && score.interventions == 0 {
+            score.survival = score.time;
+        }
+        self.is_outside = is_outside;
+    }
+
+    /// Where a point of the car is on its lane.
+    fn on_lane(&self, car: &Pose, point: Point) -> LanePose {
+        let place = car.to_world(point);
+        self.course.locate(&Pose::new(place.x, place.y, car.heading), Some(self.lane.along))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::formats::course;
+
+    fn referee() -> FreeDrive {
+        let text = "course 1\nlane 400\nstraight 6000\narc 1500 180\nstraight 6000\narc 1500 180\n";
+        let course = course::parse(text, "oval").unwrap();
+        FreeDrive::new(course, &RobotSpec::road_car(), FreeDriveRules::default())
+    }
+
+    /// Drives along a lane at 1 m/s, at offsets that a function gives.
+    fn drive(referee: &mut FreeDrive, metres: f64, offset: impl Fn(f64) -> f64) -> Option<f64> {
+        let course = referee.course.clone();
+        (0..=(100.0 * metres) as u32).map(|i| 0.01 * f64::from(i)).find(|&time| {
+            // The rear axle is behind the middle.
+            let at = course.pose(time, offset(time));
+            referee.see(time, &at)
+        })
+    }
+
+    #[test]
+    fn laps_in_the_middle_count_every_metre_and_no_fault() {
+        let mut referee = referee();
+        assert_eq!(drive(&mut referee, 50.0, |_| 0.0), None);
+        let score = referee.score();
+        assert!((score.distance - 50.0).abs() < 0.2, "{score:?}");
+        assert_eq!((score.departures, score.interventions), (0, 0));
+        assert_eq!(score.survival, score.time);
+        assert!((score.autonomy(&FreeDriveRules::default()) - 100.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn two_wheels_over_the_line_are_one_departure_until_they_are_back() {
+        let mut referee = referee();
+        // The right wheels are 82.5 mm to the right of the middle, and the line 210 mm.
+        let offset = |time: f64| if (2.0..3.0).contains(&time) || time > 4.0 { -0.14 } else { 0.0 };
+        assert_eq!(drive(&mut referee, 5.0, offset), None);
+        let score = referee.score();
+        assert_eq!(score.departures, 2);
+        assert!((score.outside - 2.0).abs() < 0.05 && (score.survival - 1.99).abs() < 0.02, "{score:?}");
+        let expected = score.distance - score.outside - 10.0;
+        assert_eq!(score.result(&FreeDriveRules::default()), expected.max(0.0));
+        let later = FreeDriveRules { subtract_outside: false, penalty: 0.0, ..FreeDriveRules::default() };
+        assert_eq!(score.result(&later), score.distance);
+    }
+
+    #[test]
+    fn a_car_that_strays_or_stands_is_taken_over_once() {
+        let mut strays = referee();
+        let taken = drive(&mut strays, 5.0, |time| -0.3 * time);
+        assert!((taken.unwrap() - 1.34).abs() < 0.05, "{taken:?}");
+        assert!(strays.is_remote() && !strays.see(9.0, &Pose::default()));
+        let mut stands = referee();
+        let pose = stands.course.pose(1.0, 0.0);
+        let taken = (0..1000).map(|i| 0.01 * f64::from(i)).find(|&time| stands.see(time, &pose));
+        assert!((taken.unwrap() - 5.0).abs() < 0.2, "{taken:?}");
+        assert_eq!(stands.score().interventions, 1);
+        let autonomy = stands.score().autonomy(&FreeDriveRules::default());
+        assert_eq!(autonomy, 0.0, "6 s of help in 5 s");
+    }
+}

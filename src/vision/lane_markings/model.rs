@@ -1,0 +1,231 @@
+//! The road as a state with its covariance: where the car is on it, how it bends ahead, how wide it is, and by how much the
+//! camera is tilted otherwise than it is said to be. All lengths are those of the rules' size.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::curve::{Bends, Curve, Foot, KNOTS, SPACING, bend_at};
+use super::{MarkingPoint, RoadCamera};
+use crate::geometry::{Point, Vector, math};
+
+/// Metres to the left of the road's middle; radians to the left of its direction; curvatures; metres from its middle to an
+/// edge line; radians of the camera's pitch.
+pub(super) const STATES: usize = KNOTS + 4;
+const OFFSET: usize = 0;
+const HEADING: usize = 1;
+const BENDS: usize = 2;
+const EDGE: usize = BENDS + KNOTS;
+const PITCH: usize = EDGE + 1;
+
+pub(super) type State = SVector<f64, STATES>;
+pub(super) type Covariance = SMatrix<f64, STATES, STATES>;
+
+/// What is believed of the road.
+#[derive(Debug, Clone)]
+pub(super) struct Road {
+    pub(super) state: State,
+    pub(super) covariance: Covariance,
+}
+
+/// How a point goes into the fit.
+struct Measured {
+    residual: f64,
+    slope: State,
+    sigma: f64,
+    along: f64,
+}
+
+/// What is known at first: deviations of offset, heading, curvatures, edge and pitch.
+const FIRST: [f64; 5] = [0.12, 0.12, 0.7, 0.035, 0.01];
+/// Metres from the road's middle to an edge line, of a road that has not been seen.
+const EDGE_AT_FIRST: f64 = 0.42;
+/// Deviations that grow with the root of the metres driven.
+const DRIFT: [f64; 5] = [0.010, 0.020, 0.25, 0.003, 0.0005];
+/// Curvatures of a road that has not come into view yet: their deviation, and metres in which they are forgotten.
+const UNSEEN: (f64, f64) = (0.6, 1.5);
+/// The tightest bend of a road, and how sharply that is meant; and the same of its edges, from least to most.
+const TIGHTEST: (f64, f64) = (1.0, 0.1);
+const EDGES: ([f64; 2], f64) = ([0.36, 0.48], 0.01);
+/// Metres by which a line's middle is uncertain: at any place, and as a share of a pixel.
+const BLUR: (f64, f64) = (0.006, 0.6);
+/// Metres by which a line between knots is not as the model says, for the square of the metres ahead.
+const ROUGH: f64 = 0.010;
+/// Points of one frame err together, by the camera and by the model; so many count as one.
+const TOGETHER: f64 = 8.0;
+/// Metres between the lines of a pair.
+const PAIR: f64 = 0.02;
+
+impl Road {
+    /// A road that has not been seen: the car's offset from its middle, and its heading.
+    pub(super) fn new(offset: f64, heading: f64, bend: f64, edge: Option<f64>) -> Self {
+        let mut state = State::zeros();
+        state[OFFSET] = offset;
+        state[HEADING] = heading;
+        (0..KNOTS).for_each(|knot| state[BENDS + knot] = bend);
+        state[EDGE] = edge.unwrap_or(EDGE_AT_FIRST);
+        let mut covariance = Covariance::zeros();
+        for (index, sigma) in deviations(FIRST).into_iter().enumerate() {
+            covariance[(index, index)] = sigma * sigma;
+        }
+        Self { state, covariance }
+    }
+
+    pub(super) fn offset(&self) -> f64 {
+        self.state[OFFSET]
+    }
+
+    pub(super) fn heading(&self) -> f64 {
+        self.state[HEADING]
+    }
+
+    pub(super) fn edge(&self) -> f64 {
+        self.state[EDGE]
+    }
+
+    pub(super) fn pitch(&self) -> f64 {
+        self.state[PITCH]
+    }
+
+    pub(super) fn bends(&self) -> Bends {
+        std::array::from_fn(|knot| self.state[BENDS + knot])
+    }
+
+    /// The deviation of a sum of offset and a share of the edge, of the heading, and of the curvature.
+    pub(super) fn sigmas(&self, share: f64) -> [f64; 3] {
+        let p = &self.covariance;
+        let offset = p[(OFFSET, OFFSET)] + 2.0 * share * p[(OFFSET, EDGE)] + share * share * p[(EDGE, EDGE)];
+        [offset, p[(HEADING, HEADING)], p[(BENDS, BENDS)]].map(|variance| variance.max(0.0).sqrt())
+    }
+
+    /// The car drives some metres, and turns to the left by some radians.
+    pub(super) fn drive(&mut self, metres: f64, turn: f64) {
+        let (offset, heading) = (self.state[OFFSET], self.state[HEADING] + 0.5 * turn);
+        let (sin, cos) = math::sin_cos(heading);
+        let bends = self.bends();
+        let along = metres * cos / (1.0 - bends[0] * offset).max(0.3);
+        let mut step = Covariance::identity();
+        step[(OFFSET, HEADING)] = metres * cos;
+        step[(HEADING, BENDS)] = -along;
+        step[(HEADING, OFFSET)] = -bends[0] * bends[0] * along;
+        let share = (along / SPACING).clamp(-1.0, 1.0);
+        for knot in 0..KNOTS - 1 {
+            step[(BENDS + knot, BENDS + knot)] = 1.0 - share;
+            step[(BENDS + knot, BENDS + knot + 1)] = share;
+        }
+        let ahead: Bends = std::array::from_fn(|knot| bend_at(&bends, SPACING * knot as f64 + along));
+        self.state[OFFSET] += metres * sin;
+        self.state[HEADING] += turn - 0.5 * along * (bends[0] + ahead[0]);
+        (0..KNOTS).for_each(|knot| self.state[BENDS + knot] = ahead[knot]);
+        self.covariance = step * self.covariance * step.transpose();
+        for (index, sigma) in deviations(DRIFT).into_iter().enumerate() {
+            self.covariance[(index, index)] += sigma * sigma * metres.abs();
+        }
+        self.forget(along.abs());
+    }
+
+    /// What comes into view is not known: the curvature farthest ahead goes back to none by and by.
+    fn forget(&mut self, along: f64) {
+        let last = BENDS + KNOTS - 1;
+        let kept = math::exp(-along / UNSEEN.1);
+        self.state[last] *= kept;
+        for i in 0..STATES {
+            self.covariance[(last, i)] *= kept;
+            self.covariance[(i, last)] *= kept;
+        }
+        self.covariance[(last, last)] += (1.0 - kept * kept) * UNSEEN.0 * UNSEEN.0;
+    }
+
+    /// Adds what is known of all roads: how tightly they bend, and how wide they are.
+    fn bound(&self, information: &mut Covariance, pull: &mut State) {
+        let mut keep = |index: usize, [least, most]: [f64; 2], sigma: f64| {
+            let excess = self.state[index] - self.state[index].clamp(least, most);
+            if excess != 0.0 {
+                information[(index, index)] += 1.0 / (sigma * sigma);
+                pull[index] -= excess / (sigma * sigma);
+            }
+        };
+        (0..KNOTS).for_each(|knot| keep(BENDS + knot, [-TIGHTEST.0, TIGHTEST.0], TIGHTEST.1));
+        keep(EDGE, EDGES.0, EDGES.1);
+    }
+
+    /// Fits it to points, with weights that leave out what no line of the road is. `wide` are the metres within which points
+    /// count at first. Returns the weight of the points within a metre and a half.
+    pub(super) fn see(&mut self, points: &[MarkingPoint], camera: &RoadCamera, wide: f64) -> f64 {
+        let Some(prior) = self.covariance.cholesky().map(|root| root.inverse()) else { return 0.0 };
+        let before = self.state;
+        let mut support = 0.0;
+        let mut information = prior;
+        for limit in [wide, 0.6 * wide, 0.03, 0.03] {
+            let curve = Curve::new(&self.bends());
+            information = prior;
+            let mut pull = prior * (before - self.state);
+            support = 0.0;
+            for point in points {
+                let Some(seen) = self.measure(&curve, point, camera) else { continue };
+                let off = seen.residual / (limit + 2.0 * seen.sigma);
+                let fits = 1.0 / (1.0 + off * off);
+                let weight = fits * fits / (TOGETHER * seen.sigma * seen.sigma);
+                information += seen.slope * seen.slope.transpose() * weight;
+                pull += seen.slope * (seen.residual * weight);
+                if seen.along < 1.5 {
+                    support += fits * fits;
+                }
+            }
+            self.bound(&mut information, &mut pull);
+            let Some(root) = information.cholesky() else { return 0.0 };
+            self.state += root.solve(&pull);
+        }
+        if let Some(root) = information.cholesky() {
+            self.covariance = root.inverse();
+        }
+        support
+    }
+
+    /// How well points fit, without fitting: each counts up to 1.
+    pub(super) fn score(&self, points: &[MarkingPoint], camera: &RoadCamera) -> f64 {
+        let curve = Curve::new(&self.bends());
+        let fits = points.iter().filter_map(|point| {
+            let seen = self.measure(&curve, point, camera)?;
+            let off = seen.residual / 0.04;
+            Some(1.0 / (1.0 + off * off))
+        });
+        fits.sum()
+    }
+
+    /// A point as the road sees it: its distance from the line that it is nearest to, and how that changes with the state.
+    fn measure(&self, curve: &Curve, point: &MarkingPoint, camera: &RoadCamera) -> Option<Measured> {
+        let lift = camera.lift(point.place);
+        let place = point.place + lift * self.pitch();
+        let (sin, cos) = math::sin_cos(self.heading());
+        let turned = |v: Vector| Vector::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y);
+        let own = turned(place.coords);
+        let Foot { along, left, normal, slopes } = curve.foot(Point::new(own.x, self.offset() + own.y))?;
+        let edge = self.edge();
+        // The nearest line: the left edge, the right one, or the middle, which may be a pair of lines.
+        let (line, per_edge) = match left / edge {
+            share if share > 0.5 => (edge, 1.0),
+            share if share < -0.5 => (-edge, -1.0),
+            _ => (left.clamp(-PAIR, PAIR), 0.0),
+        };
+        let mut slope = State::zeros();
+        slope[OFFSET] = -normal.y;
+        slope[HEADING] = -normal.dot(&Vector::new(-own.y, own.x));
+        (0..KNOTS).for_each(|knot| slope[BENDS + knot] = -slopes[knot]);
+        slope[EDGE] = per_edge;
+        slope[PITCH] = -normal.dot(&turned(lift));
+        let rough = ROUGH * along * along;
+        let (blur, pixel) = (BLUR.0, BLUR.1 * point.pixel);
+        let sigma = (blur * blur + pixel * pixel + rough * rough).sqrt();
+        Some(Measured { residual: left - line, slope, sigma, along })
+    }
+}
+
+/// One number for each state.
+fn deviations([offset, heading, bend, edge, pitch]: [f64; 5]) -> [f64; STATES] {
+    std::array::from_fn(|index| match index {
+        OFFSET => offset,
+        HEADING => heading,
+        EDGE => edge,
+        PITCH => pitch,
+        _ => bend,
+    })
+}
