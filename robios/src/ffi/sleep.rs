@@ -75,8 +75,8 @@ impl Sleeper {
         Self { number, waits: 0 }
     }
 
-    /// Lets time pass until the next thread wakes up, and nothing before due threads have done so: a tick at most,
-    /// unless all threads were asleep at the present time, so that none can act before.
+    /// Lets time pass until the next thread wakes up, and nothing before due threads have done so: a tick at
+    /// most, unless all threads were asleep at the present time, so that none can act before.
     fn pass(&mut self, all_asleep_at: Option<f64>) -> Option<()> {
         let earliest = at_ends(|ends| ends.values().map(|&(end, _)| end).fold(f64::INFINITY, f64::min));
         let passed = enter_quietly(|robios| {
@@ -125,8 +125,8 @@ impl Drop for Sleeper {
 
 /// Lets the program wait until a time since the start (s). Timer functions are called in between.
 ///
-/// A program with one thread skips the time, and so does one whose threads all sleep. Otherwise a sleeping one advances
-/// the world by a tick whenever the others have had and not used the opportunity to act.
+/// A program with one thread skips the time, and so does one whose threads all sleep. Otherwise a sleeping
+/// one advances the world by a tick whenever the others have had and not used the opportunity to act.
 fn sleep_until(end: f64) -> Option<()> {
     let (mut sleeper, mut turn) = (Sleeper::new(end), Turn::default());
     let mut waking: Option<Turn> = None;

@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 /// The file of a recording, which belongs to one recorder at a time.
 ///
-/// A new file is written in place, so that [`recover`](super::recover) finds in it what was recorded until a crash. In the place
-/// of an older recording the new one comes by [`complete`](Self::complete): until then it is beside it, under the name with a dot
-/// before it and `.part` behind it. Who wants to record to the same name meanwhile gets an error.
+/// A new file is written in place, so that [`recover`](super::recover) finds in it what was recorded until a
+/// crash. In the place of an older recording the new one comes by [`complete`](Self::complete): until then it
+/// is beside it, under the name with a dot before it and `.part` behind it. Who wants to record to the same
+/// name meanwhile gets an error.
 ///
 /// ```
 /// use std::io::Write;

@@ -12,8 +12,8 @@ enum Field {
     Texts,
 }
 
-/// Whether the texts and data that a record holds end within it. Parsers take that for granted, or ask for as much memory
-/// as a length says before they see that there is less to read.
+/// Whether the texts and data that a record holds end within it. Parsers take that for granted, or ask for as
+/// much memory as a length says before they see that there is less to read.
 pub(super) fn fit(opcode: u8, body: &[u8]) -> bool {
     use Field::{Data, Fixed, Text, Texts};
     let fields: &[Field] = match opcode {
