@@ -50,11 +50,13 @@
 //! | 6 Wall following | walls of any shape, by distance sensors, PID or lidar | [`drive`] |
 //! | 7 Alternative drives | cars and omnidirectional drives: kinematics, control, simulation | [`kinematics`], [`drive`], [`io::sim`] |
 //! | 7 Alternative drives | hills: height fields, rigid bodies on them, tracked robots, sensors and cameras in space | [`world::HeightField`], [`io::sim`] |
+//! | 8 Boats and subs | craft in water: six degrees of freedom, thrusters, depth hold | [`kinematics::marine`], [`drive::marine`] |
 //! | 9 Mazes | models and files, flood fill, exploration, time-optimal runs | [`maze`] |
 //! | 10 Navigation | DistBug, scan matching, reachable goals; ROS maps | [`nav`], [`scan`], [`world::formats`] |
 //! | 10 Navigation | planning on grid maps: A\*, Dijkstra, jump point search, any-angle paths, quadtrees | [`nav::grid`], [`world`] |
 //! | 11 Robot vision | edges, colours, motion, blobs, lines | [`vision`] |
 //! | 12 Evolution | genetic algorithms, CMA evolution strategy | [`evolve`] |
+//! | 13 Driverless cars | roads and their files, the lane by camera, the referee of Free Drive | [`world::road`], [`vision::lane_markings`], [`drive`] |
 //! | 14 Formula SAE | cone tracks, centre lines, racing lines, referee; racing cars | [`race`], [`io::sim`] |
 //! | 14 Formula SAE | safety: state machine, monitors, stopping distance | [`safety`] |
 //!

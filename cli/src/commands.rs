@@ -15,9 +15,9 @@ use crate::maze_drive::{explore as maze_explore, left as maze_left, lidar as maz
 #[cfg(feature = "native")]
 use crate::starman;
 use crate::{
-    a_to_b, ackermann, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug, edges,
-    follow_me, genetic, grid_benchmark, lane_keeping, lidar_scan, localise, micromouse, motion, navigate,
-    omni, quadtree, random_drive, replay, safety, wall_following,
+    a_to_b, ackermann, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug, dive,
+    edges, follow_me, genetic, grid_benchmark, lane_keeping, lidar_scan, localise, micromouse, motion,
+    navigate, omni, quadtree, random_drive, replay, safety, summit, terrain_plan, wall_following,
 };
 
 /// Runs a command with its command line and its two output streams. Returns the exit status.
@@ -71,6 +71,7 @@ commands!(
     cone_race by run,
     coverage by run,
     distbug by run,
+    dive by run_plain,
     edges by run,
     follow_me by run,
     genetic by run,
@@ -91,6 +92,8 @@ commands!(
     safety by run,
     #[cfg(feature = "native")]
     starman by run,
+    summit by run,
+    terrain_plan by run_plain,
     wall_following by run,
 );
 

@@ -15,6 +15,7 @@ mod cone_race;
 mod cones;
 mod coverage;
 mod distbug;
+mod dive;
 mod driving;
 mod edges;
 mod follow_me;
@@ -35,6 +36,9 @@ mod room;
 mod safety;
 #[cfg(feature = "native")]
 mod starman;
+mod summit;
+mod terrain;
+mod terrain_plan;
 #[cfg(test)]
 mod tests;
 mod wall_following;

@@ -9,16 +9,17 @@ pub trait GroundTruth {
     /// True pose of a robot in the world.
     fn pose(&mut self, robot: usize) -> Result<Pose>;
 
-    /// True pose of a robot in space: elevation, roll and pitch too; level at height 0 unless more is known.
-    fn pose_in_space(&mut self, robot: usize) -> Result<Pose3> {
-        Ok(Pose3::level(self.pose(robot)?, 0.0))
-    }
-
     /// Ground truth of a robot.
     fn robot(&mut self, robot: usize) -> Result<RobotTruth>;
 
     /// Pose of an object in the world, by its index in the scene: robots may have pushed it.
     fn object(&mut self, object: usize) -> Result<Pose>;
+
+    /// Where a robot is in space, and what has become of it on hills. Who knows of no hills says that it is level on the
+    /// floor.
+    fn in_space(&mut self, robot: usize) -> Result<TruthInSpace> {
+        self.pose(robot).map(|pose| TruthInSpace { pose: Pose3::level(pose, 0.0), mishap: None })
+    }
 }
 
 impl<T: GroundTruth + ?Sized> GroundTruth for Box<T> {
@@ -30,10 +31,6 @@ impl<T: GroundTruth + ?Sized> GroundTruth for Box<T> {
         (**self).pose(robot)
     }
 
-    fn pose_in_space(&mut self, robot: usize) -> Result<Pose3> {
-        (**self).pose_in_space(robot)
-    }
-
     fn robot(&mut self, robot: usize) -> Result<RobotTruth> {
         (**self).robot(robot)
     }
@@ -41,6 +38,19 @@ impl<T: GroundTruth + ?Sized> GroundTruth for Box<T> {
     fn object(&mut self, object: usize) -> Result<Pose> {
         (**self).object(object)
     }
+
+    fn in_space(&mut self, robot: usize) -> Result<TruthInSpace> {
+        (**self).in_space(robot)
+    }
+}
+
+/// Where a robot is in space, and what has become of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TruthInSpace {
+    /// Its pose, with elevation, roll and pitch.
+    pub pose: Pose3,
+    /// Why it drives no more, or in vain.
+    pub mishap: Option<Mishap>,
 }
 
 /// Ground truth of one robot.
@@ -69,4 +79,32 @@ pub struct TrailPoint {
     pub pose: Pose,
     /// Pose by odometry, in its own frame.
     pub odometry: Pose,
+}
+
+/// What becomes of a robot on hills that drives no more, or in vain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Mishap {
+    /// It lies on its side or on its back.
+    Tipped,
+    /// It fell by more than its own height, or off the world.
+    Fell,
+    /// Its wheels have turned for two seconds and moved it next to nothing. It is over when it moves again.
+    Stuck,
+    /// The middle of its mass is below the water's surface.
+    Drowned,
+    /// Its motion is no number any more, so that it stays where it was: its description is of no craft that could be.
+    Broken,
+}
+
+impl std::fmt::Display for Mishap {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Tipped => "tipped over",
+            Self::Fell => "fell",
+            Self::Stuck => "stuck",
+            Self::Drowned => "drowned",
+            Self::Broken => "broken",
+        })
+    }
 }

@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use super::{Billboard, Marker, Object, Occupancy, OccupancyGrid, RobotSpec, Terrain, Texture, Wall};
+use super::{Billboard, Marker, Object, Occupancy, OccupancyGrid, RobotSpec, Terrain, Texture, Wall, Water};
 use crate::geometry::{Aabb, Point, Pose, Vector};
 
 /// A place without robots: floor, walls, objects and marks.
@@ -28,6 +28,8 @@ pub struct World {
     pub terrain: Option<Terrain>,
     /// Height of the water surface above the floor (m).
     pub water_level: Option<f64>,
+    /// What the water is like and how it moves.
+    pub water: Water,
 }
 
 impl World {
@@ -45,6 +47,7 @@ impl World {
             places: Vec::new(),
             terrain: None,
             water_level: None,
+            water: Water::default(),
         }
     }
 

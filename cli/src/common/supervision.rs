@@ -5,16 +5,16 @@ use std::sync::{Arc, Mutex, PoisonError};
 use ambassador::Delegate;
 use roverlab::geometry::{Pose, Twist, Vector3, angle_difference};
 use roverlab::io::delegate::{
-    GrayImage, RgbImage, ambassador_impl_Camera, ambassador_impl_Clock, ambassador_impl_Display,
-    ambassador_impl_DistanceSensors, ambassador_impl_Drive, ambassador_impl_Encoders,
-    ambassador_impl_Inertial, ambassador_impl_Keys, ambassador_impl_Lidar, ambassador_impl_Manoeuvres,
-    ambassador_impl_Motors, ambassador_impl_Odometry, ambassador_impl_Radio, ambassador_impl_Servos,
-    ambassador_impl_StallDetector,
+    GrayImage, RgbImage, ambassador_impl_Camera, ambassador_impl_Clock, ambassador_impl_DepthSensor,
+    ambassador_impl_Display, ambassador_impl_DistanceSensors, ambassador_impl_Drive,
+    ambassador_impl_Encoders, ambassador_impl_Inertial, ambassador_impl_Keys, ambassador_impl_Lidar,
+    ambassador_impl_Manoeuvres, ambassador_impl_Motors, ambassador_impl_Odometry, ambassador_impl_Radio,
+    ambassador_impl_Servos, ambassador_impl_StallDetector,
 };
 use roverlab::io::{
-    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill,
-    Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd,
-    Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, DepthSensor, Display, DisplayImage, DisplayOption, DistanceSensors, Drive,
+    Encoders, Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry,
+    Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use roverlab::safety::{
     Causes, Heartbeat, Panel, Requests, SafetyState, StopRecord, StoppingModel, Supervised,
@@ -183,6 +183,7 @@ type Exchange = Box<dyn FnMut(f64, Heartbeat) -> Panel + Send>;
 #[delegate(Motors, target = "inner")]
 #[delegate(Servos, target = "inner")]
 #[delegate(Encoders, target = "inner")]
+#[delegate(DepthSensor, target = "inner")]
 #[delegate(Inertial, target = "inner")]
 struct Guarded {
     inner: Supervised<Driven, Exchange>,

@@ -117,7 +117,7 @@ fn a_recording_on_hills_tells_all_of_the_pose() {
             .map(|_| {
                 robot.wait(0.3)?;
                 let unit = (robot.attitude()?, robot.turn_rates()?, robot.acceleration()?);
-                Ok(format!("{unit:?} {:?}", truth.pose_in_space(0)?))
+                Ok(format!("{unit:?} {:?}", truth.in_space(0)?.pose))
             })
             .collect()
     };
@@ -126,7 +126,7 @@ fn a_recording_on_hills_tells_all_of_the_pose() {
     let mut robot = writer.recorder(simulation.robot(0).unwrap(), 0);
     let mut truth = writer.truth(simulation.truth(), 0);
     let seen = drive(&mut robot, &mut truth).unwrap();
-    let end = truth.pose_in_space(0).unwrap();
+    let end = truth.in_space(0).unwrap().pose;
     assert!(end.position.z > 0.1 && end.tilt() > 0.1, "{end:?}");
     drop(robot);
     let log = Log::read(writer.finish().unwrap()).unwrap();
@@ -136,7 +136,7 @@ fn a_recording_on_hills_tells_all_of_the_pose() {
     assert_eq!(drive(&mut player.robot(0).unwrap(), &mut truth).unwrap(), seen);
     // One from before there were hills does not know.
     let old = Log::read(recorded(0.5)).unwrap();
-    let error = Player::new(&old).truth(0).unwrap().pose_in_space(0).unwrap_err();
+    let error = Player::new(&old).truth(0).unwrap().in_space(0).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::Unsupported);
 }
 

@@ -12,7 +12,7 @@ use super::topics::{TRANSFORMS, TRUTH, WORLD, truth_frame};
 use super::values::{Put, Take, Taking, Values};
 use super::{LogError, LogWriter};
 use crate::geometry::{Point, Pose, Pose3};
-use crate::io::{Error, ErrorKind, GroundTruth, Result, RobotTruth, TrailPoint};
+use crate::io::{Error, ErrorKind, GroundTruth, Result, RobotTruth, TrailPoint, TruthInSpace};
 
 /// Recorded ground truth, made by [`LogWriter::truth`](super::LogWriter::truth).
 #[derive(Debug)]
@@ -47,16 +47,6 @@ impl<T: GroundTruth, W: Write> GroundTruth for RecordedTruth<T, W> {
         result
     }
 
-    /// Viewers see the answer as the frame `robotN/truth` in the world's.
-    fn pose_in_space(&mut self, robot: usize) -> Result<Pose3> {
-        let result = self.inner.pose_in_space(robot);
-        self.notes.note("pose_in_space", &robot, &result);
-        if let Ok(pose) = &result {
-            self.notes.show(robot, pose);
-        }
-        result
-    }
-
     fn robot(&mut self, robot: usize) -> Result<RobotTruth> {
         let result = self.inner.robot(robot);
         self.notes.note_robot(robot, &result);
@@ -66,6 +56,16 @@ impl<T: GroundTruth, W: Write> GroundTruth for RecordedTruth<T, W> {
     fn object(&mut self, object: usize) -> Result<Pose> {
         let result = self.inner.object(object);
         self.notes.note("object", &object, &result);
+        result
+    }
+
+    /// Viewers see the answer as the frame `robotN/truth` in the world's.
+    fn in_space(&mut self, robot: usize) -> Result<TruthInSpace> {
+        let result = self.inner.in_space(robot);
+        self.notes.note("in_space", &robot, &result);
+        if let Ok(truth) = &result {
+            self.notes.show(robot, &truth.pose);
+        }
         result
     }
 }
@@ -216,8 +216,8 @@ pub struct ReplayTruth {
     next: usize,
     time: Option<f64>,
     poses: BTreeMap<usize, Pose>,
-    in_space: BTreeMap<usize, Pose3>,
     objects: BTreeMap<usize, Pose>,
+    in_space: BTreeMap<usize, TruthInSpace>,
     robots: BTreeMap<usize, RobotTruth>,
 }
 
@@ -233,8 +233,8 @@ type Question<'a> = (&'a str, Option<usize>);
 
 impl ReplayTruth {
     pub(super) fn new(position: Position) -> Self {
-        let (poses, in_space, objects, robots) = Default::default();
-        Self { position, next: 0, time: None, poses, in_space, objects, robots }
+        let (poses, objects, in_space, robots) = Default::default();
+        Self { position, next: 0, time: None, poses, objects, in_space, robots }
     }
 
     /// Processes the recorded answers up to the next one to a query, or all before the robot's next call if
@@ -270,14 +270,14 @@ impl ReplayTruth {
                     self.poses.insert(robot, pose);
                 }
             }
-            ("pose_in_space", Some(robot)) => {
-                if let Some(pose) = result.take() {
-                    self.in_space.insert(robot, pose);
-                }
-            }
             ("object", Some(object)) => {
                 if let Some(pose) = result.take() {
                     self.objects.insert(object, pose);
+                }
+            }
+            ("in_space", Some(robot)) => {
+                if let Some(truth) = result.take() {
+                    self.in_space.insert(robot, truth);
                 }
             }
             ("robot", Some(robot)) => {
@@ -311,11 +311,6 @@ impl GroundTruth for ReplayTruth {
         self.poses.get(&robot).copied().ok_or_else(|| untold("where the robot was"))
     }
 
-    fn pose_in_space(&mut self, robot: usize) -> Result<Pose3> {
-        self.catch_up(("pose_in_space", Some(robot)));
-        self.in_space.get(&robot).copied().ok_or_else(|| untold("where the robot was in space"))
-    }
-
     fn robot(&mut self, robot: usize) -> Result<RobotTruth> {
         self.catch_up(("robot", Some(robot)));
         self.robots.get(&robot).cloned().ok_or_else(|| untold("what was true about the robot"))
@@ -324,5 +319,10 @@ impl GroundTruth for ReplayTruth {
     fn object(&mut self, object: usize) -> Result<Pose> {
         self.catch_up(("object", Some(object)));
         self.objects.get(&object).copied().ok_or_else(|| untold("where the object was"))
+    }
+
+    fn in_space(&mut self, robot: usize) -> Result<TruthInSpace> {
+        self.catch_up(("in_space", Some(robot)));
+        self.in_space.get(&robot).copied().ok_or_else(|| untold("where the robot was in space"))
     }
 }

@@ -33,6 +33,11 @@ pub(super) trait Mechanics {
     /// Number of motors with encoders.
     fn motors(&self) -> usize;
 
+    /// How many of them count their turns.
+    fn encoders(&self) -> usize {
+        self.motors()
+    }
+
     /// Whether no manoeuvre is running.
     fn is_done(&self) -> bool;
 

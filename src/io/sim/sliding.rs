@@ -24,7 +24,8 @@ impl Engine {
                 continue;
             }
             let place = self.space.solid(movable.solid).pose.position();
-            let Some(slope) = hills.ground().gradient(place) else { continue };
+            let floats = hills.level(place, &movable) > hills.ground_level(place);
+            let Some(slope) = hills.ground().gradient(place).filter(|_| !floats) else { continue };
             let velocity = slide(movable.velocity, slope, movable.rolls);
             if velocity != Vector::zeros() || movable.velocity != velocity {
                 self.movables[thing].velocity = self.advance(thing, velocity);
@@ -50,7 +51,8 @@ impl Engine {
         }
         self.contacts = contacts;
         if left == velocity {
-            self.put(solid, there);
+            let movable = self.movables[thing];
+            self.put(&movable, there);
             // It may have come near to robots that did not look for it.
             self.bodies.iter_mut().for_each(|body| body.solid_budget = body.solid_budget.min(0.0));
         }

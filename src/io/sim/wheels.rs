@@ -32,6 +32,9 @@ pub(super) struct WheelSpec {
 }
 
 impl WheelSpec {
+    /// Of a robot without wheels.
+    pub(super) const NONE: Self = Self { diameter: 0.0, max_speed: 0.0, ticks_per_turn: 1.0 };
+
     /// The fastest rim speed.
     pub(super) fn limit(&self) -> f64 {
         0.5 * self.diameter * self.max_speed

@@ -9,7 +9,7 @@ impl CraftSpec {
     /// | 1.34 m long, 0.645 m wide, 0.46 m high, 35 kg; two plastic tubes in an aluminium frame; four trolling motors of 12 V and 7 A | Braeunl et al. 2004 |
     /// | tubes of 160 and 110 mm | standard pipes, which carry 35 kg with a reserve of 2.8 %: "naturally buoyant" |
     /// | centre of mass 60 mm below the centre of volume | batteries in the lower tube |
-    /// | 35 N forward, 25 N backward | 84 W at 0.4 N/W, a third of that of trolling motors; [`Thruster::BACK`] |
+    /// | 25 N forward, 17.5 N backward | 84 W at 0.3 N/W, between trolling motors (0.37) and small thrusters (0.18); [`Thruster::BACK`] |
     /// | forward drag 42 N s²/m² | 0.084 m² of tubes, frame and motors, as a bluff body |
     /// | the rest | [`CraftSpec::of_hull`] |
     ///
@@ -26,10 +26,8 @@ impl CraftSpec {
         let mut craft = Self::of_hull(35.0, Point3::new(0.0, 0.0, 0.20), hull);
         craft.quadratic_damping[0] = 42.0;
         craft.linear_damping[0] = 4.2;
-        let motor = |name: &str, x, y, direction| Thruster {
-            back: 25.0,
-            ..Thruster::new(name, Point3::new(x, y, 0.26), direction, 35.0)
-        };
+        let motor =
+            |name: &str, x, y, direction| Thruster::new(name, Point3::new(x, y, 0.26), direction, 25.0);
         craft.thrusters = vec![
             motor("LEFT", 0.0, 0.29, Vector3::x()),
             motor("FRONT", 0.50, 0.0, Vector3::z()),

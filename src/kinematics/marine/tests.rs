@@ -41,7 +41,7 @@ fn speeds_come_to_where_damping_equals_the_force() {
     hovering.centre_of_mass = middle;
     hovering.thrusters.iter_mut().for_each(|thruster| thruster.place.z = middle.z);
     let craft = Craft::new(&hovering, 0.01).unwrap();
-    for (commands, force) in [([1.0, 0.0, 1.0, 0.0], 70.0), ([-1.0, 0.0, -1.0, 0.0], -50.0)] {
+    for (commands, force) in [([1.0, 0.0, 1.0, 0.0], 50.0), ([-1.0, 0.0, -1.0, 0.0], -35.0)] {
         let mut state = floating(&craft, 0.0);
         run(&craft, &mut state, &commands, &deep, 60.0);
         let speed = terminal(spec.linear_damping[0], spec.quadratic_damping[0], f64::abs(force));

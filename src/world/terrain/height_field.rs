@@ -1,4 +1,4 @@
-use super::pyramid::Pyramid;
+use super::pyramid::{FIRST, Pyramid};
 use crate::ParameterError;
 use crate::geometry::{Aabb, Point, Vector, Vector3};
 use crate::parameter::require;
@@ -154,6 +154,29 @@ impl HeightField {
         f64::from(self.pyramid.whole().high)
     }
 
+    /// No place of a rectangle is higher than this; some place not much farther away may be as high. Beyond the surface
+    /// there is nothing: -∞. O(1).
+    pub fn upper_bound(&self, area: &Aabb) -> f64 {
+        let (low, high) = (area.min.sup(&self.area.min), area.max.inf(&self.area.max));
+        if !(low.x <= high.x && low.y <= high.y) {
+            return f64::NEG_INFINITY;
+        }
+        let cell = |point: Point| {
+            let place = (point - self.area.min).component_mul(&self.per_metre);
+            ((place.x as usize).min(self.columns - 2), (place.y as usize).min(self.rows - 2))
+        };
+        let ((left, below), (right, above)) = (cell(low), cell(high));
+        let size = (right - left).max(above - below).max(1);
+        let level = size.ilog2().clamp(FIRST, self.pyramid.top());
+        let mut highest = f32::NEG_INFINITY;
+        for row in (below >> level)..=(above >> level) {
+            for column in (left >> level)..=(right >> level) {
+                highest = highest.max(self.pyramid.block(level, column << level, row << level).high);
+            }
+        }
+        f64::from(highest)
+    }
+
     /// The elevation at a point in metres; `None` beyond the surface.
     #[inline]
     pub fn height(&self, point: Point) -> Option<f64> {
@@ -280,6 +303,31 @@ mod tests {
         let field = HeightField::new(2, 2, area(1.0, 1.0), vec![1.0, 0.0, 0.0, 1.0]).unwrap();
         assert_eq!(field.height(Point::new(-0.5, 2.5)), Some(1.0));
         assert_eq!(field.height(Point::new(-0.5, 2.0)), Some(0.5));
+    }
+
+    #[test]
+    fn bounds_hold_for_every_place_of_a_rectangle() {
+        let mut stream = crate::random::Stream::new(5);
+        let all = area(9.0, 7.0);
+        let field = HeightField::from_fn(40, 30, all, |_| stream.between(-1.0, 1.0)).unwrap();
+        for _ in 0..300 {
+            let mut corner = || Point::new(stream.between(-2.0, 9.0), stream.between(1.0, 10.0));
+            let (a, b) = (corner(), corner());
+            let part = Aabb::new(a.inf(&b), a.sup(&b));
+            let bound = field.upper_bound(&part);
+            assert!(bound <= field.highest());
+            for _ in 0..20 {
+                let at = Point::new(
+                    stream.between(part.min.x, part.max.x),
+                    stream.between(part.min.y, part.max.y),
+                );
+                assert!(field.height(at).is_none_or(|height| height <= bound));
+            }
+        }
+        assert_eq!(
+            field.upper_bound(&Aabb::new(Point::new(20.0, 3.0), Point::new(21.0, 4.0))),
+            f64::NEG_INFINITY
+        );
     }
 
     #[test]

@@ -5,8 +5,9 @@ use super::fisheye::{Fisheye, Gaze};
 use super::studio::Studio;
 use super::view::View;
 use crate::geometry::{Point3, Pose, Pose3, units};
+use crate::io::camera::FRAME_RATE;
 use crate::io::sim::terrain::Hills;
-use crate::io::sim::{NoiseModel, TICKS_PER_SECOND};
+use crate::io::sim::{NoiseModel, SERVO_RATE, TICKS_PER_SECOND};
 use crate::io::{Error, ErrorKind, Resolution, Result};
 use crate::random::Stream;
 use crate::world::space::Space;
@@ -28,10 +29,6 @@ pub(in crate::io::sim) struct CameraDevice {
     last: Option<(u64, RgbImage)>,
 }
 
-/// Images that the camera takes in a second. Who asks more often gets the same image again.
-const FRAME_RATE: f64 = 30.0;
-/// Degrees per second at which a servo turns.
-const SERVO_RATE: f64 = 30.0;
 /// Pictures of a pinhole camera grow without end towards 180 degrees.
 const WIDEST: f64 = 170.0;
 

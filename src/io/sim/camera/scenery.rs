@@ -133,7 +133,7 @@ impl Scenery {
         }
         for marker in &self.markers {
             let Marker { position, colour, alpha } = *marker;
-            let on_hills = hills.map(|hills| hills.level(position));
+            let on_hills = hills.map(|hills| hills.ground_level(position));
             self.carpenter.spot(canvas, view, (position, on_hills), MARKER, (colour, alpha));
         }
         if hills.is_none() {
@@ -167,7 +167,7 @@ impl Scenery {
             }
         }
         for board in &self.billboards {
-            let level = hills.map_or(0.0, |hills| hills.level(board.pose.position()));
+            let level = hills.map_or(0.0, |hills| hills.ground_level(board.pose.position()));
             draw_poster(&mut self.cutter, canvas, view, board, level);
         }
         Ok(())

@@ -1,27 +1,27 @@
 use nalgebra::{Quaternion, UnitQuaternion};
 
-use super::undercarriage::{GRAVITY, Grip, Undercarriage};
+use super::undercarriage::{Foot, GRAVITY, Grip, Undercarriage};
 use crate::geometry::{Point3, Pose, Pose3, Vector3, math};
 use crate::kinematics::PlanarTwist;
 use crate::world::HeightField;
 
-/// A robot's body of mass 1 on its feet.
+/// A robot's body with mass 1 on its feet.
 #[derive(Debug, Clone)]
 pub(super) struct RigidBody {
-    /// The middle of the mass, and how the body is turned.
+    /// Centre of mass and attitude of the body.
     place: Point3,
     attitude: UnitQuaternion<f64>,
     velocity: Vector3,
-    /// Radians per second about each axis of the world.
+    /// Angular velocity about each axis of the world (rad/s).
     spin: Vector3,
-    /// Each foot's impulse in the last tick: along the ground's normal, and along two tangents.
+    /// Impulse of each foot in the last tick: along the ground's normal and two tangents.
     impulses: Vec<Vector3>,
     contacts: Vec<Contact>,
-    /// Whether the last tick did not move it.
+    /// Whether it did not move in the last tick.
     asleep: bool,
 }
 
-/// A foot on the ground, or about to be.
+/// A foot on the ground, or about to reach it.
 #[derive(Debug, Clone)]
 struct Contact {
     foot: usize,
@@ -56,13 +56,13 @@ const SETTLED: f64 = 1e-9;
 const MARGIN: f64 = 2e-3;
 /// A foot that would end this deep looks where it comes into the ground.
 const DEEP: f64 = 1.5e-3;
-/// The energy of motion, in J for a kilogram, of a body that stands: 10 µm/s.
+/// Kinetic energy of a body at rest (J/kg): 10 µm/s.
 const ASLEEP: f64 = 5e-11;
-/// The speed at which a body that was put into the ground comes out of it, in m/s.
+/// Speed at which a body placed in the ground leaves it (m/s).
 const EMERGING: f64 = 0.25;
 
 impl RigidBody {
-    /// A body at rest, its robot's frame at a pose.
+    /// A body at rest with its robot's frame at a pose.
     pub(super) fn new(carriage: &Undercarriage, pose: &Pose3) -> Self {
         Self {
             place: pose.to_world(Point3::from(carriage.centre)),
@@ -75,37 +75,37 @@ impl RigidBody {
         }
     }
 
-    /// The pose of the robot's frame.
+    /// Pose of the robot's frame.
     pub(super) fn pose(&self, carriage: &Undercarriage) -> Pose3 {
         Pose3::new(self.place - self.attitude * carriage.centre, self.attitude)
     }
 
-    /// The middle of the mass.
+    /// Centre of mass.
     pub(super) fn middle(&self) -> Point3 {
         self.place
     }
 
-    /// Metres per second of the middle of the mass.
+    /// Velocity of the centre of mass (m/s).
     pub(super) fn velocity(&self) -> Vector3 {
         self.velocity
     }
 
-    /// Radians per second about each axis of the world.
+    /// Angular velocity about each axis of the world (rad/s).
     pub(super) fn spin(&self) -> Vector3 {
         self.spin
     }
 
-    /// Whether it stands and nothing but a drive would move it.
+    /// Whether it is at rest and only a drive can move it.
     pub(super) fn is_asleep(&self) -> bool {
         self.asleep
     }
 
-    /// Whether a foot carried it in the last tick.
+    /// Whether a foot supported it in the last tick.
     pub(super) fn is_carried(&self) -> bool {
         self.impulses.iter().any(|impulse| impulse.x > 0.0)
     }
 
-    /// Energy for a kilogram, in J, above that of rest at height 0.
+    /// Energy above that at rest at height 0 (J/kg).
     pub(super) fn energy(&self, carriage: &Undercarriage) -> f64 {
         GRAVITY * self.place.z + self.kinetic(carriage)
     }
@@ -114,8 +114,8 @@ impl RigidBody {
         0.5 * (self.velocity.norm_squared() + carriage.gyration * self.spin.norm_squared())
     }
 
-    /// Moves the body for `tick` seconds, while its drive turns wheels so that they would move it at a speed on
-    /// level ground.
+    /// Moves the body for `tick` seconds. `drive` is the speed at which its wheels would move it on level
+    /// ground.
     pub(super) fn step(
         &mut self,
         ground: &HeightField,
@@ -144,8 +144,8 @@ impl RigidBody {
         self.attitude = UnitQuaternion::new_normalize((turn(spin * tick) * self.attitude).into_inner());
     }
 
-    /// Slows the body down if it has come to more energy without a motor, because the ground has an edge of which the
-    /// tick does not know. Returns whether it may be where it is.
+    /// Slows the body down if its energy has increased without a motor, because of a ground edge unknown to
+    /// the tick. Returns whether its position is valid.
     fn keeps_energy(&mut self, before: f64, carriage: &Undercarriage) -> bool {
         let (more, kinetic) = (self.energy(carriage) - before, self.kinetic(carriage));
         if more <= 0.0 {
@@ -157,7 +157,7 @@ impl RigidBody {
         kinetic >= more
     }
 
-    /// Finds the feet that meet the ground in this tick if the body moves at about these speeds.
+    /// Finds the feet that meet the ground in this tick if the body moves at approximately these speeds.
     fn look(
         &mut self,
         ground: &HeightField,
@@ -166,7 +166,7 @@ impl RigidBody {
         (velocity, spin): (Vector3, Vector3),
         tick: f64,
     ) {
-        // Arms and rims point as they do in the middle of the tick, so that an arc is one.
+        // Arms and rims are taken at the middle of the tick, so that arcs are exact.
         let middle = turn(spin * (0.5 * tick)) * self.attitude;
         let forward = middle * Vector3::x();
         // A body that hits the ground on one side turns its other side towards it within the tick.
@@ -194,7 +194,7 @@ impl RigidBody {
         }
     }
 
-    /// The speeds at the tick's end, from those without the ground.
+    /// Speeds at the end of the tick from those without the ground.
     fn solve(
         &mut self,
         carriage: &Undercarriage,
@@ -227,7 +227,8 @@ impl RigidBody {
         speeds
     }
 
-    /// Moves the body aside, as something in the way of its outline does, and takes the speed that led it there.
+    /// Displaces the body like an obstacle in the way of its outline, and removes the speed in that
+    /// direction.
     pub(super) fn shove(&mut self, aside: crate::geometry::Vector, turned: f64, tick: f64) {
         let way = Vector3::new(aside.x, aside.y, 0.0);
         self.place += way;
@@ -237,8 +238,8 @@ impl RigidBody {
         self.spin.z += turned / tick;
     }
 
-    /// A body that rests on the ground, its robot's frame at a pose in the plane. Beyond the ground it begins level, at height 0,
-    /// and falls.
+    /// A body at rest on the ground with its robot's frame at a pose in the plane. Beyond the ground it
+    /// starts level, at height 0, and falls.
     pub(super) fn resting(ground: &HeightField, carriage: &Undercarriage, pose: Pose, tick: f64) -> Self {
         let (level, slope) = ground.height_and_gradient(pose.position()).unwrap_or_default();
         let forward = Vector3::new(pose.forward().x, pose.forward().y, slope.dot(&pose.forward()));
@@ -247,8 +248,18 @@ impl RigidBody {
         let roll = math::asin((left.z / math::cos(pitch)).clamp(-1.0, 1.0));
         let start = Point3::new(pose.x, pose.y, level);
         let mut body = Self::new(carriage, &Pose3::from_angles(start, roll, pitch, pose.heading));
+        body.place.z += body.depth(ground, carriage);
         body.settle(ground, carriage, tick);
         body
+    }
+
+    /// Depth of the deepest foot below the ground (m), at least 0.
+    fn depth(&self, ground: &HeightField, carriage: &Undercarriage) -> f64 {
+        let below = |foot: &Foot| {
+            let at = self.place + self.attitude * foot.place;
+            ground.height(at.xy()).map_or(0.0, |level| level - at.z)
+        };
+        carriage.feet.iter().map(below).fold(0.0, f64::max)
     }
 
     /// Comes to rest without sliding.
@@ -270,11 +281,12 @@ impl RigidBody {
     }
 }
 
-/// Ticks in which a body comes to rest where it is put, at most, and the share of its speed that each leaves it.
+/// Largest number of ticks in which a placed body comes to rest, and the fraction of its speed that remains
+/// after each.
 const MOST_SETTLING: u32 = 400;
 const CALMING: f64 = 0.8;
 
-/// The plane that a foot is to be on at the end of its way: its normal, and the foot's distance from it at the start;
+/// Normal of the ground where a foot arrives on its way, and the foot's initial distance from that plane;
 /// `None` beyond the ground.
 ///
 /// It goes through the ground's place at the end, but lies as the ground does in the middle of the way: as arms and
@@ -292,7 +304,7 @@ fn plane(ground: &HeightField, start: Point3, way: Vector3) -> Option<(Vector3, 
     if gap + normal.dot(&way) > -DEEP {
         return Some((normal, gap));
     }
-    // Under the end there may be the ground behind a face that the foot runs into.
+    // The ground under the end point may be behind a face that the foot runs into.
     let clear = ground.height(start.xy()).map_or(0.0, |level| start.z - level);
     let length = way.norm();
     if clear < -DEEP || length == 0.0 {
@@ -304,7 +316,7 @@ fn plane(ground: &HeightField, start: Point3, way: Vector3) -> Option<(Vector3, 
     if hit.is_finite() { at(lifted + direction * (hit + 1e-9)) } else { Some((normal, gap)) }
 }
 
-/// The rotation by a vector's length about it.
+/// Rotation about a vector by its length.
 fn turn(by: Vector3) -> UnitQuaternion<f64> {
     let angle = by.norm();
     if angle == 0.0 {
@@ -379,7 +391,7 @@ impl Contact {
         self.impulse.component_mul_assign(&Vector3::new(1.0, held[0], held[1]));
     }
 
-    /// Presses the foot against the ground as hard as its speed asks for; returns the change of the impulse.
+    /// Applies the normal force required by the foot's speed; returns the change of the impulse.
     #[inline]
     fn press(&mut self, speeds: &mut (Vector3, Vector3), softness: f64, tick: f64) -> f64 {
         let axis = &self.axes[0];
@@ -393,7 +405,7 @@ impl Contact {
         change.abs()
     }
 
-    /// Rubs the foot along the ground as its sliding asks for, within friction's limit; returns the change of the
+    /// Applies the friction required by the foot's sliding, up to its limit; returns the change of the
     /// impulse.
     #[inline]
     fn rub(&mut self, speeds: &mut (Vector3, Vector3), friction: f64) -> f64 {
