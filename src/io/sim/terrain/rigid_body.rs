@@ -1,6 +1,6 @@
 use nalgebra::{Quaternion, UnitQuaternion};
 
-use super::undercarriage::{GRAVITY, Grip, Undercarriage};
+use super::undercarriage::{Foot, GRAVITY, Grip, Undercarriage};
 use crate::geometry::{Point3, Pose, Pose3, Vector3, math};
 use crate::kinematics::PlanarTwist;
 use crate::world::HeightField;
@@ -248,8 +248,18 @@ impl RigidBody {
         let roll = math::asin((left.z / math::cos(pitch)).clamp(-1.0, 1.0));
         let start = Point3::new(pose.x, pose.y, level);
         let mut body = Self::new(carriage, &Pose3::from_angles(start, roll, pitch, pose.heading));
+        body.place.z += body.depth(ground, carriage);
         body.settle(ground, carriage, tick);
         body
+    }
+
+    /// Depth of the deepest foot below the ground (m), at least 0.
+    fn depth(&self, ground: &HeightField, carriage: &Undercarriage) -> f64 {
+        let below = |foot: &Foot| {
+            let at = self.place + self.attitude * foot.place;
+            ground.height(at.xy()).map_or(0.0, |level| level - at.z)
+        };
+        carriage.feet.iter().map(below).fold(0.0, f64::max)
     }
 
     /// Comes to rest without sliding.

@@ -307,15 +307,15 @@ fn the_tick_matters_little() {
     }
 }
 
-/// Rigid bodies on more than three wheels rock from some to others, and which of them slip, and when, depends on
-/// little things.
+/// The same where more than three wheels stay on the ground; elsewhere rigid bodies rock, and slip differently each
+/// time.
 #[test]
-fn the_tick_matters_more_where_robots_rock() {
-    let ground = hills(5, 0.4);
+fn the_tick_matters_little_to_skidding_robots_on_a_plane() {
+    let ground = field(33, |at| 0.15 * at.x + 0.1 * at.y);
     for spec in [RobotSpec::omni(), RobotSpec::blizzard()] {
         let drive = PlanarTwist::new(0.25, 0.0, 0.02);
-        let found = apart(&ends(&spec, &ground, Pose::new(-2.0, -1.0, 0.3), drive, 10));
-        assert!(found.0 < 1e-2 && found.1 < 1.0, "{}: {found:?}", spec.name);
+        let found = apart(&ends(&spec, &ground, Pose::new(-3.5, 0.0, 0.0), drive, 20));
+        assert!(found.0 < 1e-3 && found.1 < 0.1, "{}: {found:?}", spec.name);
     }
 }
 
@@ -379,17 +379,25 @@ mod campaigns {
     #[ignore = "takes minutes"]
     fn ten_million_driven_ticks_above_the_ground() {
         let (mut stream, robots) = (Stream::new(2), robots());
-        for run in 0..5000_usize {
-            let ground = hills(run as u64, 0.6);
-            let spec = &robots[run % robots.len()];
+        let (mut ticks, mut runs) = (0, 0);
+        while ticks < 10_000_000 {
+            let ground = hills(runs, 0.6);
+            let spec = &robots[runs as usize % robots.len()];
             let heading = stream.between(-3.0, 3.0);
             let mut robot = Robot::resting(spec, &ground, Pose::new(0.0, 0.0, heading));
             let drive = PlanarTwist::new(stream.between(-0.4, 0.4), 0.0, stream.between(-1.0, 1.0));
             for tick in 0..2000 {
                 robot.step(&ground, drive);
+                let at = robot.pose().position;
+                // Who drives off the hills falls beside them.
+                if at.x.abs().max(at.y.abs()) > 3.5 {
+                    break;
+                }
                 let depth = robot.depth(&ground);
-                assert!(depth < 0.01, "{}, run {run}, tick {tick}: {depth} m deep", spec.name);
+                assert!(depth < 0.01, "{}, run {runs}, tick {tick}: {depth} m deep", spec.name);
+                ticks += 1;
             }
+            runs += 1;
         }
     }
 }
