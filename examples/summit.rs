@@ -1,5 +1,6 @@
-//! A mountain range (book, section 7.4): a snow truck on belts looks around with its lidar, maps what it sees, and
-//! drives to the highest place that it can reach. Steepest ascent alone ends on the first top that it meets.
+//! A mountain range (book, section 7.4): a snow truck on belts looks around with its lidar, maps what it
+//! sees, and drives to the highest place that it can reach. Steepest ascent alone ends on the first top that
+//! it meets.
 //!
 //! `cargo run --release --example summit`
 

@@ -15,8 +15,8 @@ pub trait GroundTruth {
     /// Pose of an object in the world, by its index in the scene: robots may have pushed it.
     fn object(&mut self, object: usize) -> Result<Pose>;
 
-    /// Where a robot is in space, and what has become of it on hills. Who knows of no hills says that it is level on the
-    /// floor.
+    /// Where a robot is in space, and what has become of it on hills. Who knows of no hills says that it is
+    /// level on the floor.
     fn in_space(&mut self, robot: usize) -> Result<TruthInSpace> {
         self.pose(robot).map(|pose| TruthInSpace { pose: Pose3::level(pose, 0.0), mishap: None })
     }

@@ -74,11 +74,12 @@ impl Tracked {
         Differential { track: 4.0 / (slow + fast) }
     }
 
-    /// Metres that a turn of one radian on the spot takes the robot downhill, for a slope of 1 and a friction of 1, and so
-    /// in proportion to the slope and less with more friction.
+    /// Metres that a turn of one radian on the spot takes the robot downhill, for a slope of 1 and a friction
+    /// of 1, and so in proportion to the slope and less with more friction.
     ///
-    /// All of the belts slides in a turn, and friction does not care how fast: against a small pull across its slide a
-    /// place of a belt yields as easily as a viscous one whose force is the friction over the speed of its slide.
+    /// All of the belts slides in a turn, and friction does not care how fast: against a small pull across
+    /// its slide a place of a belt yields as easily as a viscous one whose force is the friction over the
+    /// speed of its slide.
     ///
     /// ```
     /// use roverlab::kinematics::Tracked;

@@ -175,8 +175,9 @@ pub fn worlds() -> impl Strategy<Value = Course> {
     })
 }
 
-/// Hills of a kind, with a slope of 5 to 20 degrees and a place to start from, as [`relief`] makes them. What a robot can reach
-/// of them, and how high that is, tells [`ElevationMap::highest_reachable`](crate::nav::elevation::ElevationMap).
+/// Hills of a kind, with a slope of 5 to 20 degrees and a place to start from, as [`relief`] makes them. What
+/// a robot can reach of them, and how high that is, tells
+/// [`ElevationMap::highest_reachable`](crate::nav::elevation::ElevationMap).
 ///
 /// ```
 /// use proptest::prelude::*;

@@ -60,7 +60,8 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value_t = Method::Search)]
     pub(crate) method: Method,
 
-    /// The steepest ground on which the robot trusts itself [default: seven tenths of where it would slip or tip].
+    /// The steepest ground on which the robot trusts itself [default: seven tenths of where it would slip or
+    /// tip].
     #[arg(long, value_name = "DEG", value_parser = parse_slope, allow_hyphen_values = true)]
     pub(crate) slope: Option<f64>,
 

@@ -35,7 +35,8 @@ impl Trial {
     }
 }
 
-/// The shares of climbs that are to reach the summit, and to be without a mishap; the most that the median path may be longer.
+/// The shares of climbs that are to reach the summit, and to be without a mishap; the most that the median
+/// path may be longer.
 const REACHED: f64 = 0.98;
 const UNHARMED: f64 = 0.995;
 const LONGEST: f64 = 2.5;

@@ -19,7 +19,8 @@ pub(crate) struct Hike {
 }
 
 impl Hike {
-    /// The scene that the options describe, or the command's own; a robot of this kind drives where the world has none.
+    /// The scene that the options describe, or the command's own; a robot of this kind drives where the world
+    /// has none.
     pub(crate) fn of(
         common: &CommonArgs,
         spec: &RobotSpec,

@@ -53,8 +53,8 @@ impl Cost {
     }
 }
 
-/// The force that rolling on belts takes, as a share of the weight; and the climbing speed as a share of that on level ground: up
-/// a slope of 10 degrees a robot is as fast as on level ground.
+/// The force that rolling on belts takes, as a share of the weight; and the climbing speed as a share of that
+/// on level ground: up a slope of 10 degrees a robot is as fast as on level ground.
 const RESISTANCE: f64 = 0.1;
 const CLIMB: f64 = 0.17;
 

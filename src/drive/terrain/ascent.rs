@@ -55,8 +55,8 @@ impl AscentParameters {
     }
 }
 
-/// Drives up the steepest way, always turning to where the ground around rises most, until it does not get higher any more
-/// (book, section 7.4).
+/// Drives up the steepest way, always turning to where the ground around rises most, until it does not get
+/// higher any more (book, section 7.4).
 ///
 /// That is the top of a hill, and seldom the highest one: `nav::SummitSearch` goes on from there.
 ///

@@ -4,7 +4,8 @@ use crate::geometry::{Point3, Pose3, Vector, Vector3, direction, math, normalize
 use crate::io::{Attitude, DistanceSensors, Lidar, LidarScan, LidarSettings, Psd, Result};
 use crate::world::{Mount, PsdSpec, RobotSpec};
 
-/// What tells how the ground around a robot slopes: a lidar whose beams look down, or distance sensors that do.
+/// What tells how the ground around a robot slopes: a lidar whose beams look down, or distance sensors that
+/// do.
 ///
 /// ```
 /// use roverlab::drive::terrain::SlopeSensor;
@@ -14,8 +15,8 @@ use crate::world::{Mount, PsdSpec, RobotSpec};
 /// assert!(SlopeSensor::psds(&SlopeSensor::equip(plain)).is_some());
 /// ```
 ///
-/// Either measures points of the ground in the robot's frame; the inertial unit says how that is turned. Without it they would
-/// show how the ground bends, and not how it slopes, as the robot lies on it.
+/// Either measures points of the ground in the robot's frame; the inertial unit says how that is turned.
+/// Without it they would show how the ground bends, and not how it slopes, as the robot lies on it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SlopeSensor {
     /// Where the lidar sits, if that is what looks.
@@ -112,8 +113,8 @@ impl SlopeSensor {
     }
 }
 
-/// Metres that the ground around rises in a metre ahead and to the left, by the plane through some points of it in the robot's
-/// frame; `None` if they do not span one.
+/// Metres that the ground around rises in a metre ahead and to the left, by the plane through some points of
+/// it in the robot's frame; `None` if they do not span one.
 pub(super) fn slope(points: &[Point3], attitude: Attitude) -> Option<Vector> {
     let level = Attitude { yaw: 0.0, ..attitude }.frame();
     let points: Vec<Point3> = points.iter().map(|&point| level.to_world(point)).collect();

@@ -29,14 +29,14 @@ pub struct Climber {
 const TRUSTED: f64 = 0.7;
 /// The share of a wheel's radius that it climbs as a step.
 const CLIMBED: f64 = 0.6;
-/// The height of the middle of the mass as a share of the robot's, and the share of the way from the axle to the castor,
-/// as the simulator assumes them.
+/// The height of the middle of the mass as a share of the robot's, and the share of the way from the axle to
+/// the castor, as the simulator assumes them.
 const MIDDLE: f64 = 0.4;
 const BETWEEN: f64 = 0.3;
 
 impl Climber {
-    /// What a robot can do by its friction, its wheels or belts and the height of its mass: seven tenths of the slope on which it
-    /// would slip or tip over.
+    /// What a robot can do by its friction, its wheels or belts and the height of its mass: seven tenths of
+    /// the slope on which it would slip or tip over.
     pub fn of(spec: &RobotSpec) -> Self {
         let reach = spec.footprint.bounding_radius();
         let (wheel_diameter, support) = match spec.drive {

@@ -11,8 +11,8 @@ use crate::world::{GridCell, HeightField};
 pub enum Objective {
     /// Metres along the ground.
     Length,
-    /// Joules for each newton of the robot's weight: metres lifted, and metres driven times the resistance to rolling.
-    /// Brakes take what a descent gives.
+    /// Joules for each newton of the robot's weight: metres lifted, and metres driven times the resistance to
+    /// rolling. Brakes take what a descent gives.
     Energy {
         /// The force that rolling on level ground takes, as a share of the weight.
         resistance: f64,
@@ -39,7 +39,8 @@ impl Objective {
         }
     }
 
-    /// What a straight stretch costs that leads so many metres on over the map and up: no less than on level ground.
+    /// What a straight stretch costs that leads so many metres on over the map and up: no less than on level
+    /// ground.
     #[inline]
     pub fn of_stretch(&self, run: f64, rise: f64) -> f64 {
         match *self {
@@ -94,8 +95,8 @@ impl GroundCosts {
         }
     }
 
-    /// What a straight way between two places costs, in samples, by the ground at places about half a cell apart; `None`
-    /// if it leads near a sample that is not `open`.
+    /// What a straight way between two places costs, in samples, by the ground at places about half a cell
+    /// apart; `None` if it leads near a sample that is not `open`.
     pub(super) fn straight(&self, from: Point, to: Point, open: impl Fn(GridCell) -> bool) -> Option<f64> {
         let way = to - from;
         let stretches = (2.0 * way.x.abs().max(way.y.abs())).ceil().max(1.0);

@@ -6,8 +6,8 @@ use crate::world::{BitGrid, GridCell, HeightField};
 
 /// Where on a surface a robot can stand: its samples are the cells of a grid that is free where it can.
 ///
-/// A sample is closed if the plane through the ground under the robot is steeper than it can stand on, if a step under it is
-/// too high, and if it would reach beyond the surface.
+/// A sample is closed if the plane through the ground under the robot is steeper than it can stand on, if a
+/// step under it is too high, and if it would reach beyond the surface.
 ///
 /// ```
 /// use roverlab::geometry::{Aabb, Point};
@@ -32,7 +32,8 @@ pub struct ElevationMap {
     open: BitGrid,
 }
 
-/// What of the ground counts as under the robot, in whole samples and micrometres: sums of these are the same in any order.
+/// What of the ground counts as under the robot, in whole samples and micrometres: sums of these are the same
+/// in any order.
 #[derive(Debug, Clone)]
 struct Footing {
     columns: usize,

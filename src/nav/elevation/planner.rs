@@ -19,8 +19,8 @@ pub struct ElevationPath {
 
 /// Plans on an [`ElevationMap`], from sample to sample by Dijkstra's algorithm or A\*, or in any direction.
 ///
-/// The ways of the first two cost the same; A\*'s bound is the cost on level ground. Those in any direction are A\*'s with
-/// every part made straight that is cheaper so, and never cost more.
+/// The ways of the first two cost the same; A\*'s bound is the cost on level ground. Those in any direction
+/// are A\*'s with every part made straight that is cheaper so, and never cost more.
 ///
 /// ```
 /// use roverlab::geometry::{Aabb, Point};

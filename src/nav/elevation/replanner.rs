@@ -7,7 +7,8 @@ use crate::nav::grid::{DStarLite, End, PlanError};
 use crate::parameter::require;
 use crate::world::{BitGrid, GridCell, HeightField};
 
-/// The cheapest way of a robot that finds out on its way that the ground is different: D\* Lite on an [`ElevationMap`].
+/// The cheapest way of a robot that finds out on its way that the ground is different: D\* Lite on an
+/// [`ElevationMap`].
 ///
 /// ```
 /// use roverlab::geometry::{Aabb, Point};

@@ -3,8 +3,8 @@ use crate::geometry::Point;
 use crate::nav::grid::StepCosts;
 use crate::world::{BitGrid, GridCell};
 
-/// A way of straight lines between some of the cells of a way that goes from cell to cell, and its cost: no more than that of
-/// the given one, and lower where a straight line is.
+/// A way of straight lines between some of the cells of a way that goes from cell to cell, and its cost: no
+/// more than that of the given one, and lower where a straight line is.
 pub(super) fn straightened(costs: &GroundCosts, open: &BitGrid, cells: &[GridCell]) -> (Vec<GridCell>, f64) {
     // From each cell back over 1, 2, 4, 8, ... others; then between any two of those that are left.
     let halves =
@@ -13,7 +13,8 @@ pub(super) fn straightened(costs: &GroundCosts, open: &BitGrid, cells: &[GridCel
     shortest(costs, open, &few, |to| (0..to).collect())
 }
 
-/// The cheapest chain of straight lines from the first of some cells to the last one, forwards through the list.
+/// The cheapest chain of straight lines from the first of some cells to the last one, forwards through the
+/// list.
 fn shortest(
     costs: &GroundCosts,
     open: &BitGrid,

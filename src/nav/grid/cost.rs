@@ -10,9 +10,9 @@ use crate::world::GridCell;
 
 /// What the steps of a [`GridSearch`](super::GridSearch) or a [`DStarLite`](super::DStarLite) cost.
 pub trait StepCosts {
-    /// The cost of a step from a cell to one beside it, in edges of a cell: no less than its length, which is 1 or the
-    /// square root of 2, and no more than 10,000; what lies beyond, and what is no number, counts as the nearer of them.
-    /// A step that cannot be made at all leads to or from a cell that is not free.
+    /// The cost of a step from a cell to one beside it, in edges of a cell: no less than its length, which is
+    /// 1 or the square root of 2, and no more than 10,000; what lies beyond, and what is no number, counts as
+    /// the nearer of them. A step that cannot be made at all leads to or from a cell that is not free.
     fn cost(&self, from: GridCell, to: GridCell) -> f64;
 
     /// Whether every step costs its length.

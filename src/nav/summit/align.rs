@@ -3,8 +3,8 @@ use nalgebra::{SMatrix, SVector};
 use super::sight_map::SightMap;
 use crate::geometry::{Point3, Vector};
 
-/// How a look has to be moved to lie on the map: along both axes, upwards, about the upright axis, and by how much it rises in a
-/// metre along both axes.
+/// How a look has to be moved to lie on the map: along both axes, upwards, about the upright axis, and by how
+/// much it rises in a metre along both axes.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Shift {
     pub(super) place: Vector,
@@ -13,18 +13,19 @@ pub(super) struct Shift {
     pub(super) tilt: Vector,
 }
 
-/// Metres from the map at which a point counts half, by rounds of the fit: many count at first, so that a look finds its place
-/// from afar.
+/// Metres from the map at which a point counts half, by rounds of the fit: many count at first, so that a
+/// look finds its place from afar.
 const OUTLIERS: [f64; 14] =
     [0.15, 0.15, 0.1, 0.1, 0.06, 0.06, 0.04, 0.04, OUTLIER, OUTLIER, OUTLIER, OUTLIER, OUTLIER, OUTLIER];
 const OUTLIER: f64 = 0.02;
 /// The fewest points that count.
 const ENOUGH: usize = 100;
-/// How far dead reckoning may be off, as standard deviations: along both axes, upwards, about the upright axis.
+/// How far dead reckoning may be off, as standard deviations: along both axes, upwards, about the upright
+/// axis.
 const EXPECTED: [f64; 4] = [0.3, 0.3, 0.1, 0.05];
 
-/// Fits points around a robot to the map by least squares on their heights, with little weight for outliers. `tilt` is by how
-/// much the look may be tilted, in radians. `None` if they do not lie on it.
+/// Fits points around a robot to the map by least squares on their heights, with little weight for outliers.
+/// `tilt` is by how much the look may be tilted, in radians. `None` if they do not lie on it.
 pub(super) fn align(map: &SightMap, robot: Point3, points: &[Point3], tilt: f64) -> Option<Shift> {
     let prior = [EXPECTED[0], EXPECTED[1], EXPECTED[2], EXPECTED[3], tilt, tilt];
     let mut fit = SVector::<f64, 6>::zeros();

@@ -17,7 +17,8 @@ pub(super) struct Reckoning {
 const TRUST: f64 = 0.02;
 
 impl Reckoning {
-    /// Takes in how the wheels turned. In a turn of one radian belts slide so many metres downhill for a slope of 1.
+    /// Takes in how the wheels turned. In a turn of one radian belts slide so many metres downhill for a
+    /// slope of 1.
     pub(super) fn update(&mut self, odometry: Pose, attitude: Attitude, slide: f64) {
         let Some((before, first_yaw)) = self.before else {
             self.before = Some((odometry, attitude.yaw));

@@ -14,11 +14,12 @@ use crate::world::GridCell;
 
 /// Drives to the highest place that it can reach, on hills that it does not know.
 ///
-/// Where it stands, the robot looks around with its lidar at many tilts. What beams meet is mapped; what they pass over is no
-/// higher than they are. While anything may be higher than the highest place that it has a safe way to, and may be reached,
-/// it drives there, or to where it sees more; so it leaves local maxima behind. It drives only over ground that it has seen
-/// and that its [`Climber`](crate::nav::elevation::Climber) allows. The first two looks, with a quarter of a turn between, show by how much
-/// the inertial unit is wrong.
+/// Where it stands, the robot looks around with its lidar at many tilts. What beams meet is mapped; what they
+/// pass over is no higher than they are. While anything may be higher than the highest place that it has a
+/// safe way to, and may be reached, it drives there, or to where it sees more; so it leaves local maxima
+/// behind. It drives only over ground that it has seen and that its
+/// [`Climber`](crate::nav::elevation::Climber) allows. The first two looks, with a quarter of a turn between,
+/// show by how much the inertial unit is wrong.
 ///
 /// It ends on the highest place that can be reached; what is still unknown when the time is over tells
 /// [`unknown_area`](SummitSearch::unknown_area).
@@ -243,7 +244,8 @@ impl SummitSearch {
         self.decide(time)
     }
 
-    /// Corrects where the robot takes itself to be by what it knows of the ground. `None` if what it sees does not lie on that.
+    /// Corrects where the robot takes itself to be by what it knows of the ground. `None` if what it sees
+    /// does not lie on that.
     fn align(&mut self, sweep: &Sweep, tilt: f64) -> Option<Shift> {
         let lidar = self.parameters.lidar;
         let robot = self.reckoning.in_space(sweep.attitude());
@@ -258,12 +260,13 @@ impl SummitSearch {
 
     /// Seen the other way round, the ground is as steep; what is not is the unit's error.
     fn calibrate(&mut self, tilt: Vector) {
-        // An error of the attitude is the same in the robot's axes, e, so that by both looks e turned by the first heading and by
-        // the second one differ as the second look is tilted.
+        // An error of the attitude is the same in the robot's axes, e, so that by both looks e turned by the
+        // first heading and by the second one differ as the second look is tilted.
         let heading = self.reckoning.pose.heading;
         let (sin, cos) = math::sin_cos(angle_difference(heading, self.first_heading));
         let forward = direction(heading);
-        // The correction along the robot's axes: that of the second look less that of the first one, in the axes of the second.
+        // The correction along the robot's axes: that of the second look less that of the first one, in the
+        // axes of the second.
         let off = [tilt.dot(&forward), tilt.dot(&Vector::new(-forward.y, forward.x))];
         let (a, b) = (1.0 - cos, -sin);
         let square = a * a + b * b;
@@ -323,8 +326,8 @@ impl SummitSearch {
         }
     }
 
-    /// What to see next: what it has been after, while there is something left of it, or else the patch that is large for its
-    /// distance.
+    /// What to see next: what it has been after, while there is something left of it, or else the patch that
+    /// is large for its distance.
     fn next_target(&self, patches: &[Vec<GridCell>], here: Point) -> Option<GridCell> {
         let nearest = |cells: &[GridCell], to: Point| {
             let away = |cell: GridCell| (self.map.place(cell) - to).norm();
@@ -343,7 +346,8 @@ impl SummitSearch {
         same.or_else(best).map(|(_, cell)| cell)
     }
 
-    /// The cell on which the robot stands, or the nearest one from which it can drive; where it stands counts as safe.
+    /// The cell on which the robot stands, or the nearest one from which it can drive; where it stands counts
+    /// as safe.
     fn footing(&self, chart: &mut Chart, here: Point) -> Option<GridCell> {
         let cell = self.map.cell_at(here)?;
         if chart.safe.is_free(cell) {

@@ -5,8 +5,8 @@ use crate::nav::elevation::{Climber, ElevationMap};
 use crate::nav::grid::GridComponents;
 use crate::world::{BitGrid, GridCell, HeightField};
 
-/// What has been seen of the ground: the elevation of cells that beams met, and of all cells the most that it can be, as beams
-/// passed over them.
+/// What has been seen of the ground: the elevation of cells that beams met, and of all cells the most that it
+/// can be, as beams passed over them.
 #[derive(Debug, Clone)]
 pub(super) struct SightMap {
     side: usize,
@@ -54,7 +54,8 @@ const MEASURED: f64 = 0.06;
 const NOISE: f64 = 0.01;
 /// Square metres of a patch that is worth a look.
 const PATCH: f64 = 0.04;
-/// Metres below what a slope could lead to that are a drop, and metres that the robot keeps from one beside its own size.
+/// Metres below what a slope could lead to that are a drop, and metres that the robot keeps from one beside
+/// its own size.
 const DROP: f64 = 0.04;
 const CAUTION: f64 = 0.2;
 
@@ -97,8 +98,8 @@ impl SightMap {
         (weight > 0.0).then_some(height)
     }
 
-    /// The mean elevation of a cell and of those around it that have been seen, if it has: the highest of many readings is one
-    /// that errs upwards.
+    /// The mean elevation of a cell and of those around it that have been seen, if it has: the highest of
+    /// many readings is one that errs upwards.
     pub(super) fn smoothed(&self, cell: GridCell) -> Option<f64> {
         let own = self.height(self.index_of(cell))?;
         let around = self.neighbours(self.index_of(cell)).filter_map(|near| self.height(near));
@@ -244,8 +245,8 @@ impl SightMap {
         Chart { elevation, safe, perhaps, potential: potential.collect() }
     }
 
-    /// Elevations of all cells, and which of them have been seen or lie in small gaps between such. Where nothing is known, the
-    /// ground goes on as it is at the nearest known place.
+    /// Elevations of all cells, and which of them have been seen or lie in small gaps between such. Where
+    /// nothing is known, the ground goes on as it is at the nearest known place.
     fn filled(&self) -> Filled {
         let mut known: Vec<bool> = self.seen.iter().map(|(weight, _)| *weight > 0.0).collect();
         let mut heights: Vec<f32> = self.seen.iter().map(|(_, height)| *height as f32).collect();
@@ -288,7 +289,8 @@ impl SightMap {
             .filter(move |&near| near != index)
     }
 
-    /// The cells that may be higher than a level and may be reached from a cell, in patches that are worth a look.
+    /// The cells that may be higher than a level and may be reached from a cell, in patches that are worth a
+    /// look.
     pub(super) fn higher(&self, chart: &Chart, from: GridCell, level: f64) -> Vec<Vec<GridCell>> {
         let perhaps = GridComponents::new(&chart.perhaps);
         let safe = GridComponents::new(&chart.safe);

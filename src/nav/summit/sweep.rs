@@ -1,8 +1,8 @@
 use crate::geometry::{Point3, Pose3, Vector3, direction, math, units};
 use crate::io::{Attitude, LidarScan};
 
-/// The tilts of the scans of a look around, in degrees: the nearer to level, the closer together, as ground far away shows
-/// little of itself.
+/// The tilts of the scans of a look around, in degrees: the nearer to level, the closer together, as ground
+/// far away shows little of itself.
 const TILTS: [f64; 24] = [
     -60.0, -48.0, -39.0, -32.0, -26.0, -21.5, -18.0, -15.0, -12.5, -10.5, -9.0, -7.5, -6.3, -5.2, -4.2, -3.2,
     -2.2, -1.2, 0.0, 2.0, 5.0, 9.0, 14.0, 20.0,

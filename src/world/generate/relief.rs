@@ -38,7 +38,8 @@ pub struct ReliefOptions {
 }
 
 impl ReliefOptions {
-    /// The book's sizes: ranges and craters of 5 m by 5 m and up to 0.5 m high, ramps and steps of 4 m by 4 m up to 0.2 m.
+    /// The book's sizes: ranges and craters of 5 m by 5 m and up to 0.5 m high, ramps and steps of 4 m by 4 m
+    /// up to 0.2 m.
     pub fn of(kind: ReliefKind) -> Self {
         let (side, top) = match kind {
             ReliefKind::Range | ReliefKind::Crater => (5.0, 0.5),
@@ -69,7 +70,8 @@ impl ReliefOptions {
 pub struct Relief {
     /// The hills, without walls; craters with their water.
     pub world: World,
-    /// A gentle place near the border from which a robot starts, and the way it looks: before a ramp's foot, up.
+    /// A gentle place near the border from which a robot starts, and the way it looks: before a ramp's foot,
+    /// up.
     pub start: Pose,
     /// The middle line of a ramp's way: foot, top, bank's end, foot. Empty for other kinds.
     pub way: Vec<Point>,
@@ -214,7 +216,8 @@ fn crater(stream: &mut Stream, options: &ReliefOptions) -> Result<Relief, Parame
     Ok(Relief { world, start, way: Vec::new() })
 }
 
-/// The most of the side that a ramp to the top may be long: there is room before its foot, and behind the bank.
+/// The most of the side that a ramp to the top may be long: there is room before its foot, and behind the
+/// bank.
 const ROOM: f64 = 0.47;
 /// The share of the side that the rim around ramps and steps is wide.
 const RIM: f64 = 0.03;
