@@ -58,6 +58,11 @@ pub enum Centre {
 }
 
 /// To the left or to the right.
+///
+/// ```
+/// use roverlab::world::road::Direction;
+/// assert_eq!([Direction::Left.sign(), Direction::Right.sign()], [1.0, -1.0]);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Direction {
     /// Left.
