@@ -55,6 +55,7 @@
 //! | 10 Navigation | planning on grid maps: A\*, Dijkstra, jump point search, any-angle paths, quadtrees | [`nav::grid`], [`world`] |
 //! | 11 Robot vision | edges, colours, motion, blobs, lines | [`vision`] |
 //! | 12 Evolution | genetic algorithms, CMA evolution strategy | [`evolve`] |
+//! | 13 Driverless cars | roads and their files, the lane by camera, the referee of Free Drive | [`world::road`], [`vision::lane_markings`], [`drive`] |
 //! | 14 Formula SAE | cone tracks, centre lines, racing lines, referee; racing cars | [`race`], [`io::sim`] |
 //! | 14 Formula SAE | safety: state machine, monitors, stopping distance | [`safety`] |
 //!

@@ -5,8 +5,10 @@ use std::cell::RefCell;
 use std::ops::ControlFlow;
 
 use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
+use roverlab::drive::lane_keeping::{BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters};
 use roverlab::drive::marine::{Dive, DiveParameters};
 use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
+use roverlab::drive::terrain::{Ascent, AscentParameters, SlopeSensor};
 use roverlab::drive::{
     AToB, AToBParameters, AlongWall, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters, Goal,
     LidarWallFollower, LidarWallFollowerParameters, Method, OmniDriver, OmniParameters, OmniTracker,
@@ -25,11 +27,14 @@ use roverlab::maze::{
     Direction, LeftHand, LeftHandParameters, LidarLeft, LidarLeftParameters, Maze, MazeRunner,
     MazeRunnerParameters, RecursiveExplorer, Rig, Scale, WallState, mouse,
 };
-use roverlab::nav::{BugKind, BugParameters, DistBug, Navigator, NavigatorParameters};
+use roverlab::nav::{
+    BugKind, BugParameters, DistBug, Navigator, NavigatorParameters, SummitParameters, SummitSearch,
+};
 use roverlab::race::{
     Cone, ConeTrack, EventParameters, EventRacer, GapDriver, RaceOutcome, Racer, RacerParameters,
 };
 use roverlab::random::Stream;
+use roverlab::vision::lane_markings::RoadModel;
 use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod};
 use roverlab::world::{RobotSpec, Scene, World};
 
@@ -53,7 +58,17 @@ where
     Ok(format!("{outcome:?}"))
 }
 
-const CASES: [Case; 26] = [
+const CASES: [Case; 30] = [
+    ("lane", RobotSpec::s4, |robot, limit, stop| {
+        let camera = RobotSpec::s4().camera.as_ref().unwrap().into();
+        let mut behaviour = LaneKeeper::new(camera, RoadModel::default(), LaneKeeperParameters::default())?;
+        driven(robot, &mut behaviour, limit, stop)
+    }),
+    ("the book's lane", RobotSpec::s4, |robot, limit, stop| {
+        let mut behaviour = BookLaneKeeper::new(BookLaneParameters::default())
+            .map_err(|error| Error::new(ErrorKind::Other, error.to_string()))?;
+        driven(robot, &mut behaviour, limit, stop)
+    }),
     ("turn", RobotSpec::s4, |robot, limit, stop| a_to_b(Method::Turn, robot, limit, stop)),
     ("spline", RobotSpec::s4, |robot, limit, stop| a_to_b(Method::Spline, robot, limit, stop)),
     ("by another estimate", RobotSpec::s4, |robot, limit, stop| {
@@ -126,6 +141,15 @@ const CASES: [Case; 26] = [
         let goal = Point::new(5.5, 5.5);
         let mut navigator = Navigator::new(&room(), START, goal, NavigatorParameters::default())?;
         driven(robot, &mut navigator, limit, stop)
+    }),
+    ("summit", RobotSpec::blizzard, |robot, limit, stop| {
+        let parameters = SummitParameters::of(&RobotSpec::blizzard()).unwrap();
+        driven(robot, &mut SummitSearch::new(parameters)?, limit, stop)
+    }),
+    ("ascent", RobotSpec::blizzard, |robot, limit, stop| {
+        let spec = RobotSpec::blizzard();
+        let mut ascent = Ascent::new(SlopeSensor::lidar(&spec).unwrap(), AscentParameters::of(&spec))?;
+        driven(robot, &mut ascent, limit, stop)
     }),
     ("colour", RobotSpec::s4, |robot, limit, stop| {
         let mut tracker = ColourTracker::new(finder(), ColourTrackerParameters::default())?;

@@ -49,6 +49,7 @@ lessons!(
     follow_me,
     genetic,
     grid_planning,
+    lane_keeping,
     lidar_scan,
     localise,
     maze_explore,
@@ -69,6 +70,7 @@ lessons!(
     safety,
     #[cfg(feature = "physics")]
     starman,
+    summit,
     two_robots,
     wall_following,
     world_files,

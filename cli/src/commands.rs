@@ -17,7 +17,7 @@ use crate::starman;
 use crate::{
     a_to_b, ackermann, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug, dive,
     edges, follow_me, genetic, grid_benchmark, lane_keeping, lidar_scan, localise, micromouse, motion,
-    navigate, omni, quadtree, random_drive, replay, safety, wall_following,
+    navigate, omni, quadtree, random_drive, replay, safety, summit, terrain_plan, wall_following,
 };
 
 /// Runs a command with its command line and its two output streams. Returns the exit status.
@@ -92,6 +92,8 @@ commands!(
     safety by run,
     #[cfg(feature = "native")]
     starman by run,
+    summit by run,
+    terrain_plan by run_plain,
     wall_following by run,
 );
 

@@ -36,6 +36,9 @@ mod room;
 mod safety;
 #[cfg(feature = "native")]
 mod starman;
+mod summit;
+mod terrain;
+mod terrain_plan;
 #[cfg(test)]
 mod tests;
 mod wall_following;

@@ -11,6 +11,8 @@ use serde_json::Value;
 
 #[path = "programs/endings.rs"]
 mod endings;
+#[path = "programs/hills.rs"]
+mod hills;
 #[path = "programs/library.rs"]
 mod library;
 #[path = "programs/limits.rs"]

@@ -3,23 +3,25 @@
 //! A behaviour takes an observation and returns a command; [`run`](crate::io::control::run) loops it on any
 //! robot with the necessary capabilities.
 //!
-//! - [`Path`]: lines, arcs, Hermite splines, Catmull-Rom chains and Dubins paths, by their length;
-//! - [`PathFollower`]: drives along any of them with feedback, by pure pursuit or by heading and cross-track error;
-//! - [`AToB`]: to a goal by turning and driving straight, along an arc, a dog curve or a spline (chapter 3);
-//! - [`Chase`]: the same four towards a goal that moves;
-//! - [`CarToB`]: the same for a car, within its turning circle (chapter 7);
-//! - [`OmniTracker`]: along any path with any heading on wheels with rollers (chapter 7);
-//! - [`RandomDrive`]: straight on, and a random turn where something is ahead (chapter 3);
-//! - [`CoveragePlan`], [`Tour`] and [`CoverageMap`]: over the whole floor in lanes (chapters 3 and 6);
-//! - [`Follower`], [`Formation`] and [`Cruise`]: robots behind a robot, by what they see or by radio, and the one that leads
-//!   (chapter 5);
-//! - [`WallFollower`]: along walls of any shape by three distance sensors (chapter 6); [`PidWallFollower`],
-//!   [`LidarWallFollower`] and the book's [`TwoLevelWallFollower`] beside it;
-//! - [`colour`]: to what has a taught colour, and home with it (chapter 11);
-//! - [`lane_keeping`]: along the lane of a road, by what a camera sees, and [`traffic`]: who judges that (chapter 13);
+//! - [`Path`]: lines, arcs, Hermite splines, Catmull-Rom chains and Dubins paths, parametrised by length;
+//! - [`PathFollower`]: follows any of them with feedback, by pure pursuit or by heading and cross-track
+//!   error;
+//! - [`AToB`]: to a goal by turn and straight line, arc, dog curve or spline (chapter 3);
+//! - [`Chase`]: the same four methods towards a moving goal;
+//! - [`CarToB`]: the same methods for a car, within its turning circle (chapter 7);
+//! - [`OmniTracker`]: along a route with any heading, on wheels with rollers (chapter 7);
+//! - [`RandomDrive`]: straight on, with random turns at obstacles (chapter 3);
+//! - [`CoveragePlan`], [`Tour`] and [`CoverageMap`]: the whole floor in lanes (chapters 3 and 6);
+//! - [`Follower`], [`Formation`] and [`Cruise`]: following a robot by sight or in a radio formation, and the
+//!   leader (chapter 5);
+//! - [`WallFollower`]: along walls of any shape by three distance sensors (chapter 6), besides
+//!   [`PidWallFollower`], [`LidarWallFollower`] and the book's [`TwoLevelWallFollower`];
+//! - [`colour`]: to an object of a taught colour, and home with it (chapter 11);
+//! - [`lane_keeping`]: along the lane of a road by camera, and [`traffic`]: its referee (chapter 13);
 //! - [`marine`]: craft in water (chapter 8);
-//! - [`motion_watch`]: turning to what moves (chapter 11);
-//! - [`Pid`] and [`RelayTuner`]: a PID controller and how to find its gains.
+//! - [`motion_watch`]: turning towards motion (chapter 11);
+//! - [`terrain`]: up the steepest way (chapter 7);
+//! - [`Pid`] and [`RelayTuner`]: a PID controller and its automatic tuning.
 
 mod a_to_b;
 mod a_to_b_run;
@@ -41,6 +43,7 @@ mod pid;
 mod random_drive;
 mod relay;
 mod spline;
+pub mod terrain;
 pub mod traffic;
 mod wall_following;
 mod way;

@@ -5,7 +5,7 @@ use crate::world::{Colour, World};
 
 /// Width of a panel (m on the sheet).
 const WIDTH: f64 = 1.6;
-/// Metres of the height of a panel.
+/// Height of a panel (m on the sheet).
 const HEIGHT: f64 = 0.5;
 /// Margin around the panels, for the scales (m on the sheet).
 const MARGIN: f64 = 0.12;

@@ -53,7 +53,7 @@ pub use lidar::{Lidar, LidarScan, LidarSettings};
 pub use mock::{Call, MockRobot, Script};
 pub use psd::{DistanceSensors, Psd};
 pub use radio::{Radio, RadioMessage};
-pub use truth::{GroundTruth, RobotTruth, TrailPoint};
+pub use truth::{GroundTruth, Mishap, RobotTruth, TrailPoint, TruthInSpace};
 
 /// A full robot with every capability.
 pub trait RobotIo:

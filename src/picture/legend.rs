@@ -8,6 +8,7 @@ use super::canvas::{number, rectangle, words};
 use super::colours::{INK, PALE_INK, ramp};
 use super::frame::{Frame, GAP, Pixel};
 use super::items::{Figure, Item, Picture};
+use super::relief::contour_step;
 use super::scenery::SMALLEST;
 use super::{Mark, Style, lines, robots, scenery, text};
 use crate::geometry::{Aabb, Vector};
@@ -65,7 +66,14 @@ impl Legend {
         legend.add_objects(picture);
         if let Some(terrain) = &picture.world.terrain {
             let height = number(terrain.max_elevation);
-            legend.add(Key::Hills, format!("hills up to {height} m"));
+            match terrain.surface.as_deref() {
+                Some(surface) => {
+                    let step = number(contour_step(surface));
+                    let line = Style::new(INK).width(0.8).opacity(0.6);
+                    legend.add(Key::Line(line), format!("{step} m higher, up to {height} m"));
+                }
+                None => legend.add(Key::Hills, format!("hills up to {height} m")),
+            }
         }
         legend
     }

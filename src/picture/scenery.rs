@@ -5,6 +5,7 @@ use svg::node::element::{Group, Pattern};
 use super::canvas::{area, disc, line, number, path_data, rectangle, words};
 use super::colours::{EDGE, FLOOR, HILL, INK, LETTER, WALL, WATER, mix};
 use super::frame::{Frame, Pixel};
+use super::relief::relief;
 use super::text;
 use crate::geometry::{Aabb, Point, Vector, direction};
 use crate::world::{Colour, Object, Shape, Terrain, Wall, World};
@@ -20,11 +21,15 @@ pub(super) fn floor(world: &World, frame: &Frame, to_scale: bool) -> Group {
     let colour = if world.water_level.is_some_and(|level| level > 0.0) { WATER } else { FLOOR };
     let bounds = on_page(world.floor, frame);
     let mut group = Group::new().add(rectangle(bounds, colour));
+    let surface = world.terrain.as_ref().and_then(|terrain| terrain.surface.as_deref());
+    if let Some(surface) = surface {
+        group = group.add(relief(surface, world.water_level, frame));
+    }
     if to_scale {
         group = group.add(grid(&world.floor, frame));
     }
     group = group.add(rectangle(bounds, colour).set("fill", "none").set("stroke", EDGE.to_string()));
-    if let Some(terrain) = &world.terrain {
+    if let Some(terrain) = world.terrain.as_ref().filter(|_| surface.is_none()) {
         group = group.add(hatch()).add(hills(terrain, world.floor.min, frame));
     }
     for place in &world.places {
@@ -53,7 +58,7 @@ pub(super) fn object_symbol(shape: &Shape, colour: Colour, at: Pixel) -> Group {
     }
 }
 
-/// Symbol of hills in the legend.
+/// Symbol of hills without a surface in the legend.
 pub(super) fn hills_symbol(at: Pixel) -> Group {
     let bounds = Aabb { min: at, max: at }.inflated(6.0);
     Group::new().add(hatched(bounds))

@@ -22,6 +22,7 @@
 
 mod cases;
 mod checks;
+mod courses;
 mod lines;
 mod strategies;
 #[cfg(test)]
@@ -30,5 +31,6 @@ mod tracks;
 
 pub use cases::cases;
 pub use checks::{Movement, PlanWith, Violation, collision_free, complete, optimal, triangle_inequality};
-pub use strategies::{GridMaze, grid_queries, grids, mazes, worlds};
+pub use courses::courses;
+pub use strategies::{GridMaze, grid_queries, grids, mazes, reliefs, worlds};
 pub use tracks::cone_tracks;

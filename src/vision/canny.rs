@@ -24,8 +24,8 @@ impl Default for CannyThresholds {
 ///
 /// Smooth noisy images first, with [`gaussian_into`](super::gaussian_into). The steps:
 ///
-/// 1. Sobel gradient of each pixel, the image extended by its outermost pixels; the magnitude is `|dx| +
-///    |dy|`.
+/// 1. Sobel gradient of each pixel, the image extended by its outermost pixels; the magnitude is
+///    `|dx| + |dy|`.
 /// 2. Non-maximum suppression. A pixel above `low` stays if its magnitude exceeds that of the first neighbour
 ///    along the gradient and is at least that of the second. The neighbours are west and east where
 ///    `|dy| < tan(22.5°) |dx|`, north and south where `|dy| > tan(67.5°) |dx|`, and otherwise diagonal, where

@@ -17,8 +17,8 @@
 //! # }
 //! ```
 //!
-//! [`motion`] has what moves in an image, [`lane_markings`] the lane before a car. The robots that drive by what they see are in
-//! [`drive`](crate::drive).
+//! [`motion`] detects motion, and [`lane_markings`] the lane ahead of a car. Robots that drive by camera are
+//! in [`drive`](crate::drive).
 //!
 //! The module `images` (feature `image`) has the same kernels on images of the crate `image`; they return new
 //! images.

@@ -1,7 +1,7 @@
-//! What a world and a robot are, and every file format that describes one.
+//! Descriptions of worlds and robots, and their file formats.
 //!
-//! A [`Scene`] is a [`World`] with robots in it. The types are plain data in SI units; the readers and writers of
-//! the EyeSim and ROS formats are in [`formats`].
+//! A [`Scene`] is a [`World`] with robots. The types are plain data in SI units; readers and writers of the
+//! EyeSim and ROS formats are in [`formats`].
 
 mod bit_grid;
 mod body;

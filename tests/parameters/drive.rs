@@ -1,6 +1,8 @@
 use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
+use roverlab::drive::lane_keeping::{BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters};
 use roverlab::drive::marine::{DepthHoldParameters, Dive, DiveParameters};
 use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
+use roverlab::drive::terrain::{Ascent, AscentParameters, SlopeSensor};
 use roverlab::drive::{
     AToB, AToBParameters, AlongWall, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters,
     CoverageMap, CoverageMapParameters, Cruise, CruiseParameters, Follower, FollowerParameters, Formation,
@@ -13,6 +15,7 @@ use roverlab::geometry::{Point, Pose};
 use roverlab::kinematics::marine::CraftSpec;
 use roverlab::kinematics::{Ackermann, Omni};
 use roverlab::random::Stream;
+use roverlab::vision::lane_markings::{RoadCamera, RoadModel};
 use roverlab::vision::motion::MotionParameters;
 use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod};
 use roverlab::world::{RobotSpec, World};
@@ -43,6 +46,13 @@ fn colours_and_motion() {
     check!(MotionParameters = MotionParameters::default(),
         |p| ends(RobotSpec::s4(), MotionWatch::new(MotionWatchParameters { turning: p, ..MotionWatchParameters::new(1.0) })?),
         { Bounded: block; NotNegative: threshold; Positive: least_noise; });
+}
+
+#[test]
+fn hills() {
+    let sensor = || SlopeSensor::lidar(&RobotSpec::blizzard()).expect("a lidar");
+    check!(AscentParameters = AscentParameters::of(&RobotSpec::blizzard()), |p| Ascent::new(sensor(), p)?,
+        { Bounded: slope, smoothing; Positive: speed, turn_rate, patience, gain, period; });
 }
 
 #[test]
@@ -143,6 +153,21 @@ fn walls() {
     for (safe, speed) in [(f64::NAN, 0.2), (0.0, 0.2), (0.3, -1.0), (0.3, f64::INFINITY)] {
         assert!(TwoLevelWallFollower::new(safe, speed).is_err(), "{safe} {speed}");
     }
+}
+
+#[test]
+fn lanes() {
+    let camera = || RobotSpec::s4().camera.as_ref().expect("a camera").into();
+    check!(LaneKeeperParameters = LaneKeeperParameters::default(),
+        |p| ends(RobotSpec::s4(), LaneKeeper::new(camera(), RoadModel::default(), p)?),
+        { Positive: period, speed, across, brake, sight; NotNegative: delay; } but settling);
+    check!(BookLaneParameters = BookLaneParameters::default(),
+        |p| ends(RobotSpec::s4(), BookLaneKeeper::new(p)?),
+        { Positive: period, speed, gain; BoundedFromZero: horizon; });
+    check!(RoadModel = RoadModel::default(), |p| LaneKeeper::new(camera(), p, LaneKeeperParameters::default())?,
+        { Bounded: size, line_width; } but left_hand);
+    check!(RoadCamera = camera(), |p| LaneKeeper::new(p, RoadModel::default(), LaneKeeperParameters::default())?,
+        { Bounded: field_of_view; AroundZero: tilt; Positive: height; Finite: ahead; } but fisheye);
 }
 
 #[test]

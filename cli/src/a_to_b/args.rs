@@ -10,25 +10,25 @@ use crate::driving::Way;
 #[command(
     about = "Drives a robot to a goal: turn and straight, arc, dog curve or spline, with feedback all the way",
     after_help = "\
-Without --world, the robot drives over an empty floor. A heading in --goal is kept by every method; a spline arrives with
-it, the others turn at the end. An arc to a goal behind is driven backwards.
+Without --world, the robot drives on an empty floor. Every method reaches the heading in --goal: a spline arrives with
+it, the others turn at the end. An arc to a goal behind the robot is driven backwards.
 
-With --landmark, poles whose places are known correct odometry by the lidar: the world's cylinders, or one beside the goal
-on the empty floor.
+With --landmark, lidar measurements of poles at known places correct odometry: the world's cylinders, or one beside the
+goal on the empty floor.
 
-With --via, a chain of splines through all these places. With --moving, the goal drives ahead from where it is, by its heading,
-and the robot, which is told where it is, begins anew at each step.
+With --via, a chain of splines through all these places. With --moving, the goal moves ahead along its heading; the
+robot knows its position and replans at each step.
 
-With --campaign, random goals instead of one, by every method: errors without noise, with encoder ticks and without; how
-many of the runs with noise end inside the 95 % ellipse that odometry predicts; errors with a landmark.
+With --campaign, random goals instead of one, with every method: errors without noise, with and without encoder ticks;
+the number of runs with noise that end within the 95 % ellipse predicted by odometry; errors with a landmark.
 
 JSON fields:
   method                      turn, arc, dog or spline
   goal, goal_heading_deg      [x, y] mm; the heading or null
   position_error_mm           true distance to the goal at the end
   heading_error_deg           true error of the heading, or null
-  ellipse_mm                  half axes of the 95 % ellipse of odometry's error, the longer one first
-  inside_ellipse              whether the robot really is inside of it; null with --landmark or without noise
+  ellipse_mm                  semi-axes of odometry's 95 % error ellipse, longer one first
+  inside_ellipse              whether the robot is truly inside it; null with --landmark or without noise
   landmark_scans              scans that showed a landmark
   time_limit_s, picture
   rows                        with --campaign only: the table

@@ -18,8 +18,8 @@ use crate::driving::{Conditions, Run, Way, check_drive, paced, pale};
 #[command(
     about = "Drives a car by its motor and its steering servo to a goal, within its turning circle",
     after_help = "\
-Without --world, the car drives over an empty floor. Where a method would turn too tightly, the car goes round its turning
-circle. A heading in --goal is met by every method: a car cannot turn at the end.
+Without --world, the car drives on an empty floor. Where a method would turn too tightly, the car follows its turning
+circle. Every method reaches the heading in --goal, because a car cannot turn at the end.
 
 JSON fields:
   method                      turn, arc, dog or spline

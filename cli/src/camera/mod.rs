@@ -18,12 +18,12 @@ use roverlab::world::Scene;
 #[command(
     about = "Takes images with the robot's camera and shows them on its display",
     after_help = "\
-Without --world, the robot stands in a room with things in it. Pan counts to the left and tilt upwards; the head turns 30
-degrees a second.
+Without --world, the robot is in a room with several objects. Pan counts to the left and tilt upwards; the head turns at
+30 degrees per second.
 
 JSON fields:
   width, height, images
-  output                      the file with the last image, or null
+  output                      file of the last image, or null
   mean_brightness             of the last image, 0 to 255
   timing                      with --timing: images_per_s
   picture

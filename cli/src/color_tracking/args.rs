@@ -5,23 +5,23 @@ use crate::common::{CommonArgs, OF_ONE_RUN};
 /// Command line of `color-tracking`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
-    about = "Teaches the robot a hue at a key press, then lets it find what has it, drive there, or push it home",
+    about = "Learns a hue at a key press, then finds an object of that hue, drives to it, or pushes it home",
     after_help = "\
-Without --world, the scene is drawn by --seed: a room of 4 m x 4 m with a red can and things of other hues in it. The robot
-is taught the colour of a red card that is held before its camera when the first soft key is pressed; --hue takes a hue
-instead. In a world from a file, the object is the one of the taught
-hue that the robot finds; distances are to the nearest that has it.
+Without --world, --seed determines the scene: a room of 4 m x 4 m with a red can and objects of other hues. When the
+first soft key is pressed, the robot learns the colour of a red card before its camera; --hue gives a hue instead. In a
+world from a file, the object is the one of that hue that the robot finds; distances are to the nearest one with the
+hue.
 
-With --job home, the robot drives round the object and pushes it to where it started (section 11.6).
-With --campaign, many scenes: another place of everything, light of 30 to 150 %, noise as --noise says.
+With --job home, the robot drives round the object and pushes it to its own start (section 11.6). With --campaign, many
+scenes with random places, light from 30 to 150 %, and the noise of --noise.
 
 JSON fields:
   job, method, light
   hue                         taught or given, on RoBIOS's scale
-  distance_mm                 true distance from the robot's middle to the object's at the end
-  home_mm                     home: true distance of the object from home at the end
+  distance_mm                 final true distance between the centres of robot and object
+  home_mm                     home: final true distance of the object from home
   time_limit_s, picture
-  scenes, reached, wrong      campaign: how many, and the seeds of those not reached
+  scenes, reached, wrong      campaign: numbers, and the seeds of failures
 Outcomes: reached, home, missed (if the true distance is above 200 mm), blocked, timed_out, collided, failed; with
 --campaign: passed, wrong."
 )]

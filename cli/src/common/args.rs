@@ -27,7 +27,7 @@ pub(crate) struct CommonArgs {
     #[arg(long, value_name = "FILE")]
     pub(crate) world: Option<PathBuf>,
 
-    /// Robot description [default: the built-in S4].
+    /// Robot description, or the name of a built-in robot [default: S4].
     #[arg(long, value_name = "FILE.robi")]
     pub(crate) robot: Option<PathBuf>,
 
@@ -62,6 +62,14 @@ pub(crate) struct CommonArgs {
     /// Record the run.
     #[arg(long, value_name = "FILE.mcap")]
     pub(crate) record: Option<PathBuf>,
+
+    /// Record in the place of a file that is no recording too.
+    #[arg(long, requires = "record")]
+    pub(crate) force: bool,
+
+    /// Wait until each second of a recording is on the disk.
+    #[arg(long, requires = "record")]
+    pub(crate) fsync: bool,
 
     /// Run against a recording, with its options; further options override them.
     #[arg(long, value_name = "FILE.mcap")]

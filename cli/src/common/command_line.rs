@@ -1,19 +1,21 @@
 use std::ffi::OsString;
-use std::fs;
 use std::path::Path;
 
 use clap::parser::ValueSource;
 use clap::{ArgAction, ArgMatches, Command};
 use roverlab::io::log::Log;
+use roverlab::world::RobotSpec;
 
-use super::files::recorded_name;
+use super::files::{recorded_name, recording_bytes};
 use super::origin::Facts;
 use super::outputs::check_outputs;
 use super::{CommonArgs, Failure, Heeds, Unheeded, heed, parser, stage};
 
 /// Options that do not affect a run.
-const NOT_RECORDED: [&str; 13] = [
+const NOT_RECORDED: [&str; 15] = [
     "record",
+    "force",
+    "fsync",
     "replay",
     "picture",
     "animation",
@@ -141,7 +143,7 @@ fn replayed(words: &[OsString]) -> Option<OsString> {
 fn recording(wanted: &str, command: &Command, file: &OsString) -> Result<Log, Failure> {
     let name = Path::new(file).display();
     let refused = |error: &dyn std::fmt::Display| Failure::input(format!("--replay {name}: {error}"));
-    let bytes = fs::read(file).map_err(|error| refused(&error))?;
+    let bytes = recording_bytes(Path::new(file)).map_err(|error| refused(&error))?;
     let log = Log::read(bytes).map_err(|error| refused(&error))?;
     let program = &log.header().program;
     if program != wanted {
@@ -162,8 +164,15 @@ fn recording(wanted: &str, command: &Command, file: &OsString) -> Result<Log, Fa
 fn affects_run(command: &Command, option: &str) -> bool {
     let name = name_of(option);
     let known = command.get_arguments().any(|arg| arg.get_long() == Some(name));
-    let is_own = |value: &str| value == recorded_name(name, Path::new(value));
+    let is_own = |value: &str| {
+        value == recorded_name(name, Path::new(value)) || (name == "robot" && is_built_in(value))
+    };
     known && !NOT_RECORDED.contains(&name) && (!FILES.contains(&name) || value_of(option).is_some_and(is_own))
+}
+
+/// Whether it is a built-in robot's name, and no file has it.
+fn is_built_in(name: &str) -> bool {
+    RobotSpec::predefined(name).is_some() && !Path::new(name).exists()
 }
 
 /// Whether a recorded option is given again.
@@ -198,7 +207,11 @@ fn options(command: &Command, matches: &ArgMatches) -> Vec<String> {
         let values =
             matches.get_raw(id).into_iter().flatten().map(|value| value.to_string_lossy().into_owned());
         let is_file = FILES.contains(&id);
-        let values = values.map(|value| if is_file { recorded_name(id, Path::new(&value)) } else { value });
+        let is_name = |value: &str| id == "robot" && is_built_in(value);
+        let values = values.map(|value| match is_file && !is_name(&value) {
+            true => recorded_name(id, Path::new(&value)),
+            false => value,
+        });
         options.extend(values.map(|value| match &name {
             Some(name) => format!("{name}={value}"),
             None => value,

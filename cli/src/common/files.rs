@@ -1,5 +1,5 @@
-use std::io;
 use std::path::Path;
+use std::{fs, io};
 
 use roverlab::io::log::{Attachment, Log};
 use roverlab::world::formats::{self, DiskFiles, FileSource, FormatError, Location, Parsed, SourceFile};
@@ -16,6 +16,16 @@ pub(crate) fn recorded_name(option: &str, path: &Path) -> String {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     let plain = !ending.is_empty() && ending.chars().all(|c| c.is_ascii_alphanumeric());
     if plain { format!("{option}.{}", ending.to_ascii_lowercase()) } else { option.to_owned() }
+}
+
+/// The bytes of a recording's file.
+pub(crate) fn recording_bytes(file: &Path) -> io::Result<Vec<u8>> {
+    // A device may have no end, and whoever writes into a pipe may never come.
+    if fs::metadata(file)?.is_file() {
+        fs::read(file)
+    } else {
+        Err(io::Error::other("found a folder or a device"))
+    }
 }
 
 impl CommonArgs {
@@ -48,8 +58,12 @@ impl CommonArgs {
         self.load(option, path, formats::parse_scene)
     }
 
-    /// The robot in the file of an option, with its 3D model where that is found.
+    /// The robot in the file of an option, with its 3D model where that is found, or the built-in robot of that name.
     pub(crate) fn load_robot(&self, option: &str, path: &Path) -> Result<Parsed<RobotSpec>, FormatError> {
+        let built_in = path.to_str().filter(|_| !path.exists()).and_then(RobotSpec::predefined);
+        if let Some(value) = built_in {
+            return Ok(Parsed { value, warnings: Vec::new() });
+        }
         self.load(option, path, formats::parse_robot_tolerantly)
     }
 

@@ -88,6 +88,7 @@ mod workers;
 pub(crate) use args::check_writable;
 pub(crate) use args::{CommonArgs, PlainArgs};
 pub(crate) use failure::Failure;
+pub(crate) use files::recording_bytes;
 pub(crate) use free_floor::FreeFloor;
 pub(crate) use heed::{Heeds, OF_ONE_RUN, Unheeded};
 pub(crate) use images::write_image;
@@ -99,8 +100,6 @@ pub(crate) use run::{Printed, parser, refused, run, run_plain, run_printing, wri
 pub(crate) use stage::{Claimed, Driven, Stage, StageTruth};
 pub(crate) use supervision::DEADMAN;
 pub(crate) use trip::{StandIn, Trip};
-#[cfg(test)]
-pub(crate) use values::parse_pose;
-pub(crate) use values::{GoalOption, parse_noise, parse_picture, parse_point, parse_seconds};
+pub(crate) use values::{GoalOption, parse_noise, parse_picture, parse_point, parse_pose, parse_seconds};
 pub(crate) use wall_clock::{Pacer, Progress, Stopwatch};
 pub(crate) use workers::{share_out, threads};

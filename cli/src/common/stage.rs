@@ -1,16 +1,14 @@
 use std::collections::BTreeMap;
 use std::fmt;
-use std::fs::File;
-use std::io::BufWriter;
+use std::io::ErrorKind;
 use std::ops::{Deref, DerefMut};
-use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use roverlab::geometry::Pose;
-use roverlab::io::log::{Attachment, FleetIo, GroundTruth, Header, LogError, LogWriter, Player};
+use roverlab::io::log::{Attachment, FleetIo, GroundTruth, Header, LogError, LogFile, LogWriter, Player};
 use roverlab::io::sim::{Fleet, RobotTruth, SimOptions, Simulation, Watcher};
 use roverlab::io::wrappers::{Deadman, Fault, Faulty, Quantised};
-use roverlab::io::{self, Key, RobotIo};
+use roverlab::io::{self, Key, RobotIo, TruthInSpace};
 use roverlab::safety::{SpeedError, StoppingModel};
 use roverlab::world::{RobotPlacement, Scene, formats};
 
@@ -70,7 +68,7 @@ enum Play {
 /// The recording being written, and the one being replayed.
 #[derive(Debug, Default)]
 struct Recording {
-    writer: Option<LogWriter<BufWriter<File>>>,
+    writer: Option<LogWriter<LogFile>>,
     player: Option<Player>,
     origin: Origin,
 }
@@ -151,6 +149,10 @@ impl GroundTruth for SharedTruth {
 
     fn object(&mut self, object: usize) -> io::Result<Pose> {
         self.ask(|truth| truth.object(object))
+    }
+
+    fn in_space(&mut self, robot: usize) -> io::Result<TruthInSpace> {
+        self.ask(|truth| truth.in_space(robot))
     }
 }
 
@@ -288,9 +290,15 @@ impl CommonArgs {
             },
             |log| log.header().clone(),
         );
-        let writer = create(file, &header).map_err(|error| {
-            let file = file.display();
-            Failure::input(format!("--record {file}: {error}; expected a file that can be written"))
+        let open = || if self.force { LogFile::replace(file) } else { LogFile::create(file) };
+        let open = || if self.fsync { open().map(LogFile::synced) } else { open() };
+        let writer = open().and_then(|sink| LogWriter::new(sink, &header)).map_err(|error| {
+            let expected = match error.kind() {
+                ErrorKind::AlreadyExists => ", or --force",
+                ErrorKind::ResourceBusy => "",
+                _ => "; expected a file that can be written",
+            };
+            Failure::input(format!("--record {}: {error}{expected}", file.display()))
         })?;
         writer.show(scene);
         recording.writer = Some(writer);
@@ -327,10 +335,6 @@ fn texts(scene: &Scene) -> Vec<Attachment> {
     }
     files.push(text("scene.sim".into(), formats::sim::print(&script)));
     files
-}
-
-fn create(file: &Path, header: &Header) -> std::io::Result<LogWriter<BufWriter<File>>> {
-    LogWriter::new(BufWriter::with_capacity(1 << 16, File::create(file)?), header)
 }
 
 impl Stage {
@@ -499,7 +503,8 @@ impl Recording {
 
 impl Drop for Recording {
     fn drop(&mut self) {
-        if let Some(Err(error)) = self.writer.take().map(LogWriter::finish) {
+        let finished = self.writer.take().map(|writer| writer.finish().and_then(LogFile::complete));
+        if let Some(Err(error)) = finished {
             self.origin.note(format!("--record: the recording is incomplete: {error}"));
         }
         if let Some((time, call)) = self.player.as_ref().and_then(Player::rest) {

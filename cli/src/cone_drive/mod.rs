@@ -16,18 +16,18 @@ use crate::cones::{Course, Judge, Passed, check_campaign, check_race, drawing, j
 /// Command line of `cone-drive`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
-    about = "Drives between cones as the book prints it: for the nearest gap left and right of the middle of one scan",
+    about = "Drives between cones as the book's program does: to the gap between the nearest cones left and right of the scan's middle",
     after_help = "\
-The car keeps its speed; ten times a second it steers for the middle between the two cones nearest to the middle of its
-scan. `cone_race` drives the same tracks properly.
+The car keeps its speed. Ten times a second it steers for the midpoint between the two cones nearest to the middle of
+its scan. `cone_race` drives the same tracks with a map and a racing line.
 
 JSON fields:
-  laps, cones_hit, off_course, lap_times_s    as the referee sees it
-  distance_clean_m                            metres to the first cone or off the course
-  tracks, clean, clean_share                  of a campaign
+  laps, cones_hit, off_course, lap_times_s    by the referee
+  distance_clean_m                            metres to the first hit cone or to leaving the course
+  tracks, clean, clean_share                  campaign only
   picture
-Outcomes: finished, collided (a cone was hit, whatever else came of it), penalised (all laps, but the course was left with
-all wheels), timed_out (time was over, or the car was far off its track), failed (the car's program), raced (a campaign).
+Outcomes: finished, collided (a cone was hit, with any other result), penalised (all laps, but the course was left with
+all wheels), timed_out (also if the car was far off its track), failed (the car's program), raced (a campaign).
 Tracks of events, an acceleration or a skidpad, are refused: `cone_race` drives them."
 )]
 pub(crate) struct Args {

@@ -28,19 +28,19 @@ use crate::driving::{Conditions, Run, check_lidar, draw_contacts, paced, world_w
 /// Command line of `coverage`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
-    about = "Drives over the whole floor of a room that it knows, in lanes like a lawn mower's",
+    about = "Covers the floor of a known room in parallel lanes, like a lawn mower",
     after_help = "\
-Without --world, the room has a wall that juts in and two crates. The robot knows the world and its start, and keeps track of
-itself by matching scans. What it can cover is the floor under it wherever it can get 15 mm away from everything.
+Without --world, the room has a projecting wall and two crates. The robot knows the world and its start, and tracks its
+pose by matching scans. The coverable floor is what is under the robot wherever it can be 15 mm away from all obstacles.
 
-With --campaign, rooms of many sizes with walls that jut in, crates and cans.
+With --campaign, rooms of many sizes with projecting walls, crates and cans.
 
 JSON fields:
-  coverage_percent            share of that floor that it has truly passed over
-  area_m2                     that floor
+  coverage_percent            fraction of that floor that it has truly passed over
+  area_m2                     area of that floor
   planned_length_mm           length of the plan
-  path_ratio                  true path length in terms of area over the robot's width
-  random_drive_percent        what a random drive of the same duration covers
+  path_ratio                  true path length relative to area divided by the robot's width
+  random_drive_percent        coverage of a random drive of the same duration
   time_limit_s, picture
   rows                        with --campaign only: the table
 Outcomes: covered (98 % or more), incomplete, timed_out, collided, failed; with --campaign: passed, wrong."

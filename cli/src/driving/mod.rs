@@ -7,7 +7,7 @@ use std::sync::Arc;
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::log::GroundTruth;
 use roverlab::io::sim::{NoiseModel, RobotTruth, SimOptions};
-use roverlab::io::{self, Drive, Key};
+use roverlab::io::{self, Drive, Key, TruthInSpace};
 use roverlab::kinematics::OdometryErrors;
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::world::{Colour, DriveSpec, Object, ObjectKind, RobotSpec, Scene, Shape, World};
@@ -58,6 +58,8 @@ pub(crate) struct Run<T> {
     pub(crate) others: Vec<Trail>,
     /// Final positions of the scene's objects.
     pub(crate) objects: Vec<Point>,
+    /// Where the robot was in space, in a world with hills, at each moment of the trail but the first.
+    pub(crate) in_space: Vec<TruthInSpace>,
 }
 
 impl Conditions {
@@ -129,6 +131,7 @@ impl Conditions {
         let mut robot = stage.robot(0)?;
         let mut truth = stage.truth(0)?;
         let (mut trail, mut odometry_path) = (vec![(0.0, start)], vec![(0.0, start.position())]);
+        let (has_hills, mut in_space) = (scene.world.terrain.is_some(), Vec::new());
         let mut others: Vec<Trail> = self.others.iter().map(|_| Trail::new()).collect();
         let result = program(&mut robot, &mut || {
             let seen = truth.robot(0);
@@ -136,6 +139,9 @@ impl Conditions {
             if let Ok(robot) = seen {
                 trail.push((time, robot.pose));
                 odometry_path.push((time, start.compose(&robot.odometry).position()));
+            }
+            if has_hills {
+                in_space.extend(truth.in_space(0).ok());
             }
             for (other, trail) in self.others.iter().zip(&mut others) {
                 trail.extend(truth.pose(other.0).ok().map(|pose| (time, pose)));
@@ -161,6 +167,7 @@ impl Conditions {
             odometry_path,
             others,
             objects,
+            in_space,
         })
     }
 }

@@ -10,26 +10,26 @@ use crate::common::CommonArgs;
 #[command(
     about = "Edges, colours and lines: a kernel on an image file, or live on the robot's display",
     after_help = "\
-With --input, the kernel works on an image file (PNG, PNM or BMP), and --output takes the result (by its ending .png, .pgm,
-.ppm or .bmp). Without, a robot in its room turns and shows what the kernel makes of its camera's images on its display; --output
-takes the last display.
+With --input, the kernel processes an image file (PNG, PNM or BMP), and --output saves the result (.png, .pgm, .ppm or
+.bmp). Without it, a robot in its room turns and shows the processed images of its camera on its display; --output saves
+the last display.
 
-A definition says what is meant where the book and OpenCV differ:
+--definition decides where the book and OpenCV differ:
                  book (the default)                               opencv
   gray           (R + B) / 4 + G / 2                              0.299 R + 0.587 G + 0.114 B
   laplace        border 0                                         border by mirror image
   sobel_l1, _l2  a third of the gradient, border 0                the gradient, border by mirror image
-  canny          after a Gaussian of 7 x 7 with sigma 1.5         as it is
+  canny          after a Gaussian of 7 x 7 with sigma 1.5         without smoothing
   hue            a circle of 252, 255 without colour or light     a circle of 180
   saturation     255 - 255 min / I                                255 (max - min) / max
   intensity      (R + G + B) / 3                                  max
   hue_match      255-hue circle of the book's Program 11.9        180-hue circle
-  hough_prob...  pixels vote in an order drawn by --seed          OpenCV's order, and its rule of votes taken back
-With --smooth, --min-saturation and --min-intensity either can be had with both.
+  hough_prob...  pixels vote in an order drawn by --seed          OpenCV's order, and its rule of withdrawn votes
+--smooth, --min-saturation and --min-intensity apply to both.
 
 JSON fields:
   kernel, definition, width, height, output
-  timing                      with --timing: ns_per_pixel, of the kernel's fastest run of --repeat
+  timing                      with --timing: ns_per_pixel of the fastest of --repeat runs
   mean                        of the result's bytes
   lines                       hough: [{rho, theta_deg, votes}]; hough_probabilistic: [[x0, y0, x1, y1]]
   blobs                       blobs: [{area, x, y, min, max}]

@@ -19,25 +19,25 @@ use crate::driving::{counted, draw_contacts, paced};
 #[command(
     about = "Lets robots follow a leader: one by lidar, five by raised lidars, a chain, or a formation by radio",
     after_help = "\
-Without --world, a LabBot leads round a hall that is another one for each seed. With --world, the first robot of a .sim leads
-and all others follow; letters in a maze stand for robots there. A world with one robot or none gets --followers behind the
-one that leads from its place, or a LabBot at --start. It leads past the world's markers, or past the corners of
-the floor without any.
+Without --world, a LabBot leads round a hall that depends on the seed. With --world, the first robot of a .sim leads and
+all others follow; letters in a maze represent robots. In a world with at most one robot, --followers robots are placed
+behind the leader at its place, or behind a LabBot at --start. It leads past the world's markers, or without markers
+past the corners of the floor.
 
---robios and --fault are for one robot alone, and refused.
+--robios and --fault are rejected, because they apply to a single robot.
 
-With --campaign, many seeds for one follower, for five, for five among obstacles, for five by radio, and for a chain of 20.
+With --campaign, many seeds for one follower, five, five among obstacles, five by radio, and a chain of 20.
 
 JSON fields:
-  followers, mode             how many there are, and how they know where to go: lidar, raised, chain or radio
-  lost                        how many are three times as far away as they should be in the end, or have not seen the robot
-                              ahead for three seconds
-  mean_gap_mm, max_gap_mm     distance to the robot ahead, from 10 s on
-  obstacles                   things in the world
+  followers, mode             their number, and how they follow: lidar, raised, chain or radio
+  lost                        number of those that are three times as far away as required at the end, or have not seen the
+                              robot ahead for three seconds
+  mean_gap_mm, max_gap_mm     distance to the robot ahead, after the first 10 s
+  obstacles                   number of objects in the world
   time_limit_s, picture
   rows                        with --campaign only: the table
-Collisions, pose, odometry and path length: contacts are those of all robots, the rest is the leader's.
-Outcomes: followed, lost, blocked (the leader found no way on: it drove less than a third of what it could), collided; with --campaign: passed, wrong."
+Collisions are those of all robots; pose, odometry and path length are the leader's.
+Outcomes: followed, lost, blocked (the leader found no way and drove less than a third of the possible distance), collided; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
     /// Number of followers [default: those of the world, or 1].

@@ -17,13 +17,13 @@ use wall::Wall;
 #[command(
     about = "Evolves the scale of a spline's tangents, or the gains of a wall follower",
     after_help = "\
-A spline leads from --start to --goal X,Y,DEG: it shall be short and not bend sharply. A wall follower shall keep its
-distance in the simulator, with noise. Fitness is minus the cost. --record is for --task wall: it records a drive with the
-best gains.
+A spline leads from --start to --goal X,Y,DEG; it should be short without sharp bends. A wall follower should keep its
+distance in the simulator, with noise. Fitness is minus the cost. --record requires --task wall and records a drive with
+the best gains.
 
 JSON fields:
-  task, method, evaluations, fitness          what was asked, and the best that was found with how many trials
-  scale, length_mm, radius_mm                 of the best spline, and of its sharpest bend
+  task, method, evaluations, fitness          the task; number of trials and the best fitness
+  scale, length_mm, radius_mm                 of the best spline; radius of its sharpest bend
   proportional, integral, derivative          the best gains
   best, mean                                  fitness of each generation
   picture

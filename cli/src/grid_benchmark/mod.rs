@@ -16,22 +16,21 @@ use crate::common::PlainArgs;
 #[command(
     about = "Answers the queries of a scenario file on a grid map and compares the paths' lengths with the published ones",
     after_help = "\
-Without --map and --scen, the map is one of rooms and the queries are drawn; --seed says which. Their lengths are then
-Dijkstra's.
+Without --map and --scen, map (with rooms) and queries are random, by --seed. The reference lengths are then Dijkstra's.
 
 JSON fields:
   map, algorithm, width, height
-  queries                     how many
-  skipped                     those that start or end in a blocked cell, or lead from water to land or from land to water
-  solved                      those with a path
-  optimal                     those whose path is as long as published, within max(0.006, 2e-5 of the length)
-  mean_ratio, worst_ratio     length in terms of the published one
-  mean_expanded               nodes taken off the queue, per query
-  timing                      with --timing: median_us and p95_us of a query, preprocess_ms to get ready for the map
-  picture                     the longest query, by four planners
-Outcomes: solved; wrong if a query that was not skipped got no path, or one of an octile planner is not as long as published.
-Water (`W`) is a map of its own: ways lead within it and within the land. A query that starts or ends outside of the map is
-none."
+  queries                     number of queries
+  skipped                     queries that start or end in a blocked cell, or lead from water to land or vice versa
+  solved                      queries with a path
+  optimal                     queries with a path of the published length, within max(0.006, 2e-5 of the length)
+  mean_ratio, worst_ratio     ratio of the length to the published one
+  mean_expanded               nodes removed from the queue, per query
+  timing                      with --timing: median_us and p95_us of a query, preprocess_ms of the map
+  picture                     the longest query with four planners
+Outcomes: solved; wrong if a query that was not skipped has no path, or an octile planner's path differs in length from the
+published one. Water (`W`) is a separate map: paths are within water or within land. A query that starts or ends outside
+of the map is invalid."
 )]
 pub(crate) struct Args {
     /// MovingAI map.

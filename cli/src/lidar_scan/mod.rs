@@ -22,17 +22,17 @@ use crate::driving::{Conditions, Run, check_lidar, paced};
 #[command(
     about = "Takes a lidar scan, plots it on the robot's display, and finds walls, corners and objects in it",
     after_help = "\
-Without --world, the robot stands in a room with a corner that juts in, and two cans.
+Without --world, the robot is in a room with a projecting corner and two cans.
 
 JSON fields:
-  beams                       how many the scan has
-  walls                       how many straight walls it shows
-  corners                     a list of {x_mm, y_mm, angle_deg}: the angle on the robot's side; above 180 it juts in
+  beams                       number of beams in the scan
+  walls                       number of straight walls in it
+  corners                     a list of {x_mm, y_mm, angle_deg}: the angle on the robot's side; above 180 it projects
   objects                     a list of {x_mm, y_mm, radius_mm}
   peaks_deg, dips_deg         directions of the scan's local extrema, counter-clockwise from straight ahead
-  corner_error_mm             largest true distance from a corner that was found to the nearest end of a wall; null
+  corner_error_mm             largest true distance from a detected corner to the nearest end of a wall; null
                               without corners
-  object_error_mm             the same from an object to the nearest one of the world
+  object_error_mm             the same from a detected object to the nearest one in the world
   lcd, picture
 Outcomes: scanned, failed."
 )]

@@ -20,20 +20,20 @@ pub(crate) enum Drive {
 /// Command line of `maze-left`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
-    about = "Keeps the left hand on the wall of a maze until the goal or the start is reached",
+    about = "Follows the left wall of a maze until the goal or the start is reached",
     after_help = "\
---world takes a maze of any format (EyeSim's .maz, the micromouse text format, .maze, map, num); it says where the robot starts.
-Cells are 360 mm wide, for an S4, as in the book, or 180 mm with --micromouse.
+--world accepts a maze in any format (EyeSim's .maz, the micromouse text format, .maze, map, num), including the start.
+Cells are 360 mm wide for an S4, as in the book, or 180 mm with --micromouse.
 
 JSON fields:
   drive                       open, p or pid
   width, height               cells
-  cells                       cells driven, as the robot counts them
-  at_goal, back               whether the robot takes itself to be in the goal, or at the start again
-  really                      whether it truly is there
-  off_middle_mm               from the middle of the cell where it takes itself to be
+  cells                       driven cells, by the robot's count
+  at_goal, back               whether the robot estimates to be in the goal, or back at the start
+  really                      whether it is truly there
+  off_middle_mm               distance from the middle of the estimated cell
   picture                     always
-Outcomes: goal, returned, lost (it is not where it takes itself to be), stuck, timed_out, collided, failed."
+Outcomes: goal, returned, lost (the estimated cell is wrong), stuck, timed_out, collided, failed."
 )]
 pub(crate) struct LeftArgs {
     /// Method of driving from cell to cell.

@@ -13,17 +13,17 @@ use crate::driving::{Conditions, paced};
 /// Command line of `maze-lidar`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
-    about = "Follows the left wall of a maze by a lidar until the goal or the start is reached, and draws what it saw",
+    about = "Follows the left wall of a maze by lidar until the goal or the start is reached, and draws a map",
     after_help = "\
---world takes a maze of any format (EyeSim's .maz, the micromouse text format, .maze, map, num); it says where the robot starts.
-Cells are 360 mm wide. The map has every point that the lidar saw where odometry put it, so that it bends as odometry errs.
+--world accepts a maze in any format (EyeSim's .maz, the micromouse text format, .maze, map, num), including the start.
+Cells are 360 mm wide. The map contains all lidar points at their odometry positions, so odometry errors distort it.
 
 JSON fields:
   width, height               cells
-  cells                       cells that the robot has really been in
-  map_points                  points of the map
+  cells                       cells that the robot has truly visited
+  map_points                  number of points in the map
   map_error_mm                mean distance of the map's points from the nearest wall
-  odometry_error_mm           where odometry takes the robot to be in the end, from where it is
+  odometry_error_mm           final true error of odometry
   picture                     always
 Outcomes: goal, returned, timed_out, collided, failed."
 )]

@@ -6,26 +6,26 @@ use roverlab::geometry::units;
 /// Command line of `navigate`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
-    about = "Drives a robot with a lidar to a goal in a known world, past what the world is not known to hold",
+    about = "Drives a robot with a lidar to a goal in a known world with unmapped obstacles",
     after_help = "\
-Without --world, the robot drives through a world of the command's own, in which it does not know of three obstacles. With
---world, what --unmapped says is added to it, where it leaves a way, and the robot is told of the world without that. Other
-robots stand still, and nobody tells of them either.
+Without --world, the robot drives in a built-in world with three obstacles unknown to it. With --world, the obstacles of
+--unmapped are added where they leave a way, and the robot knows the world without them. Other robots stand still and
+are also unknown to it.
 
---world also takes MovingAI maps (.map): cells of 500 mm, the lower left corner of the map at 0,0. Unknown cells of a ROS map
-are floor.
+--world also accepts MovingAI maps (.map): cells of 500 mm, with the lower left corner of the map at 0,0. Unknown cells
+of a ROS map are floor.
 
-With --campaign, generated worlds in each of which up to five obstacles are unmapped; every goal can be reached.
+With --campaign, generated worlds with up to five unmapped obstacles each; every goal is reachable.
 
 JSON fields:
   goal                        [x, y] mm
   goal_distance_mm            true distance at the end
-  position_error_mm           how far the robot is from where it takes itself to be, at the end
+  position_error_mm           final true error of the robot's position estimate
   planned_length_mm           length of the first plan, or null
-  clearance_mm                what the first plan keeps beside the robot, or null
-  replans                     how often what was seen changed the plan
-  recoveries                  how often the robot did not get on and backed off, or doubted what it had seen
-  unmapped                    obstacles that the robot was not told of
+  clearance_mm                clearance beside the robot in the first plan, or null
+  replans                     number of plan changes caused by scans
+  recoveries                  number of times that the robot backed off without progress, or discarded earlier measurements
+  unmapped                    obstacles unknown to the robot
   contact_points              list of [x, y] mm, true
   time_limit_s, picture
   runs, reached, contacts, wrong_seeds   with --campaign only

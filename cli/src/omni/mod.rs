@@ -15,16 +15,16 @@ use crate::driving::{Conditions, Run, check_drive, paced, pale};
 #[command(
     about = "Drives a robot on Mecanum wheels by its four motors: in a square without turning, or straight while it spins",
     after_help = "\
-Without --world, the robot drives over an empty floor. The square lies ahead to the left of the start. The line ends at
---goal, or as far ahead as the square is wide.
+Without --world, the robot drives on an empty floor. The square is ahead and to the left of the start. The line ends at
+--goal, or after a side of the square.
 
 JSON fields:
   task                        square or spin
-  goal                        [x, y] mm: where the way ends
-  position_error_mm           true distance to it at the end
-  max_deviation_mm            largest true distance to the way
+  goal                        [x, y] mm: end of the path
+  position_error_mm           final true distance to it
+  max_deviation_mm            largest true distance to the path
   max_heading_error_deg       square: largest true change of the heading
-  turned_deg                  spin: by how much the robot has truly turned in all
+  turned_deg                  spin: total true rotation of the robot
   time_limit_s, picture
 Outcomes: reached, missed, timed_out, collided, failed."
 )]

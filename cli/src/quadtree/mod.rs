@@ -18,18 +18,18 @@ use crate::grid_benchmark::picture::{draw_path, of_grid, place};
 #[command(
     about = "Divides a map into free and blocked squares, and plans a path through the free ones",
     after_help = "\
-Pictures have their first row at the top and obstacles in black; the rows of a ROS map count from the bottom. Without --map,
-the map has some discs in it; --seed says where. A map whose size is no power of two is divided as if it were part of a larger
-one; squares lie within the map.
+Pictures have their first row at the top and obstacles in black; the rows of a ROS map count from the bottom. Without
+--map, the map has some discs, placed by --seed. A map whose size is not a power of two is divided like part of a larger
+one; squares are within the map.
 
 JSON fields:
   map, width, height
-  free_leaves, blocked_leaves how many squares
-  smallest, largest           sides of the free ones, in cells; null without any
-  links                       pairs of free squares that share a part of an edge
-  list                        with --list: the free squares, as the book's program prints them
+  free_leaves, blocked_leaves numbers of squares
+  smallest, largest           side lengths of the free ones in cells; null without any
+  links                       pairs of free squares that share part of an edge
+  list                        with --list: the free squares in the format of the book's program
   path                        with --from and --to: cost in cells, and points [x, y] in cells
-  timing                      with --timing: decompose_us and list_us, to divide the map and to list its free squares
+  timing                      with --timing: decompose_us and list_us, durations of the division and of the list of free squares
 Outcomes: decomposed, and with --from and --to found or unreachable."
 )]
 pub(crate) struct Args {

@@ -20,16 +20,16 @@ use crate::driving::{Conditions, Trail, counted, draw_contacts, paced};
 /// Command line of `random-drive`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
-    about = "Drives straight on, turns by a random angle where something is ahead, and so on; one robot or several",
+    about = "Drives straight until an obstacle is ahead, turns by a random angle, and repeats; one robot or several",
     after_help = "\
-Without --world, the robots drive in a room with two crates and a can. With a .sim, all of its robots drive. If these
-are fewer than --robots, more stand at places that --seed chooses. --fault is for one robot alone.
+Without --world, the robots drive in a room with two crates and a can. With a .sim, all of its robots drive; if there
+are fewer than --robots, --seed places additional ones. --fault requires a single robot.
 
 JSON fields:
-  robots                      how many drive
-  turns                       how often they have turned, all together
-  coverage_percent            share of the floor that the robots' bodies have passed over, of what the first one could reach
-                              15 mm away from everything
+  robots                      number of driving robots
+  turns                       total number of turns
+  coverage_percent            fraction of the floor that the robots have passed over, relative to that which the first one can
+                              reach 15 mm away from all obstacles
   time_limit_s, picture
 Collisions are those of all robots; pose, odometry and path length are the first one's.
 Outcomes: driven, collided, failed."

@@ -5,13 +5,13 @@ use crate::common::{Heeds, Unheeded, parse_picture};
 /// Command line of `replay`.
 #[derive(Debug, clap::Parser)]
 #[command(
-    about = "Replays recordings, shows what is in them, saves what is left of damaged ones",
+    about = "Replays recordings, shows their content, and recovers damaged ones",
     after_help = "\
 JSON fields: example, command, outcome;
   check     program, difference: null, or {robot, time_s, found, expected}
-  recover   chunks, messages, header (whether it is saved), lost_bytes
+  recover   chunks, messages, header (whether it is recovered), lost_bytes
   info      program, version, schema, seed, options, robots, start_s, end_s, bytes, chunks, topics, attachments,
-            attachments_hash, attachments_lost (whether some are), compression
+            attachments_hash, attachments_lost (whether any are lost), compression
   export    rows, csv, picture
 Outcomes: same, different, recovered, read, exported. The exit status is 1 for `different`."
 )]

@@ -11,7 +11,7 @@ use std::path::Path;
 use roverlab::io::log::{Log, recover};
 use serde_json::{Value, json};
 
-use crate::common::{Failure, Printed};
+use crate::common::{Failure, Printed, recording_bytes};
 pub(crate) use args::{Args, Command};
 
 /// Result of a command: its report, and whether it succeeded.
@@ -36,7 +36,7 @@ pub(crate) fn work(args: &Args) -> Result<Printed, Failure> {
 }
 
 fn bytes(file: &Path) -> Result<Vec<u8>, Failure> {
-    fs::read(file)
+    recording_bytes(file)
         .map_err(|error| Failure::input(format!("{}: {error}; expected a recording", file.display())))
 }
 

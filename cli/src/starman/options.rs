@@ -13,23 +13,23 @@ const LONGEST: f64 = 3600.0;
 #[command(
     about = "A round robot with five limbs learns to walk by a genetic algorithm",
     after_help = "\
-Fitness is 1 plus the millimetres that a gait brings the robot along the floor. The best gait's walk is drawn into
+Fitness is 1 plus the distance along the floor of a gait in millimetres. The best gait is drawn to
 target/pictures/starman.svg, except with --json.
 
-Fitness counts from where the robot has come to rest at its gait's first control point. --statistics keeps a row of numbers
-or a chart of each generation.
+The distance counts from the robot's rest position at the first control point of its gait. --statistics saves a row of
+numbers or a chart of each generation.
 
 JSON fields:
-  generations, evaluations       made by this run, a checkpoint's included
+  generations, evaluations       number in this run, including a checkpoint's
   timing                         with --timing: evaluations_per_s by this process, real_time_factor
-  best_first, best_last, ratio   greatest fitness of the first and of all generations
-  population_hash                tells final populations apart
-  best_gait                      its bytes, five for each control point
-  way_mm                         where the best gait's walk ends along the floor, which --record records
-  threads, picture               the file of the strip, if there is one
-With --compare, `rows`: seed, best_first, best_last, ratio, random (the best of as many random gaits), and how often
-evolution was better. With --steps, `rows`: time step, and of the gaits that go more than 5 mm their number and the median
-change of the way when the step is halved.
+  best_first, best_last, ratio   highest fitness of the first and of all generations
+  population_hash                hash of the final population
+  best_gait                      its bytes, five per control point
+  way_mm                         final position of the best gait along the floor, which --record records
+  threads, picture               file of the strip, if there is one
+With --compare, `rows`: seed, best_first, best_last, ratio, random (the best of as many random gaits), and the number of
+seeds with better evolution. With --steps, `rows`: time step, and of the gaits that move more than 5 mm their number and the
+median change of the distance when the step is halved.
 Outcomes: evolved, compared, failed."
 )]
 pub(crate) struct Args {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::support::{DATA, Ended, run, temporary, text};
 use crate::commands::COMMANDS;
-use roverlab::io::log::{Header, Log, LogWriter};
+use roverlab::io::log::{Header, Log, LogFile, LogWriter};
 use roverlab::world::{LidarSpec, RobotSpec, formats};
 
 fn file(name: &str) -> PathBuf {
@@ -82,6 +82,7 @@ fn short(program: &str) -> &'static [&'static str] {
         "edges" => &["--repeat", "3"],
         "follow_me" => &["--followers", "3", "--mode", "radio"],
         "genetic" => &["--task", "wall", "--generations", "1"],
+        "lane_keeping" => &["--course", "3", "--minutes", "0.05"],
         "random_drive" => &["--robots", "3"],
         "safety" => &["--track", "../tests/data/cones/oval.csv", "--event", "radio"],
         "starman" => &["--population", "4", "--generations", "2", "--seconds", "4"],
@@ -263,6 +264,19 @@ fn a_recording_has_no_files_written() {
     assert!(status == 2 && err.contains("no such file in the recording"), "{err}");
 }
 
+#[cfg(unix)]
+#[test]
+fn devices_are_no_recordings() {
+    for command in
+        [&["info", "/dev/zero"][..], &["check", "/dev/zero"], &["recover", "/dev/zero", "/dev/null"]]
+    {
+        let (status, _, err) = manage(command);
+        assert!(status == 2 && err.contains("device"), "{command:?}: {err}");
+    }
+    let (status, _, err) = run("a_to_b", &["--replay", "/dev/zero"]);
+    assert!(status == 2 && err.contains("device"), "{err}");
+}
+
 /// A robot has its 3D model, a recording has it too, and a robot whose model is missing drives without.
 #[test]
 fn the_model_of_a_robot_is_recorded() {
@@ -274,6 +288,25 @@ fn the_model_of_a_robot_is_recorded() {
     fs::copy(robot, &bare).unwrap();
     let (status, _, err) = run("a_to_b", &["--robot", text(&bare)]);
     assert!(status == 0 && err.contains("bare.robi:3:") && err.contains("cart.obj"), "{status} {err}");
+}
+
+#[test]
+fn no_other_file_is_recorded_over() {
+    let letter = file("letter.mcap");
+    let options = ["--time-limit", "1", "--record", text(&letter)];
+    fs::write(&letter, "Dear all").unwrap();
+    let (status, _, err) = run("a_to_b", &options);
+    assert!(status == 2 && err.contains("no recording") && err.contains("--force"), "{err}");
+    assert_eq!(fs::read(&letter).unwrap(), b"Dear all");
+    assert_eq!(run("a_to_b", &[&options[..], &["--force", "--fsync"]].concat()).2, "");
+    let first = fs::read(&letter).unwrap();
+    let writer = LogFile::create(&letter).unwrap();
+    let (status, _, err) = run("a_to_b", &options);
+    assert!(status == 2 && err.contains("somebody who records"), "{err}");
+    drop(writer);
+    assert!(run("a_to_b", &options).2.is_empty() && fs::read(&letter).unwrap() == first);
+    let (status, _, err) = run("a_to_b", &["--force"]);
+    assert!(status == 2 && err.contains("--record"), "{err}");
 }
 
 /// Small stored recordings, perhaps from another machine. After an intended change of runs, the first one is

@@ -7,20 +7,20 @@ use crate::common::{CommonArgs, OF_ONE_RUN};
 #[command(
     about = "Drives a robot along the walls of a room, and measures how well it keeps its distance",
     after_help = "\
-Without --world, the room is drawn with the seed: corners of 60 to 300 degrees, curves, doors. The run ends when the robot
-has been all the way round as often as --laps says.
+Without --world, the room is random, by the seed: corners of 60 to 300 degrees, curves, doors. The run ends after --laps
+laps.
 
-Errors are those of the true distance from the robot's middle to the nearest wall on the side where it follows walls, once
-it has driven 300 mm along one. Away from corners means: farther from a corner than the robot's path round it plus 150 mm.
+Errors are those of the true distance from the robot's centre to the nearest wall on the followed side, once it has
+driven 300 mm along a wall. Away from corners means farther from a corner than the robot's path round it plus 150 mm.
 
-With --campaign, many rooms instead of one, by the book's controller as well, and a table.
+With --campaign, many rooms instead of one, also with the book's controller, and a table.
 
 JSON fields:
   controller                  psd, pid, lidar or book
   side                        left or right; null if no wall was found
-  laps                        how often the robot has been round
-  rms_error_mm, max_error_mm  away from corners; null if nothing was measured
-  rms_error_everywhere_mm     corners included
+  laps                        number of complete laps
+  rms_error_mm, max_error_mm  away from corners; null without measurements
+  rms_error_everywhere_mm     including corners
   lap_length_mm               true length of the first lap
   time_limit_s, picture
   rows                        with --campaign only: the table

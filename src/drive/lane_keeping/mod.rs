@@ -3,6 +3,38 @@
 //! [`LaneKeeper`] steers by the road that [`LaneFinder`](crate::vision::lane_markings::LaneFinder) fits to the markings: ahead
 //! by the lane's curvature, back by offset and heading, and as fast as grip, bends and sight allow. [`BookLaneKeeper`] is the
 //! book's pipeline as printed: edges by Canny, lines by Hough, and a proportional controller.
+//!
+//! ```
+//! use roverlab::drive::lane_keeping::{BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters};
+//! use roverlab::drive::traffic::{FreeDrive, FreeDriveRules};
+//! use roverlab::io::control::run;
+//! use roverlab::io::sim::{SimOptions, Simulation};
+//! use roverlab::vision::lane_markings::RoadModel;
+//! use roverlab::world::road::{Appearance, CourseOptions, generate};
+//! use roverlab::world::{RobotSpec, Scene};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let course = generate(2, &CourseOptions::default())?;
+//! let world = course.world(&Appearance { pixel: 0.004, ..Appearance::default() })?;
+//! let spec = RobotSpec::road_car();
+//! let scene = Scene::with_robot(world, spec.clone(), course.start());
+//! let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
+//! let (mut car, truth) = (simulation.robot(0)?, simulation.truth());
+//! let mut referee = FreeDrive::new(course, &spec, FreeDriveRules::default());
+//!
+//! let camera = spec.camera.as_ref().expect("the car has one").into();
+//! let mut keeper = LaneKeeper::new(camera, RoadModel::default(), LaneKeeperParameters::default())?;
+//! run(&mut car, &mut keeper, 2.0, |_, _, _| {
+//!     referee.see(truth.time(), &truth.pose(0).expect("there is a car"));
+//! })?;
+//! assert!(referee.score().distance > 2.0 && referee.score().departures == 0);
+//!
+//! // The book's, for half a second more.
+//! let mut book = BookLaneKeeper::new(BookLaneParameters::default())?;
+//! run(&mut car, &mut book, 0.5, |_, _, _| ())?;
+//! # Ok(())
+//! # }
+//! ```
 
 mod book;
 mod keeper;

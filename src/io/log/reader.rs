@@ -171,32 +171,32 @@ pub(super) fn has_checksum(chunk: &Framed<'_>) -> bool {
     chunk.body.get(24..28).is_some_and(|crc| crc != [0; 4])
 }
 
-/// The bytes that chunks may hold in all, unpacked.
+/// An upper limit of the uncompressed size of all chunks together.
 ///
-/// A file of a few kilobytes may hold gigabytes of nothing.
+/// A file of a few kilobytes may hold gigabytes of zeros.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Budget {
     left: u64,
 }
 
 impl Budget {
-    /// What a file of some bytes may hold.
+    /// The limit for a file.
     pub(super) fn of(file: &[u8]) -> Self {
-        /// Bytes for each of a file's, more than any chunk with its entries in the index is packed to, and for a file
-        /// that hardly has any.
+        /// Bytes per byte of the file: more than a chunk of a recording can be compressed, with its index.
         const PER_BYTE: u64 = 1 << 12;
+        /// Bytes for a very short file.
         const LEAST: u64 = 1 << 26;
         Self { left: LEAST.saturating_add(PER_BYTE.saturating_mul(file.len() as u64)) }
     }
 
-    /// Fails if that is less than some bytes.
+    /// Fails if less than some bytes is left.
     pub(super) fn allows(self, size: u64) -> Result<(), LogError> {
         if size <= self.left {
             return Ok(());
         }
         let most = self.left;
         Err(LogError::damaged(format!(
-            "{size} bytes unpacked in a file that may hold {most} more by its length"
+            "{size} uncompressed bytes; expected at most {most} for a file of this length"
         )))
     }
 
@@ -207,7 +207,7 @@ impl Budget {
     }
 }
 
-/// The bytes of what a chunk holds, unpacked. Fails if they are not as they were written, or more than the budget allows.
+/// The uncompressed content of a chunk. Fails if it is corrupted, or larger than the budget.
 pub(super) fn contents<'a>(record: &Framed<'a>, budget: &mut Budget) -> Result<Cow<'a, [u8]>, LogError> {
     let Record::Chunk { header, data } = record.parse()? else {
         return Err(LogError::damaged(format!("no chunk at byte {}", record.start)));
@@ -230,7 +230,7 @@ pub(super) fn contents<'a>(record: &Framed<'a>, budget: &mut Budget) -> Result<C
     Ok(data)
 }
 
-/// Unpacks a compressed chunk that holds so many bytes.
+/// Decompresses a chunk with a content of so many bytes.
 fn unpacked(chunk: &Framed<'_>, name: &str, size: u64) -> Result<Vec<u8>, LogError> {
     let damaged = |error: &dyn std::fmt::Display| {
         LogError::damaged(format!("{error} in the chunk at byte {}", chunk.start))
@@ -267,7 +267,7 @@ fn unpacked(chunk: &Framed<'_>, name: &str, size: u64) -> Result<Vec<u8>, LogErr
     Ok(plain)
 }
 
-/// An empty list with room for so many bytes. Fails where there is not as much memory.
+/// An empty list with a capacity in bytes. Fails if there is not enough memory.
 pub(super) fn room(size: u64) -> Result<Vec<u8>, LogError> {
     let mut list = Vec::new();
     let size = usize::try_from(size).unwrap_or(usize::MAX);

@@ -185,7 +185,7 @@ impl Contents {
     }
 }
 
-/// What chunks hold, one after the other, if some of them are compressed.
+/// The content of all chunks, one after the other, if some of them are compressed.
 fn unpacked<'a>(
     bytes: &[u8],
     chunks: impl Iterator<Item = &'a Framed<'a>> + Clone,
@@ -227,7 +227,7 @@ struct Reading {
 }
 
 impl Reading {
-    /// Adds what is in chunks.
+    /// Adds the content of chunks.
     fn add_all(&mut self, contents: &[u8]) -> Result<(), LogError> {
         reader::inner(contents).try_for_each(|inner| self.add(&inner?))
     }

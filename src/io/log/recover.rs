@@ -167,7 +167,7 @@ struct Saving<'a> {
     file: Writer<NoSeek<Vec<u8>>>,
     /// Schemas and channels from the file's summary, for messages whose own declaration is lost.
     declarations: Vec<Framed<'a>>,
-    /// What further chunks may hold.
+    /// The limit for further chunks.
     budget: Budget,
     chunks: usize,
     messages: u64,

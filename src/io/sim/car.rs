@@ -4,7 +4,7 @@ use super::course::Course;
 use super::drive_errors::DriveErrors;
 use super::drive_mechanics::Mechanics;
 use super::wheels::{WheelSpec, Wheels};
-use super::{NoiseModel, TICK};
+use super::{NoiseModel, SERVO_RATE, TICK};
 use crate::geometry::{Pose, Twist, units};
 use crate::io::{Error, ErrorKind, Result};
 use crate::kinematics::{Ackermann, CarState, Differential, Displacement, PlanarMotion, PlanarTwist};
@@ -31,9 +31,6 @@ pub(super) struct Car {
     /// Odometry measurement of a fast car.
     measured: Twist,
 }
-
-/// Degrees per second at which a servo turns the wheels.
-const STEERING_RATE: f64 = 30.0;
 
 impl Car {
     pub(super) fn new(
@@ -110,7 +107,7 @@ impl Car {
 
     /// Turns the front wheels for one tick; returns their mean angle.
     fn steer(&mut self) -> f64 {
-        let rate = self.bicycle.as_ref().map_or(units::from_deg(STEERING_RATE), Bicycle::steering_rate);
+        let rate = self.bicycle.as_ref().map_or(units::from_deg(SERVO_RATE), Bicycle::steering_rate);
         let most = rate * TICK;
         let before = self.steering;
         let missing = self.wanted - before;

@@ -1,5 +1,6 @@
-use crate::world::World;
+use crate::geometry::Vector;
 use crate::world::space::SolidId;
+use crate::world::{Shape, World};
 
 /// An object, with the data for pushing it or knocking it over.
 #[derive(Debug, Clone, Copy)]
@@ -11,6 +12,9 @@ pub(super) struct Movable {
     pub(super) falls: bool,
     /// Height of its top above the floor while upright (m).
     pub(super) top: f64,
+    /// Whether it rolls down hills, where others slide, and how fast it does, over the plane.
+    pub(super) rolls: bool,
+    pub(super) velocity: Vector,
     /// Metres from its foot to its top.
     height: f64,
     /// Kilograms, fixed or not, and the cubic metres of water that it displaces.
@@ -27,6 +31,8 @@ pub(super) fn movables(world: &World, solids: &[SolidId]) -> Vec<Movable> {
             mass,
             falls: object.kind.falls,
             top,
+            rolls: matches!(object.kind.shape, Shape::Sphere { .. }),
+            velocity: Vector::zeros(),
             height: object.kind.shape.height(),
             weight: object.kind.mass,
             volume: if object.kind.fixed { 0.0 } else { object.kind.buoyancy.unwrap_or(0.0) },

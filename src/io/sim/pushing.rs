@@ -1,12 +1,11 @@
 //! Pushing and knocking over objects.
 
+use super::collision::PUSH_TOLERANCE;
 use super::engine::Engine;
 use super::movable::Movable;
 use crate::geometry::{Pose, Vector};
 use crate::world::space::{Contact, SolidId};
 
-/// What a push goes beyond the rim of the robot, in metres: nothing lies within another thing after it.
-const CLEAR: f64 = 1e-6;
 /// The deepest that a thing may come to lie in another one by a push.
 const TOLERANCE: f64 = 1e-5;
 
@@ -22,7 +21,7 @@ impl Engine {
             let Some(solid) = contact.with else { continue };
             let light = self.movable(solid).is_some_and(|movable| movable.mass <= strength);
             if light {
-                moved |= self.shift(solid, -contact.normal * (contact.depth + CLEAR), index);
+                moved |= self.shift(solid, -contact.normal * (contact.depth + PUSH_TOLERANCE), index);
             }
         }
         self.contacts = contacts;

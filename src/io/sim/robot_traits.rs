@@ -1,4 +1,4 @@
-//! The capabilities of a simulated robot, written once for blocking robots and for members of a fleet.
+//! Capabilities of a simulated robot, shared by blocking robots and members of a fleet.
 
 use super::engine::Engine;
 use super::{FleetRobot, SimRobot};
@@ -19,7 +19,7 @@ fn arrival(engine: &mut Engine, index: usize) -> Result<Option<()>> {
     Ok((body.drive.get().is_done() || body.touch.is_stalled()).then_some(()))
 }
 
-/// Answers with the next key press, and fails when none can come.
+/// Answers with the next key press; fails if none is scheduled.
 fn next_key(engine: &mut Engine, index: usize) -> Result<Option<Key>> {
     let now = engine.time();
     let body = &mut engine.bodies[index];

@@ -2,9 +2,8 @@ use std::sync::Arc;
 
 use super::engine::{Engine, Thing};
 use super::lockstep::Lockstep;
-use super::terrain::Mishap;
 use crate::geometry::{Pose, Pose3};
-use crate::io::{Error, GroundTruth, Result, RobotTruth};
+use crate::io::{Error, GroundTruth, Mishap, Result, RobotTruth, TruthInSpace};
 use crate::parameter::require_finite;
 
 /// Ground truth of a simulated world. Robots have no access to it; it is for verdicts, pictures and tests.
@@ -158,5 +157,9 @@ impl GroundTruth for Truth {
 
     fn object(&mut self, object: usize) -> Result<Pose> {
         Truth::object(self, object)
+    }
+
+    fn in_space(&mut self, robot: usize) -> Result<TruthInSpace> {
+        Ok(TruthInSpace { pose: self.pose_in_space(robot)?, mishap: self.mishap(robot)? })
     }
 }

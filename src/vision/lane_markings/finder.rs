@@ -11,6 +11,8 @@ use crate::vision::GrayView;
 pub struct RoadModel {
     /// Metres of the road for each metre of the rules: 1, or 0.5 at a scale of 2:1.
     pub size: f64,
+    /// Metres across a marking.
+    pub line_width: f64,
     /// Whether cars keep to the left.
     pub left_hand: bool,
 }
@@ -18,7 +20,7 @@ pub struct RoadModel {
 impl Default for RoadModel {
     /// A road of the rules' size, and traffic on the right.
     fn default() -> Self {
-        Self { size: 1.0, left_hand: false }
+        Self { size: 1.0, line_width: 0.02, left_hand: false }
     }
 }
 
@@ -94,8 +96,6 @@ pub struct LaneFinder {
 
 /// Metres of ground that are looked at, ahead of the camera.
 const REACH: f64 = 2.2;
-/// The width of a line in metres.
-const LINE: f64 = 0.02;
 /// Points that are enough to see a road by.
 const ENOUGH: f64 = 7.0;
 /// Metres without lines after which the road is lost: a gap of 1 m, and a crossing.
@@ -109,7 +109,7 @@ impl LaneFinder {
     pub fn new(camera: RoadCamera, road_model: RoadModel) -> Result<Self, ParameterError> {
         let size = road_model.size;
         require("size of the road", size, (0.1..=10.0).contains(&size), "0.1 to 10")?;
-        let filter = MarkingFilter::new(camera, LINE * size, REACH * size)?;
+        let filter = MarkingFilter::new(camera, road_model.line_width, REACH * size)?;
         let own = RoadCamera { height: camera.height / size, ahead: camera.ahead / size, ..camera };
         Ok(Self { road_model, filter, camera: own, points: Vec::new(), road: None, blind: 0.0 })
     }

@@ -39,13 +39,16 @@ const FIRST: [f64; 5] = [0.12, 0.12, 0.7, 0.035, 0.01];
 /// Metres from the road's middle to an edge line, of a road that has not been seen.
 const EDGE_AT_FIRST: f64 = 0.42;
 /// Deviations that grow with the root of the metres driven.
-const DRIFT: [f64; 5] = [0.010, 0.020, 0.25, 0.006, 0.001];
-/// The deviation of a curvature that has come into view, for the root of a metre.
-const UNSEEN: f64 = 0.9;
+const DRIFT: [f64; 5] = [0.010, 0.020, 0.25, 0.003, 0.0005];
+/// Curvatures of a road that has not come into view yet: their deviation, and metres in which they are forgotten.
+const UNSEEN: (f64, f64) = (0.6, 1.5);
+/// The tightest bend of a road, and how sharply that is meant; and the same of its edges, from least to most.
+const TIGHTEST: (f64, f64) = (1.0, 0.1);
+const EDGES: ([f64; 2], f64) = ([0.36, 0.48], 0.01);
 /// Metres by which a line's middle is uncertain: at any place, and as a share of a pixel.
 const BLUR: (f64, f64) = (0.006, 0.6);
 /// Metres by which a line between knots is not as the model says, for the square of the metres ahead.
-const ROUGH: f64 = 0.006;
+const ROUGH: f64 = 0.010;
 /// Points of one frame err together, by the camera and by the model; so many count as one.
 const TOGETHER: f64 = 8.0;
 /// Metres between the lines of a pair.
@@ -116,8 +119,32 @@ impl Road {
         for (index, sigma) in deviations(DRIFT).into_iter().enumerate() {
             self.covariance[(index, index)] += sigma * sigma * metres.abs();
         }
+        self.forget(along.abs());
+    }
+
+    /// What comes into view is not known: the curvature farthest ahead goes back to none by and by.
+    fn forget(&mut self, along: f64) {
         let last = BENDS + KNOTS - 1;
-        self.covariance[(last, last)] += UNSEEN * UNSEEN * along.abs();
+        let kept = math::exp(-along / UNSEEN.1);
+        self.state[last] *= kept;
+        for i in 0..STATES {
+            self.covariance[(last, i)] *= kept;
+            self.covariance[(i, last)] *= kept;
+        }
+        self.covariance[(last, last)] += (1.0 - kept * kept) * UNSEEN.0 * UNSEEN.0;
+    }
+
+    /// Adds what is known of all roads: how tightly they bend, and how wide they are.
+    fn bound(&self, information: &mut Covariance, pull: &mut State) {
+        let mut keep = |index: usize, [least, most]: [f64; 2], sigma: f64| {
+            let excess = self.state[index] - self.state[index].clamp(least, most);
+            if excess != 0.0 {
+                information[(index, index)] += 1.0 / (sigma * sigma);
+                pull[index] -= excess / (sigma * sigma);
+            }
+        };
+        (0..KNOTS).for_each(|knot| keep(BENDS + knot, [-TIGHTEST.0, TIGHTEST.0], TIGHTEST.1));
+        keep(EDGE, EDGES.0, EDGES.1);
     }
 
     /// Fits it to points, with weights that leave out what no line of the road is. `wide` are the metres within which points
@@ -143,6 +170,7 @@ impl Road {
                     support += fits * fits;
                 }
             }
+            self.bound(&mut information, &mut pull);
             let Some(root) = information.cholesky() else { return 0.0 };
             self.state += root.solve(&pull);
         }

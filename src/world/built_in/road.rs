@@ -46,11 +46,9 @@ impl Road {
 
     /// Adds a straight part of the centre line.
     fn lay(&mut self, part: Segment, along: f64) {
-        /// Metres from the middle of a road to its outer line's far edge.
-        const REACH: f64 = LANE + LINE;
         let pixel = self.pixel;
         let pixels = |low: f64, high: f64| {
-            let (low, high) = ((low - REACH) / pixel, (high + REACH) / pixel);
+            let (low, high) = ((low - LANE - LINE) / pixel, (high + LANE + LINE) / pixel);
             (low.max(0.0) as usize)..(high.max(0.0).ceil() as usize).min(self.side)
         };
         let (columns, rows) = (
@@ -64,7 +62,7 @@ impl Road {
                 let share = ((point - part.a).dot(&way) / way.norm_squared()).clamp(0.0, 1.0);
                 let aside = (point - (part.a + way * share)).norm();
                 let here = &mut self.places[(self.side - 1 - up) * self.side + column];
-                if aside <= REACH && here.is_none_or(|before| aside < before.aside) {
+                if aside <= LANE + LINE && here.is_none_or(|before| aside < before.aside) {
                     *here = Some(Place { aside, along: along + share * way.norm() });
                 }
             }

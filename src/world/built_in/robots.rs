@@ -27,7 +27,7 @@ impl RobotSpec {
         "SolarRaft",
     ];
 
-    /// EyeSim's S4: a small differential drive robot with four PSDs, a lidar and a camera.
+    /// EyeSim's S4: a small differential-drive robot with four PSDs, a lidar and a camera.
     ///
     /// Wheels, encoders and track are those of its description file; the outline is a disc of 60 mm.
     pub fn s4() -> Self {
@@ -63,9 +63,9 @@ impl RobotSpec {
         }
     }
 
-    /// EyeSim's LabBot: a larger differential drive robot, with a high handle at its back by which others
-    /// tell it from afar (book, section 5.3). A lidar of 100 mm's height and 10 degrees' tilt sees the handle
-    /// from up to 2.8 m.
+    /// EyeSim's LabBot: a larger differential-drive robot with a high handle at its back, by which others
+    /// recognise it from afar (book, section 5.3). A lidar at a height of 100 mm with a tilt of 10 degrees
+    /// sees the handle from up to 2.8 m.
     pub fn labbot() -> Self {
         Self {
             name: "LabBot".into(),
@@ -87,7 +87,7 @@ impl RobotSpec {
         }
     }
 
-    /// A robot on four Mecanum wheels, after the book's Omni-1 (section 7.2), with an S4's sensors.
+    /// A robot with four Mecanum wheels, modelled on the book's Omni-1 (section 7.2), with an S4's sensors.
     pub fn omni() -> Self {
         let (half_length, half_width) = (0.130, 0.120);
         Self {
@@ -110,8 +110,8 @@ impl RobotSpec {
         }
     }
 
-    /// A snow truck on two belts, a model in 1:12 (book, section 7.3), with an S4's sensors, a lidar on
-    /// its roof and an inertial unit.
+    /// A snow truck on two belts, a 1:12 model (book, section 7.3), with an S4's sensors, a lidar on its roof
+    /// and an inertial unit.
     pub fn blizzard() -> Self {
         let (half_length, half_width) = (0.200, 0.130);
         Self {
@@ -141,8 +141,8 @@ impl RobotSpec {
         }
     }
 
-    /// A model car that is steered as its big sisters are (book, section 7.1), with an S4's sensors. Its
-    /// turning circle measures 0.45 m in radius.
+    /// A model car with Ackermann steering (book, section 7.1) and an S4's sensors. The radius of its turning
+    /// circle is 0.45 m.
     pub fn car() -> Self {
         let (wheelbase, half_width) = (0.260, 0.090);
         let (back, front) = (-0.060, 0.320);
@@ -172,8 +172,8 @@ impl RobotSpec {
         }
     }
 
-    /// A model car in 1:10 for roads by the rules of the CAuDri-Challenge (book, chapter 13): 3 m/s at most, tyres that slip, and
-    /// a wide camera on a mast above the rear axle, which looks down on the road.
+    /// A 1:10 model car for roads by the rules of the CAuDri-Challenge (book, chapter 13): at most 3 m/s,
+    /// tyres that slip, and a wide-angle camera on a mast above the rear axle, tilted down to the road.
     pub fn road_car() -> Self {
         let (wheelbase, half_width) = (0.260, 0.095);
         Self {
@@ -185,7 +185,7 @@ impl RobotSpec {
                 max_steering: units::from_deg(28.0),
                 max_wheel_speed: 3.0 / 0.033,
                 ticks_per_turn: 1300.0,
-                // Rubber on the smooth floor of a hall; a servo of 60 degrees in 0.12 s turns the wheels.
+                // Rubber on a smooth indoor floor; a servo with 60 degrees in 0.12 s steers the wheels.
                 dynamics: Some(CarDynamics {
                     mass_centre: 0.125,
                     gyration: 0.110,
@@ -217,8 +217,8 @@ impl RobotSpec {
         }
     }
 
-    /// A student's Formula car (book, section 14.5), with a motor at each wheel, a low lidar at its nose and
-    /// a camera above the driver's head.
+    /// A Formula Student car (book, section 14.5) with a motor at each wheel, a low lidar at its nose and a
+    /// camera above the driver's head.
     pub fn race_car() -> Self {
         let (nose, half_width) = (2.15, 0.70);
         Self {
@@ -241,7 +241,7 @@ impl RobotSpec {
             mass: 250.0,
             psds: Vec::new(),
             lidar: Some(LidarSpec {
-                // Where the cones of a track are 65 mm in radius.
+                // At this height the cones of a track have a radius of 65 mm.
                 mount: Mount { x: nose, z: 0.20, ..Mount::default() },
                 field_of_view: std::f64::consts::PI,
                 tilt: 0.0,
@@ -260,8 +260,8 @@ impl RobotSpec {
         }
     }
 
-    /// The racing car as EyeSim's programs drive it (section 14.5): at full motor it does 5 m/s, and its
-    /// lidar scans all round.
+    /// The racing car for EyeSim's programs (section 14.5): 5 m/s at full motor power, and an all-round
+    /// lidar.
     pub fn sae() -> Self {
         let mut car = Self { name: "SAE".into(), ..Self::race_car() };
         if let DriveSpec::Ackermann { max_wheel_speed, .. } = &mut car.drive {
@@ -271,8 +271,8 @@ impl RobotSpec {
         car
     }
 
-    /// The follower of section 5.3: an S4 whose tilted lidar looks over robots of its kind (Program 5.8),
-    /// with four more sensors (Program 5.9).
+    /// The follower of section 5.3: an S4 with a tilted lidar that sees over robots of its kind (Program
+    /// 5.8), and four additional sensors (Program 5.9).
     pub fn lidarbot() -> Self {
         let s4 = Self::s4();
         let ahead = s4.psds[0].clone();
@@ -388,7 +388,7 @@ fn front_and_back(front: f64, back: f64, z: f64) -> Vec<PsdSpec> {
         .collect()
 }
 
-/// PSDs 1 to 4 at the front, left, right and back, as the simulator numbers them.
+/// PSDs 1 to 4 at the front, left, right and back, with the simulator's numbers.
 fn four_psds(ahead: f64, aside: f64, z: f64) -> Vec<PsdSpec> {
     [
         (1, "PSD_FRONT", ahead, 0.0, 0.0),

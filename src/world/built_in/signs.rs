@@ -103,10 +103,8 @@ fn drawn(colour: impl Fn(f64, f64) -> Option<Colour>) -> RgbaImage {
 
 /// Relative distance of a point in a triangle on its tip: 1 at its edge.
 fn triangle(x: f64, y: f64) -> f64 {
-    /// Half the width of a triangle as high as it is wide, as a share.
-    const SLANT: f64 = 0.5;
-    let side = (x.abs() - SLANT * (1.0 - y)) / SLANT;
-    (side + 1.0).max(-y)
+    // It is as high as it is wide.
+    (2.0 * x.abs() + y).max(-y)
 }
 
 /// A walking person in a few strokes.

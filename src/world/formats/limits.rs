@@ -1,15 +1,14 @@
 //! Size limits of files. Each is far above any real file, and keeps a broken file from filling the memory.
 
+// Metres of any coordinate or length, and degrees of any angle.
+pub(super) use crate::geometry::units::{FARTHEST as MAX_DEGREES, FARTHEST as MAX_METRES};
+
 /// Bytes of a text file.
 pub(super) const MAX_TEXT_BYTES: u64 = 16 << 20;
 /// Bytes in an image file.
 pub(super) const MAX_IMAGE_BYTES: u64 = 256 << 20;
 /// Words in a line.
 pub(super) const MAX_WORDS: usize = 100;
-/// Metres of any coordinate or length.
-pub(super) const MAX_METRES: f64 = 1e6;
-/// Degrees of any angle.
-pub(super) const MAX_DEGREES: f64 = 1e6;
 /// Walls of a world.
 pub(super) const MAX_WALLS: usize = 1_000_000;
 /// Poses on the stack of a world file.

@@ -1,7 +1,7 @@
 //! Readers and writers of the file formats.
 //!
-//! Every reader answers with a [`Parsed`] value and its [`Warning`]s, or with a [`FormatError`] that names file, line,
-//! column, what stands there and what was expected. Files are in millimetres and degrees; values are in SI units.
+//! Every reader returns a [`Parsed`] value with its [`Warning`]s, or a [`FormatError`] with file, line,
+//! column, found and expected text. Files are in millimetres and degrees; values are in SI units.
 
 mod args;
 pub mod bitmap;

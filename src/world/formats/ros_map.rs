@@ -78,19 +78,14 @@ pub struct RosMap {
 }
 
 impl RosMap {
-    /// The threshold of files that state none.
-    pub const DEFAULT_OCCUPIED_THRESHOLD: f64 = 0.65;
-    /// The threshold of files that state none.
-    pub const DEFAULT_FREE_THRESHOLD: f64 = 0.196;
-
-    /// A trinary map with the usual thresholds.
+    /// A trinary map with the thresholds of files that state none.
     pub fn new(image: impl Into<String>, grid: OccupancyGrid) -> Self {
         Self {
             image: image.into(),
             mode: Mode::Trinary,
             negate: false,
-            occupied_threshold: Self::DEFAULT_OCCUPIED_THRESHOLD,
-            free_threshold: Self::DEFAULT_FREE_THRESHOLD,
+            occupied_threshold: 0.65,
+            free_threshold: 0.196,
             grid,
         }
     }
@@ -175,9 +170,9 @@ impl Header<'_> {
         let mut map = RosMap::new("", empty);
         map.mode = self.mode()?;
         map.negate = self.negate()?;
-        map.occupied_threshold = self.threshold("occupied_thresh", RosMap::DEFAULT_OCCUPIED_THRESHOLD)?;
+        map.occupied_threshold = self.threshold("occupied_thresh", map.occupied_threshold)?;
         let at = self.find("free_thresh").map_or(Location::START, Value::at);
-        map.free_threshold = self.threshold("free_thresh", RosMap::DEFAULT_FREE_THRESHOLD)?;
+        map.free_threshold = self.threshold("free_thresh", map.free_threshold)?;
         if map.free_threshold > map.occupied_threshold {
             let found = format!("the threshold {}", map.free_threshold);
             let expected = format!("at most occupied_thresh, which is {}", map.occupied_threshold);

@@ -4,7 +4,7 @@ use super::paint::{is_convex, quads};
 use super::*;
 use crate::world::formats::course as file;
 
-/// The pictures of some courses, to be looked at.
+/// Writes the pictures of some courses for inspection.
 #[test]
 #[ignore = "writes pictures into the folder that ROAD_PICTURES names"]
 fn pictures() {
@@ -121,8 +121,7 @@ fn a_picture_shows_lines_where_they_are() {
 proptest! {
     #![proptest_config(crate::testing::cases(24))]
     #[test]
-    fn everything_that_is_painted_is_convex(seed in 0_u64..10_000) {
-        let course = generate(seed, &CourseOptions { zebras: 0.5, ..CourseOptions::default() }).unwrap();
+    fn everything_that_is_painted_is_convex(course in crate::testing::courses()) {
         prop_assert!(quads(&course).iter().all(is_convex));
     }
 

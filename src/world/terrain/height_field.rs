@@ -128,6 +128,22 @@ impl HeightField {
         f64::from(self.heights[row * self.columns + column])
     }
 
+    /// Samples in a metre along x and along y.
+    pub(crate) fn per_metre(&self) -> Vector {
+        self.per_metre
+    }
+
+    /// The level of the smallest block of `1 << level` cells each way that holds all cells.
+    pub(crate) fn top_level(&self) -> u32 {
+        self.pyramid.top()
+    }
+
+    /// The lowest and the highest elevation of the block of `1 << level` cells each way that holds a cell.
+    pub(crate) fn bounds(&self, level: u32, column: usize, row: usize) -> (f64, f64) {
+        let bounds = self.pyramid.block(level, column, row);
+        (f64::from(bounds.low), f64::from(bounds.high))
+    }
+
     /// The lowest elevation in metres.
     pub fn lowest(&self) -> f64 {
         f64::from(self.pyramid.whole().low)

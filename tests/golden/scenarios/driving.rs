@@ -1,5 +1,7 @@
 //! Driving to goals, along paths and over a whole floor; kinematics, controllers and landmarks.
 
+use roverlab::drive::lane_keeping::{BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters};
+use roverlab::drive::traffic::{FreeDrive, FreeDriveRules};
 use roverlab::drive::{
     AToB, AToBParameters, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters, CoverageMap,
     CoverageMapParameters, CoveragePlan, Goal, Method, OmniDriver, OmniParameters, OmniTracker, Path,
@@ -15,6 +17,8 @@ use roverlab::kinematics::{
 };
 use roverlab::random::Stream;
 use roverlab::scan::{Landmark, LandmarkFilter};
+use roverlab::vision::lane_markings::RoadModel;
+use roverlab::world::road::{Appearance, Course, CourseOptions, generate};
 use roverlab::world::{DriveSpec, ObjectKind, RobotSpec, Scene, Shape, World};
 
 use super::{Robot, Scenario, in_room, noise, note, other, ride, room};
@@ -30,6 +34,8 @@ pub(super) const SCENARIOS: &[Scenario] = &[
     Scenario::new("random-drive", random_drive),
     Scenario::new("coverage", coverage),
     Scenario::new("landmarks", landmarks),
+    Scenario::new("lane-keeping", lane_keeping),
+    Scenario::new("lane-keeping-book", lane_keeping_book),
 ];
 
 const METHODS: [Method; 4] = [Method::Turn, Method::Arc, Method::Dog, Method::Spline];
@@ -298,4 +304,41 @@ fn landmarks() -> Result<String> {
         Ok(())
     })?;
     Ok(log + &verdict)
+}
+
+/// A short course with everything on it, and a car at its start.
+fn on_the_road() -> Result<(Course, Scene)> {
+    let options = CourseOptions { zebras: 0.5, ..CourseOptions::default() };
+    let course = generate(5, &options).map_err(other)?;
+    let look = Appearance { pixel: 0.004, wear: 0.2, glare: 2, seed: 5 };
+    let world = course.world(&look).map_err(other)?;
+    let scene = Scene::with_robot(world, RobotSpec::road_car(), course.start());
+    Ok((course, scene))
+}
+
+/// A car that keeps its lane by its camera, what it takes its lane for, and what the referee says.
+fn lane_keeping() -> Result<String> {
+    let (course, scene) = on_the_road()?;
+    let camera = scene.robots[0].spec.camera.as_ref().expect("the car has a camera").into();
+    let parameters = LaneKeeperParameters::default();
+    let mut keeper = LaneKeeper::new(camera, RoadModel::default(), parameters)?;
+    let mut referee = FreeDrive::new(course.clone(), &scene.robots[0].spec, FreeDriveRules::default());
+    let mut seen = String::new();
+    let mut log = ride(&scene, noise(1.0, 28), |robot| {
+        run(robot, &mut keeper, 3.0, |_, keeper, step| {
+            note(&mut seen, "lane", &keeper.lane());
+            referee.see(step.time, &course.start().compose(&step.seen.odometry));
+        })?;
+        Ok(())
+    })?;
+    note(&mut log, "course", &roverlab::world::formats::course::print(&course));
+    note(&mut log, "score", referee.score());
+    Ok(log + &seen)
+}
+
+/// The book's pipeline on the same road.
+fn lane_keeping_book() -> Result<String> {
+    let (_, scene) = on_the_road()?;
+    let mut keeper = BookLaneKeeper::new(BookLaneParameters::default()).map_err(other)?;
+    ride(&scene, noise(1.0, 29), |robot| run(robot, &mut keeper, 2.0, |_, _, _| {}).map(drop))
 }

@@ -8,6 +8,7 @@ mod cameras;
 mod driving;
 mod evolution;
 mod grids;
+mod hills;
 mod loops;
 mod marine;
 mod mazes;
@@ -84,6 +85,7 @@ pub(crate) fn scenarios() -> impl Iterator<Item = &'static Scenario> {
         safety::SCENARIOS,
         bugs::SCENARIOS,
         grids::SCENARIOS,
+        hills::SCENARIOS,
         scans::SCENARIOS,
         mazes::SCENARIOS,
         tracks::SCENARIOS,

@@ -81,6 +81,25 @@ impl Canvas {
             }
         }
     }
+
+    /// As [`tint`](Self::tint), but only where the shape is nearer than what is there.
+    pub(super) fn tint_seen(
+        &mut self,
+        top: usize,
+        spans: &[Span],
+        nearness: &Slope,
+        (colour, alpha): (Packed, u8),
+    ) {
+        for (row, span) in (top..).zip(spans) {
+            let (from, to) = span.pixels(self.width);
+            for column in from..to {
+                let at = row * self.width + column;
+                if nearness.at(column, row) as f32 > self.nearness[at] {
+                    self.colours[at] = mix(self.colours[at], colour, alpha);
+                }
+            }
+        }
+    }
 }
 
 /// Blend of one colour over another.

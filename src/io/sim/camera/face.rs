@@ -56,6 +56,18 @@ impl Cutter {
         }
     }
 
+    /// Draws how near a triangle is whose corners are in the camera's frame, where it is nearer than what is there. Its
+    /// colour is none yet.
+    pub(super) fn draw_seen(&mut self, canvas: &mut Canvas, view: &View, corners: &[Seen; 3]) {
+        self.seen.clear();
+        self.seen.extend_from_slice(corners);
+        if let Some(plane) = self.plane()
+            && let Some((top, spans)) = self.cut(view)
+        {
+            canvas.fill(top, spans, &plane.nearness(view), 0);
+        }
+    }
+
     /// Lays a convex face of the floor over what is there.
     pub(super) fn tint(
         &mut self,
@@ -72,10 +84,30 @@ impl Cutter {
         }
     }
 
+    /// As [`tint`](Self::tint), but only where the face is nearer than what is there.
+    pub(super) fn tint_seen(
+        &mut self,
+        canvas: &mut Canvas,
+        view: &View,
+        corners: &[Place],
+        colour: Packed,
+        alpha: u8,
+    ) {
+        let Some(plane) = self.look(view, corners).filter(|plane| plane.offset < 0.0) else { return };
+        if let Some((top, spans)) = self.cut(view) {
+            canvas.tint_seen(top, spans, &plane.nearness(view), (colour, alpha));
+        }
+    }
+
     /// Takes a face's corners into the camera's frame. Returns its plane, if it has one that does not hold the eye.
     pub(super) fn look(&mut self, view: &View, corners: &[Place]) -> Option<Plane> {
         self.seen.clear();
         self.seen.extend(corners.iter().map(|&corner| view.see(corner)));
+        self.plane()
+    }
+
+    /// The plane of the face that is looked at, if it has one that does not hold the eye.
+    fn plane(&self) -> Option<Plane> {
         let first = *self.seen.first()?;
         // Twice the area as a vector; accurate even for faces with many close corners.
         let mut normal = Seen { x: 0.0, y: 0.0, z: 0.0 };

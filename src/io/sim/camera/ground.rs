@@ -1,9 +1,13 @@
+use std::sync::Arc;
+
 use super::canvas::{Canvas, Packed, first_pixel};
 use super::light::{lit, scaled};
+use super::model::dimmed;
+use super::relief::{Rays, Relief};
 use super::texture::{Level, Texture, between};
 use super::view::View;
-use crate::geometry::{Aabb, Point, Vector};
-use crate::world::Colour;
+use crate::geometry::{Aabb, Point, Vector, math};
+use crate::world::{Colour, HeightField};
 
 /// Sky at the horizon, too pale for programs that search for a hue.
 const HORIZON: Colour = Colour::from_hex(0xde_e6_ee);
@@ -25,6 +29,8 @@ pub(super) struct Ground {
     texture: Texture,
     /// Whether the texture is one image over the whole floor instead of a repeated pattern.
     stretched: bool,
+    /// What is there instead of a level floor.
+    relief: Option<Relief>,
 }
 
 /// Largest number of floor samples per pixel.
@@ -41,17 +47,27 @@ struct FloorRow {
 }
 
 impl Ground {
-    pub(super) fn new(floor: Aabb, image: Option<&image::RgbaImage>) -> Self {
+    pub(super) fn new(
+        floor: Aabb,
+        image: Option<&image::RgbaImage>,
+        hills: Option<Arc<HeightField>>,
+    ) -> Self {
+        let relief = hills.map(Relief::new);
         let light = Colour::from_hex(lit(Colour::WHITE, [0.0, 0.0, 1.0]));
         let stretched = image.and_then(|image| Texture::new(image, light));
         match stretched {
-            Some(texture) => Self { floor, texture, stretched: true },
-            None => Self { floor, texture: speckles(), stretched: false },
+            Some(texture) => Self { floor, texture, stretched: true, relief },
+            None => Self { floor, texture: speckles(), stretched: false, relief },
         }
     }
 
     /// Fills the canvas.
-    pub(super) fn draw(&self, canvas: &mut Canvas, view: &View) {
+    pub(super) fn draw(&mut self, canvas: &mut Canvas, view: &View) {
+        if let Some(relief) = &mut self.relief {
+            relief.draw(canvas, view);
+            self.paint_hills(canvas, view);
+            return;
+        }
         let width = canvas.width;
         for (row, pixels) in canvas.colours.chunks_exact_mut(width).enumerate() {
             match floor_row(view, row) {
@@ -59,6 +75,45 @@ impl Ground {
                 None => pixels.fill(sky(view, row)),
             }
         }
+    }
+
+    /// Gives every pixel its colour, once it is known how near the hills are there.
+    fn paint_hills(&self, canvas: &mut Canvas, view: &View) {
+        let Some(relief) = &self.relief else { return };
+        let (rays, width) = (Rays::of(view), canvas.width);
+        let beyond = lit(BEYOND, [0.0, 0.0, 1.0]);
+        for (at, (colour, &near)) in canvas.colours.iter_mut().zip(&canvas.nearness).enumerate() {
+            let ray = rays.direction(at % width, at / width);
+            *colour = if near > 0.0 {
+                let depth = 1.0 / f64::from(near);
+                let (place, pixel) = (rays.at(ray, depth), depth / view.focal);
+                dimmed(self.texel(place, pixel), relief.light(place, pixel))
+            } else if ray[2] < 0.0 {
+                beyond
+            } else {
+                sky_towards(ray[2], math::hypot(ray[0], ray[1]))
+            };
+        }
+    }
+
+    /// The colour of the floor at a place, for pixels that cover so many metres.
+    #[inline]
+    fn texel(&self, at: Point, pixel: f64) -> Packed {
+        if !self.stretched {
+            let (level, halvings) = self.texture.level(pixel / SPECKLE);
+            let texels = 1.0 / (SPECKLE * f64::from(1_u32 << halvings));
+            let mask = level.width as i64 - 1;
+            let (x, y) = ((at.x * texels).floor() as i64 & mask, (-at.y * texels).floor() as i64 & mask);
+            return level.texels[y as usize * level.width + x as usize];
+        }
+        let size = self.floor.size();
+        let (whole, _) = self.texture.level(1.0);
+        let (level, _) = self.texture.level(pixel * whole.width as f64 / size.x);
+        let u = (at.x - self.floor.min.x) / size.x * level.width as f64;
+        let v = (self.floor.max.y - at.y) / size.y * level.height as f64;
+        let mut texel = [0];
+        Run { u, v, du: 0.0, dv: 0.0 }.smooth(level, &mut texel);
+        texel[0]
     }
 
     fn draw_floor(&self, pixels: &mut [Packed], line: &FloorRow) {
@@ -223,7 +278,11 @@ fn floor_row(view: &View, row: usize) -> Option<FloorRow> {
 /// Sky colour of a row.
 fn sky(view: &View, row: usize) -> Packed {
     let y = view.ray_y(row as f64);
-    let (ahead, up) = (view.cos + y * view.sin, view.sin - y * view.cos);
+    sky_towards(view.sin - y * view.cos, view.cos + y * view.sin)
+}
+
+/// The sky in a direction.
+fn sky_towards(up: f64, ahead: f64) -> Packed {
     let share = (up.max(0.0) / (up * up + ahead * ahead).sqrt().max(1e-9)).min(1.0);
     let channel = |a: u8, b: u8| (f64::from(a) + share * (f64::from(b) - f64::from(a)) + 0.5) as u32;
     channel(HORIZON.red, ZENITH.red) << 16

@@ -15,7 +15,9 @@ mod ground;
 mod light;
 mod model;
 mod poster;
+mod relief;
 mod scenery;
+mod slanted;
 mod solids;
 mod studio;
 #[cfg(test)]

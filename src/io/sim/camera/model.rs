@@ -3,7 +3,7 @@ use super::face::Cutter;
 use super::light::{SUN, scaled, shade};
 use super::texture::Texture;
 use super::view::{NEAR, Place, Seen, View};
-use crate::geometry::{Pose, Vector, direction};
+use crate::geometry::{Pose, Pose3, Vector3, direction};
 use crate::world::{Colour, Face, Mesh};
 
 /// Surface of things of one kind.
@@ -21,11 +21,11 @@ enum Coat {
     Image(Texture),
 }
 
-/// Where a thing stands: its foot, and the unit vector along its heading.
+/// Where a thing stands: its foot, and the unit vectors ahead, to the left and up.
 #[derive(Debug, Clone, Copy)]
-struct Stand {
+pub(super) struct Stand {
     foot: Place,
-    forward: Vector,
+    axes: [Place; 3],
 }
 
 impl Model {
@@ -37,15 +37,8 @@ impl Model {
         Self { faces: mesh.faces.clone(), coats: coats.collect(), reach: mesh.reach() }
     }
 
-    /// Draws it at a pose, some metres above the floor, where it is nearer than what is there.
-    pub(super) fn draw(
-        &self,
-        cutter: &mut Cutter,
-        canvas: &mut Canvas,
-        view: &View,
-        (pose, z): (&Pose, f64),
-    ) {
-        let stand = Stand { foot: [pose.x, pose.y, z], forward: direction(pose.heading) };
+    /// Draws it where it stands, where it is nearer than what is there.
+    pub(super) fn draw(&self, cutter: &mut Cutter, canvas: &mut Canvas, view: &View, stand: &Stand) {
         if view.misses(view.see(stand.foot), self.reach) {
             return;
         }
@@ -66,13 +59,23 @@ impl Model {
 }
 
 impl Stand {
-    fn place(&self, [ahead, left, up]: Place) -> Place {
-        let Stand { foot, forward } = self;
-        [
-            foot[0] + forward.x * ahead - forward.y * left,
-            foot[1] + forward.y * ahead + forward.x * left,
-            foot[2] + up,
-        ]
+    /// Upright at a pose, some metres above the floor.
+    pub(super) fn upright(pose: &Pose, z: f64) -> Self {
+        let forward = direction(pose.heading);
+        let axes = [[forward.x, forward.y, 0.0], [-forward.y, forward.x, 0.0], [0.0, 0.0, 1.0]];
+        Self { foot: [pose.x, pose.y, z], axes }
+    }
+
+    /// As hills have turned it.
+    pub(super) fn slanted(pose: &Pose3) -> Self {
+        let axes = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| pose.rotate(axis).into());
+        Self { foot: pose.position.into(), axes }
+    }
+
+    /// A place of its own frame.
+    pub(super) fn place(&self, [ahead, left, up]: Place) -> Place {
+        let Self { foot, axes: [x, y, z] } = self;
+        [0, 1, 2].map(|axis| foot[axis] + x[axis] * ahead + y[axis] * left + z[axis] * up)
     }
 }
 
@@ -163,7 +166,7 @@ fn step(place: impl Fn(usize, usize) -> [f64; 2], column: usize, row: usize) -> 
 }
 
 /// A colour in 256ths of the light.
-fn dimmed(colour: Packed, light: u32) -> Packed {
+pub(super) fn dimmed(colour: Packed, light: u32) -> Packed {
     let part = |mask: Packed| (((colour & mask) * light) >> 8) & mask;
     part(0xff_00_ff) | part(0xff00)
 }

@@ -13,6 +13,8 @@ pub(super) struct Standing {
     pub(super) colour: Colour,
 }
 
+/// Metres by which what lies on hills is above the middle of its place, so that slopes do not bury it.
+const ABOVE: f64 = 0.004;
 /// Most facets on the side of a cylinder that the camera sees.
 const MAX_FACETS: usize = 32;
 
@@ -117,15 +119,14 @@ impl Carpenter {
         self.lid(canvas, view, body);
     }
 
-    /// A disc on the floor.
+    /// A disc on the floor, or on hills at some height.
     pub(super) fn spot(
         &mut self,
         canvas: &mut Canvas,
         view: &View,
-        centre: Point,
+        (centre, on_hills): (Point, Option<f64>),
         radius: f64,
-        colour: Colour,
-        alpha: u8,
+        (colour, alpha): (Colour, u8),
     ) {
         /// Number of corners of a disc's polygon.
         const CORNERS: usize = 24;
@@ -133,8 +134,13 @@ impl Carpenter {
         let step = std::f64::consts::TAU / CORNERS as f64;
         arc(&mut self.outline, centre, Vector::new(radius, 0.0), step, CORNERS);
         self.lid.clear();
-        self.lid.extend(self.outline.iter().map(|p| [p.x, p.y, 0.0]));
-        self.cutter.tint(canvas, view, &self.lid, packed(colour), alpha);
+        let height = on_hills.map_or(0.0, |height| height + ABOVE);
+        self.lid.extend(self.outline.iter().map(|p| [p.x, p.y, height]));
+        if on_hills.is_some() {
+            self.cutter.tint_seen(canvas, view, &self.lid, packed(colour), alpha);
+        } else {
+            self.cutter.tint(canvas, view, &self.lid, packed(colour), alpha);
+        }
     }
 
     fn side(&mut self, canvas: &mut Canvas, view: &View, a: Point, b: Point, body: Standing) {

@@ -6,7 +6,7 @@ pub(super) type Place = [f64; 3];
 /// Distance of the near plane (m).
 pub(super) const NEAR: f64 = 0.002;
 
-/// A pinhole camera that does not roll: how places in the world fall onto the columns and rows of its picture.
+/// A pinhole camera: how places in the world fall onto the columns and rows of its picture.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct View {
     pub(super) eye: Place,
@@ -16,6 +16,8 @@ pub(super) struct View {
     /// Sine and cosine of the elevation angle.
     pub(super) sin: f64,
     pub(super) cos: f64,
+    /// Sine and cosine of the angle by which its left side is lifted about the line of sight.
+    roll: (f64, f64),
     /// Pixels that one metre covers at a distance of one metre.
     pub(super) focal: f64,
     pub(super) width: usize,
@@ -70,17 +72,27 @@ impl View {
             right: Vector::new(ahead.y, -ahead.x),
             sin,
             cos,
+            roll: (0.0, 1.0),
             focal,
             width: width as usize,
             height: height as usize,
         }
     }
 
+    /// The camera with its left side lifted by some radians.
+    pub(super) fn rolled(self, roll: f64) -> Self {
+        Self { roll: math::sin_cos(roll), ..self }
+    }
+
     /// A direction of the world in the camera's frame.
     pub(super) fn turned(&self, [x, y, up]: Place) -> Seen {
         let level = Vector::new(x, y);
         let (ahead, right) = (level.dot(&self.ahead), level.dot(&self.right));
-        Seen { x: right, y: ahead * self.sin - up * self.cos, z: ahead * self.cos + up * self.sin }
+        let down = ahead * self.sin - up * self.cos;
+        let (sin, cos) = self.roll;
+        let (x, y) =
+            if sin == 0.0 { (right, down) } else { (right * cos + down * sin, down * cos - right * sin) };
+        Seen { x, y, z: ahead * self.cos + up * self.sin }
     }
 
     /// A point of the world in the camera's frame.

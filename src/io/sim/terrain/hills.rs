@@ -1,12 +1,12 @@
 use std::sync::Arc;
 
-use super::{Mishap, RigidBody, Undercarriage, Watch};
+use super::{RigidBody, Undercarriage, Watch};
 use crate::geometry::{Aabb, Point, Point3, Pose, Pose3, Vector, angle_difference};
-use crate::io::Result;
 use crate::io::sim::TICK;
 use crate::io::sim::body::Body;
 use crate::io::sim::marine::{Swimmer, Waters};
 use crate::io::sim::movable::Movable;
+use crate::io::{Mishap, Result};
 use crate::kinematics::{PlanarMotion, PlanarTwist};
 use crate::world::space::Space;
 use crate::world::{DriveSpec, HeightField, RobotPlacement, World};
@@ -34,11 +34,11 @@ struct Rider {
     watch: Watch,
 }
 
-/// A body whose outline something has moved aside by more than this, in metres or radians, was in its way.
+/// Displacement of an outline above which an obstacle was in its way (m or rad).
 const MOVED_ASIDE: f64 = 1e-9;
-/// Metres or radians that are no motion.
+/// Motion that counts as rest (m or rad).
 const STILL: f64 = 1e-11;
-/// A robot less than this above the ground stands on it.
+/// Height above the ground up to which a robot counts as standing (m).
 const STANDING: f64 = 2e-3;
 
 impl Hills {
@@ -82,7 +82,7 @@ impl Hills {
         &self.ground
     }
 
-    /// Where a robot is in space.
+    /// Pose of a robot in space.
     pub(in crate::io::sim) fn pose(&self, robot: usize) -> Pose3 {
         self.movers[robot].pose()
     }
@@ -93,7 +93,7 @@ impl Hills {
         (self.waters.surface(place.xy(), time) - place.z).max(0.0)
     }
 
-    /// What has become of a robot that can drive no more.
+    /// Mishap of a robot that can no longer drive.
     pub(in crate::io::sim) fn mishap(&self, robot: usize) -> Option<Mishap> {
         match &self.movers[robot] {
             Mover::Riding(rider) => rider.watch.mishap(),
@@ -159,7 +159,7 @@ impl Hills {
         moving
     }
 
-    /// Takes notice of what was in the robots' way, and puts their solids where they are.
+    /// Takes obstacles in the robots' way into account, and updates the robots' solids.
     pub(in crate::io::sim) fn yield_to(&mut self, bodies: &mut [Body], space: &mut Space) {
         for (mover, body) in self.movers.iter_mut().zip(bodies) {
             let pose = mover.pose();
@@ -208,7 +208,7 @@ impl Rider {
     }
 }
 
-/// A body at rest on the ground, or above it.
+/// A body at rest on the ground or above it.
 fn standing(ground: &HeightField, carriage: &Undercarriage, pose: Pose, elevation: f64) -> RigidBody {
     if elevation <= 0.0 && ground.height(pose.position()).is_some() {
         return RigidBody::resting(ground, carriage, pose, TICK);

@@ -91,8 +91,8 @@ fn call(robot: &mut (impl RobotIo + ?Sized), number: u8) -> String {
         39 => format!("{:?} {:?}", robot.encoder(1), robot.reset_encoder(1)),
         40 => format!("{:?} {:?}", robot.set_resolution(Resolution::Vga), robot.resolution()),
         42 => format!("{:?}", robot.depth()),
-        41 => format!("{:?} {:?} {:?}", robot.attitude(), robot.turn_rates(), robot.acceleration()),
-        _ => format!("{:?}", robot.image()),
+        41 => format!("{:?}", robot.image()),
+        _ => format!("{:?} {:?} {:?}", robot.attitude(), robot.turn_rates(), robot.acceleration()),
     }
 }
 

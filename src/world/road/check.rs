@@ -1,0 +1,94 @@
+//! What makes a course one of the rules.
+
+use super::course::{Course, CourseError, MarkKind};
+use super::crossings;
+use crate::geometry::{math, units};
+
+/// Metres of a course from the shortest to the longest, in the size of the rules.
+const LENGTHS: [f64; 2] = [6.0, 500.0];
+/// Metres across a lane by the rules.
+const LANES: [f64; 2] = [0.35, 0.45];
+/// Metres of a line's width that are accepted: 18 to 20 mm by the rules.
+const LINES: [f64; 2] = [0.015, 0.025];
+/// The least radius of a road's middle.
+const RADIUS: f64 = 1.0;
+/// What is missing to the closing of a road and spread over it: metres and radians.
+const CLOSING: (f64, f64) = (0.10, 0.0524);
+/// Marks at most.
+const MARKS: usize = 10_000;
+
+impl Course {
+    /// Fails unless the road is closed, nowhere too tight, and crosses itself at crossings alone, and lanes and marks are as the
+    /// rules say.
+    pub fn check(&self) -> Result<(), CourseError> {
+        let size = self.size;
+        let within = |[least, most]: [f64; 2], value: f64| (least * size..=most * size).contains(&value);
+        let length = self.line.length();
+        if !(size > 0.0 && within(LENGTHS, length)) {
+            let [least, most] = LENGTHS.map(|length| length * size);
+            return Err(CourseError::Length { length, least, most });
+        }
+        // Rounding of millimetres is none.
+        if !within([LANES[0] - 1e-9, LANES[1] + 1e-9], self.lane_width) {
+            let [least, most] = LANES.map(|width| width * size);
+            return Err(CourseError::LaneWidth { width: self.lane_width, least, most });
+        }
+        if !within(LINES, self.line_width) {
+            let [least, most] = LINES.map(|width| width * size);
+            let expected = format!("{least} to {most} m");
+            return Err(CourseError::Mark { name: "a line's width", value: self.line_width, expected });
+        }
+        self.check_closed()?;
+        self.check_bends()?;
+        self.check_marks()?;
+        crossings::check(self)
+    }
+
+    fn check_closed(&self) -> Result<(), CourseError> {
+        let gap = self.line.gap();
+        let distance = math::hypot(gap.x, gap.y);
+        let most = CLOSING.0 * self.size;
+        if distance <= most && gap.heading.abs() <= CLOSING.1 {
+            return Ok(());
+        }
+        Err(CourseError::Open { distance, degrees: units::to_deg(gap.heading.abs()), most })
+    }
+
+    fn check_bends(&self) -> Result<(), CourseError> {
+        let mut along = 0.0;
+        for element in self.line.elements() {
+            let bend = element.curvature.into_iter().fold(0.0, |most: f64, bend| most.max(bend.abs()));
+            let (radius, least) = (1.0 / bend, RADIUS * self.size);
+            if bend > 0.0 && radius < least - 1e-6 {
+                return Err(CourseError::TooTight { along, radius, least });
+            }
+            along += element.length;
+        }
+        Ok(())
+    }
+
+    fn check_marks(&self) -> Result<(), CourseError> {
+        let length = self.line.length();
+        let wrong = |name, value, expected: &str| {
+            Err(CourseError::Mark { name, value, expected: expected.to_owned() })
+        };
+        if self.marks.len() > MARKS {
+            return wrong("a number of marks", self.marks.len() as f64, "at most 10000 marks");
+        }
+        for mark in &self.marks {
+            if !(0.0..=length).contains(&mark.at) {
+                return wrong("a mark's place", mark.at, "a place on the road");
+            }
+            let long = match mark.kind {
+                MarkKind::Gap(_, long) | MarkKind::SideRoad(_, long) => long,
+                MarkKind::Barred(_, long, _) | MarkKind::Parking(_, long) => long,
+                MarkKind::Artefact(_, long, _) => long,
+                _ => continue,
+            };
+            if !(long > 0.0 && long <= 0.5 * length) {
+                return wrong("a mark's length", long, "more than 0 and at most half the road");
+            }
+        }
+        Ok(())
+    }
+}

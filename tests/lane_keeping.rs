@@ -1,0 +1,244 @@
+//! Keeping the lane by camera: what is seen of it beside what is true, and whole drives.
+
+use std::ops::ControlFlow;
+
+use image::RgbImage;
+use roverlab::drive::lane_keeping::{LaneKeeper, LaneKeeperParameters, LaneObservation};
+use roverlab::drive::traffic::{FreeDrive, FreeDriveRules, FreeDriveScore};
+use roverlab::geometry::{Pose, units};
+use roverlab::io::control::{run, until};
+use roverlab::io::sim::{SimOptions, Simulation};
+use roverlab::io::{Camera, Clock, Resolution};
+use roverlab::random::Stream;
+use roverlab::vision::lane_markings::{RoadCamera, RoadModel};
+use roverlab::world::road::{Appearance, Course, CourseOptions, generate};
+use roverlab::world::{RobotSpec, Scene};
+
+/// A course with worn paint and patches of light, and a car at its start in a light of 50 to 150 %.
+fn simulation(course: &Course, seed: u64, pixel: f64) -> Simulation {
+    let mut random = Stream::new(seed);
+    let look = Appearance { pixel, wear: random.between(0.0, 0.35), glare: random.below(6), seed };
+    let scene = Scene::with_robot(course.world(&look).unwrap(), RobotSpec::road_car(), course.start());
+    let options = SimOptions { light: random.between(0.5, 1.5), ..SimOptions::with_noise(1.0, seed) };
+    Simulation::new(&scene, options).unwrap()
+}
+
+fn camera() -> RoadCamera {
+    RobotSpec::road_car().camera.as_ref().unwrap().into()
+}
+
+/// Squared errors of what is seen, and how many are within two deviations.
+#[derive(Debug, Default)]
+struct Errors {
+    frames: usize,
+    offset: f64,
+    heading: f64,
+    within: [usize; 3],
+}
+
+impl Errors {
+    fn rms(&self, squares: f64) -> f64 {
+        (squares / self.frames as f64).sqrt()
+    }
+
+    /// Carries a car along a course, aside of the lane's middle and askew, and compares what it sees in the next metre.
+    fn look(&mut self, seed: u64, pixel: f64, most: usize) {
+        let course = generate(seed, &CourseOptions::default()).unwrap();
+        let simulation = simulation(&course, seed, pixel);
+        let (mut car, truth) = (simulation.robot(0).unwrap(), simulation.truth());
+        car.set_resolution(Resolution::Qvga).unwrap();
+        let mut keeper =
+            LaneKeeper::new(camera(), RoadModel::default(), LaneKeeperParameters::default()).unwrap();
+        let mut image = RgbImage::default();
+        let (mut odometry, mut before): (Pose, Option<Pose>) = (Pose::default(), None);
+        let count = ((course.line.length() / 0.07) as usize).min(most);
+        for frame in 0..count {
+            let along = 0.07 * frame as f64;
+            let aside = course.pose(along, 0.04 * (1.3 * along).sin());
+            let askew = 0.052 * (1.3 * along).cos();
+            truth.move_robot(0, 0, Pose::new(aside.x, aside.y, aside.heading + askew)).unwrap();
+            car.wait(0.04).unwrap();
+            car.image_into(&mut image).unwrap();
+            let pose = truth.pose(0).unwrap();
+            odometry =
+                odometry.compose(&before.map_or(Pose::default(), |last| last.inverse().compose(&pose)));
+            before = Some(pose);
+            let lane = keeper.see(&image, odometry).unwrap();
+            if frame < 4 {
+                continue;
+            }
+            self.frames += 1;
+            let true_lane = course.locate(&pose, Some(along));
+            let off = [
+                lane.offset - true_lane.offset,
+                lane.heading - true_lane.heading,
+                lane.curvature - true_lane.curvature,
+            ];
+            for (within, (off, sigma)) in self.within.iter_mut().zip(off.into_iter().zip(lane.sigmas)) {
+                *within += usize::from(off.abs() < 2.0 * sigma);
+            }
+            for ahead in [0.2, 0.4, 0.6, 0.8, 1.0] {
+                let there = course.locate(&pose.compose(&lane.place(ahead)), Some(along + ahead));
+                self.offset += 0.2 * there.offset * there.offset;
+                self.heading += 0.2 * there.heading * there.heading;
+            }
+        }
+    }
+
+    fn check(&self) {
+        let (offset, heading) = (self.rms(self.offset), units::to_deg(self.rms(self.heading)));
+        let within = self.within.map(|count| count as f64 / self.frames as f64);
+        println!("{} frames: {:.1} mm, {heading:.2} degrees, within {within:.3?}", self.frames, 1e3 * offset);
+        assert!(offset < 0.008 && heading < 0.6, "{offset} m, {heading} degrees");
+        assert!(within.iter().all(|share| *share > 0.93), "{within:?}");
+    }
+}
+
+#[test]
+fn the_lane_is_where_it_is_seen() {
+    let mut errors = Errors::default();
+    (1..4).for_each(|seed| errors.look(seed, 0.004, 120));
+    errors.check();
+}
+
+/// Drives for some seconds, or until the car has to be taken over.
+fn drive(seed: u64, seconds: f64) -> FreeDriveScore {
+    let course = generate(seed, &CourseOptions::default()).unwrap();
+    let simulation = simulation(&course, seed, 0.002);
+    let (mut car, truth) = (simulation.robot(0).unwrap(), simulation.truth());
+    let mut keeper =
+        LaneKeeper::new(camera(), RoadModel::default(), LaneKeeperParameters::default()).unwrap();
+    let mut referee = FreeDrive::new(course, &RobotSpec::road_car(), FreeDriveRules::default());
+    run(&mut car, &mut keeper, seconds, |_, _, _| until(referee.see(truth.time(), &truth.pose(0).unwrap())))
+        .unwrap();
+    *referee.score()
+}
+
+#[test]
+fn a_gap_of_a_metre_and_a_blackout_are_driven_through_by_odometry() {
+    let course = generate(2, &CourseOptions::default()).unwrap();
+    let simulation = simulation(&course, 2, 0.004);
+    let (mut car, truth) = (simulation.robot(0).unwrap(), simulation.truth());
+    let mut keeper =
+        LaneKeeper::new(camera(), RoadModel::default(), LaneKeeperParameters::default()).unwrap();
+    let mut referee = FreeDrive::new(course, &RobotSpec::road_car(), FreeDriveRules::default());
+    let dark = |robot: &mut roverlab::io::sim::SimRobot, time: f64, seen: &mut LaneObservation| {
+        use roverlab::io::Odometry;
+        robot.set_resolution(Resolution::Qvga)?;
+        robot.image_into(&mut seen.image)?;
+        if (2.0..2.3).contains(&time) {
+            seen.image.fill(30);
+        }
+        (seen.odometry, seen.speed) = (robot.pose()?, robot.speed()?.linear);
+        Ok(())
+    };
+    let mut behaviour = roverlab::io::control::SensedBy::new(&mut keeper, dark);
+    run(&mut car, &mut behaviour, 5.0, |_, _, _| {
+        referee.see(truth.time(), &truth.pose(0).unwrap());
+        ControlFlow::Continue(())
+    })
+    .unwrap();
+    assert_eq!(referee.score().departures, 0, "{:?}", referee.score());
+    assert!(referee.score().distance > 5.0);
+}
+
+/// What takes minutes.
+mod campaigns {
+    use super::*;
+    use roverlab::world::road::{Alignment, Element, Traffic};
+    use roverlab::world::{Texture, World};
+
+    #[test]
+    #[ignore = "a campaign: cargo test --release --all-features --test lane_keeping campaigns -- --ignored --nocapture"]
+    fn perception_of_ten_thousand_frames() {
+        let mut errors = Errors::default();
+        (1..40).for_each(|seed| errors.look(seed, 0.002, usize::MAX));
+        assert!(errors.frames >= 10_000);
+        errors.check();
+    }
+
+    #[test]
+    #[ignore = "a campaign: cargo test --release --all-features --test lane_keeping campaigns -- --ignored --nocapture"]
+    fn free_drive_on_twenty_courses() {
+        for seed in 1..=20 {
+            let score = drive(seed, 120.0);
+            println!("{seed}: {:.1} m, {:.1} mm", score.distance, 1e3 * score.offset_rms());
+            assert_eq!((score.departures, score.interventions), (0, 0), "{seed}: {score:?}");
+            assert!(score.distance > 230.0 && score.offset_rms() < 0.025, "{seed}: {score:?}");
+        }
+    }
+
+    /// The book's loop at a scale of about 2:1 as its published picture shows it: the middle of the road.
+    fn loop_of_the_book() -> Course {
+        let line = vec![
+            Element::straight(0.7880),
+            Element::arc(0.3938, -2.3664),
+            Element::straight(1.2924),
+            Element::arc(0.3956, -2.3430),
+            Element::straight(0.3543),
+            Element::arc(0.4429, -2.3825),
+            Element::straight(1.2267),
+            Element::arc(0.3938, -2.3289),
+            Element::straight(1.7714),
+            Element::arc(0.3956, -1.5718),
+            Element::straight(1.2105),
+            Element::arc(0.5905, -1.5738),
+            Element::straight(0.7880),
+        ];
+        let line = Alignment::new(Pose::new(1.4540, 0.4570, -3.1446), line);
+        Course {
+            traffic: Traffic::Left,
+            size: 0.471,
+            line,
+            lane_width: 0.1781,
+            line_width: 0.0197,
+            centre: Vec::new(),
+            marks: Vec::new(),
+        }
+    }
+
+    #[test]
+    #[ignore = "a campaign on published data: ROVERLAB_DATA=FOLDER cargo test --release --all-features --test lane_keeping campaigns"]
+    fn twenty_laps_of_the_books_loop_by_a_wide_lens() {
+        let data =
+            std::env::var_os("ROVERLAB_DATA").expect("ROVERLAB_DATA names the folder of published data");
+        let image = std::path::Path::new(&data).join("worlds/carolo/carolo.png");
+        let image = image::open(image).unwrap().into_rgba8();
+        let course = loop_of_the_book();
+        let mut spec = RobotSpec::s4();
+        let lens = spec.camera.as_mut().unwrap();
+        (lens.field_of_view, lens.fisheye) = (units::from_deg(150.0), true);
+        let camera = spec.camera.as_ref().unwrap().into();
+        let world =
+            World { floor_texture: Some(Texture::new("carolo.png", image)), ..World::empty(3.1, 3.1) };
+        let scene = Scene::with_robot(world, spec.clone(), course.start());
+        let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1)).unwrap();
+        let (mut robot, truth) = (simulation.robot(0).unwrap(), simulation.truth());
+        let road = RoadModel { size: course.size, line_width: course.line_width, left_hand: true };
+        let parameters = LaneKeeperParameters {
+            speed: 0.3,
+            across: 0.5,
+            brake: 0.5,
+            settling: [0.15, 0.2],
+            delay: 0.2,
+            sight: 0.8,
+            ..LaneKeeperParameters::default()
+        };
+        let mut keeper = LaneKeeper::new(camera, road, parameters).unwrap();
+        let laps = 20.0 * course.line.length();
+        let mut referee = FreeDrive::new(course, &spec, FreeDriveRules::default());
+        run(&mut robot, &mut keeper, 1200.0, |_, _, _| {
+            let astray = referee.see(truth.time(), &truth.pose(0).unwrap());
+            until(astray || referee.score().distance >= laps)
+        })
+        .unwrap();
+        let score = referee.score();
+        println!(
+            "{:.1} m, {:.1} mm, {} departures",
+            score.distance,
+            1e3 * score.offset_rms(),
+            score.departures
+        );
+        assert!(score.distance >= laps && score.departures == 0, "{score:?}");
+    }
+}
