@@ -67,8 +67,11 @@ impl Water {
         let light = self.density <= Self::DENSEST;
         require("water's density", self.density, light, "at most 2000 kg/m³")?;
         let slow = |name: &'static str, speed: Vector| {
-            let fast = speed.x.abs().max(speed.y.abs());
-            require(name, fast, fast <= Self::FASTEST, "at most 100 m/s")
+            // A number that is none is the wrong one of the two.
+            let wrong = |part: &&f64| part.is_nan() || part.abs() > Self::FASTEST;
+            let found = [speed.x, speed.y];
+            let found = found.iter().find(wrong).copied().unwrap_or_default();
+            require(name, found, found.abs() <= Self::FASTEST, "at most 100 m/s")
         };
         slow("wind", self.wind)?;
         let mut before = f64::NEG_INFINITY;

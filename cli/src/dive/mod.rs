@@ -201,6 +201,8 @@ fn dive(plan: &Plan) -> Result<Dived, Failure> {
     } else {
         Ok(())
     };
+    // What its unknown weight leads to before it is learnt is no part of the step.
+    let contacts_before = truth.robot(0).map_err(Failure::run)?.contacts;
     let ending = first.and_then(|()| behaviour.set_depth(plan.depth)).and_then(|()| {
         control::run(&mut robot, &mut behaviour, limit, |_, _, step| {
             if let Ok(pose) = truth.pose_in_space(0) {
@@ -210,7 +212,7 @@ fn dive(plan: &Plan) -> Result<Dived, Failure> {
         })
     });
     let ending = ending.map_err(|error| error.to_string());
-    let contacts = truth.robot(0).map_err(Failure::run)?.contacts;
+    let contacts = truth.robot(0).map_err(Failure::run)?.contacts - contacts_before;
     Ok(judged(plan, trail, contacts, ending))
 }
 

@@ -26,7 +26,6 @@ fn over(vector: Vector3) -> Vector3 {
 pub struct Remus100 {
     /// The body. [`Remus100::forces`] adds damping in surge and sway, lift, fins and propeller.
     pub craft: Craft,
-    added: Vector3,
     fading: [f64; 2],
 }
 
@@ -78,16 +77,13 @@ impl Remus100 {
             inertia: [[ix, 0.0, 0.0], [0.0, iy, 0.0], [0.0, 0.0, iy]],
             hull: vec![hull],
             added_mass: added,
+            munk: false,
             linear_damping: linear,
             quadratic_damping: [0.0; 6],
             thrusters: Vec::new(),
         };
         let fading = [total[0] / 20.0, total[1] / 20.0];
-        Ok(Self {
-            craft: Craft::new(&spec, step)?,
-            added: Vector3::new(added[0], added[1], added[2]),
-            fading,
-        })
+        Ok(Self { craft: Craft::new(&spec, step)?, fading })
     }
 
     /// All forces except weight, buoyancy, inertia and the body's damping, from the motion through the water
@@ -102,18 +98,7 @@ impl Remus100 {
         let [length, across] = Self::SIZE;
         let strips = cross_flow(length, across, across, flow.y, over(through_water.angular).z);
         let moment = fins.moment + propeller.moment + strips.moment;
-        let down = Wrench { force: over(force + strips.force), moment: over(moment) };
-        down + self.without_munk(through_water)
-    }
-
-    /// Cancels the Coriolis forces of the added mass that the program omits, because they make the model
-    /// unstable: all except those of roll.
-    fn without_munk(&self, through_water: &Motion) -> Wrench {
-        let carried = self.added.component_mul(&through_water.linear);
-        let swung = Vector3::new(0.0, through_water.angular.y, through_water.angular.z);
-        let mut moment = through_water.linear.cross(&carried);
-        moment.x = 0.0;
-        Wrench { force: swung.cross(&carried), moment }
+        Wrench { force: over(force + strips.force), moment: over(moment) }
     }
 }
 
@@ -250,6 +235,7 @@ impl Otter {
             }),
             hull: Vec::new(),
             added_mass: added,
+            munk: true,
             linear_damping: linear,
             quadratic_damping: [0.0, 0.0, 0.0, 0.0, 0.0, 10.0 * total[5]],
             thrusters: vec![propeller("left", aside), propeller("right", -aside)],

@@ -100,6 +100,8 @@ pub struct Craft {
 struct Inertia {
     matrix: Matrix6<f64>,
     inverse: Matrix6<f64>,
+    /// The added mass of a craft that it does not turn across the flow.
+    straightened: Option<Vector3>,
 }
 
 impl Craft {
@@ -121,6 +123,7 @@ impl Craft {
         let mass_centre = spec.centre_of_mass.coords - origin;
         let rigid = rigid(spec.mass, &mass_centre, &spec.inertia);
         let wet = rigid + Matrix6::from_diagonal(&Vector6::from(spec.added_mass));
+        let straightened = (!spec.munk).then(|| Vector3::from_column_slice(&spec.added_mass[..3]));
         let mut decays = [0.0; MAX_THRUSTERS];
         for (decay, thruster) in decays.iter_mut().zip(&thrusters) {
             *decay = if thruster.lag > 0.0 { math::exp(-0.5 * step / thruster.lag) } else { 0.0 };
@@ -133,7 +136,7 @@ impl Craft {
             reach: reach.fold(0.0, f64::max),
             hull,
             most_damping: rigid.diagonal() / step,
-            wet: Inertia::new(wet)?,
+            wet: Inertia { straightened, ..Inertia::new(wet)? },
             dry: Inertia::new(rigid)?,
             linear_damping: Vector6::from(spec.linear_damping),
             quadratic_damping: Vector6::from(spec.quadratic_damping),
@@ -346,7 +349,13 @@ impl Craft {
     ) -> Vector6<f64> {
         let (linear, angular) = split(speed);
         let (impulse, spin) = split(&(inertia.matrix * speed));
-        let coriolis = stack(&angular.cross(&impulse), &(angular.cross(&spin) + linear.cross(&impulse)));
+        let mut coriolis = stack(&angular.cross(&impulse), &(angular.cross(&spin) + linear.cross(&impulse)));
+        if let Some(added) = inertia.straightened {
+            // As Fossen's REMUS 100: of the added mass's forces, those of rolling stay.
+            let carried = added.component_mul(&linear);
+            let (swung, moment) = (Vector3::new(0.0, angular.y, angular.z), linear.cross(&carried));
+            coriolis -= stack(&swung.cross(&carried), &Vector3::new(0.0, moment.y, moment.z));
+        }
         inertia.inverse * (force - coriolis - self.damping(speed) * share)
     }
 
@@ -368,7 +377,7 @@ impl Inertia {
         let least = least_pivot(matrix);
         require("least principal inertia", least, least > 1e-12, "the inertia of a body with some size")?;
         let inverse = matrix.try_inverse().unwrap_or_else(Matrix6::identity);
-        Ok(Self { matrix, inverse })
+        Ok(Self { matrix, inverse, straightened: None })
     }
 }
 

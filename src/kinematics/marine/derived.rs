@@ -26,6 +26,7 @@ impl CraftSpec {
             centre_of_mass,
             inertia: [[0.0; 3]; 3],
             added_mass: [0.0; 6],
+            munk: false,
             linear_damping: [0.0; 6],
             quadratic_damping: [0.0; 6],
             thrusters: Vec::new(),

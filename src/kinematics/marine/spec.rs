@@ -35,6 +35,9 @@ pub struct CraftSpec {
     pub hull: Vec<HullPart>,
     /// Added mass in kg for the first three axes, in kg m² for the others.
     pub added_mass: [f64; 6],
+    /// Whether the added mass turns the craft across the flow (Munk), as it does with a bare, slender hull. Frames and fins
+    /// outweigh that; without them a craft does not keep its course.
+    pub munk: bool,
     /// Damping in proportion to the speed: N s/m, and N m s for the last three axes.
     pub linear_damping: [f64; 6],
     /// Damping by the square of the speed: N s²/m², and N m s² for the last three axes.

@@ -24,11 +24,11 @@ pub(super) struct CraftLines {
 
 /// The share of its volume that an underwater craft keeps in reserve whose file states no hull, and how many times its
 /// weight the hull of such a boat carries at least.
-const RESERVE: f64 = 1.02;
+const RESERVE: f64 = 1.05;
 const FREEBOARD: f64 = 2.0;
 /// The force of a thruster in newtons for each kilogram, and where vertical ones are as a share of half the length, where a
 /// file states none: Mako's.
-const STRENGTH: f64 = 1.0;
+const STRENGTH: f64 = 0.7;
 const NEAR_THE_ENDS: f64 = 0.75;
 /// Kilograms in a cubic metre of water.
 const FRESH: f64 = 1000.0;
@@ -268,7 +268,7 @@ fn thrusters_of(craft: &CraftSpec, boat: bool) -> Vec<Thruster> {
         let place = Point3::new(middle.x + x * half.x, middle.y + y * half.y, z);
         Thruster::new(name, place, direction, force)
     };
-    let level = craft.centre_of_mass.z;
+    let level = middle.z;
     if boat {
         return vec![
             at("LEFT", -NEAR_THE_ENDS, 1.0, low.z, Vector3::x()),
