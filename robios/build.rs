@@ -1,11 +1,11 @@
-//! Compiles the two functions of RoBIOS that take arguments like `printf`, and tells builds apart.
+//! Compiles the two RoBIOS functions with `printf` arguments, and identifies builds.
 
 use std::collections::BTreeSet;
 use std::hash::{DefaultHasher, Hasher};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-/// What library and runner are made of.
+/// Source folders of library and runner.
 const SOURCES: [&str; 2] = ["src", "../src"];
 
 fn main() -> io::Result<()> {

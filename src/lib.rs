@@ -49,6 +49,7 @@
 //! | 5 Swarms | any number of robots in one world; followers, chains, formations | [`io::sim`], [`drive`] |
 //! | 6 Wall following | walls of any shape, by distance sensors, PID or lidar | [`drive`] |
 //! | 7 Alternative drives | cars and omnidirectional drives: kinematics, control, simulation | [`kinematics`], [`drive`], [`io::sim`] |
+//! | 8 Boats and subs | craft in water: six degrees of freedom, thrusters, depth hold | [`kinematics::marine`], [`drive::marine`] |
 //! | 9 Mazes | models and files, flood fill, exploration, time-optimal runs | [`maze`] |
 //! | 10 Navigation | DistBug, scan matching, reachable goals; ROS maps | [`nav`], [`scan`], [`world::formats`] |
 //! | 10 Navigation | planning on grid maps: A\*, Dijkstra, jump point search, any-angle paths, quadtrees | [`nav::grid`], [`world`] |

@@ -6,7 +6,9 @@ use std::ops::ControlFlow;
 
 use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
 use roverlab::drive::lane_keeping::{BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters};
+use roverlab::drive::marine::{Dive, DiveParameters};
 use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
+use roverlab::drive::terrain::{Ascent, AscentParameters, SlopeSensor};
 use roverlab::drive::{
     AToB, AToBParameters, AlongWall, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters, Goal,
     LidarWallFollower, LidarWallFollowerParameters, Method, OmniDriver, OmniParameters, OmniTracker,
@@ -19,12 +21,15 @@ use roverlab::io::control::{Behaviour, Command, Decision, Halt, Run, Senses, run
 use roverlab::io::sim::{Fleet, SimOptions, SimRobot, Simulation};
 use roverlab::io::wrappers::Faulty;
 use roverlab::io::{Call, Clock, Drive, Error, ErrorKind, MockRobot, Odometry, Result};
+use roverlab::kinematics::marine::CraftSpec;
 use roverlab::kinematics::{Ackermann, OdometryErrors, Omni};
 use roverlab::maze::{
     Direction, LeftHand, LeftHandParameters, LidarLeft, LidarLeftParameters, Maze, MazeRunner,
     MazeRunnerParameters, RecursiveExplorer, Rig, Scale, WallState, mouse,
 };
-use roverlab::nav::{BugKind, BugParameters, DistBug, Navigator, NavigatorParameters};
+use roverlab::nav::{
+    BugKind, BugParameters, DistBug, Navigator, NavigatorParameters, SummitParameters, SummitSearch,
+};
 use roverlab::race::{
     Cone, ConeTrack, EventParameters, EventRacer, GapDriver, RaceOutcome, Racer, RacerParameters,
 };
@@ -53,7 +58,7 @@ where
     Ok(format!("{outcome:?}"))
 }
 
-const CASES: [Case; 27] = [
+const CASES: [Case; 30] = [
     ("lane", RobotSpec::s4, |robot, limit, stop| {
         let camera = RobotSpec::s4().camera.as_ref().unwrap().into();
         let mut behaviour = LaneKeeper::new(camera, RoadModel::default(), LaneKeeperParameters::default())?;
@@ -85,6 +90,9 @@ const CASES: [Case; 27] = [
         let driver = OmniDriver::new(Omni::mecanum(0.2, 0.2).unwrap(), 0.5).unwrap();
         let tracker = OmniTracker::new(Pose::default(), &[GOAL], OmniParameters::default())?;
         driven(robot, &mut tracker.by(driver), limit, stop)
+    }),
+    ("dive", RobotSpec::mako, |robot, limit, stop| {
+        driven(robot, &mut Dive::new(&CraftSpec::mako(), DiveParameters::default())?, limit, stop)
     }),
     ("tour", RobotSpec::s4, |robot, limit, stop| {
         let corners = [START.position(), Point::new(5.0, 5.0), Point::new(1.0, 5.0)];
@@ -133,6 +141,15 @@ const CASES: [Case; 27] = [
         let goal = Point::new(5.5, 5.5);
         let mut navigator = Navigator::new(&room(), START, goal, NavigatorParameters::default())?;
         driven(robot, &mut navigator, limit, stop)
+    }),
+    ("summit", RobotSpec::blizzard, |robot, limit, stop| {
+        let parameters = SummitParameters::of(&RobotSpec::blizzard()).unwrap();
+        driven(robot, &mut SummitSearch::new(parameters)?, limit, stop)
+    }),
+    ("ascent", RobotSpec::blizzard, |robot, limit, stop| {
+        let spec = RobotSpec::blizzard();
+        let mut ascent = Ascent::new(SlopeSensor::lidar(&spec).unwrap(), AscentParameters::of(&spec))?;
+        driven(robot, &mut ascent, limit, stop)
     }),
     ("colour", RobotSpec::s4, |robot, limit, stop| {
         let mut tracker = ColourTracker::new(finder(), ColourTrackerParameters::default())?;

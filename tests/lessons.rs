@@ -44,6 +44,7 @@ lessons!(
     coverage,
     d_star_lite,
     distbug,
+    dive,
     edges,
     follow_me,
     genetic,
@@ -69,6 +70,7 @@ lessons!(
     safety,
     #[cfg(feature = "physics")]
     starman,
+    summit,
     two_robots,
     wall_following,
     world_files,

@@ -253,6 +253,28 @@ fn walls_and_objects_stand_on_the_ground() {
     assert!(ahead < 0.95 * slant && ahead > 0.8, "{ahead}");
 }
 
+/// A box holds on to a slope that a ball rolls down; a steeper one takes both, up to the wall at its foot.
+#[test]
+fn things_slide_and_roll_down_to_what_is_in_their_way() {
+    for (rise, slides) in [(0.4, false), (0.7, true)] {
+        let mut world = world(81, move |at| rise * at.x);
+        world.walls.push(Wall::new(Point::new(1.0, 0.0), Point::new(1.0, 4.0)));
+        let shapes = [Shape::Box { length: 0.1, width: 0.1, height: 0.1 }, Shape::Sphere { radius: 0.03 }];
+        for (shape, y) in shapes.into_iter().zip([1.0, 3.0]) {
+            let kind = ObjectKind { mass: 0.2, fixed: false, ..ObjectKind::new("thing", shape, Colour::RED) };
+            world.objects.push(Object::new(kind.into(), Pose::new(3.0, y, 0.0)));
+        }
+        let simulation = simulation(world, RobotSpec::blizzard(), Pose::new(0.5, 2.0, 0.0));
+        let truth = simulation.truth();
+        simulation.robot(0).unwrap().wait(20.0).unwrap();
+        let [cube, ball] = [0, 1].map(|thing| truth.object(thing).unwrap());
+        assert_eq!(cube.x < 2.9, slides, "{cube:?}");
+        let foot = |thing: Pose, half: f64| (thing.x - (1.005 + half)).abs() < 0.03;
+        assert!(foot(ball, 0.03) && (!slides || foot(cube, 0.05)), "{ball:?} {cube:?}");
+        assert!((truth.object_elevation(1).unwrap() - rise * ball.x).abs() < 1e-6);
+    }
+}
+
 #[test]
 fn a_robot_that_drives_over_a_cliff_falls() {
     let cliff = |at: Point| if at.x < 2.0 { 0.4 } else { 0.0 };

@@ -1,5 +1,5 @@
-//! The commands of `roverlab`, and how one is chosen. What is added to the list here can be run, is listed by
-//! `roverlab systems`, and its recordings can be checked.
+//! The commands of `roverlab` and their dispatch. A command in this list can be run, appears in `roverlab
+//! systems`, and its recordings can be checked.
 
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -15,43 +15,42 @@ use crate::maze_drive::{explore as maze_explore, left as maze_left, lidar as maz
 #[cfg(feature = "native")]
 use crate::starman;
 use crate::{
-    a_to_b, ackermann, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug, edges,
-    follow_me, genetic, grid_benchmark, lane_keeping, lidar_scan, localise, micromouse, motion, navigate,
-    omni, quadtree, random_drive, replay, safety, wall_following,
+    a_to_b, ackermann, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug, dive,
+    edges, follow_me, genetic, grid_benchmark, lane_keeping, lidar_scan, localise, micromouse, motion,
+    navigate, omni, quadtree, random_drive, replay, safety, summit, terrain_plan, wall_following,
 };
 
-/// Runs a command with its command line and its two outputs. Returns the exit status.
+/// Runs a command with its command line and its two output streams. Returns the exit status.
 type Run = fn(Vec<OsString>, &mut dyn Write, &mut dyn Write) -> u8;
 
-/// One of the commands.
+/// A command.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Command {
-    /// The name in reports and recordings: words joined by underscores. On the command line they are joined
-    /// by hyphens.
+    /// Name in reports and recordings, with underscores; the command line uses hyphens.
     pub(crate) name: &'static str,
-    /// Runs it. The first word is its name.
+    /// Runs it. The first argument is its name.
     pub(crate) run: Run,
     parser: fn() -> clap::Command,
-    /// The options that it does not heed, and when.
+    /// Options it does not support, and under which conditions.
     #[cfg(test)]
     pub(crate) unheeded: fn() -> &'static [Unheeded],
 }
 
-/// The parser of the command line that some work takes.
+/// The command-line parser of a command's work function.
 fn parser_of<A: CommandFactory, R>(name: &str, _: impl Fn(&A) -> Result<R, Failure>) -> clap::Command {
     parser::<A>(name)
 }
 
-/// What the command line that some work takes does not heed.
+/// The unsupported options of a command's work function.
 #[cfg(test)]
 fn unheeded_by<A: Heeds, R>(_: impl Fn(&A) -> Result<R, Failure>) -> &'static [Unheeded] {
     A::UNHEEDED
 }
 
-/// A table of commands from the names of their modules and the functions that run them.
+/// Table of commands from the names of their modules and their work functions.
 macro_rules! commands {
     ($($(#[$when:meta])? $name:ident by $run:path),* $(,)?) => {
-        /// All commands, in the order of their names.
+        /// All commands, ordered by name.
         pub(crate) const COMMANDS: &[Command] = &[$($(#[$when])? Command {
             name: stringify!($name),
             run: |words, out, err| $run(stringify!($name), words, out, err, $name::work),
@@ -72,6 +71,7 @@ commands!(
     cone_race by run,
     coverage by run,
     distbug by run,
+    dive by run_plain,
     edges by run,
     follow_me by run,
     genetic by run,
@@ -92,11 +92,13 @@ commands!(
     safety by run,
     #[cfg(feature = "native")]
     starman by run,
+    summit by run,
+    terrain_plan by run_plain,
     wall_following by run,
 );
 
 impl Command {
-    /// The names of its options, with underscores.
+    /// Names of its options, with underscores.
     #[cfg(test)]
     pub(crate) fn options(&self) -> Vec<String> {
         (self.parser)().get_arguments().map(|argument| argument.get_id().to_string()).collect()
@@ -108,13 +110,13 @@ impl Command {
     }
 }
 
-/// A command by its name, whichever way its words are joined.
+/// The command with a name, with hyphens or underscores.
 pub(crate) fn named(name: &str) -> Option<&'static Command> {
     let name = name.replace('-', "_");
     COMMANDS.iter().find(|command| command.name == name)
 }
 
-/// The program.
+/// Main function of the program.
 #[must_use]
 pub fn main() -> ExitCode {
     let words: Vec<OsString> = std::env::args_os().collect();
@@ -128,18 +130,18 @@ pub fn main() -> ExitCode {
     ExitCode::from(status)
 }
 
-/// How a command ended.
+/// Result of a command.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Ended {
-    /// The exit status: 0 came to a verdict, 1 failed, 2 was told something wrong.
+    /// Exit status: 0 success, 1 failure, 2 wrong input.
     pub status: u8,
-    /// What it printed.
+    /// Standard output.
     pub output: String,
-    /// What it complained of.
+    /// Standard error.
     pub errors: String,
 }
 
-/// Runs a command line, without the program's name, perhaps while somebody looks on.
+/// Runs a command line without the program's name, optionally with an onlooker.
 pub fn run_words(words: impl IntoIterator<Item = OsString>, onlooker: Option<Box<dyn Onlooker>>) -> Ended {
     let words = std::iter::once(OsString::from("roverlab")).chain(words).collect();
     let (mut out, mut err) = (Vec::new(), Vec::new());
@@ -148,8 +150,9 @@ pub fn run_words(words: impl IntoIterator<Item = OsString>, onlooker: Option<Box
     Ended { status, output, errors }
 }
 
-/// The commands that drive robots and their options, as JSON: a list of `{name, about, options}`, where an option has a `name`,
-/// `help`, `kind` (`switch`, `choice`, `number` or `text`), `default`, `choices` and `value`, how its value is called.
+/// The commands that drive robots and their options, as JSON: a list of `{name, about, options}`. An option
+/// has `name`, `help`, `kind` (`switch`, `choice`, `number` or `text`), `default`, `choices` and `value`, the
+/// name of its value.
 pub fn options() -> String {
     let commands = COMMANDS.iter().filter(|command| command.drives()).map(|command| {
         let parser = (command.parser)();
@@ -181,7 +184,7 @@ fn option(argument: &clap::Arg) -> Option<Value> {
     }))
 }
 
-/// Runs the command that a command line names, or says which ones there are. Returns the exit status.
+/// Runs the command of a command line, or lists the commands. Returns the exit status.
 pub(crate) fn dispatch(mut words: Vec<OsString>, out: &mut dyn Write, err: &mut dyn Write) -> u8 {
     if let Some(command) = words.get(1).and_then(|word| named(word.to_str()?)) {
         words.remove(0);
@@ -193,7 +196,7 @@ pub(crate) fn dispatch(mut words: Vec<OsString>, out: &mut dyn Write, err: &mut 
     }
 }
 
-/// The parser of the whole program, which tells what there is and what is meant by a mistyped name.
+/// The parser of the whole program, for help and for suggestions on mistyped names.
 fn program() -> clap::Command {
     clap::Command::new("roverlab")
         .about("Every system of the library roverlab as a command")
@@ -203,7 +206,7 @@ fn program() -> clap::Command {
         .subcommands(COMMANDS.iter().map(|command| (command.parser)()))
 }
 
-/// All commands with a line each.
+/// All commands, one per line.
 fn systems() -> String {
     let line = |command: &Command| {
         let parser = (command.parser)();

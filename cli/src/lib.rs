@@ -1,8 +1,7 @@
 //! The program `roverlab`: every system of the library as a command.
 //!
-//! A command is a module with a command line and a function that does the work; `common` has what all share,
-//! and
-//! `commands` is the list of them all.
+//! A command is a module with a command line and a work function; `common` contains the shared parts, and
+//! `commands` lists them all.
 
 mod a_to_b;
 mod ackermann;
@@ -16,6 +15,7 @@ mod cone_race;
 mod cones;
 mod coverage;
 mod distbug;
+mod dive;
 mod driving;
 mod edges;
 mod follow_me;
@@ -36,6 +36,9 @@ mod room;
 mod safety;
 #[cfg(feature = "native")]
 mod starman;
+mod summit;
+mod terrain;
+mod terrain_plan;
 #[cfg(test)]
 mod tests;
 mod wall_following;

@@ -1,4 +1,4 @@
-//! The program `roverlab`: its library half does the work.
+//! The program `roverlab`, a wrapper of its library.
 
 fn main() -> std::process::ExitCode {
     roverlab_cli::main()

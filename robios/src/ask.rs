@@ -61,6 +61,8 @@ pub enum Request {
     Encoder(u8),
     /// Resets an encoder to zero.
     ResetEncoder(u8),
+    /// The depth by the pressure sensor.
+    Depth,
     /// The attitude by the inertial unit: roll, pitch and yaw.
     Attitude,
     /// Its turn rates about the forward, left and upright axes.
@@ -149,6 +151,8 @@ pub struct Identity {
     pub exact: bool,
     /// Whether the robot has a camera.
     pub camera: bool,
+    /// The channel of its depth sensor; 0 without one.
+    pub depth_channel: u8,
     /// What its inertial unit measures, and on which channels.
     pub inertial: InertialSpec,
 }
@@ -241,6 +245,7 @@ impl Seat {
             time_limit: terms.time_limit.unwrap_or(f64::INFINITY),
             exact: terms.exact,
             camera: spec.camera.is_some() && on_wheels,
+            depth_channel: spec.depth_sensor.map_or(0, |sensor| sensor.channel),
             inertial: if on_wheels { spec.inertial } else { InertialSpec::default() },
         };
         let (truth, scan) = (simulation.truth(), LidarScan::default());
@@ -315,6 +320,7 @@ impl Seat {
             Request::Servo(servo, position) => done(robot.set_servo(servo, position)?),
             Request::Encoder(motor) => Reply::Count(robot.encoder(motor)?),
             Request::ResetEncoder(motor) => done(robot.reset_encoder(motor)?),
+            Request::Depth => Reply::Number(robot.depth()?),
             Request::Attitude => {
                 let Attitude { roll, pitch, yaw } = robot.attitude()?;
                 Reply::Three([roll, pitch, yaw])
@@ -494,6 +500,9 @@ fn speeds(spec: &RobotSpec) -> (f64, f64, f64) {
         DriveSpec::Ackermann { wheel_diameter, max_wheel_speed, ticks_per_turn, .. } => {
             (wheel_diameter, max_wheel_speed, ticks_per_turn, FULL_SPEED_OF_CARS)
         }
+        // Thrusters: as if wheels of 2 m turned so that their rims have its top speed. All of it is 100 percent; one that
+        // cannot drive ahead still has a full speed of its other thrusters.
+        DriveSpec::Craft(_) => (2.0, spec.drive.top_speed().max(1e-3), 1.0, f64::INFINITY),
         _ => (0.0, 0.0, 1.0, FULL_SPEED),
     };
     let top_speed = 0.5 * diameter * fastest;

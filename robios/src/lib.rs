@@ -20,7 +20,7 @@
 //! |---|---|
 //! | `SERInit`, `SERSend`, `SERReceive`, ... | every port is looped back: it receives what was sent to it |
 //! | `DIGITALSetup`, `DIGITALRead`, `DIGITALWrite` | outputs read what was written; inputs read 1 with a pull-up resistor and 0 without |
-//! | `ANALOGRead`, `ANALOGVoltage` | 8.20 V of supply on channel 0; the inertial unit on the channels of the `inertial` line of a `.robi`, in tenths of degrees, tenths of degrees per second and mm/s²; 0 on all others |
+//! | `ANALOGRead`, `ANALOGVoltage` | 8.20 V of supply on channel 0; the inertial unit on the channels of the `inertial` line of a `.robi`, in tenths of degrees, tenths of degrees per second and mm/s²; the depth in mm on that of a `depth_sensor` line; 0 on all others |
 //! | `ANALOGRecord`, `ANALOGTransfer`, `AUMicrophone` | silence |
 //! | `AUBeep`, `AUPlay` | counted in the report, a file that is missing with a warning; a sound takes half a second for `AUDone` |
 //! | `IRTVGet`, `IRTVRead` | what the script of the keys says; `AUTO` presses OK for a program that waits |

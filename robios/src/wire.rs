@@ -106,6 +106,7 @@ impl Writer {
             Request::PlaceObject(id, pose) => w.byte(25).word(id).pose(pose),
             Request::Numbers => w.byte(26),
             Request::Attitude => w.byte(27),
+            Request::Depth => w.byte(30),
             Request::TurnRates => w.byte(28),
             Request::Acceleration => w.byte(29),
         }
@@ -139,6 +140,7 @@ impl Writer {
                 .number(identity.time_limit)
                 .byte(u8::from(identity.exact))
                 .byte(u8::from(identity.camera))
+                .byte(identity.depth_channel)
                 .channels(identity.inertial.attitude)
                 .channels(identity.inertial.turn_rates)
                 .channels(identity.inertial.acceleration),
@@ -210,6 +212,7 @@ impl<'a> Reader<'a> {
             25 => Request::PlaceObject(r.word()?, r.pose()?),
             26 => Request::Numbers,
             27 => Request::Attitude,
+            30 => Request::Depth,
             28 => Request::TurnRates,
             29 => Request::Acceleration,
             _ => return None,
@@ -251,6 +254,7 @@ impl<'a> Reader<'a> {
                     time_limit: r.number()?,
                     exact: r.byte()? != 0,
                     camera: r.byte()? != 0,
+                    depth_channel: r.byte()?,
                     inertial: InertialSpec {
                         attitude: r.channels()?,
                         turn_rates: r.channels()?,
@@ -361,6 +365,7 @@ mod tests {
             Request::PlaceObject(9, pose),
             Request::Servo(2, -0.5),
             Request::Attitude,
+            Request::Depth,
             Request::TurnRates,
             Request::Acceleration,
         ] {

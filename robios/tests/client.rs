@@ -1,7 +1,8 @@
-//! A robot driven through the library by `RobiosRobot` does what the simulated robot inside `Quantised` does: the same
+//! A robot driven through the library by `RobiosRobot` matches a simulated robot inside `Quantised`: the same
 //! calls with the same answers at the same times.
 //!
-//! The library's robot belongs to its process, so each run is a process of its own: this test starts itself again.
+//! The library's robot belongs to its process, so each run is a separate process: this test starts itself
+//! again.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -40,7 +41,7 @@ fn plan() -> Plan {
     }
 }
 
-/// What a robot does in a job. Errors are part of the log.
+/// A robot's actions in a job. Errors are part of the log.
 fn work(job: &str, robot: &mut impl RobotIo) {
     match job {
         "tour" => tour(robot),
@@ -55,7 +56,7 @@ fn work(job: &str, robot: &mut impl RobotIo) {
     }
 }
 
-/// Every capability once, and what fails.
+/// Every capability once, and failures.
 fn tour(robot: &mut impl RobotIo) {
     let mut tour = || -> Result<()> {
         robot.straight(0.3004, 0.2501)?;
@@ -121,7 +122,7 @@ fn trace<R: RobotIo>(robot: R, job: &str) -> String {
     work(job, &mut traced);
     let (_, written) = traced.finish();
     let text = String::from_utf8(written.unwrap()).unwrap();
-    // What an error says differs: the library has a code for it.
+    // Error messages differ: the library only returns a code.
     let lines = text.lines().map(|line| match line.split_once("-> error ") {
         Some((call, _)) => format!("{call}-> error"),
         None => line.to_owned(),
@@ -135,7 +136,7 @@ fn library() -> PathBuf {
     [folder.join(name), folder.join("deps").join(name)].into_iter().find(|file| file.is_file()).unwrap()
 }
 
-/// What the tests below run in a process of its own for each job, as a process has one robot behind the library.
+/// Run by the tests below in a process per job, as a process has one robot behind the library.
 #[test]
 #[ignore = "run by the tests below, in processes of their own"]
 fn child() {

@@ -1,5 +1,8 @@
 use std::f64::consts::FRAC_PI_2;
 
+use super::follower::PATIENCE;
+use super::path::SPACING;
+use super::way::ALIGNED;
 use super::{Path, PathFollower, PathFollowerParameters, Waypoint};
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, angle_difference};
@@ -176,17 +179,10 @@ enum Phase {
     Ended,
 }
 
-/// Metres before the end of a path at which manoeuvres take over.
-const HANDOVER: f64 = 0.02;
-/// Metres of path that count as getting on.
-const PROGRESS: f64 = 0.001;
-/// Seconds without getting on after which manoeuvres take over: pure pursuit circles round the end of a path
-/// that bends within its lookahead.
-const LONGEST_IDLING: f64 = 3.0;
+/// Metres before the end of a path at which manoeuvres take over, or a car only drives on.
+pub(super) const HANDOVER: f64 = 0.02;
 /// Seconds in which a dog curve turns towards its goal.
 const HOMING_TIME: f64 = 0.5;
-/// Radians up to which the last millimetres are driven without turning first.
-const SMALL_BEARING: f64 = 0.02;
 
 impl AToB {
     /// Creates a drive to a goal in the frame of the observed poses.
@@ -232,12 +228,13 @@ impl AToB {
             }
             Phase::Following(follower) => {
                 let twist = follower.step(pose);
-                let gets_on = follower.travelled() >= self.got_to + PROGRESS;
+                // Pure pursuit circles round the end of a path that bends within its lookahead.
+                let gets_on = follower.travelled() >= self.got_to + SPACING;
                 if gets_on {
                     self.got_to = follower.travelled();
                 }
                 self.idle = if gets_on { 0 } else { self.idle + 1 };
-                let idles = f64::from(self.idle) * self.parameters.period > LONGEST_IDLING;
+                let idles = f64::from(self.idle) * self.parameters.period > PATIENCE;
                 if follower.rest() > HANDOVER && !idles {
                     return Ok(Some(Manoeuvre::Speed(twist)));
                 }
@@ -348,7 +345,7 @@ impl AToB {
         } else {
             pose.bearing_to(self.goal.position)
         };
-        if goal.y.abs() > self.parameters.tolerance && bearing.abs() > SMALL_BEARING {
+        if goal.y.abs() > self.parameters.tolerance && bearing.abs() > ALIGNED {
             return self.turn(bearing);
         }
         Manoeuvre::Straight(goal.x, self.parameters.creep_speed)

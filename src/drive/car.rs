@@ -1,6 +1,6 @@
 use std::ops::ControlFlow;
 
-use super::a_to_b::dog_twist;
+use super::a_to_b::{HANDOVER, dog_twist};
 use super::{Goal, Method, Path, PathFollower, PathFollowerParameters, Steering};
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, angle_difference};
@@ -178,22 +178,16 @@ enum Phase {
 
 /// Tolerances beyond which a goal is missed.
 const MISSED: f64 = 4.0;
-/// Turning radii that a car drives back before it comes again.
-const WAY_BACK: f64 = 2.0;
+/// Turning radii that a car drives back before it comes again, and before a goal with a heading at which a dog curve hands over.
+const ROOM: f64 = 2.0;
 /// Metres from the goal at which the car stops.
 const ARRIVED: f64 = 0.001;
 /// Radians from point to point of a path that no car follows.
 const SHARP_TURN: f64 = 0.1;
 /// How far the curvature jumps, in terms of the largest one, where the car stops to turn its wheels.
 const LARGE_JUMP: f64 = 1.2;
-/// Metres before the goal of a dog curve in which the car only drives on.
-const LAST_BIT: f64 = 0.03;
-/// The largest k of splines that is tried where the book's k of 1 bends too tightly.
+/// The largest k of splines that is tried where the book's k of 1 bends too tightly; it is doubled from try to try.
 const LARGEST_SCALE: f64 = 4.0;
-/// By how much k grows from try to try.
-const SCALE_STEP: f64 = 0.25;
-/// Turning radii before a goal with a heading at which a dog curve hands over.
-const DOG_HANDOVER: f64 = 4.0;
 
 impl CarToB {
     /// Creates a car's drive to a goal in the frame of the observed poses.
@@ -237,7 +231,7 @@ impl CarToB {
                 if fits(&spline) {
                     return Ok(Some(spline));
                 }
-                scale += SCALE_STEP;
+                scale *= 2.0;
             }
         }
         self.round_the_circle(pose).map(Some)
@@ -280,7 +274,7 @@ impl CarToB {
     /// One step in reverse; `None` once there is room for another attempt.
     fn back(&mut self, pose: Pose) -> Option<CarState> {
         let Phase::Backing(from) = self.phase else { return None };
-        if pose.distance_to(from) < WAY_BACK * self.radius() {
+        if pose.distance_to(from) < ROOM * self.radius() {
             return Some(CarState { speed: -self.parameters.follower.speed, steering: 0.0 });
         }
         self.phase = Phase::Begin;
@@ -357,11 +351,11 @@ impl CarToB {
         let (goal, radius) = (pose.to_local(self.goal.position), self.radius());
         let distance = goal.coords.norm();
         let turns = self.goal.heading.is_some();
-        if turns && distance <= DOG_HANDOVER * radius {
+        if turns && distance <= ROOM * radius {
             return None;
         }
         let rate = self.parameters.follower.approach_rate;
-        if distance <= LAST_BIT {
+        if distance <= HANDOVER {
             let drives = goal.x > ARRIVED;
             return drives.then(|| CarState { speed: rate * goal.x, steering: 0.0 });
         }

@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-use super::way::Way;
+use super::way::{AHEAD, BRAKING, TURN_GAIN, Way};
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, Vector, math, normalize_angle};
 use crate::io::{Error, LidarScan, Result};
@@ -105,26 +105,10 @@ struct Target {
     seen: f64,
 }
 
-/// Metres from where the robot ahead is expected within which a thing is taken for it.
+/// Metres from where the robot ahead is expected within which a thing is taken for it, and what it may have driven meanwhile.
 const GATE: f64 = 0.15;
-/// Metres by which that grows for each second without a sight.
-const GATE_GROWTH: f64 = 0.35;
 /// The share of a new sight in the place of the robot ahead (alpha of an alpha-beta filter).
 const OF_PLACE: f64 = 0.5;
-/// The share of a new sight in its velocity (beta of an alpha-beta filter).
-const OF_VELOCITY: f64 = 0.15;
-/// Metres per second for each metre that the gap is too large.
-const PULL: f64 = 1.2;
-/// Metres that are looked ahead for a free way.
-const AHEAD: f64 = 0.3;
-/// Metres to where a lost robot was seen last at which it looks round.
-const LOOKING_PLACE: f64 = 0.3;
-/// Radians per second at which it looks round.
-const LOOKING_RATE: f64 = 1.0;
-/// The part of its speed with which it drives to that place.
-const SEARCHING: f64 = 0.9;
-/// Seconds in which the free way ahead is driven.
-const BRAKING: f64 = 0.7;
 
 impl Follower {
     /// Creates a follower without a target.
@@ -161,10 +145,10 @@ impl Follower {
         let distance = away.coords.norm();
         let bearing = math::atan2(away.y, away.x);
         let lost = self.is_lost(seen.time);
-        if lost && distance < parameters.gap.min(LOOKING_PLACE) {
-            // Look all round for the robot ahead, first towards its last position.
+        if lost && distance < parameters.gap {
+            // It looks all round for the robot ahead, first to where that was.
             let side = *self.looking.get_or_insert(bearing);
-            return Ok(Twist::new(0.0, LOOKING_RATE.min(parameters.turn_rate).copysign(side)));
+            return Ok(Twist::new(0.0, parameters.turn_rate.copysign(side)));
         }
         self.looking = None;
         // The robot ahead is not an obstacle.
@@ -175,8 +159,7 @@ impl Follower {
         let (towards, free) = way.towards(&obstacles, bearing, AHEAD.min(distance));
         let along = crate::geometry::direction(seen.pose.heading + bearing).dot(&target.velocity);
         // A lost robot is looked for where it was last seen.
-        let closing =
-            if lost { SEARCHING * parameters.speed } else { PULL * (distance - parameters.gap) + along };
+        let closing = if lost { parameters.speed } else { (distance - parameters.gap) / BRAKING + along };
         let turn = normalize_angle(towards);
         let facing = math::cos(turn).max(0.0);
         // Obstacles straight ahead limit the speed as well.
@@ -184,7 +167,7 @@ impl Follower {
             free.min(way.free(&obstacles, 0.0)).min(distance - parameters.radius - parameters.leader_radius);
         let most = ((free - parameters.margin) / BRAKING).clamp(0.0, parameters.speed);
         let linear = (closing * facing * facing).clamp(0.0, most);
-        Ok(Twist::new(linear, (2.5 * turn).clamp(-parameters.turn_rate, parameters.turn_rate)))
+        Ok(Twist::new(linear, (TURN_GAIN * turn).clamp(-parameters.turn_rate, parameters.turn_rate)))
     }
 
     /// Associates the robot ahead with one of the candidates.
@@ -211,14 +194,16 @@ impl Follower {
         let since = (seen.time - target.seen).max(1e-3);
         let moved = target.velocity * since.min(1.0);
         let expected = target.place + moved;
-        let Some(found) =
-            nearest_to(expected).filter(|found| (found - expected).norm() < GATE + GATE_GROWTH * since)
+        let Some(found) = nearest_to(expected)
+            .filter(|found| (found - expected).norm() < GATE + self.parameters.speed * since)
         else {
             return;
         };
         let place = expected + (found - expected) * OF_PLACE;
+        // The beta that goes with an alpha, by which place and velocity together err least.
+        let of_velocity = OF_PLACE * OF_PLACE / (2.0 - OF_PLACE);
         let velocity =
-            target.velocity + (found - expected) * (OF_VELOCITY / since.max(self.parameters.period));
+            target.velocity + (found - expected) * (of_velocity / since.max(self.parameters.period));
         self.target = Some(Target { place, velocity, seen: seen.time });
     }
 }
@@ -249,13 +234,11 @@ impl Follower {
 /// assert!(found.len() == 1 && (found[0].x - 0.8).abs() < 0.02 && found[0].y.abs() < 0.02);
 /// ```
 pub fn robots_in(scan: &LidarScan, radius: f64) -> Vec<Point> {
-    /// Metres between neighbouring points of one thing, beyond what the angle between beams makes.
-    const STEP: f64 = 0.07;
     let beams = scan.ranges.len();
     let all_round = (scan.angle_increment.abs() * beams as f64 - std::f64::consts::TAU).abs() < 1e-6;
     let joined = |a: usize, b: usize| {
         let (one, other) = (scan.ranges[a], scan.ranges[b]);
-        one.is_finite() && other.is_finite() && (one - other).abs() < STEP
+        one.is_finite() && other.is_finite() && (one - other).abs() < radius
     };
     let first =
         if all_round { (0..beams).find(|&beam| !joined((beam + beams - 1) % beams, beam)) } else { Some(0) };
@@ -273,7 +256,7 @@ pub fn robots_in(scan: &LidarScan, radius: f64) -> Vec<Point> {
         let after = if step < beams || all_round { Some(at(step)) } else { None };
         // At the edge of the field of view a wall may end anywhere.
         let farther = |beside: Option<usize>, end: usize| {
-            beside.is_some_and(|beside| scan.ranges[beside] > scan.ranges[end] + STEP)
+            beside.is_some_and(|beside| scan.ranges[beside] > scan.ranges[end] + radius)
         };
         if farther(before, at(start)) && farther(after, at(step - 1)) {
             found.extend(middle_of(scan, &thing, radius));

@@ -1,4 +1,5 @@
 use super::Path;
+use super::way::AHEAD;
 use crate::ParameterError;
 use crate::geometry::{Pose, Twist, angle_difference, math, normalize_angle};
 use crate::io::Result;
@@ -100,13 +101,10 @@ pub struct PathFollower {
     rest: f64,
 }
 
-/// Metres of path in which the next place is looked for. Never behind the last one: where a spline turns back
-/// in a cusp, the way back lies beside the way there.
-const AHEAD: f64 = 0.25;
+/// Seconds without getting on after which a robot gives up.
+pub(super) const PATIENCE: f64 = 3.0;
 /// The tightest bend that is driven, in 1/m: a spline can have a cusp, where no speed would be slow enough.
 const TIGHTEST: f64 = 30.0;
-/// The part of its speed that a robot keeps that points across the path.
-const LEAST_SHARE: f64 = 0.1;
 
 impl PathFollower {
     /// Creates a follower at the start of a path. Fails for parameters out of range.
@@ -152,8 +150,8 @@ impl PathFollower {
         } else {
             1.0
         };
-        // A robot that points elsewhere slows down and turns first.
-        let along = speed * math::cos(self.heading_error).max(LEAST_SHARE);
+        // One that points elsewhere turns first.
+        let along = speed * math::cos(self.heading_error).max(0.0);
         Twist::new(scale * if self.reverse { -along } else { along }, scale * angular)
     }
 

@@ -1,4 +1,4 @@
-use super::way::Way;
+use super::way::{AHEAD, BRAKING, TURN_GAIN, Way};
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, math};
 use crate::io::{Error, Result};
@@ -32,15 +32,6 @@ pub struct Formation {
     /// Clearance kept beside the robot (m).
     pub margin: f64,
 }
-
-/// Metres ahead of its place that a follower aims at.
-const AIM: f64 = 0.25;
-/// Metres per second for each metre behind its place.
-const PULL: f64 = 1.0;
-/// Metres that are looked ahead for a free way.
-const AHEAD: f64 = 0.25;
-/// Seconds in which the free way ahead is driven.
-const BRAKING: f64 = 1.0;
 
 impl Formation {
     /// A formation position for an S4, given in the leader's frame.
@@ -85,7 +76,8 @@ impl Formation {
     pub fn step(&self, pose: Pose, leader: Pose, leader_speed: f64, points: &[Point]) -> Twist {
         let place = leader.to_world(self.offset);
         let behind = pose.to_local(place);
-        let aim = pose.to_local(place + leader.forward() * AIM);
+        // What is aimed at lies ahead of its place: the robot is not to turn about there.
+        let aim = pose.to_local(place + leader.forward() * AHEAD);
         let bearing = math::atan2(aim.y, aim.x);
         let way = Way { radius: self.radius, margin: self.margin };
         let (towards, _) = way.towards(points, bearing, AHEAD);
@@ -96,8 +88,8 @@ impl Formation {
             return Twist::STOP;
         }
         let facing = math::cos(towards).max(0.0);
-        let linear = ((leader_speed + PULL * behind.x) * facing).clamp(0.0, most);
-        Twist::new(linear, (2.5 * towards).clamp(-self.turn_rate, self.turn_rate))
+        let linear = ((leader_speed + behind.x / BRAKING) * facing).clamp(0.0, most);
+        Twist::new(linear, (TURN_GAIN * towards).clamp(-self.turn_rate, self.turn_rate))
     }
 }
 

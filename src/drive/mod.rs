@@ -18,7 +18,9 @@
 //!   [`PidWallFollower`], [`LidarWallFollower`] and the book's [`TwoLevelWallFollower`];
 //! - [`colour`]: to an object of a taught colour, and home with it (chapter 11);
 //! - [`lane_keeping`]: along the lane of a road by camera, and [`traffic`]: its referee (chapter 13);
+//! - [`marine`]: craft in water (chapter 8);
 //! - [`motion_watch`]: turning towards motion (chapter 11);
+//! - [`terrain`]: up the steepest way (chapter 7);
 //! - [`Pid`] and [`RelayTuner`]: a PID controller and its automatic tuning.
 
 mod a_to_b;
@@ -33,6 +35,7 @@ mod follow_me;
 mod follower;
 mod formation;
 pub mod lane_keeping;
+pub mod marine;
 pub mod motion_watch;
 mod omni;
 mod path;
@@ -40,6 +43,7 @@ mod pid;
 mod random_drive;
 mod relay;
 mod spline;
+pub mod terrain;
 pub mod traffic;
 mod wall_following;
 mod way;

@@ -1,5 +1,6 @@
 use std::ops::ControlFlow;
 
+use super::follower::PATIENCE;
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Vector, angle_difference, direction, normalize_angle};
 use crate::io::control::{Behaviour, Command, Decision, Senses, halts};
@@ -125,9 +126,6 @@ struct Leg {
     ramp: f64,
     duration: f64,
 }
-
-/// Seconds after the route's end that the last millimetres may take.
-const PATIENCE: f64 = 3.0;
 
 impl OmniTracker {
     /// Creates a tracker that drives from `start` through the points of `route` and stops at each. Fails for

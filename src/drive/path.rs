@@ -1,4 +1,5 @@
 use super::spline::{Hermite, catmull_rom};
+use crate::geometry::units::NEGLIGIBLE;
 use crate::geometry::{Point, Pose, angle_difference, math, normalize_angle};
 use crate::io::{Error, Result};
 use crate::kinematics::{Displacement, advance};
@@ -40,11 +41,9 @@ pub struct Path {
 }
 
 /// Metres from point to point of a path.
-const SPACING: f64 = 0.005;
+pub(super) const SPACING: f64 = 0.005;
 /// The longest path in metres: longer ones come from wrong numbers.
 const LONGEST: f64 = 10_000.0;
-/// The shortest distance in metres between a start and a goal.
-const SHORTEST: f64 = 1e-6;
 
 impl Path {
     /// A path of arcs from `start`, each given by length (m) and curvature (1/m). Fails for a length that is
@@ -278,7 +277,7 @@ fn check_pose(name: &str, pose: Pose) -> Result<()> {
 
 fn check_apart(a: Point, b: Point) -> Result<()> {
     let distance = (b - a).norm();
-    if (SHORTEST..=LONGEST).contains(&distance) {
+    if (NEGLIGIBLE..=LONGEST).contains(&distance) {
         return Ok(());
     }
     Err(Error::invalid_input("distance between two points of a path", distance, "0.001 mm to 10 km"))

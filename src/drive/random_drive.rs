@@ -1,7 +1,7 @@
 use std::f64::consts::{FRAC_PI_4, PI};
 use std::ops::ControlFlow;
 
-use super::way::Way;
+use super::way::{AHEAD, ALIGNED, BRAKING, TURN_GAIN, Way};
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, angle_difference, normalize_angle};
 use crate::io::control::{Behaviour, Decision, Halt, Senses};
@@ -81,12 +81,6 @@ pub struct RandomDrive {
 
 /// Directions that are drawn at a turn; the first with enough room is taken, or the one with the most.
 const DRAWN: usize = 12;
-/// Metres of free way that are enough room.
-const ROOM: f64 = 0.4;
-/// Radians by which a heading may be missed.
-const ALIGNED: f64 = 0.05;
-/// Seconds in which the rest of the way ahead is driven.
-const BRAKING: f64 = 0.6;
 
 impl RandomDrive {
     /// Creates a robot about to drive, with its own random stream. Fails for parameters out of range.
@@ -110,7 +104,7 @@ impl RandomDrive {
         if let Some(heading) = self.turning_to {
             let rest = angle_difference(heading, pose.heading);
             if rest.abs() > ALIGNED {
-                return Ok(Twist::new(0.0, (3.0 * rest).clamp(-turn_rate, turn_rate)));
+                return Ok(Twist::new(0.0, (TURN_GAIN * rest).clamp(-turn_rate, turn_rate)));
             }
             self.turning_to = None;
         }
@@ -131,7 +125,7 @@ impl RandomDrive {
             let angle = self.stream.between(FRAC_PI_4, PI);
             let turn = if self.stream.chance(0.5) { angle } else { -angle };
             let room = self.free_way(points, turn);
-            if room > ROOM {
+            if room > AHEAD {
                 return turn;
             }
             if room > best.1 {
@@ -251,7 +245,7 @@ mod tests {
         let mut drive = drive();
         for _ in 0..50 {
             let turn = drive.draw_turn(&points);
-            assert!(drive.free_way(&points, turn) > ROOM, "{turn}");
+            assert!(drive.free_way(&points, turn) > AHEAD, "{turn}");
         }
         assert!(drive.step(Pose::new(f64::NAN, 0.0, 0.0), &points).is_err());
         let parameters = RandomDriveParameters { safe: 0.0, ..RandomDriveParameters::default() };

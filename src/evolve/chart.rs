@@ -5,10 +5,8 @@ use crate::world::{Colour, World};
 
 /// Width of a panel (m on the sheet).
 const WIDTH: f64 = 1.6;
-/// Height of the fitness panel (m on the sheet).
-const FITNESS: f64 = 0.7;
-/// Height of the diversity panel (m on the sheet).
-const DIVERSITY: f64 = 0.3;
+/// Height of a panel (m on the sheet).
+const HEIGHT: f64 = 0.5;
 /// Margin around the panels, for the scales (m on the sheet).
 const MARGIN: f64 = 0.12;
 
@@ -24,7 +22,7 @@ const MARGIN: f64 = 0.12;
 /// # Ok::<(), roverlab::io::Error>(())
 /// ```
 pub fn chart(history: &[GenerationStatistics]) -> Picture {
-    let sheet = World::empty(WIDTH + 2.0 * MARGIN, FITNESS + DIVERSITY + 3.0 * MARGIN);
+    let sheet = World::empty(WIDTH + 2.0 * MARGIN, 2.0 * HEIGHT + 3.0 * MARGIN);
     let mut picture = Picture::new(&sheet);
     picture.title("Evolution, generation by generation").without_scale();
     let fitness: [Curve<'_>; 3] = [
@@ -32,8 +30,8 @@ pub fn chart(history: &[GenerationStatistics]) -> Picture {
         ("mean", Colour::from_hex(0x00c0_7a1b), |row| row.mean),
         ("worst", Colour::from_hex(0x0099_9999), |row| row.worst),
     ];
-    let lower = Panel { history, bottom: MARGIN, height: DIVERSITY };
-    let upper = Panel { history, bottom: 2.0 * MARGIN + DIVERSITY, height: FITNESS };
+    let lower = Panel { history, bottom: MARGIN, height: HEIGHT };
+    let upper = Panel { history, bottom: 2.0 * MARGIN + HEIGHT, height: HEIGHT };
     lower.draw(&mut picture, &[("diversity", Colour::from_hex(0x002b_8a3e), |row| row.diversity)], 0.0);
     // The scale follows the best fitness, so that one failed individual does not flatten the curves.
     let bests = || history.iter().map(|row| row.best);

@@ -12,8 +12,8 @@ pub enum Selection {
         /// Tournament size, at least 1.
         size: usize,
     },
-    /// Linear ranking: the fittest is selected `pressure` times as often as the average, the least fit `2 -
-    /// pressure` times. Equal fitness shares its ranks.
+    /// Linear ranking: the fittest is selected `pressure` times as often as the average, the least fit
+    /// `2 - pressure` times. Equal fitness shares its ranks.
     Rank {
         /// Selection pressure, from 1 (uniform) to 2.
         pressure: f64,

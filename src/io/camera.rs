@@ -2,7 +2,10 @@ use image::{GrayImage, RgbImage};
 
 use super::{Error, Result};
 
-/// Size of a camera's images.
+/// Images that a camera takes in a second. Who asks more often gets the same image again.
+pub(super) const FRAME_RATE: f64 = 30.0;
+
+/// The size of a camera's images.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub enum Resolution {
     /// 160 x 120 pixels.

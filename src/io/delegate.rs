@@ -48,6 +48,7 @@ pub use image::{GrayImage, RgbImage};
 pub use super::actuators::{ambassador_impl_Encoders, ambassador_impl_Motors, ambassador_impl_Servos};
 pub use super::camera::ambassador_impl_Camera;
 pub use super::clock::ambassador_impl_Clock;
+pub use super::depth::ambassador_impl_DepthSensor;
 pub use super::display::ambassador_impl_Display;
 pub use super::drive::{
     ambassador_impl_Drive, ambassador_impl_Manoeuvres, ambassador_impl_Odometry,

@@ -17,6 +17,7 @@ mod camera;
 mod clock;
 pub mod control;
 pub mod delegate;
+mod depth;
 mod display;
 mod drive;
 pub(crate) mod error;
@@ -40,6 +41,7 @@ mod truth;
 pub use actuators::{Encoders, Motors, Servos};
 pub use camera::{Camera, Resolution};
 pub use clock::Clock;
+pub use depth::DepthSensor;
 pub use display::{Display, DisplayImage, DisplayOption, Fill, Font, FontFamily, FontStyle, Pixel, Viewport};
 pub use drive::{Drive, Manoeuvres, Odometry, StallDetector};
 pub use error::{Error, ErrorKind, Result};
@@ -51,7 +53,7 @@ pub use lidar::{Lidar, LidarScan, LidarSettings};
 pub use mock::{Call, MockRobot, Script};
 pub use psd::{DistanceSensors, Psd};
 pub use radio::{Radio, RadioMessage};
-pub use truth::{GroundTruth, RobotTruth, TrailPoint};
+pub use truth::{GroundTruth, Mishap, RobotTruth, TrailPoint, TruthInSpace};
 
 /// A full robot with every capability.
 pub trait RobotIo:
@@ -70,6 +72,7 @@ pub trait RobotIo:
     + Servos
     + Encoders
     + Inertial
+    + DepthSensor
 {
 }
 
@@ -89,6 +92,7 @@ impl<R> RobotIo for R where
         + Servos
         + Encoders
         + Inertial
+        + DepthSensor
         + ?Sized
 {
 }

@@ -1,5 +1,5 @@
 use super::Result;
-use crate::geometry::{Point, Pose};
+use crate::geometry::{Point, Pose, Pose3};
 
 /// Ground truth of a world: a simulator, or the recording of one.
 pub trait GroundTruth {
@@ -14,6 +14,12 @@ pub trait GroundTruth {
 
     /// Pose of an object in the world, by its index in the scene: robots may have pushed it.
     fn object(&mut self, object: usize) -> Result<Pose>;
+
+    /// Where a robot is in space, and what has become of it on hills. Who knows of no hills says that it is level on the
+    /// floor.
+    fn in_space(&mut self, robot: usize) -> Result<TruthInSpace> {
+        self.pose(robot).map(|pose| TruthInSpace { pose: Pose3::level(pose, 0.0), mishap: None })
+    }
 }
 
 impl<T: GroundTruth + ?Sized> GroundTruth for Box<T> {
@@ -32,6 +38,19 @@ impl<T: GroundTruth + ?Sized> GroundTruth for Box<T> {
     fn object(&mut self, object: usize) -> Result<Pose> {
         (**self).object(object)
     }
+
+    fn in_space(&mut self, robot: usize) -> Result<TruthInSpace> {
+        (**self).in_space(robot)
+    }
+}
+
+/// Where a robot is in space, and what has become of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TruthInSpace {
+    /// Its pose, with elevation, roll and pitch.
+    pub pose: Pose3,
+    /// Why it drives no more, or in vain.
+    pub mishap: Option<Mishap>,
 }
 
 /// Ground truth of one robot.
@@ -60,4 +79,32 @@ pub struct TrailPoint {
     pub pose: Pose,
     /// Pose by odometry, in its own frame.
     pub odometry: Pose,
+}
+
+/// What becomes of a robot on hills that drives no more, or in vain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Mishap {
+    /// It lies on its side or on its back.
+    Tipped,
+    /// It fell by more than its own height, or off the world.
+    Fell,
+    /// Its wheels have turned for two seconds and moved it next to nothing. It is over when it moves again.
+    Stuck,
+    /// The middle of its mass is below the water's surface.
+    Drowned,
+    /// Its motion is no number any more, so that it stays where it was: its description is of no craft that could be.
+    Broken,
+}
+
+impl std::fmt::Display for Mishap {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Tipped => "tipped over",
+            Self::Fell => "fell",
+            Self::Stuck => "stuck",
+            Self::Drowned => "drowned",
+            Self::Broken => "broken",
+        })
+    }
 }

@@ -21,5 +21,7 @@ pub use integrate::{Displacement, advance};
 pub use omni::{Omni, RollerWheel};
 pub use planar::{PlanarMotion, PlanarTwist, advance_planar};
 pub use tracked::Tracked;
+pub(crate) use uncertainty::{
+    DISTANCE_ERROR, LEAST_RANGE_ERROR, OUTLIER, OdometryStep, SCALE_ERROR, TURN_ERROR, arc_between,
+};
 pub use uncertainty::{OdometryErrors, OdometryUncertainty};
-pub(crate) use uncertainty::{OdometryStep, arc_between};

@@ -73,6 +73,29 @@ impl Tracked {
         }
         Differential { track: 4.0 / (slow + fast) }
     }
+
+    /// Metres that a turn of one radian on the spot takes the robot downhill, for a slope of 1 and a friction of 1, and so
+    /// in proportion to the slope and less with more friction.
+    ///
+    /// All of the belts slides in a turn, and friction does not care how fast: against a small pull across its slide a
+    /// place of a belt yields as easily as a viscous one whose force is the friction over the speed of its slide.
+    ///
+    /// ```
+    /// use roverlab::kinematics::Tracked;
+    /// let drive = Tracked::new(0.185, 0.26, 0.07)?;
+    /// // On 3 degrees, with a friction of 0.8, a turn by 3 radians.
+    /// let slid = drive.downhill_drift() * 3.0 * 0.0524 / 0.8;
+    /// assert!((slid - 0.048).abs() < 0.01);
+    /// # Ok::<(), roverlab::ParameterError>(())
+    /// ```
+    pub fn downhill_drift(&self) -> f64 {
+        let half = 0.5 * self.equivalent().track;
+        let slides = self.places(1.0).map(|place| math::hypot(half - place.y, place.x));
+        let (sum, count) =
+            slides.fold((0.0, 0.0), |(sum, count), slide| (sum + 1.0 / slide.max(1e-6), count + 1.0));
+        // A pull along the slide meets no more than friction anyway: of the two directions one yields.
+        2.0 * count / sum
+    }
 }
 
 #[cfg(test)]

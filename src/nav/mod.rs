@@ -1,12 +1,15 @@
 //! Navigation (book, chapter 10): sensor-based navigation among unknown obstacles, the ground truth of which
-//! goals can be reached, and planning on maps ([`grid`]) and in graphs ([`graph`]).
+//! goals can be reached, and planning on maps ([`grid`]), on hills
+//! ([`elevation`]) and in graphs ([`graph`]).
 
 mod boundary;
 mod bug;
+pub mod elevation;
 pub mod graph;
 pub mod grid;
 mod navigate;
 mod reachability;
+mod summit;
 mod surroundings;
 
 pub use crate::geometry::WallSide;
@@ -16,3 +19,4 @@ pub use bug::{
 };
 pub use navigate::{Navigator, NavigatorEvent, NavigatorOutcome, NavigatorParameters, NavigatorPhase};
 pub use reachability::{CellPath, Reachability};
+pub use summit::{Fence, SummitObservation, SummitOutcome, SummitParameters, SummitPhase, SummitSearch};

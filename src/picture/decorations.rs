@@ -10,27 +10,22 @@ use super::items::Picture;
 use super::text;
 use crate::geometry::Vector;
 
-/// Pixels of the title's letters.
-const TITLE: f64 = 17.0;
-/// Pixels of the caption's letters.
-const CAPTION: f64 = 12.5;
-/// Pixels from one line of the caption to the next.
-const LINE: f64 = 17.0;
-
 /// Title and caption within a width of `room` pixels, and their height including the space below.
 pub(super) fn heading(picture: &Picture, corner: Pixel, room: f64) -> (Group, f64) {
     let mut group = Group::new();
     let mut base = corner.y;
     if let Some(title) = &picture.title {
-        base += TITLE;
-        let title = text::fit(&text::clean(title), BOLD * TITLE, room);
-        group = group.add(words(&title, Pixel::new(corner.x, base), TITLE, INK).set("font-weight", "bold"));
+        base += text::LINE;
+        let title = text::fit(&text::clean(title), BOLD * text::LINE, room);
+        group =
+            group.add(words(&title, Pixel::new(corner.x, base), text::LINE, INK).set("font-weight", "bold"));
         base += 4.0;
     }
-    for row in picture.caption.iter().flat_map(|caption| text::wrapped(&text::clean(caption), CAPTION, room))
+    for row in
+        picture.caption.iter().flat_map(|caption| text::wrapped(&text::clean(caption), text::SIZE, room))
     {
-        base += LINE;
-        group = group.add(words(&row, Pixel::new(corner.x, base), CAPTION, PALE_INK));
+        base += text::LINE;
+        group = group.add(words(&row, Pixel::new(corner.x, base), text::SIZE, PALE_INK));
     }
     let height = if base > corner.y { base - corner.y + 11.0 } else { 0.0 };
     (group, height)
@@ -41,19 +36,16 @@ const BOLD: f64 = 1.12;
 
 /// Width of the title in pixels.
 pub(super) fn title_width(picture: &Picture) -> f64 {
-    picture.title.as_ref().map_or(0.0, |title| text::width(title, BOLD * TITLE))
+    picture.title.as_ref().map_or(0.0, |title| text::width(title, BOLD * text::LINE))
 }
-
-/// The height of the scale bar with the space above it.
-pub(super) const SCALE_HEIGHT: f64 = 30.0;
 
 /// Playback speed of a film, below the frame's lower right corner.
 pub(super) fn pace(frame: &Frame, film: &Film) -> Group {
     let words_for =
         if film.pace() > 1.05 { format!("{:.1} times as fast", film.pace()) } else { "real time".into() };
     let corner = frame.pixels().max;
-    let left = Pixel::new(corner.x - text::width(&words_for, 12.0), corner.y + 23.2);
-    Group::new().add(words(&words_for, left, 12.0, PALE_INK)).add(film.progress(&frame.pixels()))
+    let left = Pixel::new(corner.x - text::width(&words_for, text::SIZE), corner.y + 23.2);
+    Group::new().add(words(&words_for, left, text::SIZE, PALE_INK)).add(film.progress(&frame.pixels()))
 }
 
 /// A bar of one grid step with its length, below the frame's lower left corner.
@@ -65,7 +57,7 @@ pub(super) fn scale_bar(frame: &Frame) -> Group {
     let tick = Vector::new(0.0, 4.0);
     let bar = [[left - tick, left + tick], [left, right], [right - tick, right + tick]];
     let data = bar.map(|stroke| path_data(&stroke, false)).concat();
-    let text = words(&length_in_words(step), right + Vector::new(9.0, 4.2), 12.0, PALE_INK);
+    let text = words(&length_in_words(step), right + Vector::new(9.0, 4.2), text::SIZE, PALE_INK);
     Group::new().add(line(data, PALE_INK, 1.6)).add(text)
 }
 

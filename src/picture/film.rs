@@ -21,8 +21,9 @@ pub(super) struct Film {
 /// Seconds of a film at most, and how long its end is held.
 const LONGEST: f64 = 14.0;
 const HOLD: f64 = 2.0;
-/// Nothing is farther off its place than this many pixels, or degrees.
-const TOLERANCE: f64 = 0.5;
+/// Nothing, in a film or in a path that stands still, is farther off its place than this many pixels.
+pub(super) const TOLERANCE: f64 = 0.35;
+/// Degrees by which something may be turned otherwise.
 const TURNED: f64 = 2.0;
 
 impl Film {

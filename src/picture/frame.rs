@@ -1,5 +1,8 @@
 use crate::geometry::{Aabb, Point, Vector};
 
+/// Pixels round the plot, from it to the legend, and from entry to entry there.
+pub(super) const GAP: f64 = 20.0;
+
 /// A point of the picture in pixels: x to the right, y down.
 pub(super) type Pixel = nalgebra::Point2<f64>;
 
@@ -16,7 +19,7 @@ pub(super) struct Frame {
 
 impl Frame {
     /// Pixels of the plot's width at most.
-    const WIDEST: f64 = 560.0;
+    pub(super) const WIDEST: f64 = 560.0;
     /// Pixels of the plot's height at most.
     const TALLEST: f64 = 480.0;
     /// No region is drawn flatter than this share of its longer side.

@@ -4,9 +4,6 @@ use super::frame::Pixel;
 use super::text;
 use crate::geometry::{Aabb, Vector};
 
-/// The font size of names.
-pub(super) const SIZE: f64 = 12.0;
-
 /// Directions from a point to its name, best first: y points down.
 const DIRECTIONS: [(f64, f64); 8] =
     [(0.8, -0.6), (0.8, 0.6), (-0.8, -0.6), (-0.8, 0.6), (1.0, 0.0), (-1.0, 0.0), (0.0, -1.0), (0.0, 1.0)];
@@ -53,7 +50,7 @@ impl Labels {
     /// The best position for a name beside a symbol with a reach in pixels; `None` if all positions are
     /// taken.
     pub(super) fn place(&mut self, name: &str, at: Pixel, reach: f64) -> Option<Placed> {
-        let extent = Vector::new(text::width(name, SIZE) + 2.0, SIZE + 1.0);
+        let extent = Vector::new(text::width(name, text::SIZE) + 2.0, text::SIZE + 1.0);
         let mut best: Option<(usize, Aabb, Option<Pixel>)> = None;
         // A text without a symbol is centred on its point if possible.
         let centred = Aabb { min: at - extent * 0.5, max: at + extent * 0.5 };

@@ -6,25 +6,16 @@ use svg::node::element::{Group, LinearGradient, Stop};
 
 use super::canvas::{number, rectangle, words};
 use super::colours::{INK, PALE_INK, ramp};
-use super::frame::Pixel;
+use super::frame::{Frame, GAP, Pixel};
 use super::items::{Figure, Item, Picture};
+use super::relief::contour_step;
+use super::scenery::SMALLEST;
 use super::{Mark, Style, lines, robots, scenery, text};
 use crate::geometry::{Aabb, Vector};
 use crate::world::{Colour, Footprint, Shape};
 
-/// Pixels of the legend's letters.
-const SIZE: f64 = 12.5;
-/// Pixels from the left end of a line's symbol to its text.
-const INDENT: f64 = 30.0;
-/// Pixels from one line to the next.
-const ROW: f64 = 21.0;
-/// Pixels between entries that share a row.
-const BETWEEN: f64 = 18.0;
 /// More kinds of objects than these are summed up.
 const MOST_KINDS: usize = 8;
-
-/// Lines that go less far than this share of the picture are no more than a dot.
-const LEAST: f64 = 0.005;
 
 /// The name of the gradient of the speed scale.
 const GRADIENT: &str = "speed";
@@ -63,7 +54,7 @@ impl Legend {
     pub(super) fn of(picture: &Picture) -> Self {
         let mut legend = Self { entries: Vec::new() };
         let top = number(picture.top_speed());
-        let shortest = LEAST * picture.region().size().max();
+        let shortest = SMALLEST / Frame::around(picture.region(), Pixel::origin()).scale;
         for item in picture.items.iter().filter(|item| item.figure.is_visible(shortest)) {
             match Key::of(item) {
                 Some(Key::Speed) => legend.add_once(Key::Speed, &format!("true path, 0 to {top} m/s")),
@@ -75,7 +66,14 @@ impl Legend {
         legend.add_objects(picture);
         if let Some(terrain) = &picture.world.terrain {
             let height = number(terrain.max_elevation);
-            legend.add(Key::Hills, format!("hills up to {height} m"));
+            match terrain.surface.as_deref() {
+                Some(surface) => {
+                    let step = number(contour_step(surface));
+                    let line = Style::new(INK).width(0.8).opacity(0.6);
+                    legend.add(Key::Line(line), format!("{step} m higher, up to {height} m"));
+                }
+                None => legend.add(Key::Hills, format!("hills up to {height} m")),
+            }
         }
         legend
     }
@@ -88,7 +86,7 @@ impl Legend {
     pub(super) fn size(&self, arrangement: Arrangement) -> Vector {
         let extent = Vector::new(0.0, 0.0);
         self.places(arrangement).into_iter().zip(&self.entries).fold(extent, |extent, (place, (_, text))| {
-            extent.sup(&Vector::new(place.x + entry_width(text), place.y + ROW))
+            extent.sup(&Vector::new(place.x + entry_width(text), place.y + GAP))
         })
     }
 
@@ -96,8 +94,8 @@ impl Legend {
     pub(super) fn draw(&self, corner: Pixel, arrangement: Arrangement) -> Group {
         let places = self.places(arrangement);
         places.into_iter().zip(&self.entries).fold(Group::new(), |group, (place, (key, text))| {
-            let middle = corner + place + Vector::new(0.0, 0.5 * ROW);
-            let text = words(text, middle + Vector::new(INDENT, 4.2), SIZE, INK);
+            let middle = corner + place + Vector::new(0.0, 0.5 * GAP);
+            let text = words(text, middle + Vector::new(1.5 * GAP, 4.2), text::SIZE, INK);
             group.add(key.symbol(middle)).add(text)
         })
     }
@@ -110,26 +108,26 @@ impl Legend {
             let width = entry_width(text);
             match arrangement {
                 Arrangement::Rows(room) if next.x > 0.0 && next.x + width > room => {
-                    next = Vector::new(0.0, next.y + ROW);
+                    next = Vector::new(0.0, next.y + GAP);
                 }
                 _ => {}
             }
             places.push(next);
             match arrangement {
-                Arrangement::Column => next.y += ROW,
-                Arrangement::Rows(_) => next.x += width + BETWEEN,
+                Arrangement::Column => next.y += GAP,
+                Arrangement::Rows(_) => next.x += width + GAP,
             }
         }
         places
     }
 
     fn add(&mut self, key: Key, text: impl Into<String>) {
-        self.entries.push((key, text::fit(&text::clean(&text.into()), SIZE, 260.0)));
+        self.entries.push((key, text::fit(&text::clean(&text.into()), text::SIZE, 260.0)));
     }
 
     /// Adds an entry unless its text already exists.
     fn add_once(&mut self, key: Key, text: &str) {
-        let text = text::fit(&text::clean(text), SIZE, 260.0);
+        let text = text::fit(&text::clean(text), text::SIZE, 260.0);
         if !self.entries.iter().any(|(_, other)| *other == text) {
             self.entries.push((key, text));
         }
@@ -171,7 +169,7 @@ fn counted(name: &str, count: usize) -> String {
 }
 
 fn entry_width(text: &str) -> f64 {
-    INDENT + text::width(text, SIZE)
+    1.5 * GAP + text::width(text, text::SIZE)
 }
 
 impl Key {

@@ -9,15 +9,13 @@ use svg::node::element::{Group, Mask};
 use super::Style;
 use super::canvas::{disc, line, number, path_data};
 use super::colours::{PAGE, ramp};
-use super::film::{Film, in_time, simplified};
+use super::film::{Film, TOLERANCE, in_time, simplified};
 use super::frame::{Frame, Pixel};
 use super::items::is_finite;
 use crate::geometry::{Aabb, Point};
 
 /// Steps of the colour scale along a path.
 const SHADES: f64 = 24.0;
-/// A path is drawn to this many pixels.
-const FINEST: f64 = 0.25;
 
 /// A disc.
 pub(super) fn circle(centre: Pixel, radius: f64, style: &Style) -> Group {
@@ -199,7 +197,7 @@ pub(super) fn runs(points: &[Point]) -> Vec<Range<usize>> {
 pub(super) fn thinned(points: &[Point], frame: &Frame) -> Vec<Pixel> {
     let pixels: Vec<Pixel> = points.iter().map(|p| frame.at(*p)).collect();
     let off = |between: usize, a: usize, b: usize| distance(pixels[between], pixels[a], pixels[b]);
-    simplified(pixels.len(), FINEST, off).into_iter().map(|i| pixels[i]).collect()
+    simplified(pixels.len(), TOLERANCE, off).into_iter().map(|i| pixels[i]).collect()
 }
 
 /// Distance in pixels from a point to the segment between two others.

@@ -36,6 +36,7 @@ mod names;
 mod panels;
 #[cfg(feature = "png")]
 mod raster;
+mod relief;
 mod render;
 mod robots;
 mod save;

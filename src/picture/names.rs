@@ -7,7 +7,7 @@ use super::colours::{FLOOR, INK, PALE_INK};
 use super::film::Film;
 use super::frame::Frame;
 use super::items::{Figure, Item, Picture, is_finite};
-use super::labels::{self, Labels};
+use super::labels::Labels;
 use super::lines::{runs, thinned};
 use super::{Mark, robots, text};
 
@@ -53,11 +53,11 @@ fn name(item: &Item, frame: &Frame, labels: &mut Labels) -> Option<Group> {
     if !is_finite(position) {
         return None;
     }
-    let name = text::fit(&text::clean(name), labels::SIZE, 240.0);
+    let name = text::fit(&text::clean(name), text::SIZE, 240.0);
     let at = frame.at(*position);
     let reach = if mark.is_some() { Mark::REACH } else { 0.0 };
     let placed = labels.place(&name, at, reach)?;
-    let shown = words(&name, placed.start, labels::SIZE, INK)
+    let shown = words(&name, placed.start, text::SIZE, INK)
         .set("stroke", FLOOR.to_string())
         .set("stroke-width", "3")
         .set("stroke-linejoin", "round")

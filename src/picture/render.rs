@@ -5,27 +5,17 @@ use svg::node::element::{ClipPath, Definitions, Group};
 
 use super::canvas::{FONTS, number, rectangle};
 use super::colours::PAGE;
-use super::decorations::{SCALE_HEIGHT, heading, pace, scale_bar, title_width};
+use super::decorations::{heading, pace, scale_bar, title_width};
 use super::film::Film;
-use super::frame::{Frame, Pixel};
+use super::frame::{Frame, GAP, Pixel};
 use super::items::{Figure, Item, Picture, is_finite};
 use super::legend::{Arrangement, Legend};
 use super::lines::{self, Path};
 use super::{Mark, names, robots, scenery};
 use crate::geometry::{Aabb, Point, Vector};
 
-/// Pixels round the plot.
-const MARGIN: f64 = 20.0;
-/// Pixels between plot and legend.
-const GUTTER: f64 = 20.0;
-/// Pixels of the page's width at least, for titles.
-const NARROWEST_PAGE: f64 = 340.0;
-/// Pixels of the page's width at most.
-const WIDEST_PAGE: f64 = 600.0;
-/// Beside a plot narrower than this, and not below it, stands the legend.
-const NARROW_PLOT: f64 = 300.0;
-/// Pixels around the world where paths still show.
-const BLEED: f64 = 10.0;
+/// Pixels that a title has at least. Beside a narrower plot, and not below it, stands the legend.
+const NARROW: f64 = 300.0;
 /// The name of the outline beyond which nothing is drawn.
 const CLIP: &str = "frame";
 
@@ -58,25 +48,25 @@ fn page(picture: &Picture, film: Option<&Film>) -> String {
     let region = picture.region();
     let wide = Frame::around(region, Pixel::origin()).pixels().size().x;
     let legend = Legend::of(picture);
-    let below = if picture.to_scale || film.is_some() { SCALE_HEIGHT } else { 0.0 };
-    let beside = wide < NARROW_PLOT && !legend.is_empty();
+    let below = if picture.to_scale || film.is_some() { 1.5 * GAP } else { 0.0 };
+    let beside = wide < NARROW && !legend.is_empty();
     let (arrangement, wanted) = if beside {
-        (Arrangement::Column, wide + GUTTER + legend.size(Arrangement::Column).x)
+        (Arrangement::Column, wide + GAP + legend.size(Arrangement::Column).x)
     } else {
-        (Arrangement::Rows(wide.max(NARROWEST_PAGE)), wide)
+        (Arrangement::Rows(wide.max(NARROW)), wide)
     };
-    let room = wanted.max(title_width(picture)).clamp(NARROWEST_PAGE, WIDEST_PAGE);
-    let (heading, height) = heading(picture, Pixel::new(MARGIN, MARGIN), room);
-    let frame = Frame::around(region, Pixel::new(MARGIN, MARGIN + height));
+    let room = wanted.max(title_width(picture)).clamp(NARROW, Frame::WIDEST);
+    let (heading, height) = heading(picture, Pixel::new(GAP, GAP), room);
+    let frame = Frame::around(region, Pixel::new(GAP, GAP + height));
     let plot = frame.pixels();
     let corner = if beside {
-        Pixel::new(plot.max.x + GUTTER, plot.min.y)
+        Pixel::new(plot.max.x + GAP, plot.min.y)
     } else {
         Pixel::new(plot.min.x, plot.max.y + below + 5.0)
     };
     let extent = if legend.is_empty() { Vector::zeros() } else { legend.size(arrangement) };
     let bottom = (plot.max.y + below).max(corner.y + extent.y);
-    let size = Vector::new((corner.x + extent.x - MARGIN).max(room) + 2.0 * MARGIN, bottom + 0.75 * MARGIN);
+    let size = Vector::new((corner.x + extent.x - GAP).max(room) + 2.0 * GAP, bottom + 0.75 * GAP);
     let mut text = Group::new().add(heading).add(legend.draw(corner, arrangement));
     if picture.to_scale {
         text = text.add(scale_bar(&frame));
@@ -98,7 +88,7 @@ fn page(picture: &Picture, film: Option<&Film>) -> String {
 }
 
 fn clip(plot: &Aabb) -> Definitions {
-    let outline = rectangle(plot.inflated(BLEED), PAGE);
+    let outline = rectangle(plot.inflated(0.5 * GAP), PAGE);
     Definitions::new().add(ClipPath::new().set("id", CLIP).add(outline))
 }
 

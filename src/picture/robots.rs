@@ -2,17 +2,14 @@
 
 use svg::node::element::Group;
 
-use super::Style;
 use super::canvas::{area, disc, line, number, path_data};
 use super::colours::PAGE;
 use super::film::Film;
 use super::frame::{Frame, Pixel};
 use super::scenery::turned;
+use super::{Mark, Style};
 use crate::geometry::{Aabb, Pose, Vector};
 use crate::world::{Colour, Footprint};
-
-/// Robots that reach less far than this many pixels from their origin are drawn as an arrowhead.
-const SMALLEST: f64 = 6.0;
 
 /// A robot, standing or driving.
 pub(super) fn robot(
@@ -36,13 +33,13 @@ pub(super) fn robot(
     }
 }
 
-/// A robot's outline with an arrowhead for its heading; the arrowhead alone where the outline is too small to
-/// see. `scale` is in pixels per metre.
+/// A robot's outline with an arrowhead inside that shows its heading; the arrowhead alone where the outline would be
+/// smaller than a mark. `scale` is the pixels in a metre.
 pub(super) fn outline(at: Pixel, heading: f64, footprint: &Footprint, style: &Style, scale: f64) -> Group {
     let colour = style.colour;
     let radius = scale * footprint.bounding_radius();
     let group = Group::new().set("opacity", number(style.opacity));
-    if radius < SMALLEST {
+    if radius < Mark::REACH {
         return group.add(arrowhead(at, heading, 9.0, colour).set("stroke", PAGE.to_string()));
     }
     match footprint {
@@ -61,7 +58,7 @@ pub(super) fn outline(at: Pixel, heading: f64, footprint: &Footprint, style: &St
 /// Bounding box of the outline on the page, which names avoid; `None` for a pose that is not finite.
 pub(super) fn extent(pose: &Pose, footprint: &Footprint, frame: &Frame) -> Option<Aabb> {
     let at = frame.at(pose.position());
-    let radius = frame.length(footprint.bounding_radius()).max(SMALLEST);
+    let radius = frame.length(footprint.bounding_radius()).max(Mark::REACH);
     pose.is_finite().then(|| Aabb { min: at, max: at }.inflated(0.85 * radius))
 }
 

@@ -5,14 +5,13 @@ use svg::node::element::{Group, Pattern};
 use super::canvas::{area, disc, line, number, path_data, rectangle, words};
 use super::colours::{EDGE, FLOOR, HILL, INK, LETTER, WALL, WATER, mix};
 use super::frame::{Frame, Pixel};
+use super::relief::relief;
 use super::text;
 use crate::geometry::{Aabb, Point, Vector, direction};
 use crate::world::{Colour, Object, Shape, Terrain, Wall, World};
 
-/// No wall is drawn thinner than this many pixels.
-const THINNEST_WALL: f64 = 2.2;
-/// No object is drawn smaller than this many pixels.
-const SMALLEST_OBJECT: f64 = 2.5;
+/// Pixels that nothing is drawn smaller or thinner than.
+pub(super) const SMALLEST: f64 = 2.5;
 
 /// The name of the pattern that fills hills.
 const HATCH: &str = "hills";
@@ -22,11 +21,15 @@ pub(super) fn floor(world: &World, frame: &Frame, to_scale: bool) -> Group {
     let colour = if world.water_level.is_some_and(|level| level > 0.0) { WATER } else { FLOOR };
     let bounds = on_page(world.floor, frame);
     let mut group = Group::new().add(rectangle(bounds, colour));
+    let surface = world.terrain.as_ref().and_then(|terrain| terrain.surface.as_deref());
+    if let Some(surface) = surface {
+        group = group.add(relief(surface, world.water_level, frame));
+    }
     if to_scale {
         group = group.add(grid(&world.floor, frame));
     }
     group = group.add(rectangle(bounds, colour).set("fill", "none").set("stroke", EDGE.to_string()));
-    if let Some(terrain) = &world.terrain {
+    if let Some(terrain) = world.terrain.as_ref().filter(|_| surface.is_none()) {
         group = group.add(hatch()).add(hills(terrain, world.floor.min, frame));
     }
     for place in &world.places {
@@ -55,7 +58,7 @@ pub(super) fn object_symbol(shape: &Shape, colour: Colour, at: Pixel) -> Group {
     }
 }
 
-/// Symbol of hills in the legend.
+/// Symbol of hills without a surface in the legend.
 pub(super) fn hills_symbol(at: Pixel) -> Group {
     let bounds = Aabb { min: at, max: at }.inflated(6.0);
     Group::new().add(hatched(bounds))
@@ -112,7 +115,7 @@ fn letter(letter: char, at: Pixel) -> svg::node::element::Text {
 fn walls(walls: &[Wall], frame: &Frame) -> Group {
     let mut group = Group::new();
     for alike in walls.chunk_by(|a, b| a.colour == b.colour && a.thickness == b.thickness) {
-        let width = frame.length(alike[0].thickness).max(THINNEST_WALL);
+        let width = frame.length(alike[0].thickness).max(SMALLEST);
         let chains = alike.chunk_by(|a, b| a.line.b == b.line.a);
         let data = chains.map(|chain| chain_data(chain, frame)).collect();
         let mut path = line(data, wall_colour(alike[0].colour), width);
@@ -144,7 +147,7 @@ fn wall_colour(colour: Colour) -> Colour {
 
 fn object(object: &Object, frame: &Frame) -> Group {
     let (at, colour) = (frame.at(object.pose.position()), object.kind.colour);
-    let pixels = |metres: f64| frame.length(metres).max(SMALLEST_OBJECT);
+    let pixels = |metres: f64| frame.length(metres).max(SMALLEST);
     match object.kind.shape {
         Shape::Cylinder { radius, .. } | Shape::Cone { radius, .. } => solid_disc(at, pixels(radius), colour),
         Shape::Sphere { radius } => ball(at, pixels(radius), colour),

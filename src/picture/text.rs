@@ -1,5 +1,10 @@
 //! Estimates the size of a text without a font.
 
+/// Pixels of the letters of all texts but titles.
+pub(super) const SIZE: f64 = 12.0;
+/// Pixels from one line of a text to the next; the letters of a title are as high.
+pub(super) const LINE: f64 = 17.0;
+
 /// Width of a text in pixels at a font size, as for a wide typeface.
 pub(super) fn width(text: &str, size: f64) -> f64 {
     text.chars().map(relative_width).sum::<f64>() * size

@@ -11,10 +11,6 @@ const BEAM: usize = 8;
 const STARTS: usize = 5;
 /// What a cone costs that was passed on the other side.
 const WRONG_SIDE: f64 = 6.0;
-/// What a step as on a track is worth where loops are compared.
-const GOOD_STEP: f64 = 0.15;
-/// What a step as on a track costs at most.
-const GOOD_COST: f64 = 0.3;
 /// What a metre is worth where ways that end are compared.
 const GOOD_METRE: f64 = 0.4;
 /// Triangles back to which a way may not return.
@@ -49,8 +45,6 @@ struct Head {
     legs: [Option<Vector>; 2],
     cost: f64,
     length: f64,
-    /// Number of steps from cone to cone that look like a track.
-    good: u32,
     /// The last triangles, as a ring buffer indexed by the step modulo its length.
     trail: [usize; MEMORY],
 }
@@ -63,9 +57,8 @@ struct Step {
     /// The half-edge by which it leaves its triangle; `entry` is that into the next one.
     exit: usize,
     entry: usize,
-    /// Cost of the path with this step; `good` counts its good steps.
+    /// Cost of the path with this step.
     cost: f64,
-    good: u32,
 }
 
 /// The best path so far: its cost, and the index of its last pair.
@@ -141,14 +134,12 @@ impl BeamSearch<'_> {
     pub(super) fn run(&self, car: Pose) -> Option<Way> {
         let mut search = self.search(car);
         let mut steps: Vec<Step> = Vec::new();
-        for left in (0..self.cones.len() + self.cones.len() / 4 + 8).rev() {
+        for _ in 0..self.cones.len() + self.cones.len() / 4 + 8 {
             steps.clear();
             self.look_on(&mut search, &mut steps);
-            // Costs only grow. Drop paths that cannot become a better loop than the best one, even if all
-            // further steps are good.
+            // Costs only grow. Drop paths that cannot become a better loop than the best one.
             let bound = search.closed.map_or(f64::INFINITY, |(badness, _)| badness);
-            let best = |step: &Step| step.cost - GOOD_STEP * (f64::from(step.good) + left as f64);
-            steps.retain(|step| step.cost.is_finite() && best(step) < bound);
+            steps.retain(|step| step.cost.is_finite() && step.cost < bound);
             if steps.is_empty() {
                 break;
             }
@@ -167,7 +158,7 @@ impl BeamSearch<'_> {
         for (cost, edge) in self.starts(car) {
             let link = link(&mut search.links, self.mesh.pair(edge), None);
             let trail = [triangle(edge); MEMORY];
-            let head = Head { link, edge, root: edge, legs: [None; 2], cost, length: 0.0, good: 0, trail };
+            let head = Head { link, edge, root: edge, legs: [None; 2], cost, length: 0.0, trail };
             search.heads.push(head);
         }
         search
@@ -212,12 +203,10 @@ impl BeamSearch<'_> {
                 };
                 if triangle(entry) == triangle(head.root) && head.length > self.parameters.shortest_loop {
                     let aslant = if entry == head.root { 0.0 } else { 0.5 };
-                    // Of two loops, prefer the one that looks more like a track, not the shorter one.
-                    keep(closed, head.cost + aslant - GOOD_STEP * f64::from(head.good), || head.link);
+                    keep(closed, head.cost + aslant, || head.link);
                 } else if !head.trail.contains(&triangle(entry)) {
                     let added = self.step_cost(head, exit);
-                    let good = head.good + u32::from(added < GOOD_COST);
-                    steps.push(Step { head: place, exit, entry, cost: head.cost + added, good });
+                    steps.push(Step { head: place, exit, entry, cost: head.cost + added });
                 }
             }
         }
@@ -276,7 +265,6 @@ impl BeamSearch<'_> {
             link: link(links, self.mesh.pair(step.entry), Some(head.link)),
             edge: step.entry,
             cost: step.cost,
-            good: step.good,
             // The distance between the midpoints of two sides of a triangle is half the third side.
             length: head.length + 0.5 * leg.length,
             ..*head

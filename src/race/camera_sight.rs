@@ -68,12 +68,8 @@ const COARSEST: f64 = 2.0 / 3.0;
 /// Metres from the camera within which it finds the colours of nearly all cones that are large enough in the
 /// image.
 const CERTAIN: f64 = 11.0;
-/// Pixels of a cone that is large enough: twice those that make one.
-const LARGE: f64 = 2.0 * LEAST_PIXELS as f64;
 /// Metres of a cone's width and height as far as its colour goes.
 const CONE: [f64; 2] = [0.12, 0.3];
-/// Metres from the edge of a cone's foot, which an image shows, to its middle.
-const FOOT: f64 = 0.129;
 /// Pixels at the border of an image within which a cone may be cut off, in shares of its width and height.
 const BORDER: f64 = 0.05;
 
@@ -170,8 +166,9 @@ impl CameraSight {
         let Some([column, row, depth]) = self.mount.project(place, self.size) else { return false };
         let scale = self.mount.focal(width) / depth;
         let within = |at: f64, size: f64| (BORDER * size..(1.0 - BORDER) * size).contains(&at);
+        // Twice the pixels that make a cone are enough for most of them.
         depth < CERTAIN
-            && CONE[0] * CONE[1] * scale * scale > LARGE
+            && CONE[0] * CONE[1] * scale * scale > 2.0 * LEAST_PIXELS as f64
             && within(column, width)
             && within(row, height)
             && within(row - CONE[1] * scale, height)
@@ -227,8 +224,10 @@ impl CameraMount {
         if edge > self.farthest(width) {
             return None;
         }
-        let range = edge + FOOT;
-        let [ahead, left] = [nearer, aside].map(|metres| metres * range / edge.max(FOOT));
+        // An image shows the edge of a cone's foot: a square, whose edge is about as far from its middle as a circle's of its area.
+        let foot = ConeColour::Unknown.radius() * std::f64::consts::FRAC_2_SQRT_PI;
+        let range = edge + foot;
+        let [ahead, left] = [nearer, aside].map(|metres| metres * range / edge.max(foot));
         let next = ground(row - 1.0).map_or(range, |(farther, _)| farther - nearer);
         Some((Point::new(self.forward + ahead, left), range, 0.03 + 0.5 * next))
     }
@@ -327,7 +326,8 @@ mod tests {
         for (x, y) in [(4.0, 1.0), (9.0, -3.0), (6.0, 0.0)] {
             // The near edge of the foot, as seen by the camera.
             let eye = Point::new(mount.forward, 0.0);
-            let middle = eye + (Point::new(x, y) - eye) * (1.0 + FOOT / (Point::new(x, y) - eye).norm());
+            let foot = ConeColour::Unknown.radius() * std::f64::consts::FRAC_2_SQRT_PI;
+            let middle = eye + (Point::new(x, y) - eye) * (1.0 + foot / (Point::new(x, y) - eye).norm());
             let [column, row, _] = mount.project(Point::new(x, y), [640.0, 480.0]).unwrap();
             let (place, ..) = mount.place(column, row, 640.0, 480.0).unwrap();
             assert!((place - middle).norm() < 1e-9, "{place}");

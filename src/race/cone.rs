@@ -34,7 +34,12 @@ impl ConeColour {
         if matches!(self, Self::BigOrange) { 0.505 } else { 0.325 }
     }
 
-    /// Display colour.
+    /// Its radius half way up, in metres, where a low scanner sees it.
+    pub(super) fn radius_half_way_up(self) -> f64 {
+        0.5 * (1.0 + TIP) * self.radius()
+    }
+
+    /// How it is painted.
     pub const fn paint(self) -> Colour {
         match self {
             Self::Blue => Colour::from_hex(0x1f_4f_d8),
@@ -62,6 +67,10 @@ impl ConeColour {
     }
 }
 
+/// Metres between two cones at least.
+pub(super) const APART: f64 = 0.3;
+/// Metres from the rear axle of a car at the start to the start line.
+pub(super) const RUN_UP: f64 = 6.0;
 /// The radius of a cone's tip as a share of that of its foot.
 const TIP: f64 = 0.2;
 /// Kilograms of a cone.

@@ -26,10 +26,6 @@ const STEPS_TO_KNOT: usize = 4;
 const AROUND_KNOT: usize = STEPS_TO_KNOT / 2;
 /// Steps of a whole curve.
 pub(super) const STEPS: usize = STEPS_TO_KNOT * (KNOTS - 1);
-/// Metres that a way has at least.
-const SHORTEST: f64 = 1.0;
-/// How far around a knot its curvature is taken from a way, in knots.
-const AROUND: f64 = 0.6;
 
 /// One number per unknown.
 pub(super) type Unknowns = SVector<f64, UNKNOWNS>;
@@ -91,7 +87,7 @@ impl Curve {
         let begin = *stations.first()?;
         let way = Headings::of(stations);
         let total = way.total();
-        if total < SHORTEST {
+        if total <= 0.0 {
             return None;
         }
         let mut unknowns = Unknowns::zeros();
@@ -99,7 +95,7 @@ impl Curve {
         let spacing = total / (KNOTS - 1) as f64;
         for knot in 0..KNOTS {
             let at = spacing * knot as f64;
-            let (from, to) = ((at - AROUND * spacing).max(0.0), (at + AROUND * spacing).min(total));
+            let (from, to) = ((at - 0.5 * spacing).max(0.0), (at + 0.5 * spacing).min(total));
             unknowns[BENDS + knot] = (way.at(to) - way.at(from)) / (to - from);
         }
         let step = total / STEPS as f64;

@@ -1,6 +1,7 @@
 use super::cone::Cone;
 use super::lane::lane;
 use super::lane_model::{Lane, LaneParameters};
+use super::map::STRIDE;
 use crate::ParameterError;
 use crate::geometry::Pose;
 
@@ -25,8 +26,6 @@ pub struct LaneFinder {
     lane: Lane,
 }
 
-/// Metres from one remembered place to the next.
-const STEP: f64 = 2.0;
 /// Places that are remembered.
 const PLACES: usize = 4;
 
@@ -53,7 +52,7 @@ impl LaneFinder {
     }
 
     fn remember(&mut self, car: Pose) {
-        if self.trail.last().is_none_or(|last| (last.position() - car.position()).norm() >= STEP) {
+        if self.trail.last().is_none_or(|last| (last.position() - car.position()).norm() >= STRIDE) {
             self.trail.push(car);
             if self.trail.len() > PLACES {
                 self.trail.remove(0);

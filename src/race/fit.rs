@@ -21,52 +21,15 @@ type Information = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 const OFF: f64 = 0.25;
 /// How many times as far cones are taken for those of the edge, from round to round.
 const ROUNDS: [f64; 7] = [3.5, 2.5, 1.8, 1.3, 1.0, 1.0, 1.0];
-/// How much more likely it is that a cone stands just at an edge than elsewhere beside the lane.
-const AT_EDGE: f64 = 27.0;
-/// How likely it is that what is held to be the edge of a cone is the other one.
-const MISTAKEN: f64 = 0.02;
-/// Below this share, a cone counts for nothing.
-const UNLIKELY: f64 = 0.01;
-/// Deviation of where the way begins: metres aside for a metre of looseness.
-const BEGINS: f64 = 0.6;
-/// Deviation of its direction there, in radians.
+/// What is unusual costs so much: the logarithm of how much likelier it is to be otherwise, 1 to 55. A cone of the other edge, one in
+/// the lane, one that a car would touch, one that stands just at an edge and belongs to none, an edge without cones for long, a lane that leads back or between cones of one edge, and one
+/// that is not the lane found before.
+const UNUSUAL: f64 = 4.0;
+/// How evenly lanes go on: deviations of half the width as a share of it, of how much that grows in metres for a metre, and of how
+/// curvature changes from knot to knot as a share of the greatest.
+const EVEN: f64 = 0.02;
+/// Deviation of the direction of the way where it begins, in radians.
 const HEADS: f64 = 0.2;
-/// Deviation of half the width, as a share of it.
-const WIDER: f64 = 0.03;
-/// Deviation of how much that grows, in metres for a metre.
-const WIDENING: f64 = 0.02;
-/// Deviation of the curvature, as a share of the greatest.
-const CURVES: f64 = 1.2;
-/// By how much it is greater than that all the same, as a share.
-const TOO_SHARP: f64 = 0.08;
-/// How curvature changes from knot to knot, as a share of the greatest.
-const STEERS: f64 = 0.02;
-/// What a great change costs at most: little, as sharp bends are what tracks are made of.
-const SHARP: f64 = 0.4;
-/// How many times as much it may change where cones are looked for farther off.
-const SLOWLY: f64 = 6.0;
-/// What a cone costs that stands in the lane.
-const INSIDE: f64 = 4.0;
-/// What a cone costs that a car would touch.
-const TOUCHED: f64 = 3.0;
-/// Metres from its edge at which a cone stands in the lane.
-const WITHIN: f64 = 0.45;
-/// Metres over which that cost grows.
-const GROWS: f64 = 0.3;
-/// What it costs at most that an edge has no cones for long.
-const HOLE: f64 = 3.0;
-/// How fast that cost comes: by a factor of e in 1/SOON of the usual distances between cones.
-const SOON: f64 = 0.7;
-/// Of the way ahead, how much is near enough for all of its cones to be known.
-const KNOWN: f64 = 0.7;
-/// Metres along an edge within which two cones count as one.
-const NEARER: f64 = 0.8;
-/// What it costs to lead back where the car came from.
-const BACK: f64 = 8.0;
-/// What it costs to pass between two cones that are known to be of one edge.
-const THROUGH: f64 = 5.0;
-/// What it costs to be another lane than before.
-const CHANGE: f64 = 2.5;
 /// Steps from place to place at which that is looked at.
 const STRIDE: usize = 4;
 
@@ -82,9 +45,6 @@ pub(super) struct LaneFit {
     /// Log-likelihood ratio of the cones with the lane and without any lane.
     pub(super) worth: f64,
 }
-
-/// Metres of the middle that are known beyond the last cone of an edge.
-const BEYOND: f64 = 1.5;
 
 /// Data that lanes are fitted to.
 #[derive(Debug, Clone, Copy)]
@@ -110,12 +70,12 @@ impl Expectation {
     /// Negative log-likelihood.
     fn cost(&self) -> f64 {
         let squared = self.off * self.off;
-        if self.heavy { SHARP * math::ln(1.0 + squared) } else { 0.5 * squared }
+        if self.heavy { math::ln(1.0 + squared) } else { 0.5 * squared }
     }
 
     /// Weight in least squares.
     fn weight(&self) -> f64 {
-        if self.heavy { 2.0 * SHARP / (1.0 + self.off * self.off) } else { 1.0 }
+        if self.heavy { 2.0 / (1.0 + self.off * self.off) } else { 1.0 }
     }
 }
 
@@ -152,8 +112,8 @@ impl Fitter<'_> {
             let far = (f64::from(side) * beside.left - half_width) / scale;
             // Student's t-distribution with three degrees of freedom: some cones are farther off.
             let tail = 1.0 + far * far / 3.0;
-            let mistaken = if known * side < 0 { MISTAKEN } else { 1.0 };
-            mistaken * AT_EDGE / (round * tail * tail)
+            let mistaken = if known * side < 0 { math::exp(-UNUSUAL) } else { 1.0 };
+            mistaken * math::exp(UNUSUAL) / (round * tail * tail)
         })
     }
 
@@ -164,9 +124,6 @@ impl Fitter<'_> {
         for beside in curve.beside(self.cones, self.reach()) {
             let odds = self.odds(curve, &beside, round);
             let all = 1.0 + odds[0] + odds[1];
-            if odds[0].max(odds[1]) < UNLIKELY * all {
-                continue;
-            }
             let moves = curve.moves(beside.step);
             for (side, odds) in [1.0, -1.0].into_iter().zip(odds) {
                 let off = side * beside.left - curve.half_width(beside.step);
@@ -208,18 +165,13 @@ impl Fitter<'_> {
             heavy: false,
         };
         let begin = [
-            one(ASIDE, 0.0, BEGINS * p.loose),
+            one(ASIDE, 0.0, p.loose),
             one(TURNED, 0.0, HEADS),
-            one(WIDTH, usual, WIDER * usual),
-            one(WIDENS, 0.0, WIDENING),
+            one(WIDTH, usual, EVEN * usual),
+            one(WIDENS, 0.0, EVEN),
         ];
-        let bends = (BENDS..BENDS + KNOTS).flat_map(move |knot| {
-            let sharpest = p.curvature.copysign(unknowns[knot]);
-            let sharp = unknowns[knot].abs() > p.curvature;
-            let too_sharp = sharp.then(|| one(knot, sharpest, TOO_SHARP * p.curvature));
-            [Some(one(knot, 0.0, CURVES * p.curvature)), too_sharp].into_iter().flatten()
-        });
-        let deviation = STEERS * p.curvature * (1.0 + SLOWLY * (round - 1.0));
+        let bends = (BENDS..BENDS + KNOTS).map(move |knot| one(knot, 0.0, p.curvature));
+        let deviation = EVEN * p.curvature * round;
         let changes = (BENDS..BENDS + KNOTS - 1).map(move |knot| Expectation {
             sum: [(knot + 1, 1.0 / deviation), (knot, -1.0 / deviation)],
             off: (unknowns[knot + 1] - unknowns[knot]) / deviation,
@@ -243,12 +195,12 @@ impl Fitter<'_> {
         }
         for edge in &mut edges {
             edge.sort_by(|a, b| a.along.total_cmp(&b.along));
-            worth -= twice(edge) + self.holes(curve, edge);
+            worth -= twice(edge, self.parameters.loose) + self.holes(curve, edge);
         }
         worth -= self.expectations(curve, 1.0).map(|expectation| expectation.cost()).sum::<f64>();
         worth -= self.obstacles(curve) + self.back(curve) + self.through(curve) + self.changed(curve);
         let last = edges.iter().filter_map(|edge| edge.last()).map(|cone| cone.along).reduce(f64::max);
-        let known = |last: f64| (last + BEYOND - curve.past_car(0)) / curve.step;
+        let known = |last: f64| (last - curve.past_car(0)) / curve.step;
         let known = last.map_or(0, |last| known(last).max(0.0) as usize + 1);
         LaneFit {
             middle: curve.places[..known.min(STEPS + 1)].to_vec(),
@@ -260,17 +212,19 @@ impl Fitter<'_> {
 
     /// Cost of a cone inside the lane.
     fn inside(&self, curve: &Curve, beside: &Beside) -> f64 {
+        // It costs all of that as far within as a cone may be loose, and nothing up to half of it.
+        let grows = 0.5 * self.parameters.loose;
         let aside = beside.left.abs();
-        let within = (curve.half_width(beside.step) - WITHIN - aside) / GROWS;
-        let touched = (self.parameters.clearance - aside) / GROWS;
-        INSIDE * within.clamp(0.0, 1.0) + TOUCHED * touched.clamp(0.0, 1.0)
+        let within = (curve.half_width(beside.step) - aside) / grows - 1.0;
+        let touched = (self.parameters.clearance - aside) / grows;
+        UNUSUAL * (within.clamp(0.0, 1.0) + touched.clamp(0.0, 1.0))
     }
 
     /// Cost of long stretches without cones on an edge ahead of the car. Gaps behind the car are subtracted,
     /// because they exist whatever lies ahead.
     fn holes(&self, curve: &Curve, edge: &[EdgeCone]) -> f64 {
         let usual = 0.5 * self.parameters.spacing;
-        let hole = |metres: f64| HOLE * (1.0 - math::exp(-SOON * (metres / usual - 1.0).max(0.0)));
+        let hole = |metres: f64| UNUSUAL * (1.0 - math::exp(-(metres / usual - 1.0).max(0.0)));
         let end = self.known(curve);
         let behind = edge.iter().map(|cone| cone.along).filter(|at| *at <= 0.0);
         let mut last = behind.fold(curve.past_car(0), f64::max);
@@ -285,7 +239,7 @@ impl Fitter<'_> {
 
     /// Distance along a curve within which all cones are known (m).
     fn known(&self, curve: &Curve) -> f64 {
-        let (car, most) = (self.way.car.position(), KNOWN * self.parameters.ahead);
+        let (car, most) = (self.way.car.position(), self.parameters.ahead);
         let is_far = |step: &usize| (curve.places[*step] - car).norm() > most;
         curve.past_car((curve.car..STEPS).find(is_far).unwrap_or(STEPS))
     }
@@ -302,7 +256,7 @@ impl Fitter<'_> {
             let passage = Passage { place: curve.places[*step], ahead: curve.ahead[*step] };
             leads_back(passage, self.earlier, self.before.half_width)
         };
-        BACK * (curve.car..=STEPS).step_by(STRIDE).filter(leads).count() as f64
+        UNUSUAL * (curve.car..=STEPS).step_by(STRIDE).filter(leads).count() as f64
     }
 
     /// Cost of a curve that passes between cones known to belong to one edge.
@@ -318,22 +272,21 @@ impl Fitter<'_> {
                 }
             }
         }
-        THROUGH * crossed as f64
+        UNUSUAL * crossed as f64
     }
 
     /// Cost of differing from the previous lane.
     fn changed(&self, curve: &Curve) -> f64 {
         let ahead = curve.places[curve.car..].iter().step_by(STRIDE);
         let count = ahead.len() as f64;
-        CHANGE * ahead.map(|place| self.before.away(*place)).sum::<f64>() / count
+        UNUSUAL * ahead.map(|place| self.before.away(*place)).sum::<f64>() / count
     }
 }
 
-/// Excess likelihood of duplicate cones at the same place of an edge: they are one piece of evidence, not
-/// two.
-fn twice(edge: &[EdgeCone]) -> f64 {
+/// What cones of an edge are worth that stand as near to another one as they may be loose: of an edge that tells one thing, not two.
+fn twice(edge: &[EdgeCone], loose: f64) -> f64 {
     let less = |pair: &[EdgeCone]| {
-        if pair[1].along - pair[0].along < NEARER { pair[0].worth.min(pair[1].worth) } else { 0.0 }
+        if pair[1].along - pair[0].along < loose { pair[0].worth.min(pair[1].worth) } else { 0.0 }
     };
     edge.windows(2).map(less).sum()
 }

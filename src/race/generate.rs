@@ -1,5 +1,6 @@
 use std::f64::consts::TAU;
 
+use super::cone::RUN_UP;
 use super::corridor::Corridor;
 use super::error::LineError;
 use super::racing_line::curvature;
@@ -87,8 +88,6 @@ pub struct GeneratedTrack {
     pub corridor: Corridor,
 }
 
-/// Metres from the rear axle at the start to the start line.
-const RUN_UP: f64 = 6.0;
 /// Metres between the edges of two parts of a track that pass each other.
 const APART: f64 = 2.5;
 

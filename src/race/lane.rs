@@ -81,7 +81,7 @@ fn lane_between(cones: &[Cone], way: &Way, before: &Lane, parameters: &LaneParam
     let mut points = even(&best.middle);
     let places: Vec<Point> =
         cones.iter().map(|cone| cone.position).chain(way.others.iter().copied()).collect();
-    keep_clear(&mut points, &places, parameters.clearance + BEYOND_TOUCH);
+    keep_clear(&mut points, &places, parameters.clearance + 0.5 * parameters.loose);
     let found = Lane { points, edges: best.edges, half_width: best.half_width };
     found.edges.iter().any(|edge| !edge.is_empty()).then_some(found)
 }
@@ -140,8 +140,6 @@ fn smooth(points: &mut [Point]) {
 
 /// Rounds in which points are moved away from cones.
 const PUSHES: usize = 8;
-/// Metres to a cone that are kept beside those at which a car touches it, where the lane is wide enough.
-const BEYOND_TOUCH: f64 = 0.4;
 
 /// Moves points away from obstacles closer than `room`, as far as those on the other side permit.
 fn keep_clear(points: &mut [Point], places: &[Point], room: f64) {

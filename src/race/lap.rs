@@ -1,15 +1,13 @@
 //! The corridor of a driven lap.
 
-use super::corridor::Corridor;
+use super::corridor::{Corridor, CrossSection};
 use super::error::LineError;
 use super::lane_model::LaneParameters;
+use super::map::SHORTEST_LAP;
+use super::round::BESIDE;
 use super::spline::ClosedSpline;
 use crate::geometry::{Point, Pose, math};
 
-/// Metres beyond the usual widths at which cones of an edge may stand beside the way of a lap.
-const BEYOND: f64 = 0.5;
-/// Metres along the lap over which a cone speaks for its edge.
-const SPEAKS: f64 = 6.5;
 /// Stations of a lap to both sides within which the width of a track is about the same.
 const ALIKE: usize = 10;
 
@@ -24,7 +22,7 @@ pub(super) fn around_lap(cones: &[Point], lap: &[Point], p: &LaneParameters) -> 
         })
         .collect();
     let n = stations.len();
-    let edges = p.half_width[0] - BEYOND..p.half_width[1] + BEYOND;
+    let edges = p.half_width[0] - p.loose..p.half_width[1] + p.loose;
     let beside = |side: f64| -> Vec<Option<f64>> {
         let near = |pose: &Pose| {
             let local = cones.iter().map(|cone| pose.to_local(*cone)).filter(|local| local.x.abs() < 0.8);
@@ -43,8 +41,8 @@ pub(super) fn around_lap(cones: &[Point], lap: &[Point], p: &LaneParameters) -> 
     let rows: Vec<(Point, f64, f64)> = (0..n)
         .map(|at| {
             let usual = usual(at);
-            let [left, right] = [0, 1].map(|side| between(&sides[side], at, (usual, p.loose)));
-            // A missing edge is at the usual distance from the other one.
+            let [left, right] = [0, 1].map(|side| between(&sides[side], at, usual, p));
+            // Without one edge, it is as far from the other as it usually is.
             let [left, right] = match (left, right) {
                 (Some(left), Some(right)) => [left, right],
                 (Some(left), None) => [left, (2.0 * usual - left).max(0.5)],
@@ -57,18 +55,47 @@ pub(super) fn around_lap(cones: &[Point], lap: &[Point], p: &LaneParameters) -> 
     Corridor::closed(&rows)
 }
 
-/// Distance of an edge at a station of a lap, interpolated between the nearest cones at plausible distances.
-fn between(asides: &[Option<f64>], at: usize, (usual, loose): (f64, f64)) -> Option<f64> {
-    let n = asides.len();
-    let good = |k: usize| asides[k % n].filter(|aside| (aside - usual).abs() < loose);
-    let ahead = (0..=SPEAKS as usize).find_map(|k| good(at + k).map(|aside| (k as f64, aside)));
-    let back = (0..=SPEAKS as usize).find_map(|k| good(at + n - k).map(|aside| (k as f64, aside)));
+/// The distance of an edge at a station of a lap, between the cones before and behind it that are about as far off as is usual.
+fn between(asides: &[Option<f64>], at: usize, usual: f64, p: &LaneParameters) -> Option<f64> {
+    let (n, far) = (asides.len(), (p.spacing as usize).min(asides.len()));
+    let good = |k: usize| asides[k % n].filter(|aside| (aside - usual).abs() < p.loose);
+    let ahead = (0..=far).find_map(|k| good(at + k).map(|aside| (k as f64, aside)));
+    let back = (0..=far).find_map(|k| good(at + n - k).map(|aside| (k as f64, aside)));
     match (back, ahead) {
         (Some((before, one)), Some((behind, other))) => {
             let share = before / (before + behind).max(1e-6);
             Some(one + (other - one) * share)
         }
         (one, other) => one.or(other).map(|(_, aside)| aside),
+    }
+}
+
+/// Rounds in which kinks are taken out of a line.
+const ROUNDS: usize = 4;
+
+/// Whether a corridor is a loop that follows a driven lap everywhere, and nothing else.
+pub(super) fn holds(corridor: &Corridor, lap: &[Point]) -> bool {
+    let stations = corridor.stations();
+    let near = |a: Point, b: Point, most: f64| (a - b).norm_squared() < most * most;
+    let inside = |place: &Point| stations.iter().any(|station| near(station.position, *place, BESIDE));
+    let driven =
+        |station: &CrossSection| lap.iter().any(|place| near(station.position, *place, BESIDE + 1.0));
+    corridor.is_closed()
+        && corridor.length() > SHORTEST_LAP
+        && lap.iter().all(inside)
+        && stations.iter().all(driven)
+}
+
+/// Removes kinks of a loop, caused by narrow places: no car steers so fast, and centimetres suffice.
+pub(super) fn without_kinks(points: &mut [Point]) {
+    let n = points.len();
+    // Towards the midpoints of the neighbours, and then outwards by as much, to preserve the size of bends.
+    for share in [0.5, -0.51].repeat(ROUNDS) {
+        let old = points.to_vec();
+        for (i, point) in points.iter_mut().enumerate() {
+            let middle = nalgebra::center(&old[(i + n - 1) % n], &old[(i + 1) % n]);
+            *point += (middle - old[i]) * share;
+        }
     }
 }
 

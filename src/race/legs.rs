@@ -1,12 +1,7 @@
 //! Legs of candidate rows, from cone to cone.
 
-use std::cell::OnceCell;
-
-use super::cone::Cone;
-use crate::geometry::{Point, Vector, cross, math};
-
-/// Metres between two cones of a row at least.
-const NEAREST: f64 = 0.3;
+use super::cone::{APART, Cone};
+use crate::geometry::{Point, Vector, math};
 
 /// From a cone, or from the start of a row without one, to a possible next cone.
 #[derive(Debug)]
@@ -18,8 +13,6 @@ pub(super) struct Leg {
     pub(super) along: Vector,
     pub(super) heading: f64,
     pub(super) length: f64,
-    /// Number of cones near it, on its right and on its left.
-    crowd: OnceCell<[f64; 2]>,
 }
 
 impl Leg {
@@ -27,24 +20,7 @@ impl Leg {
         let way = place - from;
         let length = way.norm();
         let heading = math::atan2(way.y, way.x);
-        Self { to, ends: [from, place], along: way / length, heading, length, crowd: OnceCell::new() }
-    }
-
-    /// Number of cones on the lane's side within a distance, if it belongs to a left row, and if it belongs
-    /// to a right row. Cached: always call it with the same arguments.
-    pub(super) fn crowd(&self, cones: &[Cone], within: f64) -> [f64; 2] {
-        *self.crowd.get_or_init(|| {
-            let mut sides = [0.0; 2];
-            for cone in cones {
-                let away = cone.position - self.ends[0];
-                let (along, right) = (self.along.dot(&away), -cross(self.along, away));
-                let is_beside = (NEAREST..self.length - NEAREST).contains(&along);
-                if is_beside && (NEAREST..within).contains(&right.abs()) {
-                    sides[usize::from(right < 0.0)] += 1.0;
-                }
-            }
-            sides
-        })
+        Self { to, ends: [from, place], along: way / length, heading, length }
     }
 }
 
@@ -53,7 +29,7 @@ pub(super) fn legs_from(from: Point, cones: &[Cone], reach: f64, most: usize) ->
     let mut near: Vec<(f64, usize)> = Vec::new();
     for (index, cone) in cones.iter().enumerate() {
         let away = (cone.position - from).norm();
-        if (NEAREST..reach).contains(&away) {
+        if (APART..reach).contains(&away) {
             near.push((away, index));
         }
     }

@@ -1,11 +1,12 @@
 use nalgebra::{Matrix3, Vector3};
 
-use super::cone::{Cone, ConeColour};
+use super::cone::{APART, Cone, ConeColour};
 use super::landmark::Landmark;
-use super::registration::{Expected, register, spread};
+use super::registration::{Expected, GATE, register, spread};
 use super::sight::ConeSighting;
+use super::view::{VIEW, hides, in_view};
 use crate::ParameterError;
-use crate::geometry::{Point, Pose, Vector, cross, math, normalize_angle};
+use crate::geometry::{Point, Pose, normalize_angle};
 use crate::parameter::{require_finite, require_not_negative, require_positive};
 
 /// Parameters of [`ConeMap`].
@@ -92,28 +93,17 @@ pub struct ConeMap {
 
 /// Cones with colours that there have to be for each thing that a camera shows to have none.
 const MANY: usize = 4;
-/// Metres from the sensor, and radians from straight ahead, within which a cone that is not seen is missed.
-const VIEW: (f64, f64) = (9.0, 0.8);
-/// Metres beside a thing within which it hides what is behind it, about.
-const SHADOW: f64 = 0.3;
-/// Metres that the car goes while a cone is fresh: so far, odometry and sightings are good.
-const FRESH: f64 = 25.0;
-/// Metres of the way that lie just behind the car: no lane turns back within so many.
-const BEHIND: f64 = 7.0;
+/// Metres that the car goes while a cone is fresh: so far, odometry and sightings are good. The first cones were seen in so many
+/// metres, at most.
+pub(super) const FRESH: f64 = 25.0;
+/// Metres of the way that lie just behind the car, in which the last cones were seen: no lane turns back within so many.
+const BEHIND: f64 = 8.0;
 /// Metres from place to place of the trail.
-const STRIDE: f64 = 2.0;
-/// Metres of the way in which the first cones were seen, at most.
-const BEGINNING: f64 = 30.0;
+pub(super) const STRIDE: f64 = 2.0;
 /// Metres that a lap takes at least.
 pub(super) const SHORTEST_LAP: f64 = 12.0;
 /// Metres from a place within which a lap has led back to it.
 const AROUND: f64 = 2.5;
-/// Metres of the way in which the last cones were seen.
-const END: f64 = 8.0;
-/// Metres between two cones that are the same one, after a loop was closed.
-const SAME: f64 = 0.5;
-/// Metres between two cones at least.
-const APART: f64 = 0.35;
 /// Metres between a cone and what was seen of it earlier in the first lap, at most: what has added up since, and less than a lane.
 const EARLIER: f64 = 1.5;
 /// The cosine of the angle between two ways below which they cross.
@@ -308,7 +298,7 @@ impl ConeMap {
         }
         let beginning = self.beginning();
         let first = |l: &&Landmark| l.first < beginning && !self.is_fresh(l);
-        let last = |l: &&Landmark| self.way - l.last < END && l.first > beginning;
+        let last = |l: &&Landmark| self.way - l.last < BEHIND && l.first > beginning;
         let at = |landmark: &Landmark| landmark.position;
         let onto: Vec<Point> = self.confirmed().filter(first).map(at).collect();
         let points: Vec<Point> = self.confirmed().filter(last).map(at).collect();
@@ -339,7 +329,7 @@ impl ConeMap {
     fn bend(&mut self, motion: Pose) {
         self.trail.push((self.pose, self.way));
         let beginning = self.beginning();
-        let until = (self.way - END - (beginning - self.begun)).max(beginning + STRIDE);
+        let until = (self.way - BEHIND - (beginning - self.begun)).max(beginning + STRIDE);
         let share = |way: f64| ((way - beginning) / (until - beginning)).clamp(0.0, 1.0);
         let (before, shares): (Vec<Pose>, Vec<f64>) =
             self.trail.iter().map(|(pose, way)| (*pose, share(*way))).unzip();
@@ -380,14 +370,14 @@ impl ConeMap {
 
     /// Distance driven up to which cones count as the first ones (m).
     fn beginning(&self) -> f64 {
-        self.begun + BEGINNING.min(0.5 * (self.way - self.begun))
+        self.begun + FRESH.min(0.5 * (self.way - self.begun))
     }
 
     /// Merges cones that are too close together to be two.
     fn merge(&mut self) {
         let mut kept: Vec<Landmark> = Vec::with_capacity(self.landmarks.len());
         for landmark in &self.landmarks {
-            let near = |other: &&mut Landmark| (other.position - landmark.position).norm() < SAME;
+            let near = |other: &&mut Landmark| (other.position - landmark.position).norm() < GATE;
             match kept.iter_mut().find(near) {
                 Some(other) => other.join(landmark),
                 None => kept.push(*landmark),
@@ -504,20 +494,6 @@ fn is_part(new: &ConeSighting, other: &ConeSighting) -> bool {
 /// Possible error of a pose after a distance (m).
 fn wrong_after(way: f64) -> f64 {
     WRONG.0 + WRONG.1 * way
-}
-
-/// Whether a cone at a position relative to the sensor would be seen.
-fn in_view(place: Vector) -> bool {
-    let distance = place.norm();
-    distance < VIEW.0 && distance > 1.0 && math::atan2(place.y, place.x).abs() < VIEW.1
-}
-
-/// Whether an object hides a position; `place` is relative to the sensor, `thing` in the car frame.
-fn hides(thing: &ConeSighting, sensor: f64, place: Vector) -> bool {
-    let beside = SHADOW + if thing.is_cone() { 0.0 } else { 0.5 * thing.size };
-    let thing = thing.position.coords - Vector::new(sensor, 0.0);
-    let (distance, along) = (place.norm(), thing.dot(&place) / place.norm());
-    along > 0.0 && along < distance - SHADOW && (cross(place, thing) / distance).abs() < beside
 }
 
 #[cfg(test)]

@@ -55,6 +55,7 @@ mod spline;
 mod tests;
 mod tracker;
 mod tyres;
+mod view;
 mod ways;
 
 pub use camera_sight::{CameraMount, CameraSight};

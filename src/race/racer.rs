@@ -1,19 +1,18 @@
 use super::ClosedSpline;
 use super::centre_line::CentreLine;
-use super::cone::Cone;
-use super::corridor::{Corridor, CrossSection};
+use super::cone::{Cone, RUN_UP};
 use super::error::LineError;
 use super::grip::GripLimit;
 use super::lane::lane_where;
 use super::lane_model::{Lane, LaneParameters, Way};
-use super::lap::around_lap;
-use super::map::{ConeMap, ConeMapParameters, SHORTEST_LAP};
+use super::lap::{around_lap, holds, without_kinks};
+use super::map::{ConeMap, ConeMapParameters, FRESH, SHORTEST_LAP, STRIDE};
 use super::pair::CentreLineParameters;
 use super::profile::{CarLimits, SpeedProfile};
 use super::racing_line::{CarOutline, LineSolver, RacingLineParameters};
 use super::reckoning::Reckoning;
 use super::sight::{ConeSighting, sightings};
-use super::tracker::{LineTracker, LineTrackerParameters};
+use super::tracker::{CRAWL, LineTracker, LineTrackerParameters};
 use super::tyres::Tyres;
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist};
@@ -162,14 +161,6 @@ pub struct Racer {
     doubt: f64,
 }
 
-/// Metres around the car within which cones are planned with in the first lap.
-const NEAR: f64 = 24.0;
-/// Metres of the way from where it stands at first to the line at which the racer counts laps.
-const LINE: f64 = 6.0;
-/// Metres behind the line where it has just been crossed.
-const BEHIND: f64 = 25.0;
-/// Metres before the line at which it is in front of it for certain.
-const BEFORE: f64 = 3.0;
 /// Places behind the car that are taken for the lane.
 const BEHIND_POSES: usize = 4;
 /// Metres within which the lane tells on which side of it cones are: what is farther off changes from look to look.
@@ -183,14 +174,8 @@ const LOOKS: u32 = 10;
 const BEFORE_LAP: f64 = 15.0;
 /// Metres per second that are next to none: a curvature is kept by them as well.
 const NEXT_TO_NONE: f64 = 1e-3;
-/// Rounds in which kinks are taken out of a line.
-const ROUNDS: usize = 4;
-/// Metres per second squared by which it stops after the last lap, or where it is lost.
-const STOPS: f64 = 4.0;
-/// Metres per second at which it feels its way where nothing is known.
-const CRAWL: f64 = 1.5;
 /// Metres that it feels its way before it is lost.
-const ASTRAY: f64 = 10.0;
+pub(super) const ASTRAY: f64 = 10.0;
 /// Seconds of sights that do not fit the map before it is lost.
 const DOUBT: f64 = 0.7;
 /// Metres per second below which it stands.
@@ -334,7 +319,8 @@ impl Racer {
             self.look_ahead();
         }
         let command = self.follow(speed);
-        let stopping = self.stopping.unwrap_or(speed.linear) - STOPS * self.parameters.period;
+        let slowing = self.parameters.first_lap.brake * self.parameters.period;
+        let stopping = self.stopping.unwrap_or(speed.linear) - slowing;
         self.stopping = Some(stopping);
         let slower = stopping.min(command.linear).max(0.0);
         Twist::new(slower, if speed.linear > 0.1 { slower * curvature_of(command) } else { 0.0 })
@@ -352,12 +338,12 @@ impl Racer {
         }
         let pose = self.map.pose();
         let Some(line) = self.line else {
-            self.line = (self.since_line >= LINE).then_some(pose);
+            self.line = (self.since_line >= RUN_UP).then_some(pose);
             return;
         };
         // A line that was crossed recently is not crossed again.
         let ahead = pose.forward().dot(&line.forward());
-        self.in_front |= line.to_local(pose.position()).x < -BEFORE || ahead < 0.0;
+        self.in_front |= line.to_local(pose.position()).x < -STRIDE || ahead < 0.0;
         if !self.in_front || self.since_line < SHORTEST_LAP || !self.is_behind(line) {
             return;
         }
@@ -365,15 +351,14 @@ impl Racer {
             // Closing moves the map, so the previous lane no longer applies.
             self.lane.points.clear();
         }
-        // Without a closed map, it has driven around all the same.
-        let around = self.map.close() || line.to_local(pose.position()).x > 0.6 * BEHIND;
+        // Without a loop, it has driven around once all the same.
+        let around = self.map.close() || line.to_local(pose.position()).x > 0.6 * FRESH;
         if !(around && self.is_behind(line)) {
             return;
         }
         if !self.map.is_closed() {
-            // The first lap began at the start, and ended where the car passed it; later ones are counted at
-            // one place.
-            let past = line.to_local(self.map.pose().position()).x + LINE;
+            // The first one began at the start, and ended where the car came by there; all others are counted at the same place.
+            let past = line.to_local(self.map.pose().position()).x + RUN_UP;
             self.open_lap = Some(self.since_line - if self.laps == 0 { past } else { 0.0 });
         }
         self.since_line = 0.0;
@@ -392,7 +377,7 @@ impl Racer {
         let ahead = pose.forward().dot(&line.forward());
         // On a wide track, the racing line may be far from where the line was first crossed.
         let aside = wrong.max(self.parameters.lane.half_width[1] + 1.0);
-        (0.0..BEHIND + wrong).contains(&place.x) && place.y.abs() < aside && ahead > 0.3
+        (0.0..FRESH + wrong).contains(&place.x) && place.y.abs() < aside && ahead > 0.3
     }
 
     fn follow(&mut self, speed: Twist) -> Twist {
@@ -436,7 +421,7 @@ impl Racer {
             .fresh_cones()
             .filter(|cone| {
                 let local = pose.to_local(cone.position);
-                local.x > -8.0 && local.coords.norm() < NEAR
+                local.x > -8.0 && local.coords.norm() < FRESH
             })
             .collect();
         if let Ok(tracker) = self.lane_ahead(&near, pose) {
@@ -457,8 +442,8 @@ impl Racer {
         let behind = trail.iter().rev().take(BEHIND_POSES).rev().map(|pose| pose.compose(&middle));
         let own = pose.compose(&middle);
         let behind: Vec<Pose> = behind.filter(|pose| own.to_local(pose.position()).x < -0.5).collect();
-        let earlier: Vec<Pose> = self.map.earlier(NEAR).map(|pose| pose.compose(&middle)).collect();
-        let near_it = |place: &Point| (place - own.position()).norm() < NEAR;
+        let earlier: Vec<Pose> = self.map.earlier(FRESH).map(|pose| pose.compose(&middle)).collect();
+        let near_it = |place: &Point| (place - own.position()).norm() < FRESH;
         let others: Vec<Point> = self.map.fresh_others().filter(near_it).collect();
         let way = Way { behind: &behind, car: own, earlier: &earlier, others: &others };
         let found = lane_where(near, &way, &self.lane, &self.parameters.lane).ok_or(LineError::NoWay)?;
@@ -498,35 +483,6 @@ impl Racer {
             return Err(LineError::NoWay);
         }
         Ok(LineTracker::new(points, profile, true, p.tracker)?)
-    }
-}
-
-/// Metres from the middle of a corridor at which a lap may have been driven.
-const BESIDE: f64 = 1.0;
-
-/// Whether a corridor is a loop that follows a driven lap everywhere, and nothing else.
-fn holds(corridor: &Corridor, lap: &[Point]) -> bool {
-    let stations = corridor.stations();
-    let near = |a: Point, b: Point, most: f64| (a - b).norm_squared() < most * most;
-    let inside = |place: &Point| stations.iter().any(|station| near(station.position, *place, BESIDE));
-    let driven =
-        |station: &CrossSection| lap.iter().any(|place| near(station.position, *place, BESIDE + 1.0));
-    corridor.is_closed()
-        && corridor.length() > SHORTEST_LAP
-        && lap.iter().all(inside)
-        && stations.iter().all(driven)
-}
-
-/// Removes kinks of a loop, caused by narrow places: no car steers so fast, and centimetres suffice.
-fn without_kinks(points: &mut [Point]) {
-    let n = points.len();
-    // Towards the midpoints of the neighbours, and then outwards by as much, to preserve the size of bends.
-    for share in [0.5, -0.51].repeat(ROUNDS) {
-        let old = points.to_vec();
-        for (i, point) in points.iter_mut().enumerate() {
-            let middle = nalgebra::center(&old[(i + n - 1) % n], &old[(i + 1) % n]);
-            *point += (middle - old[i]) * share;
-        }
     }
 }
 

@@ -12,7 +12,7 @@ pub(super) struct Expected {
 }
 
 /// Metres within which two cones are the same one.
-const GATE: f64 = 0.45;
+pub(super) const GATE: f64 = 0.5;
 /// Cones that have to be found again.
 const FEWEST: usize = 6;
 /// The share of the cones that has to be found again.
@@ -23,8 +23,6 @@ const LEAD: f64 = 1.2;
 const LIKELY: f64 = 0.4;
 /// Metres between two cones that tell a direction.
 const ARM: std::ops::Range<f64> = 4.0..20.0;
-/// Metres by which that distance may differ from sight to sight.
-const STRETCH: f64 = 0.15;
 
 /// The motion that maps most of some points onto others, if it is unambiguous. O(n² m²) for n points onto m.
 pub(super) fn register(points: &[Point], onto: &[Point], expected: Expected) -> Option<Pose> {
@@ -61,7 +59,7 @@ fn hypotheses(points: &[Point], onto: &[Point], expected: Expected) -> impl Iter
     };
     let (from, to) = (arms(points), arms(onto));
     from.into_iter().flat_map(move |(point, arm)| {
-        let alike = to.iter().filter(move |(_, wanted)| (arm.norm() - wanted.norm()).abs() < STRETCH);
+        let alike = to.iter().filter(move |(_, wanted)| (arm.norm() - wanted.norm()).abs() < GATE);
         let fits = alike.map(move |(other, wanted)| bringing(point, arm, *other, *wanted));
         let near = fits.filter(move |motion| {
             let way = (motion.to_world(expected.place) - expected.place).norm();

@@ -7,6 +7,7 @@
 
 use super::cone::Cone;
 use super::legs::{Leg, legs_from};
+use super::map::STRIDE;
 use crate::geometry::{Point, Pose, Vector, angle_difference, cross, math};
 
 #[cfg(test)]
@@ -37,34 +38,21 @@ const LONGEST: usize = 24;
 const SEEDS: usize = 3;
 /// Cones that may come next, the nearest ones.
 const NEXT: usize = 10;
-/// Metres ahead of the car, or behind a place where it was, at which a cone is beside it.
-const BESIDE: f64 = 2.0;
-/// How much farther apart than usual the cones of a pair are at most: where they are farther, one row is missing.
-const FARTHER: f64 = 1.7;
 /// What it costs that a leg is aslant to the lane, for a radian squared. One more cone is worth 1.
 const SLANT: f64 = 0.35;
 /// What it costs that a leg is long, for a metre.
 const FAR: f64 = 0.07;
-/// What it costs that a cone is missing on a leg.
-const MISSING: f64 = 0.15;
-/// What it costs that a leg turns otherwise than the last one, for a radian squared.
-const CHANGE: f64 = 0.3;
-/// What it costs that the known edge of a cone is the other one.
-const OTHER_EDGE: f64 = 2.5;
 /// What it costs that the other row is missing.
 const ALONE: f64 = 0.3;
-/// What it costs that a cone stands between the rows.
-const BETWEEN: f64 = 1.5;
 /// What a cone of a row is worth as a share of the one before: of what is farther off, less is seen.
 const LESS: f64 = 0.85;
 /// By how much a leg of the other row has to cost less, from where that begins to count to where it counts fully.
 const BETTER: [f64; 2] = [0.1, 0.43];
-/// What a cone may cost that is followed all the same.
+/// What a cone may cost that is followed all the same, and how much less than the best rows others are worth at most that are
+/// told of.
 const DEAREST: f64 = 2.4;
 /// Rows that are told of at most, where cones may be those of one edge or of the other.
 const READINGS: usize = 4;
-/// How much less than the best rows others are worth at most that are told of.
-const WORSE: f64 = 2.0;
 
 /// End of a row.
 #[derive(Debug, Clone, Copy)]
@@ -73,7 +61,6 @@ struct End {
     cone: Option<usize>,
     place: Point,
     heading: f64,
-    turn: f64,
     /// Weight of the next cone.
     share: f64,
 }
@@ -195,17 +182,17 @@ impl<'c> Search<'c> {
                 let local = place.to_local(*position);
                 let aside = side * local.y;
                 let near = (0.5 * p.half_width..p.half_width + p.loose + 0.4).contains(&aside);
-                (local.x.abs() < BESIDE && near).then_some((at, place.heading, (aside - p.half_width).abs()))
+                (local.x.abs() < STRIDE && near).then_some((at, place.heading, (aside - p.half_width).abs()))
             });
             let Some((at, heading, off)) = beside else { continue };
             if f64::from(colour.side()) * side >= 0.0 {
-                let end = End { cone: Some(cone), place: *position, heading, turn: 0.0, share: 1.0 };
+                let end = End { cone: Some(cone), place: *position, heading, share: 1.0 };
                 found.push((at, end, -0.5 * off));
             }
         }
         found.sort_by_key(|(at, ..)| *at);
         let place = beside(car, side, p);
-        let none = End { cone: None, place, heading: car.heading, turn: 0.0, share: 1.0 };
+        let none = End { cone: None, place, heading: car.heading, share: 1.0 };
         found.into_iter().take(SEEDS).map(|(_, end, worth)| (end, worth)).chain([(none, -1.0)]).collect()
     }
 
@@ -247,7 +234,8 @@ impl<'c> Search<'c> {
         (0..2).flat_map(move |side| {
             let own = &pair.ends[side];
             self.legs_of(own, side).iter().enumerate().filter_map(move |(at, leg)| {
-                if angle_difference(leg.heading, own.heading).abs() > self.p.sharpest {
+                let of_other_edge = f64::from(self.cones[leg.to].colour.side()) * SIDES[side] < 0.0;
+                if of_other_edge || angle_difference(leg.heading, own.heading).abs() > self.p.sharpest {
                     return None;
                 }
                 let cost = self.cost_along(pair, side, leg);
@@ -287,19 +275,12 @@ impl<'c> Search<'c> {
         if cost > DEAREST {
             return None;
         }
-        let cost = cost + BETWEEN * self.between(pair, side, leg);
-        let turn = angle_difference(leg.heading, own.heading);
-        let end = End {
-            cone: Some(leg.to),
-            place: leg.ends[1],
-            heading: leg.heading,
-            turn,
-            share: own.share * LESS,
-        };
+        let end =
+            End { cone: Some(leg.to), place: leg.ends[1], heading: leg.heading, share: own.share * LESS };
         let mut ends = pair.ends;
         ends[side] = end;
         let worth = pair.worth + own.share * (1.0 - cost);
-        (cost < DEAREST).then_some(Pair { ends, worth, parent: Some(parent) })
+        Some(Pair { ends, worth, parent: Some(parent) })
     }
 
     /// Cost of a leg along its own row.
@@ -312,18 +293,7 @@ impl<'c> Search<'c> {
         } else {
             turn.abs()
         };
-        // Without missing cones, they are at most half the reach apart.
-        let missing = (3.0 * (leg.length / (0.5 * self.p.reach) - 1.0)).clamp(0.0, 1.0);
-        let mut cost = leg_cost(slant, leg.length) + MISSING * missing * missing;
-        let change = turn - own.turn;
-        // The first leg may be slanted, because the car may be.
-        if own.share < 1.0 {
-            cost += CHANGE * (change * change).min(1.0);
-        }
-        if f64::from(self.cones[leg.to].colour.side()) * SIDES[side] < 0.0 {
-            cost += OTHER_EDGE;
-        }
-        cost
+        leg_cost(slant, leg.length)
     }
 
     /// Cost of a leg relative to the other row; `None` if that is too close.
@@ -350,18 +320,9 @@ impl<'c> Search<'c> {
         wide * wide
     }
 
-    /// Number of cones in the lane beside a leg: in the triangle with the other cone of the pair, and next to
-    /// the leg.
-    fn between(&self, pair: &Pair, side: usize, leg: &Leg) -> f64 {
-        let [from, to] = leg.ends;
-        let within =
-            if self.is_paired(pair) { self.within([from, to, pair.ends[1 - side].place]) } else { 0 };
-        within as f64 + leg.crowd(self.cones, self.p.narrowest)[side]
-    }
-
     /// Maximum distance between the cones of a pair (m).
     fn widest(&self) -> f64 {
-        FARTHER * 2.0 * self.p.half_width
+        2.0 * OVERLAPS * self.p.half_width
     }
 
     /// Whether the cones of a pair are opposite each other; otherwise one row is missing.
@@ -394,25 +355,11 @@ impl<'c> Search<'c> {
         Row { ends }
     }
 
-    /// Number of cones inside a triangle.
-    fn within(&self, [a, b, c]: [Point; 3]) -> usize {
-        let (low, high) = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
-        let inside = |cone: &&Cone| {
-            let place = cone.position;
-            if place.x < low.x || place.x > high.x || place.y < low.y || place.y > high.y {
-                return false;
-            }
-            let turns = [(a, b), (b, c), (c, a)].map(|(from, to)| cross(to - from, place - from));
-            turns.iter().all(|turn| *turn > 1e-9) || turns.iter().all(|turn| *turn < -1e-9)
-        };
-        self.cones.iter().filter(inside).count()
-    }
-
     /// The rows with the highest score, and those that assign some cones differently.
     fn readings(&self) -> Vec<Rows> {
         let mut order: Vec<usize> = (0..self.pairs.len()).collect();
         order.sort_by(|&a, &b| self.pairs[b].worth.total_cmp(&self.pairs[a].worth));
-        let least = order.first().map_or(0.0, |&best| self.pairs[best].worth - WORSE);
+        let least = order.first().map_or(0.0, |&best| self.pairs[best].worth - DEAREST);
         let mut found: Vec<(Rows, Vec<i8>)> = Vec::new();
         for pair in order.into_iter().take_while(|&pair| self.pairs[pair].worth > least) {
             let rows = self.rows_to(pair);

@@ -7,16 +7,16 @@ use crate::geometry::{Pose, Twist};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
 use crate::io::{Lidar, LidarScan, Odometry, Result};
 
-/// What a racer goes by.
+/// Observation of a racer.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RaceObservation {
-    /// Where odometry has the car.
+    /// Odometry pose.
     pub odometry: Pose,
-    /// Its speed by odometry.
+    /// Odometry speed.
     pub speed: Twist,
-    /// The cones that it sees, by a lidar or a camera.
+    /// Cones detected by lidar or camera.
     pub cones: Vec<ConeSighting>,
-    /// The scan that they are in, if it is a lidar.
+    /// Scan with the cones; unused with a camera.
     pub scan: LidarScan,
 }
 

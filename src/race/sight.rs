@@ -1,3 +1,5 @@
+use std::f64::consts::FRAC_PI_4;
+
 use super::cone::ConeColour;
 use crate::geometry::{Point, direction, math};
 use crate::io::LidarScan;
@@ -30,8 +32,6 @@ impl ConeSighting {
     }
 }
 
-/// A cone's radius where a low scanner sees it, in metres.
-const RADIUS: f64 = 0.065;
 /// Metres by which the place of a cone in a scan is wrong.
 const ERROR: f64 = 0.03;
 /// Metres within which a beam has met nothing but the car itself.
@@ -86,9 +86,10 @@ fn finish(scan: &LidarScan, run: &[usize]) -> Option<ConeSighting> {
     if size < ConeSighting::WIDEST_CONE && (before || is_nearer(scan, last + 1, last)) {
         return None;
     }
-    // On average, beams hit a disc at pi/4 of its radius before its centre.
-    let range = mean + 0.785 * RADIUS;
-    let half = math::asin((RADIUS / range).min(1.0));
+    // Beams meet a disc at a quarter of pi of its radius before its middle, in the mean; half way up, as here.
+    let radius = ConeColour::Unknown.radius_half_way_up();
+    let range = mean + FRAC_PI_4 * radius;
+    let half = math::asin((radius / range).min(1.0));
     let expected = (2.0 * half / scan.angle_increment.abs().max(1e-9)).floor().max(1.0);
     let local = Point::origin() + direction(angle) * range;
     Some(ConeSighting {
@@ -112,6 +113,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn scan_of(discs: &[Point]) -> LidarScan {
+        let radius = ConeColour::Unknown.radius_half_way_up();
         let step = std::f64::consts::PI / 900.0;
         let ranges = (0..901)
             .map(|beam| {
@@ -119,7 +121,7 @@ mod tests {
                 let hits = discs.iter().filter_map(|disc| {
                     let along = disc.coords.dot(&ray);
                     let aside = disc.coords.norm_squared() - along * along;
-                    let deep = RADIUS * RADIUS - aside;
+                    let deep = radius * radius - aside;
                     (deep >= 0.0 && along > 0.0).then(|| along - deep.sqrt())
                 });
                 hits.fold(f64::INFINITY, f64::min)

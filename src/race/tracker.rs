@@ -2,7 +2,7 @@ use super::lane_model::FARTHEST;
 use super::profile::SpeedProfile;
 use super::tyres::Tyres;
 use crate::ParameterError;
-use crate::geometry::{Point, Pose, Twist, angle_difference, cross, math};
+use crate::geometry::{Point, Pose, Twist, angle_difference, cross, math, units};
 use crate::parameter::{require, require_positive, require_up_to};
 use crate::world::CarDynamics;
 
@@ -121,14 +121,12 @@ pub struct LineTracker {
     reached: bool,
 }
 
-/// What no car's place, in metres, speed or rate of turn comes to.
-const BEYOND_ALL: f64 = 1e6;
 /// Metres from a line within which a car is on it.
 const ON_LINE: f64 = 0.3;
-/// Metres per second at which it comes to its line if it stands.
-const SLOW: f64 = 2.0;
 /// The share of the metres in which an error dies out by which one counts at most: what is farther off is approached at 14 degrees.
 const SLANTED: f64 = 0.4;
+/// Metres per second at which a car feels its way where nothing is known, or comes to its line if it stands.
+pub(super) const CRAWL: f64 = 1.0;
 /// The share of the tyres' grip that is asked of them at most to come back to a line. With all of it, a fast car whose line moves aside would
 /// steer until its tyres slip, and weave.
 const BACK: f64 = 0.6;
@@ -190,7 +188,7 @@ impl LineTracker {
     /// `None` beyond the end of an open line, and if the inputs are not finite or implausibly large, as from
     /// failed odometry.
     pub fn step(&mut self, rear: Pose, moving: Twist) -> Option<(Twist, f64)> {
-        let is_car = |value: f64| value.abs() < BEYOND_ALL;
+        let is_car = |value: f64| value.abs() < units::FARTHEST;
         if ![rear.x, rear.y, rear.heading, moving.linear, moving.angular].into_iter().all(is_car) {
             return None;
         }
@@ -237,8 +235,8 @@ impl LineTracker {
         let most = self.left_along(wanted, moving) * p.speed_time;
         let planned = planned + p.drag_time * p.tyres.drag(curvature_here, speed * speed * curvature_here);
         self.reached |= aside.abs() < ON_LINE;
-        // Beside its line, the car does not accelerate: there may be no room for that.
-        let planned = if self.reached { planned } else { planned.min(speed.max(SLOW)) };
+        // Beside its line, it gains no speed: there may be no room for that.
+        let planned = if self.reached { planned } else { planned.min(speed.max(CRAWL)) };
         let speed = planned.min(speed.max(0.0) + most);
         Some((Twist::new(speed, speed * curvature), aside))
     }

@@ -3,16 +3,13 @@
 use super::lane_model::Lane;
 use crate::geometry::{Point, Pose, direction, math};
 
-/// Metres from station to station beyond the end of what is known.
+/// Metres from station to station beyond the end of what is known, from the car to the first one beside a row, and within which ways
+/// are next to each other.
 const STEP: f64 = 1.0;
-/// Metres ahead of the car at which the way beside a row begins.
-const AHEAD: f64 = 1.0;
 /// Metres away from the car within which it begins.
 const AWAY: f64 = 4.0;
 /// Points of a lane that are enough to go on along it.
 const ENOUGH: usize = 3;
-/// Metres squared within which ways are next to each other.
-const ALIKE: f64 = 0.5;
 
 /// A path some metres to the right (or left, if negative) of a row of cones in order along the lane. `None`
 /// without two consecutive cones, the later one ahead of the car or well away from it.
@@ -28,7 +25,7 @@ pub(super) fn beside_row(row: &[Point], right: f64, car: Pose, reach: f64) -> Op
     // Points beside or just behind the car would turn the path around.
     let is_ahead = |pose: &Pose| {
         let local = car.to_local(pose.position());
-        local.x > AHEAD || local.coords.norm() > AWAY
+        local.x > STEP || local.coords.norm() > AWAY
     };
     let ahead: Vec<Pose> = poses[begin..].iter().copied().filter(is_ahead).collect();
     prolonged(ahead, car, reach)
@@ -94,7 +91,7 @@ pub(super) fn distinct(ways: Vec<Vec<Pose>>) -> Vec<Vec<Pose>> {
 /// Whether a path coincides with another one.
 fn leads_along(way: &[Pose], other: &[Pose]) -> bool {
     let is_beside =
-        |place: &Pose| other.iter().any(|pose| (pose.position() - place.position()).norm_squared() < ALIKE);
+        |place: &Pose| other.iter().any(|pose| (pose.position() - place.position()).norm() < STEP);
     way.iter().all(is_beside)
 }
 

@@ -5,7 +5,7 @@
 //! start is not detected. Only odometry is checked for jumps, because ranges and images jump at every edge.
 
 use super::{SignalHealth, SignalLimits, SignalMonitor};
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Pose, Twist, units};
 
 /// Monitors odometry: readings are finite, do not jump, and change while the vehicle moves.
 #[derive(Debug, Clone)]
@@ -21,8 +21,6 @@ pub(super) struct OdometryHealth {
 /// Missing distance (m) above which an unchanged pose counts as frozen; allows for the resolution of the
 /// encoders.
 const MISSING: f64 = 0.01;
-/// Lever arm that converts rotation into distance (m).
-const ARM: f64 = 0.1;
 
 /// Maximum difference between the pose and the integrated speed (m, rad).
 const STEP: (f64, f64) = (0.05, 0.08);
@@ -63,7 +61,7 @@ impl OdometryHealth {
         // A pose that is bit-identical although the wheels turn counts as frozen.
         if pose == before {
             self.frozen = self.frozen.saturating_add(1);
-            self.missing += (speed.linear.abs() + ARM * speed.angular.abs()) * passed;
+            self.missing += (speed.linear.abs() + units::ARM * speed.angular.abs()) * passed;
         } else {
             (self.frozen, self.missing) = (0, 0.0);
         }

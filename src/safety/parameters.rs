@@ -123,7 +123,7 @@ impl Deadline {
 }
 
 impl SignalMonitor {
-    /// A monitor without a reading yet: its state is [`SignalHealth::Lost`].
+    /// A monitor without a reading yet: its state is `SignalHealth::Lost`.
     ///
     /// # Errors
     ///

@@ -61,7 +61,7 @@ impl<F: FnMut(f64, Heartbeat) -> Panel> Station for F {
 /// station.look(10.0);
 /// assert!(!station.exchange(0.0, heartbeat(1)).remote_stop);
 /// assert!(!station.look(10.4));
-/// The heartbeat has been missing for too long.
+/// // The heartbeat has been missing for too long.
 /// assert!(station.look(10.6));
 /// assert!(station.exchange(0.7, heartbeat(2)).remote_stop, "the order stays");
 /// station.take_back();

@@ -56,8 +56,8 @@ impl StoppingModel {
     /// command falls below the true speed, the vehicle accelerates. The bound therefore uses `v = speed + e`;
     /// a slower vehicle stops earlier.
     ///
-    /// During the reaction, the distance is `v · reaction`. Afterwards the deceleration is the smaller of `v
-    /// / lag` and `a`, so the distance is the integral of `max(lag, v / a)` over the speed, which is less
+    /// During the reaction, the distance is `v · reaction`. Afterwards the deceleration is the smaller of
+    /// `v / lag` and `a`, so the distance is the integral of `max(lag, v / a)` over the speed, which is less
     /// than that of `lag + v / a`: `v · lag + v² / 2a`. A command that falls from `v` at rate `a` gives the
     /// same bound: the command covers `v² / 2a`, and the lag adds its time constant times the speed lost.
     pub const fn distance(&self, speed: f64) -> f64 {

@@ -77,7 +77,7 @@ pub struct StopRecord {
 /// use roverlab::io::{Clock, Drive, MockRobot, Odometry};
 ///
 /// # fn main() -> roverlab::io::Result<()> {
-/// Armed and started at once; the stop button is pressed after one second.
+/// // Armed and started at once; the stop button is pressed after one second.
 /// let station = |now: f64, heartbeat: Heartbeat| Panel {
 ///     heartbeat: Some(heartbeat.count),
 ///     requests: Requests { arm: now > 0.01, start: now > 0.05, disarm: false },

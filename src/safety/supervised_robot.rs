@@ -8,9 +8,9 @@ use super::{Causes, Station};
 use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::wrappers::signatures;
 use crate::io::{
-    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error,
-    ErrorKind, Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors,
-    Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, DepthSensor, Display, DisplayImage, DisplayOption, DistanceSensors, Drive,
+    Encoders, Error, ErrorKind, Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres,
+    Motors, Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
@@ -31,6 +31,7 @@ signatures! { Display => passed_on!() }
 signatures! { Radio => passed_on!() }
 signatures! { Encoders => passed_on!() }
 signatures! { Inertial => passed_on!() }
+signatures! { DepthSensor => passed_on!() }
 
 impl<R: Clock + Drive + Odometry + Keys, S: Station> Keys for Supervised<R, S> {
     fn read_key(&mut self) -> Result<Option<Key>> {

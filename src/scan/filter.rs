@@ -2,6 +2,7 @@ use std::f64::consts::TAU;
 
 use crate::geometry::{Point, Pose, direction, math};
 use crate::io::{Error, LidarScan, Result};
+use crate::kinematics::OUTLIER;
 
 /// Removes noise from consecutive lidar scans of a moving robot.
 ///
@@ -46,27 +47,21 @@ struct Beam {
     weight: f64,
 }
 
-/// Initial standard deviation of a range (m): that of an EyeBot's lidar.
-const EXPECTED_NOISE: f64 = 0.010;
-/// A beam without an echo.
+/// The standard deviation of a range, in metres, that is expected before anything was measured: that of an EyeBot's lidar.
+pub(super) const RANGE_ERROR: f64 = 0.010;
+/// A beam that has met nothing.
 const UNKNOWN: Beam = Beam { range: f64::INFINITY, weight: 0.0 };
 /// Maximum weight of an estimate, so that it follows small changes.
 const MAX_WEIGHT: f64 = 20.0;
-/// Gate beyond which a reading restarts its beam (standard deviations).
-const GATE: f64 = 4.0;
-/// Minimum gate (m): a slanted wall moves this far between beams.
-const MIN_GATE: f64 = 0.015;
-/// Range difference below which adjacent beams see one surface (fraction of the range).
-const SURFACE_STEP: f64 = 0.1;
-/// Arc within which hits belong to the same piece of surface (m).
+/// Flattest angle, in radians, at which a beam says where a wall is.
+pub(super) const GRAZING: f64 = 0.2;
+/// Beams next to each other whose ranges differ by less than this part of the range see one surface.
+pub(super) const SURFACE_STEP: f64 = 0.1;
+/// Beams whose hits lie closer together than this, in metres, see the same piece of surface; seen at a slant, it moves by as much
+/// between them.
 const SMOOTHING_ARC: f64 = 0.015;
 /// Maximum number of averaged neighbours on either side.
 const MAX_SMOOTHING: usize = 10;
-/// Difference between the means of the inner and outer neighbours above which the surface is bent (standard
-/// deviations).
-const BEND_GATE: f64 = 3.0;
-/// Further difference required for a bend (m).
-const MIN_BEND: f64 = 0.0005;
 
 impl Default for ScanFilter {
     fn default() -> Self {
@@ -85,7 +80,7 @@ impl ScanFilter {
             angle_increment: 0.0,
             mount: Pose::default(),
             pose: Pose::default(),
-            noise: EXPECTED_NOISE,
+            noise: RANGE_ERROR,
             scratch: Vec::new(),
         }
     }
@@ -219,7 +214,7 @@ impl ScanFilter {
     }
 
     fn correct(&mut self, ranges: &[f64]) {
-        let gate = (GATE * self.noise).max(MIN_GATE);
+        let gate = (OUTLIER * self.noise).max(SMOOTHING_ARC);
         self.scratch.clear();
         for (beam, &reading) in self.beams.iter_mut().zip(ranges) {
             let surprise = reading - beam.range;
@@ -285,7 +280,7 @@ impl ScanFilter {
             let outer = Mean { sum: whole.sum - inner.sum, weight: whole.weight - inner.weight };
             let bend = (outer.value() - inner.value()).abs();
             let error = self.noise * (1.0 / inner.weight + 1.0 / outer.weight).sqrt();
-            if bend <= BEND_GATE * error + MIN_BEND {
+            if bend <= OUTLIER * error {
                 break;
             }
             reach /= 2;

@@ -2,7 +2,9 @@ use nalgebra::{Matrix2, Matrix2x6, Matrix3, Matrix6, Vector2, Vector6};
 
 use crate::geometry::{Point, Pose, Vector, angle_difference, cross, math, normalize_angle};
 use crate::io::{LidarScan, Result};
-use crate::kinematics::{Differential, Displacement, OdometryErrors, OdometryStep, arc_between};
+use crate::kinematics::{
+    Differential, Displacement, LEAST_RANGE_ERROR, OUTLIER, OdometryErrors, OdometryStep, arc_between,
+};
 use crate::parameter::require_positive;
 
 /// A cylindrical landmark, such as a can, at a known position.
@@ -60,12 +62,6 @@ pub struct LandmarkFilter {
 
 /// Maximum distance of a hit from a landmark's expected surface (m).
 const GATE: f64 = 0.12;
-/// Gate of the innovation test (squared Mahalanobis distance).
-const BELIEVED: f64 = 16.0;
-/// Standard deviation of a bearing (beams).
-const BEARING_BEAMS: f64 = 0.4;
-/// Minimum standard deviation of a range (m).
-const LEAST_RANGE_ERROR: f64 = 0.001;
 
 impl LandmarkFilter {
     /// A filter for a robot at a known pose, whose odometry reads `odometry`. `range_error` is the standard
@@ -153,7 +149,7 @@ impl LandmarkFilter {
         let noise = Matrix2::from_diagonal(&sighting.variances);
         let spread = measurement * self.covariance * measurement.transpose() + noise;
         let Some(inverse) = spread.try_inverse() else { return false };
-        if (innovation.transpose() * inverse * innovation)[0] > BELIEVED {
+        if (innovation.transpose() * inverse * innovation)[0] > OUTLIER * OUTLIER {
             return false;
         }
         let gain = self.covariance * measurement.transpose() * inverse;
@@ -223,12 +219,9 @@ fn sighting(landmark: &Landmark, lidar: &Pose, scan: &LidarScan, range_error: f6
     };
     let distance = hits.iter().map(|(_, _, hit)| to_axis(hit)).sum::<f64>() / count;
     let range_variance = range_error * range_error / count + LEAST_RANGE_ERROR * LEAST_RANGE_ERROR;
-    let bearing_error = BEARING_BEAMS * scan.angle_increment.abs();
-    Some(Sighting {
-        distance,
-        bearing,
-        variances: Vector2::new(range_variance, bearing_error * bearing_error),
-    })
+    // A beam may meet it anywhere within its width: the variance of even numbers.
+    let bearing_variance = scan.angle_increment * scan.angle_increment / 12.0;
+    Some(Sighting { distance, bearing, variances: Vector2::new(range_variance, bearing_variance) })
 }
 
 #[cfg(test)]

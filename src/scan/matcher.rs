@@ -1,7 +1,8 @@
 use nalgebra::{Matrix5, Vector2, Vector5};
 
-use super::reference::{Evidence, Reference};
+use super::reference::{Evidence, OVERLAP_GATE, Reference};
 use crate::geometry::{Point, Pose, math, normalize_angle};
+use crate::kinematics::{DISTANCE_ERROR, SCALE_ERROR, TURN_ERROR};
 
 /// Corrects odometry by scan matching.
 ///
@@ -59,32 +60,18 @@ pub struct ScanMatcher {
 const REFERENCE_REACH: f64 = 0.8;
 /// Maximum number of active references.
 const ACTIVE_REFERENCES: usize = 3;
-/// Distance after which references are selected again (m).
+/// After so many metres they are chosen anew, or where the present ones share little with the scan; they stand at least as far apart.
 const CHOICE_SPACING: f64 = 0.1;
-/// The same if the active references have little in common with the scan (m).
-const HASTY_CHOICE_SPACING: f64 = 0.03;
-/// Minimum distance between references (m).
-const REFERENCE_SPACING: f64 = 0.08;
-/// Overlap with all references below which a scan becomes a reference (fraction).
+/// A scan of which less than this share matches any reference becomes one itself.
 const MIN_OVERLAP: f64 = 0.6;
 /// Maximum number of references kept.
 const MAX_REFERENCES: usize = 10_000;
-/// Correction above which a match is rejected (m).
-const MAX_CORRECTION: f64 = 0.05;
 /// Overlap below which a match is rejected (fraction).
 const MIN_MATCH: f64 = 0.3;
 /// Number of ICP iterations.
 const ITERATIONS: usize = 6;
 /// Maximum distance of a correspondence in the first iteration (m).
 const COARSE_GATE: f64 = 0.10;
-/// Maximum distance of a correspondence in the last iteration (m).
-const FINE_GATE: f64 = 0.03;
-/// Error of odometry per distance (fraction).
-const DISTANCE_ERROR: f64 = 0.01;
-/// Error of odometry per turn (fraction).
-const TURN_ERROR: f64 = 0.006;
-/// Initial standard deviation of the wheel size (fraction).
-const SCALE_ERROR: f64 = 0.015;
 /// Initial standard deviation of the track (fraction).
 const TRACK_ERROR: f64 = 0.005;
 /// Variance of the heading due to slip, per metre (rad²).
@@ -149,9 +136,8 @@ impl ScanMatcher {
             return predicted;
         }
         let matched = self.lay_over(predicted, points);
-        let strayed = predicted.distance_to(matched.pose.position());
         self.overlap = matched.overlap;
-        if matched.overlap >= MIN_MATCH && strayed < MAX_CORRECTION {
+        if matched.overlap >= MIN_MATCH {
             self.pose = matched.pose;
             self.scale_errors = matched.scale_errors;
             self.covariance = matched.covariance;
@@ -166,8 +152,8 @@ impl ScanMatcher {
             self.add_reference(points);
             return;
         }
-        let spacing = if self.overlap < MIN_OVERLAP { HASTY_CHOICE_SPACING } else { CHOICE_SPACING };
-        if self.active.is_empty() || self.pose.distance_to(self.chosen_at) > spacing {
+        let far = self.pose.distance_to(self.chosen_at) > CHOICE_SPACING;
+        if self.active.is_empty() || far || self.overlap < MIN_OVERLAP {
             self.choose_references(points);
         }
     }
@@ -216,7 +202,7 @@ impl ScanMatcher {
         let mut matched = 0;
         for iteration in 0..ITERATIONS {
             let share = iteration as f64 / (ITERATIONS - 1) as f64;
-            let found = self.evidence(pose, points, COARSE_GATE + (FINE_GATE - COARSE_GATE) * share);
+            let found = self.evidence(pose, points, COARSE_GATE + (OVERLAP_GATE - COARSE_GATE) * share);
             matched = found.matched;
             information = known;
             let mut of_pose = information.fixed_view_mut::<3, 3>(0, 0);
@@ -270,7 +256,7 @@ impl ScanMatcher {
         candidates.truncate(ACTIVE_REFERENCES);
         self.active = candidates.iter().map(|&(index, _)| index).collect();
         let best = candidates.first().map_or(0.0, |&(_, overlap)| overlap);
-        let crowded = self.references.iter().any(|r| r.pose.distance_to(pose.position()) < REFERENCE_SPACING);
+        let crowded = self.references.iter().any(|r| r.pose.distance_to(pose.position()) < CHOICE_SPACING);
         if best < MIN_OVERLAP && !crowded && self.references.len() < MAX_REFERENCES {
             self.add_reference(points);
         }

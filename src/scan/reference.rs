@@ -2,6 +2,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::filter::{RANGE_ERROR, SURFACE_STEP};
 use crate::geometry::{Point, Pose, Vector, cross, direction, math};
 
 /// A scan that later ones are matched against.
@@ -28,16 +29,13 @@ pub(super) struct Evidence {
     pub(super) matched: usize,
 }
 
-/// Distance to a surface above which a point does not count as overlapping (m).
-const OVERLAP_GATE: f64 = 0.03;
-/// Number of bearing bins of a reference.
+/// Points farther from a surface than this, in metres, do not count as shared, and have no counterpart in the last round.
+pub(super) const OVERLAP_GATE: f64 = 0.03;
+/// Bearings that a reference is divided into.
 const BINS: usize = 360;
-/// Standard deviation of a matched point (m).
-const POINT_NOISE: f64 = 0.01;
-/// Number of matched points that count as one measurement. Tens of scans matched against one reference share
-/// its errors; counted singly, they would outweigh odometry where surfaces constrain little, as in a round
-/// room. Tuned by experiment: with 2, spirals rotate the pose by degrees; with 200, the drift of odometry
-/// gets through.
+/// How many matched points count as one fact. Scans matched against one reference share its errors, tens of them one
+/// after the other; counted singly they would drown what odometry knows where the surfaces say little, as in a round
+/// room. Found by trial: 2 lets spirals turn the pose by degrees, 200 lets odometry's drift through.
 const POINTS_PER_FACT: f64 = 40.0;
 /// Extent of the neighbours used for a line (m).
 const LINE_REACH: f64 = 0.06;
@@ -45,10 +43,6 @@ const LINE_REACH: f64 = 0.06;
 const MIN_NEIGHBOURS: usize = 2;
 /// Maximum number of neighbours on either side.
 const MAX_NEIGHBOURS: usize = 25;
-/// Distance between adjacent hits above which they belong to two surfaces (m).
-const EDGE_GAP: f64 = 0.02;
-/// Further distance allowed, as a fraction of the range: surfaces seen at more than about 10 degrees.
-const EDGE_SLANT: f64 = 0.1;
 /// Maximum deviation of neighbours from their line (fraction of its length).
 const FLATNESS: f64 = 0.05;
 /// Further deviation allowed, for short lines (m).
@@ -101,10 +95,10 @@ impl Reference {
             let placed = Point::new(relative.x + turned.x, relative.y + turned.y);
             let Some((normal, error)) = self.counterpart(placed, relative.position(), gate) else { continue };
             evidence.matched += 1;
-            // Robust weights: points without a true correspondence have little influence.
-            let deviations = error / POINT_NOISE;
+            // Large errors count less, so that what has no true counterpart does not pull.
+            let deviations = error / RANGE_ERROR;
             let robust = 1.0 / (1.0 + 0.25 * deviations * deviations);
-            let weight = robust / (POINT_NOISE * POINT_NOISE * POINTS_PER_FACT);
+            let weight = robust / (RANGE_ERROR * RANGE_ERROR * POINTS_PER_FACT);
             let gradient = Vector3::new(normal.x, normal.y, cross(turned, normal));
             evidence.information += gradient * gradient.transpose() * weight;
             evidence.residual -= gradient * (weight * error);
@@ -181,8 +175,8 @@ impl LineSums {
             at = (at + stride) % points.len();
             let next = points[at];
             let range = last.coords.norm();
-            // Hits on one surface are about a beam's width apart; across an edge they are much farther.
-            if (next - last).norm() > EDGE_GAP + EDGE_SLANT * range {
+            // Beams on one surface are about a beam's width apart; across an edge they are much farther.
+            if (next - last).norm() > OVERLAP_GATE + SURFACE_STEP * range {
                 break;
             }
             if added >= MIN_NEIGHBOURS && (next - centre).norm() > LINE_REACH {

@@ -1,4 +1,5 @@
-use super::lines::{TOLERANCE, between_walls, entered, squeezed};
+use super::lines::{between_walls, entered, squeezed};
+use crate::geometry::units::NEGLIGIBLE;
 use crate::nav::grid::{AnyAngle, GridPath, GridPlanner, GridSearch, PlanError};
 use crate::parameter::debug_as_sentence;
 use crate::world::{BitGrid, GridCell};
@@ -28,7 +29,7 @@ debug_as_sentence!(Violation);
 
 /// Whether two costs are equal; false for NaN.
 fn same(a: f64, b: f64) -> bool {
-    (a - b).abs() <= TOLERANCE
+    (a - b).abs() <= NEGLIGIBLE
 }
 
 fn violation(start: GridCell, goal: GridCell, what: String) -> Violation {
@@ -140,7 +141,7 @@ pub fn triangle_inequality(
     let (Ok(direct), Ok(first), Ok(second)) = (cost(start, goal), cost(start, by), cost(by, goal)) else {
         return Ok(());
     };
-    let is_no_longer = direct <= first + second + TOLERANCE;
+    let is_no_longer = direct <= first + second + NEGLIGIBLE;
     if !is_no_longer {
         let what = format!("a path of {direct} cells; by {by} there is one of {}", first + second);
         return Err(violation(start, goal, what));

@@ -1,10 +1,8 @@
 //! Intersections of lines with grids.
 
+use crate::geometry::units::NEGLIGIBLE;
 use crate::geometry::{Point, Vector};
 use crate::world::{BitGrid, GridCell};
-
-/// Tolerance for rounding errors (cells).
-pub(super) const TOLERANCE: f64 = 1e-6;
 
 /// The first blocked or outside cell whose interior a segment enters.
 pub(super) fn entered(grid: &BitGrid, a: Point, b: Point) -> Option<GridCell> {
@@ -28,7 +26,7 @@ pub(super) fn entered(grid: &BitGrid, a: Point, b: Point) -> Option<GridCell> {
 fn meets(a: Point, b: Point, cell: GridCell) -> bool {
     let (mut first, mut last) = (0.0f64, 1.0f64);
     for (from, d, low) in [(a.x, b.x - a.x, cell.column as f64), (a.y, b.y - a.y, cell.row as f64)] {
-        let (low, high) = (low + TOLERANCE, low + 1.0 - TOLERANCE);
+        let (low, high) = (low + NEGLIGIBLE, low + 1.0 - NEGLIGIBLE);
         if d == 0.0 {
             if from <= low || from >= high {
                 return false;
@@ -43,9 +41,9 @@ fn meets(a: Point, b: Point, cell: GridCell) -> bool {
 
 /// Whether a segment runs along a grid line with blocked cells on both sides.
 pub(super) fn between_walls(grid: &BitGrid, a: Point, b: Point) -> bool {
-    let along_line = |at: f64, d: f64| d.abs() < TOLERANCE && (at - at.round()).abs() < TOLERANCE;
+    let along_line = |at: f64, d: f64| d.abs() < NEGLIGIBLE && (at - at.round()).abs() < NEGLIGIBLE;
     let stretch = |a: f64, b: f64| {
-        let (low, high) = (a.min(b) + TOLERANCE, a.max(b) - TOLERANCE);
+        let (low, high) = (a.min(b) + NEGLIGIBLE, a.max(b) - NEGLIGIBLE);
         (low.floor() as isize)..(high.ceil() as isize)
     };
     let d = b - a;
@@ -67,8 +65,8 @@ pub(super) fn squeezed(grid: &BitGrid, path: &[Point]) -> Option<Point> {
             if corner_is_on(corner, pair[0], pair[1]) {
                 return passes(grid, corner, pair[0], pair[1]);
             }
-            // At a turn of the path.
-            let turns = (corner - pair[1]).norm() < TOLERANCE;
+            // Where the path turns.
+            let turns = (corner - pair[1]).norm() < NEGLIGIBLE;
             turns && path.get(i + 2).is_some_and(|&next| passes(grid, corner, pair[0], next))
         };
         corners_near(grid, pair[0], pair[1]).find(is_squeeze)
@@ -78,7 +76,7 @@ pub(super) fn squeezed(grid: &BitGrid, path: &[Point]) -> Option<Point> {
 /// Grid points in the bounding box of a segment.
 fn corners_near(grid: &BitGrid, a: Point, b: Point) -> impl Iterator<Item = Point> + use<> {
     let range = |a: f64, b: f64, cells: usize| {
-        let (low, high) = ((a.min(b) - TOLERANCE).ceil().max(0.0), (a.max(b) + TOLERANCE).floor());
+        let (low, high) = ((a.min(b) - NEGLIGIBLE).ceil().max(0.0), (a.max(b) + NEGLIGIBLE).floor());
         low as usize..=(high.max(0.0) as usize).min(cells)
     };
     let (columns, rows) = (range(a.x, b.x, grid.width()), range(a.y, b.y, grid.height()));
@@ -90,7 +88,7 @@ fn corner_is_on(corner: Point, a: Point, b: Point) -> bool {
     let (d, way) = (b - a, corner - a);
     let along = way.dot(&d) / d.norm();
     let aside = crate::geometry::cross(d, way).abs() / d.norm();
-    aside < TOLERANCE && along > TOLERANCE && along < d.norm() - TOLERANCE
+    aside < NEGLIGIBLE && along > NEGLIGIBLE && along < d.norm() - NEGLIGIBLE
 }
 
 /// Whether two of the four cells at a point are diagonally blocked, and no free one contains both the way
@@ -104,7 +102,7 @@ fn passes(grid: &BitGrid, corner: Point, a: Point, b: Point) -> bool {
         return false;
     }
     let within =
-        |d: Vector, (dx, dy): (isize, isize)| d.x * dx as f64 > -TOLERANCE && d.y * dy as f64 > -TOLERANCE;
+        |d: Vector, (dx, dy): (isize, isize)| d.x * dx as f64 > -NEGLIGIBLE && d.y * dy as f64 > -NEGLIGIBLE;
     !quadrants
         .iter()
         .any(|&side| free(side.0, side.1) && within(a - corner, side) && within(b - corner, side))

@@ -3,7 +3,9 @@ use std::ops::Range;
 use proptest::prelude::*;
 
 use crate::random::Stream;
-use crate::world::generate::{Course, CourseOptions, obstacle_course};
+use crate::world::generate::{
+    Course, CourseOptions, Relief, ReliefKind, ReliefOptions, obstacle_course, relief,
+};
 use crate::world::{BitGrid, GridCell};
 
 /// Random grids with sides in the given ranges (at least one cell): scattered cells, boxes, or rooms with
@@ -170,5 +172,30 @@ fn maze(width: usize, height: usize, stream: &mut Stream) -> GridMaze {
 pub fn worlds() -> impl Strategy<Value = Course> {
     any::<u64>().prop_filter_map("no course of this seed", |seed| {
         obstacle_course(&mut Stream::new(seed), &CourseOptions::default()).ok()
+    })
+}
+
+/// Hills of a kind, with a slope of 5 to 20 degrees and a place to start from, as [`relief`] makes them. What a robot can reach
+/// of them, and how high that is, tells [`ElevationMap::highest_reachable`](crate::nav::elevation::ElevationMap).
+///
+/// ```
+/// use proptest::prelude::*;
+/// use proptest::test_runner::{Config, TestRunner};
+/// use roverlab::nav::elevation::{Climber, ElevationMap};
+/// use roverlab::testing::reliefs;
+/// use roverlab::world::generate::ReliefKind;
+/// TestRunner::new(Config::with_cases(4)).run(&reliefs(ReliefKind::Range), |range| {
+///     let ground = range.world.terrain.and_then(|terrain| terrain.surface).expect("hills");
+///     let climber = Climber { slope: 0.35, step: 0.02, radius: 0.15 };
+///     let map = ElevationMap::new(&ground, &climber).expect("good parameters");
+///     let top = map.highest_reachable(range.start.position()).expect("a start to stand on");
+///     prop_assert!(top.z <= ground.highest() + 1e-9);
+///     Ok(())
+/// }).unwrap();
+/// ```
+pub fn reliefs(kind: ReliefKind) -> impl Strategy<Value = Relief> {
+    (any::<u64>(), 5.0..20.0f64).prop_filter_map("ramps without room", move |(seed, degrees)| {
+        let slope = crate::geometry::units::from_deg(degrees);
+        relief(&mut Stream::new(seed), &ReliefOptions { slope, ..ReliefOptions::of(kind) }).ok()
     })
 }

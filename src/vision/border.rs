@@ -63,9 +63,9 @@ pub(super) fn stencil(
     }
 }
 
-/// All pixels of a row except the first and the last, two at a time. The 16-bit words `x - 1`, `x` and `x +
-/// 1`, `x + 2` hold all that `x` and `x + 1` need; a mask and a shift separate them. Widening byte by byte
-/// would take longer than the computation.
+/// All pixels of a row except the first and the last, two at a time. The 16-bit words `x - 1`, `x` and
+/// `x + 1`, `x + 2` hold all that `x` and `x + 1` need; a mask and a shift separate them. Widening byte by
+/// byte would take longer than the computation.
 #[inline(always)]
 fn inner([above, row, below]: [&[u8]; 3], out: &mut [u8], point: impl Fn([[u16; 3]; 3]) -> u16) {
     let n = out.len();

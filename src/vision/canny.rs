@@ -24,12 +24,12 @@ impl Default for CannyThresholds {
 ///
 /// Smooth noisy images first, with [`gaussian_into`](super::gaussian_into). The steps:
 ///
-/// 1. Sobel gradient of each pixel, the image extended by its outermost pixels; the magnitude is `|dx| +
-///    |dy|`.
+/// 1. Sobel gradient of each pixel, the image extended by its outermost pixels; the magnitude is
+///    `|dx| + |dy|`.
 /// 2. Non-maximum suppression. A pixel above `low` stays if its magnitude exceeds that of the first neighbour
-///    along the gradient and is at least that of the second. The neighbours are west and east where `|dy| <
-///    tan(22.5°) |dx|`, north and south where `|dy| > tan(67.5°) |dx|`, and otherwise diagonal, where it must
-///    exceed both. `tan(22.5°)` is `13573 / 32768`, `tan(67.5°)` is that plus 2. Outside the image,
+///    along the gradient and is at least that of the second. The neighbours are west and east where
+///    `|dy| < tan(22.5°) |dx|`, north and south where `|dy| > tan(67.5°) |dx|`, and otherwise diagonal, where
+///    it must exceed both. `tan(22.5°)` is `13573 / 32768`, `tan(67.5°)` is that plus 2. Outside the image,
 ///    magnitudes are 0.
 /// 3. Hysteresis. A remaining pixel is an edge, 255, if a chain of 8-connected neighbours leads to a pixel
 ///    above `high`.

@@ -7,8 +7,8 @@ use crate::geometry::math;
 
 /// A symmetric Gaussian filter of 3, 5 or 7 pixels a side.
 ///
-/// The weights are in 256ths and sum to 1. The named kernels have OpenCV's weights: binomial `1 2 1` and `1 4
-/// 6 4 1` for 3 and 5 pixels, and `2 7 14 18 14 7 2` (64ths) for 7.
+/// The weights are in 256ths and sum to 1. The named kernels have OpenCV's weights: binomial `1 2 1` and
+/// `1 4 6 4 1` for 3 and 5 pixels, and `2 7 14 18 14 7 2` (64ths) for 7.
 ///
 /// ```
 /// use roverlab::vision::GaussianKernel;

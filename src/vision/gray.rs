@@ -8,8 +8,8 @@ pub enum GrayWeights {
     /// RoBIOS: `(red + blue) / 4 + green / 2`, both rounded down.
     #[default]
     Robios,
-    /// Rec. 601 as in OpenCV: `0.299 red + 0.587 green + 0.114 blue`, in fixed point `(9798 red + 19235 green
-    /// + 3735 blue + 16384) / 32768`, rounded down.
+    /// Rec. 601 as in OpenCV: `0.299 red + 0.587 green + 0.114 blue`, in fixed point
+    /// `(9798 red + 19235 green + 3735 blue + 16384) / 32768`, rounded down.
     Rec601,
 }
 

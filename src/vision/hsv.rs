@@ -56,9 +56,10 @@ pub fn hsv_into(input: RgbView<'_>, output: RgbViewMut<'_>) -> Result<(), ImageE
 
 /// Converts hue, saturation and value to red, green and blue, in single precision as in OpenCV.
 ///
-/// In sector `k` of six, with the fraction `f` of it before the hue, the channels are `V`, `V (1 - S)` and `V
-/// (1 - S f)` or `V (1 - S (1 - f))`, rounded down. A product subtracted from 1 is rounded together with the
-/// difference. (OpenCV rounds the few pixels at the end of a row that do not fill a register to the nearest.)
+/// In sector `k` of six, with the fraction `f` of it before the hue, the channels are `V`, `V (1 - S)` and
+/// `V (1 - S f)` or `V (1 - S (1 - f))`, rounded down. A product subtracted from 1 is rounded together with
+/// the difference. (OpenCV rounds the few pixels at the end of a row that do not fill a register to the
+/// nearest.)
 ///
 /// ```
 /// use roverlab::vision::{Hsv, hsv_to_rgb};

@@ -3,7 +3,7 @@ use crate::ParameterError;
 use crate::geometry::{Point, Pose};
 use crate::parameter::debug_as_sentence;
 
-/// The place of a cell in a grid: its column and row, both from 0.
+/// A cell's position in a grid: column and row, from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct GridCell {
     /// The column.
@@ -13,17 +13,17 @@ pub struct GridCell {
 }
 
 impl GridCell {
-    /// The cell in a column and row.
+    /// The cell at a column and row.
     pub const fn new(column: usize, row: usize) -> Self {
         Self { column, row }
     }
 
-    /// The cell's middle, in cells: half a cell from its edges.
+    /// Centre of the cell, in cells.
     pub fn centre(self) -> Point {
         Point::new(self.column as f64 + 0.5, self.row as f64 + 0.5)
     }
 
-    /// The cell that holds a point given in cells, unless a coordinate is negative or none.
+    /// The cell that contains a point in cell units; `None` for negative or NaN coordinates.
     pub fn at(point: Point) -> Option<Self> {
         let inside = point.x >= 0.0 && point.y >= 0.0;
         inside.then(|| Self::new(point.x as usize, point.y as usize))
@@ -36,10 +36,10 @@ impl std::fmt::Display for GridCell {
     }
 }
 
-/// A grid of cells that are free or blocked, one bit each, packed 64 to a word.
+/// A grid of free or blocked cells, one bit each, packed 64 to a word.
 ///
-/// All that lies outside is blocked. Which way rows count is the map's business: those of [`OccupancyGrid`] count
-/// upwards, those of pictures and of MovingAI's maps downwards.
+/// Everything outside is blocked. The direction of rows depends on the map: those of [`OccupancyGrid`] count
+/// upwards, those of pictures and MovingAI maps downwards.
 ///
 /// ```
 /// use roverlab::world::{BitGrid, GridCell};
@@ -52,20 +52,21 @@ impl std::fmt::Display for GridCell {
 pub struct BitGrid {
     width: usize,
     height: usize,
-    /// Words of a row.
+    /// Words per row.
     stride: usize,
-    /// Row by row; a set bit is a free cell, the lowest bit the first column. Bits beyond the width are 0.
+    /// Rows of cells; a set bit is a free cell, and the lowest bit is the first column. Bits beyond the width
+    /// are 0.
     words: Vec<u64>,
 }
 
-/// Why there is no grid.
+/// Reason why a grid cannot be built.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BitGridError {
-    /// The grid would not fit into memory.
+    /// The grid does not fit into memory.
     #[error("a grid of {width} x {height} cells; expected at most {} cells", BitGrid::MAX_CELLS)]
     TooLarge {
-        /// Cells in a row.
+        /// Cells per row.
         width: usize,
         /// Rows.
         height: usize,
@@ -75,9 +76,9 @@ pub enum BitGridError {
     Ragged {
         /// The line, from 1.
         line: usize,
-        /// Its cells.
+        /// Its number of cells.
         found: usize,
-        /// The cells of the first line.
+        /// Number of cells in the first line.
         expected: usize,
     },
 }
@@ -85,10 +86,10 @@ pub enum BitGridError {
 debug_as_sentence!(BitGridError);
 
 impl BitGrid {
-    /// The most cells that a grid may have.
+    /// Largest number of cells.
     pub const MAX_CELLS: usize = 1 << 25;
 
-    /// A grid of blocked cells.
+    /// A grid of blocked cells only.
     pub fn blocked(width: usize, height: usize) -> Result<Self, BitGridError> {
         if width.saturating_mul(height) > Self::MAX_CELLS || width.max(height) > Self::MAX_CELLS {
             return Err(BitGridError::TooLarge { width, height });
@@ -97,7 +98,7 @@ impl BitGrid {
         Ok(Self { width, height, stride, words: vec![0; stride * height] })
     }
 
-    /// A grid whose cells are free where `is_free(column, row)`.
+    /// A grid with free cells where `is_free(column, row)`.
     pub fn from_fn(
         width: usize,
         height: usize,
@@ -113,7 +114,8 @@ impl BitGrid {
         Ok(grid)
     }
 
-    /// A grid drawn with one line for each row, the first one first: `#` and `@` are blocked, all else is free.
+    /// A grid from a drawing, one line per row, first row first: `#` and `@` are blocked, everything else is
+    /// free.
     pub fn from_text(text: &str) -> Result<Self, BitGridError> {
         let rows: Vec<Vec<char>> = text.lines().map(|line| line.chars().collect()).collect();
         let width = rows.first().map_or(0, Vec::len);
@@ -123,14 +125,14 @@ impl BitGrid {
         Self::from_fn(width, rows.len(), |column, row| !matches!(rows[row][column], '#' | '@'))
     }
 
-    /// The free cells of an occupancy grid, in the same columns and rows. Unknown cells are blocked.
+    /// Free cells of an occupancy grid, in the same columns and rows. Unknown cells are blocked.
     pub fn from_occupancy(grid: &OccupancyGrid) -> Self {
         let free = |column, row| grid.cell(column, row) == Occupancy::Free;
         Self::from_fn(grid.width(), grid.height(), free).unwrap_or_else(|_| Self::empty())
     }
 
-    /// The same as an occupancy grid, with cells of `resolution` metres and the outer corner of the first one at
-    /// `origin`.
+    /// The same as an occupancy grid with a cell size of `resolution` metres; `origin` is the outer corner of
+    /// the first cell.
     pub fn to_occupancy(&self, resolution: f64, origin: Pose) -> Result<OccupancyGrid, ParameterError> {
         let mut grid = OccupancyGrid::unknown(self.width, self.height, resolution, origin)?;
         for row in 0..self.height {
@@ -146,29 +148,29 @@ impl BitGrid {
         Self { width: 0, height: 0, stride: 0, words: Vec::new() }
     }
 
-    /// Cells in a row.
+    /// Cells per row.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows.
+    /// Number of rows.
     pub fn height(&self) -> usize {
         self.height
     }
 
-    /// Whether a cell lies within the grid.
+    /// Whether a cell is within the grid.
     #[inline]
     pub fn contains(&self, cell: GridCell) -> bool {
         cell.column < self.width && cell.row < self.height
     }
 
-    /// Whether a cell is free. What lies outside is not.
+    /// Whether a cell is free; cells outside are not.
     #[inline]
     pub fn is_free(&self, cell: GridCell) -> bool {
         self.contains(cell) && self.words[self.word(cell)] >> (cell.column % 64) & 1 != 0
     }
 
-    /// Makes a cell free or blocked. Outside the grid nothing happens.
+    /// Makes a cell free or blocked; no effect outside the grid.
     pub fn set_free(&mut self, cell: GridCell, free: bool) {
         if self.contains(cell) {
             let (word, bit) = (self.word(cell), 1 << (cell.column % 64));
@@ -180,7 +182,7 @@ impl BitGrid {
         }
     }
 
-    /// The words of a row: bit `c % 64` of word `c / 64` is set if column `c` is free.
+    /// Words of a row: bit `c % 64` of word `c / 64` is set if column `c` is free.
     ///
     /// # Panics
     ///
@@ -190,12 +192,12 @@ impl BitGrid {
         &self.words[row * self.stride..][..self.stride]
     }
 
-    /// How many cells are free.
+    /// Number of free cells.
     pub fn count_free(&self) -> usize {
         self.words.iter().map(|word| word.count_ones() as usize).sum()
     }
 
-    /// The free cells, row by row.
+    /// Free cells, row by row.
     pub fn free_cells(&self) -> impl Iterator<Item = GridCell> + '_ {
         (0..self.height)
             .flat_map(move |row| ones(self.row(row)).map(move |column| GridCell::new(column, row)))
@@ -238,7 +240,7 @@ impl BitGrid {
         grid
     }
 
-    /// The grid of half the size whose cells are free if all four cells in their places are.
+    /// The grid at half the size; a cell is free if all its four original cells are.
     pub(crate) fn quartered(&self) -> Self {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
         let stride = width.div_ceil(64);
@@ -270,7 +272,7 @@ impl std::fmt::Debug for BitGrid {
     }
 }
 
-/// The positions of the set bits in a row of words.
+/// Positions of the set bits in a row of words.
 pub(crate) fn ones(words: &[u64]) -> impl Iterator<Item = usize> + '_ {
     words.iter().enumerate().flat_map(|(index, &word)| {
         let mut rest = word;
@@ -284,7 +286,7 @@ pub(crate) fn ones(words: &[u64]) -> impl Iterator<Item = usize> + '_ {
     })
 }
 
-/// The bits at even positions, moved together.
+/// Compacts the bits at even positions.
 fn every_second(mut word: u64) -> u64 {
     word &= 0x5555_5555_5555_5555;
     for (shift, mask) in [
@@ -299,7 +301,7 @@ fn every_second(mut word: u64) -> u64 {
     word
 }
 
-/// Exchanges rows and columns of 64 x 64 bits, by halves, quarters, and so on.
+/// Transposes a block of 64 x 64 bits recursively.
 fn transpose_block(block: &mut [u64; 64]) {
     let (mut width, mut mask) = (32, 0x0000_0000_ffff_ffffu64);
     while width != 0 {

@@ -1,7 +1,7 @@
 use super::{Footprint, Shape};
 use crate::geometry::{Aabb, Point};
 
-/// A place in three dimensions: metres ahead, to the left and upwards.
+/// A point in space: metres forwards, to the left and up.
 pub type Place3 = [f64; 3];
 
 /// An axis of a body.
@@ -21,33 +21,33 @@ pub enum Axis {
 pub enum Collider {
     /// A cuboid along the body's axes.
     Box {
-        /// Metres along each axis.
+        /// Size along each axis (m).
         size: Place3,
-        /// Its middle.
+        /// Its centre.
         centre: Place3,
     },
     /// A ball.
     Sphere {
-        /// Metres.
+        /// Radius (m).
         radius: f64,
-        /// Its middle.
+        /// Its centre.
         centre: Place3,
     },
-    /// A cylinder with round ends.
+    /// A cylinder with hemispherical ends.
     Capsule {
-        /// Metres.
+        /// Radius (m).
         radius: f64,
-        /// Metres from end to end, the round ends included.
+        /// Total length, including the hemispherical ends (m).
         height: f64,
-        /// The axis along which it lies.
+        /// Direction of its axis.
         axis: Axis,
-        /// Its middle.
+        /// Its centre.
         centre: Place3,
     },
 }
 
 impl Collider {
-    /// Where it begins and ends along each axis.
+    /// Extent along each axis.
     pub fn extent(&self) -> [(f64, f64); 3] {
         let (half, centre) = match *self {
             Collider::Box { size, centre } => (size.map(|s| 0.5 * s), centre),
@@ -61,7 +61,8 @@ impl Collider {
         [0, 1, 2].map(|i| (centre[i] - half[i], centre[i] + half[i]))
     }
 
-    /// The radius around the upright axis through a point ahead of the origin, if it is round about it.
+    /// Radius about the upright axis through a point ahead of the origin; `None` if it is not round about
+    /// that axis.
     fn round_about(&self, ahead: f64) -> Option<f64> {
         match *self {
             Collider::Sphere { radius, centre }
@@ -73,24 +74,25 @@ impl Collider {
     }
 }
 
-/// What a description file says about the solid of a robot or an object, about the origin of its 3D model.
+/// Data of a description file about the solid of a robot or object, relative to the origin of its 3D model.
 ///
-/// The simulation uses what is derived from it: a robot's footprint and height, an object's shape.
+/// The simulation uses what follows from it: a robot's footprint and height, an object's shape.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
-    /// The solid parts, in units of the model: to be multiplied by `scale`. Empty if the footprint or shape says all.
+    /// Solid parts in model units, to be multiplied by `scale`. Empty if the footprint or shape is
+    /// sufficient.
     pub colliders: Vec<Collider>,
-    /// The middle of the mass, in units of the model.
+    /// Centre of mass in model units.
     pub mass_centre: Place3,
-    /// Metres in a unit of the model.
+    /// Size of a model unit (m).
     pub scale: f64,
-    /// Where the model is shown: metres to the right, upwards and forward, as its file gives them.
+    /// Offset of the displayed model as in its file: metres to the right, up and forwards.
     pub model_offset: [f64; 3],
-    /// How the model is turned: radians about its right, up and forward axes, as its file gives them.
+    /// Rotation of the displayed model as in its file: radians about its right, up and forward axes.
     pub model_rotation: [f64; 3],
-    /// Metres from the model's origin forward to the driven axle, and upwards to it.
+    /// Distance from the model's origin forwards to the driven axle, and up to it (m).
     pub axle: [f64; 2],
-    /// Metres from the model's origin upwards to the steered axle.
+    /// Height of the steered axle above the model's origin (m).
     pub turn_axle_height: f64,
 }
 
@@ -109,17 +111,17 @@ impl Default for Body {
 }
 
 impl Body {
-    /// The largest robot, in metres from its axle to its farthest side, whose footprint may become a disc.
+    /// Largest distance from the axle to the farthest side at which a footprint may become a disc (m).
     pub const MAX_DISC: f64 = 0.25;
-    /// How round its sides must be: the nearest at least this part of the farthest.
+    /// Required roundness: smallest ratio of the nearest to the farthest side.
     pub const MIN_ROUNDNESS: f64 = 0.8;
 
-    /// The footprint about the driven axle and the height above the model's origin that the colliders give; `None`
+    /// Footprint about the driven axle and height above the model's origin, from the colliders; `None`
     /// without colliders.
     ///
-    /// A single sphere or upright capsule on the axle is a disc. So is a small, nearly round robot that may turn on the
-    /// spot: its farthest side at most [`Body::MAX_DISC`] away and its nearest at least [`Body::MIN_ROUNDNESS`] of that.
-    /// All others are the rectangle around their colliders.
+    /// A single sphere or upright capsule on the axle is a disc. So is a small, nearly round robot that can
+    /// turn on the spot: its farthest side is at most [`Body::MAX_DISC`] away, and its nearest at least
+    /// [`Body::MIN_ROUNDNESS`] of that. All others are the bounding rectangle of their colliders.
     pub fn footprint(&self, turns_on_the_spot: bool) -> Option<(Footprint, f64)> {
         let [x, y, z] = self.extent()?;
         let (ahead, top) = (self.axle[0], top(z));
@@ -138,7 +140,8 @@ impl Body {
         Some((Footprint::Rectangle(Aabb::new(corners.0, corners.1)), top))
     }
 
-    /// The upright shape about the origin that holds all colliders, from the floor up; `None` without colliders.
+    /// The upright shape about the origin that contains all colliders, from the floor up; `None` without
+    /// colliders.
     pub fn shape(&self) -> Option<Shape> {
         let [x, y, z] = self.extent()?;
         let top = top(z);
@@ -157,7 +160,7 @@ impl Body {
         Some(Shape::Box { length: across(x), width: across(y), height: top })
     }
 
-    /// The one collider that a footprint of some height needs.
+    /// A single collider equivalent to a footprint and height.
     pub fn collider_of_footprint(&self, footprint: &Footprint, height: f64) -> Collider {
         let (ahead, middle) = (self.axle[0], 0.5 * height);
         match footprint {
@@ -171,11 +174,11 @@ impl Body {
         }
     }
 
-    /// The one collider that a shape needs.
+    /// A single collider equivalent to a shape.
     pub fn collider_of_shape(shape: Shape) -> Collider {
         let centre = [0.0, 0.0, 0.5 * shape.height()];
         match shape {
-            // The formats have no cones.
+            // The file formats have no cones.
             Shape::Cylinder { radius, height } | Shape::Cone { radius, height, .. } => {
                 Collider::Capsule { radius, height, axis: Axis::Up, centre }
             }
@@ -184,7 +187,7 @@ impl Body {
         }
     }
 
-    /// Where the colliders begin and end along each axis, in metres.
+    /// Extent of the colliders along each axis (m).
     fn extent(&self) -> Option<[(f64, f64); 3]> {
         let extents = self.colliders.iter().map(Collider::extent);
         let joined = extents.reduce(|a, b| [0, 1, 2].map(|i| (a[i].0.min(b[i].0), a[i].1.max(b[i].1))))?;
@@ -192,7 +195,7 @@ impl Body {
     }
 }
 
-/// The height above the model's origin, or that of a body below it.
+/// Height above the model's origin, or total height of a body below it.
 fn top((low, high): (f64, f64)) -> f64 {
     if high > 0.0 { high } else { high - low }
 }

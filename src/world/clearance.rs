@@ -1,11 +1,11 @@
-//! How far every place on the floor is from the nearest solid.
+//! Distance from every point of the floor to the nearest solid.
 
 use super::{Object, Shape, Wall, World};
 use crate::ParameterError;
 use crate::geometry::{Aabb, Point, Segment, Vector, direction, math};
 use crate::parameter::require_positive;
 
-/// Square cells in rows over a part of the floor. The index of a cell counts along x first, then along y.
+/// Square cells in rows over a part of the floor. Cell indices run along x first, then along y.
 ///
 /// ```
 /// use roverlab::geometry::{Aabb, Point};
@@ -25,10 +25,10 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// The most cells that a raster may have.
+    /// Largest number of cells.
     pub const MAX_CELLS: f64 = 5e7;
 
-    /// Cells of `resolution` metres over a box, which the last column and row may overlap.
+    /// Cells of `resolution` metres over a box; the last column and row may extend beyond it.
     pub fn over(bounds: Aabb, resolution: f64) -> Result<Self, ParameterError> {
         require_positive("resolution", resolution)?;
         let size = bounds.size();
@@ -46,27 +46,27 @@ impl Raster {
         Ok(Self { corner: bounds.min, resolution, columns: columns as usize, rows: rows as usize })
     }
 
-    /// Metres along a cell's edge.
+    /// Size of a cell (m).
     pub fn resolution(&self) -> f64 {
         self.resolution
     }
 
-    /// Cells along x.
+    /// Number of cells along x.
     pub fn columns(&self) -> usize {
         self.columns
     }
 
-    /// Cells along y.
+    /// Number of cells along y.
     pub fn rows(&self) -> usize {
         self.rows
     }
 
-    /// All cells.
+    /// Total number of cells.
     pub fn cells(&self) -> usize {
         self.columns * self.rows
     }
 
-    /// The middle of a cell.
+    /// Centre of a cell.
     #[inline]
     pub fn centre(&self, cell: usize) -> Point {
         self.centre_of(cell % self.columns, cell / self.columns)
@@ -77,7 +77,7 @@ impl Raster {
         self.corner + Vector::new(column as f64 + 0.5, row as f64 + 0.5) * self.resolution
     }
 
-    /// The cell that holds a point, unless the point lies outside of the raster.
+    /// The cell that contains a point; `None` outside of the raster.
     pub fn cell_at(&self, point: Point) -> Option<usize> {
         let place = (point - self.corner) / self.resolution;
         let inside = |x: f64, n: usize| x >= 0.0 && x < n as f64;
@@ -85,7 +85,7 @@ impl Raster {
             .then(|| place.y as usize * self.columns + place.x as usize)
     }
 
-    /// The cells that share an edge with a cell: right, left, above, below.
+    /// Neighbours of a cell across its edges: right, left, above, below.
     #[inline]
     pub fn edge_neighbours(&self, cell: usize) -> [Option<usize>; 4] {
         let column = cell % self.columns;
@@ -97,8 +97,8 @@ impl Raster {
         ]
     }
 
-    /// Numbers the regions of free cells that are connected through edges, from 0 in the order of their first cells;
-    /// `None` for the other cells.
+    /// Numbers the edge-connected regions of free cells from 0, in the order of their first cells; `None` for
+    /// other cells.
     pub fn regions(&self, is_free: impl Fn(usize) -> bool) -> Vec<Option<u32>> {
         let mut regions = vec![None; self.cells()];
         let mut stack = Vec::new();
@@ -122,8 +122,8 @@ impl Raster {
         regions
     }
 
-    /// The indices between two coordinates along an axis that starts at `corner` and has `count` cells: those whose
-    /// middles lie there, and at most one more on either side.
+    /// Indices between two coordinates along an axis that starts at `corner` and has `count` cells: those
+    /// with centres in the interval, and at most one more on each side.
     fn span(&self, corner: f64, count: usize, low: f64, high: f64) -> std::ops::Range<usize> {
         let first = ((low - corner) / self.resolution - 0.5).floor().max(0.0);
         let last = ((high - corner) / self.resolution + 0.5).ceil().clamp(0.0, count as f64);
@@ -131,16 +131,16 @@ impl Raster {
     }
 }
 
-/// The distance from the middle of every cell to the nearest wall or object, where that is less than a limit.
+/// Distance from the centre of every cell to the nearest wall or object, up to a limit.
 ///
-/// Walls are rectangles of their thickness with square ends, objects their outlines seen from above, whatever
-/// stands on the floor or hangs over it. The distances are exact up to rounding; inside a solid they are 0.
+/// Walls are rectangles of their thickness with square ends; objects are their outlines from above, whether
+/// they stand on the floor or hang above it. Distances are exact up to rounding; inside a solid they are 0.
 ///
 /// ```
 /// use roverlab::geometry::Point;
 /// use roverlab::world::{Clearance, World};
 /// let field = Clearance::new(&World::walled(2.0, 1.0), 0.01, 0.3)?;
-/// // 200 mm from the middle line of a wall that is 10 mm thick, give or take half a cell.
+/// // 200 mm from the centre line of a wall 10 mm thick, plus or minus half a cell.
 /// assert!((field.at_point(Point::new(1.0, 0.2)).unwrap() - 0.195).abs() < 0.0051);
 /// # Ok::<(), roverlab::ParameterError>(())
 /// ```
@@ -152,10 +152,10 @@ pub struct Clearance {
 }
 
 impl Clearance {
-    /// Measures a world. The raster covers the world's [site](World::site), and `limit` metres more on each side, so that
-    /// there is a way around a world without a border.
+    /// Computes the clearance of a world. The raster covers the world's [site](World::site) and a margin of
+    /// `limit` metres, so that there is a way around a world without a border.
     ///
-    /// Takes time in proportion to the cells, plus those within the limit of each solid.
+    /// The run time is proportional to the number of cells plus the cells within the limit of each solid.
     pub fn new(world: &World, resolution: f64, limit: f64) -> Result<Self, ParameterError> {
         require_positive("clearance limit", limit)?;
         let thickest = world.walls.iter().map(|wall| 0.5 * wall.thickness).fold(0.0, f64::max);
@@ -171,29 +171,28 @@ impl Clearance {
         Ok(field)
     }
 
-    /// The cells.
+    /// The raster of cells.
     pub fn raster(&self) -> &Raster {
         &self.raster
     }
 
-    /// The distance, in metres, beyond which all places count as equally far.
+    /// Distance beyond which all points count as equally far (m).
     pub fn limit(&self) -> f64 {
         self.limit
     }
 
-    /// Metres between a cell's middle and the nearest solid, at most the limit.
+    /// Distance from a cell's centre to the nearest solid, at most the limit (m).
     #[inline]
     pub fn at(&self, cell: usize) -> f64 {
         self.distances[cell]
     }
 
-    /// Metres between the middle of the cell that holds a point and the nearest solid, at most the limit; `None`
-    /// outside of the raster.
+    /// Clearance of the cell that contains a point, at most the limit (m); `None` outside of the raster.
     pub fn at_point(&self, point: Point) -> Option<f64> {
         self.raster.cell_at(point).map(|cell| self.at(cell))
     }
 
-    /// Sets the distance to 0 inside what is solid.
+    /// Sets the distance to 0 inside solids.
     fn fill(&mut self, is_solid: impl Fn(Point) -> bool) {
         for (cell, distance) in self.distances.iter_mut().enumerate() {
             if is_solid(self.raster.centre(cell)) {
@@ -217,9 +216,9 @@ impl Clearance {
     }
 }
 
-/// The outline of a wall or an object on the floor.
+/// Outline of a wall or object on the floor.
 enum Solid {
-    /// A rectangle: all points beside a spine, up to half its width.
+    /// A rectangle: all points beside a spine, within half its width.
     Bar { spine: Segment, axis: Vector, half_length: f64, half_width: f64 },
     /// A disc.
     Disc { middle: Point, radius: f64 },
@@ -267,7 +266,7 @@ impl Solid {
         }
     }
 
-    /// The lowest and the highest y within `limit` of the solid, or somewhat beyond.
+    /// Lowest and highest y within `limit` of the solid, or slightly beyond.
     fn spine_rows(&self, limit: f64) -> (f64, f64) {
         match *self {
             Self::Disc { middle, radius } => (middle.y - radius - limit, middle.y + radius + limit),
@@ -278,8 +277,8 @@ impl Solid {
         }
     }
 
-    /// The x between which the points of height `y` within `limit` of the solid lie, or somewhat beyond: what is
-    /// left of the spine within reach of that height, and the reach to both sides.
+    /// The part of the spine relevant to the points of height `y` within `limit` of the solid, and its reach
+    /// to both sides, or slightly more.
     fn columns_at(&self, y: f64, limit: f64) -> Option<(f64, f64)> {
         let (spine, reach) = match *self {
             Self::Disc { middle, radius } => (Segment::new(middle, middle), radius + limit),
@@ -352,7 +351,8 @@ mod tests {
         }
     }
 
-    /// The walls of a map go round its blocks; the inside is as solid, wherever the map lies and however it is turned.
+    /// The walls of a map surround its blocks. Their inside is also solid, wherever the map lies and however
+    /// it is rotated.
     #[test]
     fn the_inside_of_a_block_of_a_map_is_solid() {
         let mut map = OccupancyGrid::unknown(10, 10, 0.5, Pose::new(2.0, -1.0, 0.4)).unwrap();

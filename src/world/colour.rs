@@ -1,6 +1,6 @@
 use std::fmt;
 
-/// An opaque colour, 8 bits a channel.
+/// An opaque colour with 8 bits per channel.
 ///
 /// ```
 /// use roverlab::world::Colour;

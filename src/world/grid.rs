@@ -4,20 +4,20 @@ use std::sync::Arc;
 use crate::geometry::{Aabb, Point, Pose, Segment};
 use crate::world::{Wall, World};
 
-/// What a cell of an occupancy grid holds.
+/// State of a cell of an occupancy grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Occupancy {
     /// Nothing.
     Free,
     /// An obstacle.
     Occupied,
-    /// Not known, or neither free nor occupied for certain.
+    /// Unknown, or neither free nor occupied for certain.
     Unknown,
 }
 
-/// A map of square cells, each with its occupancy in percent: the `OccupancyGrid` of ROS.
+/// A map of square cells with an occupancy in percent: the `OccupancyGrid` of ROS.
 ///
-/// Columns count along the grid's x axis and rows along its y axis, both from 0 at the lower left cell.
+/// Columns run along the grid's x axis and rows along its y axis, both from 0 at the lower left cell.
 ///
 /// ```
 /// use roverlab::geometry::{Point, Pose};
@@ -35,16 +35,16 @@ pub struct OccupancyGrid {
     height: usize,
     resolution: f64,
     origin: Pose,
-    /// Row by row from the lowest; -1 is unknown.
+    /// Rows from the lowest; -1 is unknown.
     values: Vec<i8>,
 }
 
 impl OccupancyGrid {
-    /// The most cells that a grid may have.
+    /// Largest number of cells.
     pub const MAX_CELLS: usize = 1 << 25;
 
-    /// A grid of unknown cells: `width` by `height` of them, `resolution` metres wide, the lower left corner of the
-    /// lowest left cell at `origin`.
+    /// A grid of `width` by `height` unknown cells of `resolution` metres, with the lower left corner of the
+    /// lower left cell at `origin`.
     pub fn unknown(
         width: usize,
         height: usize,
@@ -67,27 +67,27 @@ impl OccupancyGrid {
         Ok(Self { width, height, resolution, origin, values: vec![-1; cells] })
     }
 
-    /// Cells along the grid's x axis.
+    /// Number of cells along the grid's x axis.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Cells along the grid's y axis.
+    /// Number of cells along the grid's y axis.
     pub fn height(&self) -> usize {
         self.height
     }
 
-    /// Metres from one cell to the next.
+    /// Cell size (m).
     pub fn resolution(&self) -> f64 {
         self.resolution
     }
 
-    /// The pose of the lower left corner of the lowest left cell in the world.
+    /// Pose in the world of the lower left corner of the lower left cell.
     pub fn origin(&self) -> Pose {
         self.origin
     }
 
-    /// What a cell holds: 0 % is free, 100 % occupied, all else unknown, and so is what lies outside.
+    /// State of a cell: 0 % is free, 100 % is occupied, everything else is unknown, also outside the grid.
     pub fn cell(&self, column: usize, row: usize) -> Occupancy {
         match self.occupancy(column, row) {
             Some(0) => Occupancy::Free,
@@ -96,19 +96,19 @@ impl OccupancyGrid {
         }
     }
 
-    /// Percent of certainty that a cell is occupied, 0 to 100; `None` if unknown or outside.
+    /// Occupancy of a cell in percent, 0 to 100; `None` if unknown or outside.
     pub fn occupancy(&self, column: usize, row: usize) -> Option<u8> {
         self.index(column, row).and_then(|index| u8::try_from(self.values[index]).ok())
     }
 
-    /// Sets the percentage of a cell. More than 100 counts as unknown; outside the grid nothing happens.
+    /// Sets the percentage of a cell. More than 100 means unknown; no effect outside the grid.
     pub fn set_occupancy(&mut self, column: usize, row: usize, percent: Option<u8>) {
         if let Some(index) = self.index(column, row) {
             self.values[index] = percent.filter(|&p| p <= 100).map_or(-1, |p| p as i8);
         }
     }
 
-    /// Sets what a cell holds. Outside the grid nothing happens.
+    /// Sets the state of a cell; no effect outside the grid.
     pub fn set(&mut self, column: usize, row: usize, cell: Occupancy) {
         let percent = match cell {
             Occupancy::Free => Some(0),
@@ -118,7 +118,7 @@ impl OccupancyGrid {
         self.set_occupancy(column, row, percent);
     }
 
-    /// How many cells hold something.
+    /// Number of cells in a state.
     pub fn count(&self, cell: Occupancy) -> usize {
         let value = match cell {
             Occupancy::Free => 0,
@@ -130,12 +130,12 @@ impl OccupancyGrid {
         self.values.iter().filter(|&&v| v == value).count()
     }
 
-    /// How many cells have no percentage at all.
+    /// Number of cells without a percentage.
     pub fn count_unknown(&self) -> usize {
         self.values.iter().filter(|&&v| v < 0).count()
     }
 
-    /// The column and row of the cell in which a point of the world lies.
+    /// Column and row of the cell that contains a point of the world.
     pub fn cell_at(&self, point: Point) -> Option<(usize, usize)> {
         let local = self.origin.to_local(point);
         let (column, row) = ((local.x / self.resolution).floor(), (local.y / self.resolution).floor());
@@ -143,27 +143,28 @@ impl OccupancyGrid {
         inside.then_some((column as usize, row as usize))
     }
 
-    /// The middle of a cell in the world.
+    /// Centre of a cell in the world.
     pub fn centre(&self, column: usize, row: usize) -> Point {
         self.place(column as f64 + 0.5, row as f64 + 0.5)
     }
 
-    /// The smallest box along the world's axes around the grid.
+    /// Bounding box of the grid along the world's axes.
     pub fn bounds(&self) -> Aabb {
         let (w, h) = (self.width as f64, self.height as f64);
         let corners = [(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)].map(|(x, y)| self.place(x, y));
         Aabb::around(corners).unwrap_or_else(|| Aabb::new(self.origin.position(), self.origin.position()))
     }
 
-    /// The outlines of the occupied cells as walls without thickness. Edges in line are joined into one wall, so a
-    /// straight wall of the map is a single wall of the world.
+    /// Outlines of the occupied cells as walls of zero thickness. Collinear edges are joined, so a straight
+    /// wall of the map is one wall of the world.
     pub fn to_walls(&self) -> Vec<Wall> {
         let mut walls = Vec::new();
         self.for_each_outline(|line| walls.push(Wall { thickness: 0.0, ..Wall::new(line.a, line.b) }));
         walls
     }
 
-    /// A world with the outlines of the occupied cells as walls, and a floor as large as the grid, which it keeps as its map.
+    /// A world with the outlines of the occupied cells as walls and a floor of the grid's size; it keeps the
+    /// grid as its map.
     pub fn to_world(&self) -> World {
         let mut world = World::empty(0.0, 0.0);
         world.floor = self.bounds();
@@ -172,7 +173,7 @@ impl OccupancyGrid {
         world
     }
 
-    /// How many walls [`OccupancyGrid::to_walls`] gives.
+    /// Number of walls of [`OccupancyGrid::to_walls`].
     pub fn count_walls(&self) -> usize {
         let mut count = 0;
         self.for_each_outline(|_| count += 1);
@@ -207,7 +208,7 @@ impl OccupancyGrid {
         Segment::new(self.place(a.0 as f64, a.1 as f64), self.place(b.0 as f64, b.1 as f64))
     }
 
-    /// A point given in cells, in the world.
+    /// World position of a point in cell units.
     fn place(&self, x: f64, y: f64) -> Point {
         self.origin.to_world(Point::new(x * self.resolution, y * self.resolution))
     }
@@ -217,7 +218,7 @@ impl OccupancyGrid {
     }
 }
 
-/// Calls `found(first, end)` for each maximal stretch of `0..count` on which `holds`.
+/// Calls `found(first, end)` for each maximal interval of `0..count` where `holds`.
 fn for_each_run(count: usize, holds: impl Fn(usize) -> bool, mut found: impl FnMut(usize, usize)) {
     let mut start = None;
     for i in 0..=count {
@@ -292,7 +293,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(crate::testing::cases(256))]
-        /// Crossing an outline changes between occupied and not: the walls' length is that of all such edges.
+        /// Outlines separate occupied cells from others: the walls' total length is that of all such edges.
         #[test]
         fn outlines_are_as_long_as_the_edges_between_cells(
             cells in proptest::collection::vec(any::<bool>(), 24), heading in -3.0..3.0f64

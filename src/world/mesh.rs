@@ -5,54 +5,54 @@ use image::RgbaImage;
 use super::Colour;
 use crate::geometry::math;
 
-/// The surface of a thing as cameras see it: triangles, seen from both sides.
+/// The surface of a thing for cameras: triangles, visible from both sides.
 ///
-/// Places are metres ahead, to the left and upwards of the thing's foot. No robot touches it and no other
-/// sensor notices it: they meet the thing's shape.
+/// Points are metres ahead, to the left and up from the thing's foot. Robots and other sensors do not notice
+/// the mesh; for them, the thing has its shape.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Mesh {
-    /// What the faces are made of.
+    /// Materials of the faces.
     pub materials: Vec<Material>,
     /// The triangles.
     pub faces: Vec<Face>,
 }
 
-/// What a face is made of.
+/// Material of a face.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
-    /// Its colour, by which that of the image is multiplied.
+    /// Its colour, which multiplies that of the image.
     pub colour: Colour,
-    /// An image; pixels less than half opaque are not there.
+    /// An image; pixels with less than half opacity are invisible.
     pub image: Option<Arc<RgbaImage>>,
 }
 
 /// A triangle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Face {
-    /// Where its corners are.
+    /// Positions of its corners.
     pub corners: [[f64; 3]; 3],
-    /// Where they are in the material's image: columns from its left edge and rows from its upper edge, each
-    /// in parts of the image's size. Beyond 0 to 1 the image repeats.
+    /// Their positions in the material's image: columns from its left edge and rows from its upper edge, as
+    /// fractions of the image's size. Outside 0 to 1 the image repeats.
     pub image_corners: [[f64; 2]; 3],
-    /// The index of what it is made of.
+    /// Index of its material.
     pub material: usize,
 }
 
 impl Mesh {
-    /// The radius of the ball about the foot that holds it.
+    /// Radius of the enclosing ball about the foot.
     pub fn reach(&self) -> f64 {
         let corners = self.faces.iter().flat_map(|face| face.corners);
         corners.map(|c| c.iter().map(|x| x * x).sum::<f64>()).fold(0.0, f64::max).sqrt()
     }
 
-    /// Adds a material, and returns its index.
+    /// Adds a material; returns its index.
     pub(super) fn paint(&mut self, colour: Colour, image: Option<RgbaImage>) -> usize {
         self.materials.push(Material { colour, image: image.map(Arc::new) });
         self.materials.len() - 1
     }
 
-    /// Adds a flat quadrangle with the whole of the material's image on it: its upper left, lower left, lower
-    /// right and upper right corner.
+    /// Adds a flat quadrangle with the whole image of its material. The corners are upper left, lower left,
+    /// lower right and upper right.
     pub(super) fn quadrangle(&mut self, corners: [[f64; 3]; 4], material: usize) {
         let on_image = [[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, 0.0]];
         for order in [[0, 1, 2], [0, 2, 3]] {
@@ -65,10 +65,10 @@ impl Mesh {
         }
     }
 
-    /// Adds what turns about the upright axis through the foot: rings of a radius at a height, each joined to
-    /// the next.
+    /// Adds a surface of revolution about the upright axis through the foot: rings with a radius and height,
+    /// each joined to the next.
     pub(super) fn turned(&mut self, rings: &[[f64; 2]], material: usize) {
-        /// Sides of the prism that stands for a cylinder.
+        /// Number of sides of a cylinder's prism.
         const SIDES: usize = 20;
         let at = |[radius, height]: [f64; 2], side: usize| {
             let (sin, cos) = math::sin_cos(std::f64::consts::TAU * (side % SIDES) as f64 / SIDES as f64);

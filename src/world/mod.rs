@@ -1,7 +1,7 @@
-//! What a world and a robot are, and every file format that describes one.
+//! Descriptions of worlds and robots, and their file formats.
 //!
-//! A [`Scene`] is a [`World`] with robots in it. The types are plain data in SI units; the readers and writers of
-//! the EyeSim and ROS formats are in [`formats`].
+//! A [`Scene`] is a [`World`] with robots. The types are plain data in SI units; readers and writers of the
+//! EyeSim and ROS formats are in [`formats`].
 
 mod bit_grid;
 mod body;
@@ -21,6 +21,7 @@ pub mod space;
 mod terrain;
 mod texture;
 mod wall;
+mod water;
 #[cfg(feature = "parry2d")]
 mod with_parry;
 
@@ -32,12 +33,13 @@ pub use grid::{Occupancy, OccupancyGrid};
 pub use mesh::{Face, Material, Mesh};
 pub use object::{Billboard, Marker, Object, ObjectKind, Shape};
 pub use robot::{
-    CameraSpec, CarDynamics, DriveSpec, Footprint, InertialSpec, LidarSpec, Mast, MotorSpec, Mount, PsdSpec,
-    RobotSpec,
+    CameraSpec, CarDynamics, DepthSensorSpec, DriveSpec, Footprint, InertialSpec, LidarSpec, Mast, MotorSpec,
+    Mount, PsdSpec, RobotSpec,
 };
 pub use scene::{Place, RobotPlacement, Scene, Settings, World};
 pub use terrain::{HeightField, Terrain};
 pub use texture::Texture;
 pub use wall::Wall;
+pub use water::{Water, Waves};
 #[cfg(feature = "parry2d")]
 pub use with_parry::ParryError;

@@ -6,44 +6,44 @@ use image::RgbaImage;
 use super::{Body, Colour, Mesh};
 use crate::geometry::{Point, Pose};
 
-/// A solid that stands on the floor, upright.
+/// An upright solid on the floor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Shape {
     /// A cylinder, or an upright capsule.
     Cylinder {
-        /// Metres from the axis to the surface.
+        /// Distance from the axis to the surface (m).
         radius: f64,
-        /// Metres from foot to top.
+        /// Height from foot to top (m).
         height: f64,
     },
-    /// A blunt cone.
+    /// A truncated cone.
     Cone {
-        /// Metres from the axis to the edge of its foot.
+        /// Radius of its foot (m).
         radius: f64,
-        /// Metres from the axis to the edge of its top.
+        /// Radius of its top (m).
         top: f64,
-        /// Metres from foot to top.
+        /// Height from foot to top (m).
         height: f64,
     },
     /// A ball.
     Sphere {
-        /// Metres.
+        /// Radius (m).
         radius: f64,
     },
     /// A cuboid.
     Box {
-        /// Metres along the object's x axis.
+        /// Length along the object's x axis (m).
         length: f64,
-        /// Metres along the object's y axis.
+        /// Width along the object's y axis (m).
         width: f64,
-        /// Metres from foot to top.
+        /// Height from foot to top (m).
         height: f64,
     },
 }
 
 impl Shape {
-    /// Metres from the foot to the top.
+    /// Height from foot to top (m).
     pub fn height(&self) -> f64 {
         match *self {
             Shape::Cylinder { height, .. } | Shape::Cone { height, .. } | Shape::Box { height, .. } => height,
@@ -51,7 +51,7 @@ impl Shape {
         }
     }
 
-    /// The radius of the circle around the object's axis that just holds it.
+    /// Radius of the smallest enclosing circle about the object's axis.
     pub fn bounding_radius(&self) -> f64 {
         match *self {
             Shape::Cylinder { radius, .. } | Shape::Sphere { radius } => radius,
@@ -61,7 +61,7 @@ impl Shape {
     }
 }
 
-/// What all objects of one kind share: EyeSim's `.esObj`, or one of its predefined objects.
+/// Common properties of all objects of a kind: EyeSim's `.esObj`, or a predefined object.
 ///
 /// ```
 /// use roverlab::geometry::Pose;
@@ -73,31 +73,31 @@ impl Shape {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObjectKind {
-    /// The name under which scenes place it.
+    /// Name for scenes.
     pub name: String,
-    /// Its outline.
+    /// Its shape.
     pub shape: Shape,
     /// Its colour.
     pub colour: Colour,
-    /// Kilograms.
+    /// Mass (kg).
     pub mass: f64,
-    /// Whether it stays where it is when something pushes it.
+    /// Whether it stays in place when pushed.
     pub fixed: bool,
-    /// Whether it falls over when a robot that weighs no less than it does touches it. It lies flat then:
-    /// nothing meets it and no sensor sees it.
+    /// Whether it falls over when touched by a robot that weighs at least as much. It then lies flat: nothing
+    /// collides with it and no sensor sees it.
     pub falls: bool,
-    /// Cubic metres of water that it displaces, for things that float.
+    /// Displaced volume of water, for floating things (m³).
     pub buoyancy: Option<f64>,
-    /// The file of its 3D model, if it has one.
+    /// File of its 3D model.
     pub model: Option<PathBuf>,
-    /// The surface that cameras see; without it, they see the shape.
+    /// Surface for cameras; default: the shape.
     pub mesh: Option<Arc<Mesh>>,
-    /// What its description file says about its solid beyond the shape.
+    /// Data of its description file about its solid beyond the shape.
     pub body: Body,
 }
 
 impl ObjectKind {
-    /// A kind with a name, a shape and a colour, of 1 kg, movable.
+    /// A kind with a name, shape and colour; 1 kg, movable.
     pub fn new(name: impl Into<String>, shape: Shape, colour: Colour) -> Self {
         Self {
             name: name.into(),
@@ -117,11 +117,11 @@ impl ObjectKind {
 /// An object in a world.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Object {
-    /// What it is.
+    /// Its kind.
     pub kind: Arc<ObjectKind>,
-    /// Where its axis stands, and how it is turned.
+    /// Position of its axis, and its orientation.
     pub pose: Pose,
-    /// Metres between the floor and its foot.
+    /// Height of its foot above the floor (m).
     pub elevation: f64,
 }
 
@@ -132,27 +132,27 @@ impl Object {
     }
 }
 
-/// A picture on an upright board of no thickness: a sign, a figure, a poster.
+/// A picture on an upright board of zero thickness: a sign, a figure, a poster.
 ///
-/// Cameras see it; no robot touches it and no other sensor notices it.
+/// Only cameras see it; robots and other sensors do not notice it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Billboard {
-    /// The middle of its lower edge; its picture faces the way of the heading, and its back is gray.
+    /// Middle of its lower edge; its picture faces along the heading, and its back is gray.
     pub pose: Pose,
-    /// Metres from its left to its right edge.
+    /// Width (m).
     pub width: f64,
-    /// Metres from its lower to its upper edge.
+    /// Height (m).
     pub height: f64,
-    /// Metres from the floor to its lower edge.
+    /// Height of its lower edge above the floor (m).
     pub elevation: f64,
-    /// The picture; pixels less than half opaque are not there.
+    /// The picture; pixels with less than half opacity are invisible.
     pub image: Arc<RgbaImage>,
 }
 
-/// A coloured mark on the floor, which no robot touches.
+/// A coloured mark on the floor, without physical effect.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Marker {
-    /// Its middle.
+    /// Its centre.
     pub position: Point,
     /// Its colour.
     pub colour: Colour,

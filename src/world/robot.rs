@@ -4,9 +4,10 @@ use std::sync::Arc;
 use super::{Body, Mesh};
 use crate::ParameterError;
 use crate::geometry::{Aabb, Point3, Pose3};
+use crate::kinematics::marine::CraftSpec;
 use crate::parameter::{require, require_finite, require_not_negative, require_positive};
 
-/// A description of a robot: its drive, outline and sensors. EyeSim's `.robi`.
+/// Description of a robot: drive, outline and sensors. EyeSim's `.robi`.
 ///
 /// ```
 /// use roverlab::world::{Footprint, RobotSpec};
@@ -16,109 +17,113 @@ use crate::parameter::{require, require_finite, require_not_negative, require_po
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct RobotSpec {
-    /// The name under which scenes place it.
+    /// Name for scenes.
     pub name: String,
-    /// How it moves.
+    /// Its drive.
     pub drive: DriveSpec,
-    /// What its motors can do.
+    /// Limits of its motors.
     pub motor: MotorSpec,
-    /// Its outline on the floor, about the middle of its driven axle.
+    /// Its outline on the floor, relative to the middle of its driven axle.
     pub footprint: Footprint,
-    /// Metres from the floor to its top: what other robots' sensors see.
+    /// Height of its top above the floor, for other robots' sensors (m).
     pub height: f64,
-    /// What stands up above that, if anything.
+    /// A mast above that height.
     pub mast: Option<Mast>,
-    /// Kilograms.
+    /// Mass (kg).
     pub mass: f64,
-    /// The coefficient of friction between the ground and its wheels or belts, which counts on hills.
+    /// Coefficient of friction between the ground and its wheels or belts, used on hills.
     pub friction: f64,
-    /// Its position-sensitive devices: single-ray distance sensors.
+    /// Its position-sensitive devices: distance sensors with a single ray.
     pub psds: Vec<PsdSpec>,
     /// Its laser scanner, if it has one.
     pub lidar: Option<LidarSpec>,
     /// Its camera, if it has one.
     pub camera: Option<CameraSpec>,
-    /// What its inertial unit measures.
+    /// Its pressure sensor, if it has one.
+    pub depth_sensor: Option<DepthSensorSpec>,
+    /// Measurements of its inertial unit.
     pub inertial: InertialSpec,
-    /// The file of its 3D model, if it has one.
+    /// File of its 3D model.
     pub model: Option<PathBuf>,
-    /// The surface that cameras see; without it, they see the outline.
+    /// Surface for cameras; default: the outline.
     pub mesh: Option<Arc<Mesh>>,
-    /// What its description file says about its solid beyond footprint and height.
+    /// Data of its description file about its solid beyond footprint and height.
     pub body: Body,
 }
 
 /// How a robot moves.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum DriveSpec {
     /// Two driven wheels side by side.
     Differential {
-        /// Metres.
+        /// Wheel diameter (m).
         wheel_diameter: f64,
-        /// Metres between the wheels' contact points.
+        /// Distance between the wheels' contact points (m).
         track: f64,
-        /// The fastest that a wheel turns, in radians per second.
+        /// Highest wheel speed (rad/s).
         max_wheel_speed: f64,
-        /// Encoder ticks in one turn of a wheel.
+        /// Encoder ticks per wheel turn.
         ticks_per_turn: f64,
     },
-    /// Driven rear wheels and steered front wheels, as a car.
+    /// Driven rear wheels and steered front wheels, like a car.
     Ackermann {
-        /// Metres.
+        /// Wheel diameter (m).
         wheel_diameter: f64,
-        /// Metres between the wheels of an axle.
+        /// Distance between the wheels of an axle (m).
         track: f64,
-        /// Metres between the axles.
+        /// Distance between the axles (m).
         wheelbase: f64,
-        /// The largest steering angle of the bicycle model, in radians.
+        /// Largest steering angle of the bicycle model (rad).
         max_steering: f64,
-        /// The fastest that a wheel turns, in radians per second.
+        /// Highest wheel speed (rad/s).
         max_wheel_speed: f64,
-        /// Encoder ticks in one turn of a wheel.
+        /// Encoder ticks per wheel turn.
         ticks_per_turn: f64,
-        /// Its mass and its tyres, for a car so fast that they matter; without it, wheels roll and never
-        /// slip.
+        /// Mass and tyres of a car that is fast enough to slip; without it, wheels roll without slip.
         dynamics: Option<CarDynamics>,
     },
-    /// Two belts side by side, which turn their robot by skidding. Its origin is in the middle between them.
+    /// Two belts side by side, with skid steering. The robot's origin is midway between them.
     Tracked {
-        /// Metres across the wheel that drives a belt.
+        /// Diameter of the wheel that drives a belt (m).
         wheel_diameter: f64,
-        /// Metres between the belts' middles.
+        /// Distance between the belts' centre lines (m).
         track: f64,
-        /// Metres of a belt that lie on the ground.
+        /// Length of a belt on the ground (m).
         length: f64,
-        /// Metres across a belt.
+        /// Width of a belt (m).
         width: f64,
-        /// The fastest that a driving wheel turns, in radians per second.
+        /// Highest speed of a driving wheel (rad/s).
         max_wheel_speed: f64,
-        /// Encoder ticks in one turn of a driving wheel.
+        /// Encoder ticks per turn of a driving wheel.
         ticks_per_turn: f64,
     },
     /// Four Mecanum wheels.
     Omni {
-        /// Metres.
+        /// Wheel diameter (m).
         wheel_diameter: f64,
-        /// Metres between left and right wheels.
+        /// Distance between left and right wheels (m).
         track: f64,
-        /// Metres between front and rear wheels.
+        /// Distance between front and rear wheels (m).
         wheelbase: f64,
-        /// The fastest that a wheel turns, in radians per second.
+        /// Highest wheel speed (rad/s).
         max_wheel_speed: f64,
-        /// Encoder ticks in one turn of a wheel.
+        /// Encoder ticks per wheel turn.
         ticks_per_turn: f64,
     },
+    /// A boat or an underwater craft: its hull, its mass and its thrusters, about a point on the floor below it.
+    Craft(Arc<CraftSpec>),
 }
 
 impl DriveSpec {
-    /// The fastest rim speed of its wheels, in metres per second.
+    /// The fastest rim speed of its wheels, or the speed of a craft at full thrust, in metres per second.
     pub fn top_speed(&self) -> f64 {
         match *self {
             Self::Differential { wheel_diameter, max_wheel_speed, .. }
             | Self::Ackermann { wheel_diameter, max_wheel_speed, .. }
             | Self::Tracked { wheel_diameter, max_wheel_speed, .. }
             | Self::Omni { wheel_diameter, max_wheel_speed, .. } => 0.5 * wheel_diameter * max_wheel_speed,
+            Self::Craft(ref craft) => craft.top_speed(),
         }
     }
 
@@ -126,42 +131,41 @@ impl DriveSpec {
     pub fn dynamics(&self) -> Option<CarDynamics> {
         match *self {
             Self::Ackermann { dynamics, .. } => dynamics,
-            Self::Differential { .. } | Self::Tracked { .. } | Self::Omni { .. } => None,
+            Self::Differential { .. } | Self::Tracked { .. } | Self::Omni { .. } | Self::Craft(_) => None,
         }
     }
 }
 
-/// Mass and tyres of a car: the dynamic bicycle model, with an axle's two tyres in one and no transfer of
-/// load.
+/// Mass and tyres of a car: the dynamic bicycle model, with one equivalent tyre per axle and without load
+/// transfer.
 ///
-/// The car accelerates as its [`MotorSpec`] says: the time constant is that with which its speed controller
-/// closes a difference, and the acceleration the motors' greatest.
+/// The car accelerates according to its [`MotorSpec`]: the time constant is that of its speed controller, and
+/// the acceleration the motors' largest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CarDynamics {
-    /// Metres from the rear axle to the centre of mass.
+    /// Distance from the rear axle to the centre of mass (m).
     pub mass_centre: f64,
-    /// The radius of gyration about the upright axis, in metres.
+    /// Radius of gyration about the vertical axis (m).
     pub gyration: f64,
-    /// The radius of the friction circle as an acceleration, in m/s².
+    /// Radius of the friction circle as an acceleration (m/s²).
     pub grip: f64,
-    /// The cornering force of a tyre for its load and its slip angle, in 1/rad.
+    /// Cornering force of a tyre per load and slip angle (1/rad).
     pub stiffness: f64,
-    /// Grip and stiffness of the front tyres as a share of those of the rear ones: less than 1, so that the
-    /// front slides first.
+    /// Grip and stiffness of the front tyres relative to the rear ones; below 1, the front slides first.
     pub balance: f64,
-    /// The greatest deceleration by the brakes, in m/s².
+    /// Largest deceleration of the brakes (m/s²).
     pub brake: f64,
-    /// Radians per second at which the steering turns.
+    /// Rate at which the steering turns (rad/s).
     pub steering_rate: f64,
 }
 
 impl CarDynamics {
-    /// Metres per second above which tyres slip. Below half of it wheels roll; between, it is a mixture.
+    /// Speed above which tyres slip (m/s). Below half of it, wheels roll; in between, both are blended.
     pub const SLIPS: f64 = 4.0;
 }
 
 impl Default for CarDynamics {
-    /// A student's Formula car.
+    /// A Formula Student car.
     fn default() -> Self {
         Self {
             mass_centre: 0.75,
@@ -175,29 +179,29 @@ impl Default for CarDynamics {
     }
 }
 
-/// What a robot's motors can do.
+/// Limits of a robot's motors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotorSpec {
-    /// The time constant, in seconds, of the first-order lag with which wheel speed follows the command.
+    /// Time constant of the first-order lag between command and wheel speed (s).
     pub time_constant: f64,
-    /// The largest change of a wheel's rim speed, in metres per second squared.
+    /// Largest change of a wheel's rim speed (m/s²).
     pub max_acceleration: f64,
 }
 
 impl Default for MotorSpec {
-    /// A lag of 0.2 s, the middle of the range in which the book's programs work, and 2 m/s².
+    /// A lag of 0.2 s, in the middle of the range for the book's programs, and 2 m/s².
     fn default() -> Self {
         Self { time_constant: 0.2, max_acceleration: 2.0 }
     }
 }
 
-/// The outline on the floor of a robot or another solid, in its own frame.
+/// Outline of a robot or other solid on the floor, in its own frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Footprint {
     /// A disc about the origin: for a robot, the middle of the driven axle.
     Disc {
-        /// Metres.
+        /// Radius (m).
         radius: f64,
     },
     /// A rectangle along the frame's axes.
@@ -205,7 +209,7 @@ pub enum Footprint {
 }
 
 impl Footprint {
-    /// The radius of the circle about the robot's origin that just holds the outline.
+    /// Radius of the smallest enclosing circle about the robot's origin.
     pub fn bounding_radius(&self) -> f64 {
         match self {
             Footprint::Disc { radius } => *radius,
@@ -224,7 +228,7 @@ impl Footprint {
         }
     }
 
-    /// Whether a rectangle of the robot's frame lies within the outline.
+    /// Whether a rectangle of the robot's frame is within the outline.
     fn holds(&self, part: &Aabb) -> bool {
         match self {
             Footprint::Disc { radius } => Footprint::Rectangle(*part).bounding_radius() <= *radius,
@@ -238,7 +242,7 @@ impl Footprint {
     }
 }
 
-/// Fails unless a rectangle has a finite width and depth above zero.
+/// Fails unless a rectangle has a finite positive width and depth.
 fn validate_outline(outline: &Aabb) -> Result<(), ParameterError> {
     for (name, least, most) in
         [("outline along x", outline.min.x, outline.max.x), ("outline along y", outline.min.y, outline.max.y)]
@@ -250,40 +254,40 @@ fn validate_outline(outline: &Aabb) -> Result<(), ParameterError> {
     Ok(())
 }
 
-/// A part of a robot that is higher and narrower than the rest: a handle, a pole. Rays meet it; what drives
-/// into the robot meets its footprint, in which the mast stands.
+/// A part of a robot that is higher and narrower than the rest, such as a handle or pole. Rays hit it;
+/// collisions use the footprint, which contains the mast.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mast {
     /// Its rectangle in the robot's frame.
     pub outline: Aabb,
-    /// Metres from the robot's foot to the mast's top.
+    /// Height of its top above the robot's foot (m).
     pub top: f64,
 }
 
-/// Where a sensor sits on a robot.
+/// Pose of a sensor on a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Mount {
-    /// Metres ahead of the middle of the driven axle.
+    /// Distance ahead of the middle of the driven axle (m).
     pub x: f64,
-    /// Metres to the left of it.
+    /// Distance to its left (m).
     pub y: f64,
-    /// Metres above the floor.
+    /// Height above the floor (m).
     pub z: f64,
-    /// Radians by which its left side is above its right one.
+    /// Roll, positive with the left side up (rad).
     pub roll: f64,
-    /// Radians by which it looks down.
+    /// Pitch, positive downwards (rad).
     pub pitch: f64,
-    /// Radians counter-clockwise from straight ahead.
+    /// Yaw, counter-clockwise from straight ahead (rad).
     pub yaw: f64,
 }
 
 impl Mount {
-    /// The sensor's frame in that of the robot: roll, pitch and yaw turn it about fixed axes in this order.
+    /// The sensor's frame in the robot's frame: roll, pitch and yaw rotate it about fixed axes in this order.
     pub fn frame(&self) -> Pose3 {
         Pose3::from_angles(Point3::new(self.x, self.y, self.z), self.roll, self.pitch, self.yaw)
     }
 
-    /// Whether the sensor's plane is that of the robot's floor.
+    /// Whether the sensor's plane is parallel to the robot's floor.
     pub fn is_level(&self) -> bool {
         self.roll == 0.0 && self.pitch == 0.0
     }
@@ -303,42 +307,42 @@ impl Mount {
     }
 }
 
-/// A position-sensitive device: a distance sensor of one ray.
+/// A position-sensitive device: a distance sensor with a single ray.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PsdSpec {
-    /// The number by which programs read it.
+    /// Number for programs.
     pub id: u8,
     /// Its name in the robot's description.
     pub name: String,
-    /// Where it sits, and where it points.
+    /// Its position and direction.
     pub mount: Mount,
-    /// The farthest distance that it reports, in metres.
+    /// Longest distance that it reports (m).
     pub max_range: f64,
 }
 
 impl PsdSpec {
-    /// RoBIOS reports nothing beyond 9.999 m.
+    /// RoBIOS reports no distances beyond 9.999 m.
     pub const DEFAULT_MAX_RANGE: f64 = 9.999;
 }
 
 /// A laser scanner.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LidarSpec {
-    /// Where it sits, and how its plane is turned. The scan is centred on its yaw.
+    /// Its position and the orientation of its plane. The scan is centred on its yaw.
     pub mount: Mount,
-    /// The angle that a scan covers, in radians, at most a full turn.
+    /// Field of view (rad), at most a full turn.
     pub field_of_view: f64,
-    /// Radians by which each beam points above the scanner's plane, so that they make a cone.
+    /// Elevation of each beam above the scanner's plane (rad), which makes the scan a cone.
     pub tilt: f64,
-    /// Beams in a scan.
+    /// Number of beams per scan.
     pub points: usize,
-    /// The farthest distance that it reports, in metres.
+    /// Longest distance that it reports (m).
     pub max_range: f64,
 }
 
 impl Default for LidarSpec {
-    /// 360 level beams all round, 40 mm above the floor, so that they meet other robots and a golf ball; as far as
-    /// RoBIOS reports.
+    /// 360 level beams all round, 40 mm above the floor, so that they hit other robots and a golf ball; with
+    /// the range of RoBIOS.
     fn default() -> Self {
         Self {
             mount: Mount { z: 0.04, ..Mount::default() },
@@ -353,23 +357,23 @@ impl Default for LidarSpec {
 /// A camera on a pan-tilt head.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CameraSpec {
-    /// Where it sits; the yaw is the pan at rest. Its roll and pitch are 0.
+    /// Its position; the yaw is the pan at rest. Its roll and pitch are 0.
     pub mount: Mount,
-    /// Radians above the horizontal at rest.
+    /// Elevation angle at rest (rad).
     pub tilt: f64,
-    /// The largest pan to either side, in radians.
+    /// Largest pan to either side (rad).
     pub max_pan: f64,
-    /// The largest tilt up or down, in radians.
+    /// Largest tilt up or down (rad).
     pub max_tilt: f64,
-    /// The horizontal field of view, in radians.
+    /// Horizontal field of view (rad).
     pub field_of_view: f64,
-    /// Whether the lens is equidistant, as fisheyes are: a place in the picture is as far from the middle as
-    /// its angle from the line of sight says, twice as far for twice the angle. Other cameras are pinholes.
+    /// Whether the lens is an equidistant fisheye: the distance of an image point from the centre is
+    /// proportional to its angle from the line of sight. Other cameras are pinholes.
     pub fisheye: bool,
 }
 
 impl CameraSpec {
-    /// The horizontal field of view of a camera that states none, in radians: 60 degrees.
+    /// Default horizontal field of view of a camera (rad): 60 degrees.
     pub const DEFAULT_FIELD_OF_VIEW: f64 = std::f64::consts::FRAC_PI_3;
 
     fn validate(&self) -> Result<(), ParameterError> {
@@ -390,27 +394,36 @@ impl CameraSpec {
     }
 }
 
-/// What a robot's inertial unit measures, and the channels by which RoBIOS programs read it with `ANALOGRead`. The
-/// default measures nothing: a robot without a unit.
+/// A pressure sensor that measures depth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DepthSensorSpec {
+    /// The channel by which RoBIOS programs read it with `ANALOGRead`, in mm.
+    pub channel: u8,
+    /// Metres above the robot's origin.
+    pub z: f64,
+}
+
+/// Measurements of a robot's inertial unit, and the channels on which RoBIOS programs read them with
+/// `ANALOGRead`. The default has no measurements: a robot without a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct InertialSpec {
-    /// The channels of roll, pitch and yaw, in tenths of degrees.
+    /// Channels of roll, pitch and yaw (0.1 degrees).
     pub attitude: Option<[u8; 3]>,
-    /// The channels of the turn rates about the forward, left and upright axes, in tenths of degrees per second.
+    /// Channels of the turn rates about the forward, left and up axes (0.1 degrees/s).
     pub turn_rates: Option<[u8; 3]>,
-    /// The channels of the accelerations along these axes, in mm/s².
+    /// Channels of the accelerations along these axes (mm/s²).
     pub acceleration: Option<[u8; 3]>,
 }
 
 impl InertialSpec {
-    /// A unit that measures all, on channels behind those that RoBIOS itself has.
+    /// A unit with all measurements, on channels after those of RoBIOS itself.
     pub const ALL: Self = Self {
         attitude: Some([9, 10, 11]),
         turn_rates: Some([12, 13, 14]),
         acceleration: Some([15, 16, 17]),
     };
 
-    /// Fails unless channels have numbers of their own, from 1.
+    /// Fails unless the channels are distinct and start from 1.
     pub fn validate(&self) -> Result<(), ParameterError> {
         let groups = [self.attitude, self.turn_rates, self.acceleration];
         let channels: Vec<u8> = groups.into_iter().flatten().flatten().collect();
@@ -423,10 +436,10 @@ impl InertialSpec {
 }
 
 impl RobotSpec {
-    /// The coefficient of friction of rubber on a dry floor, for robots that state none.
+    /// Default coefficient of friction: rubber on a dry floor.
     pub const DEFAULT_FRICTION: f64 = 0.8;
 
-    /// Checks that a mast stands on the robot.
+    /// Checks that a mast is within the robot's outline and above its height.
     pub(super) fn validate_mast(&self) -> Result<(), ParameterError> {
         let Some(Mast { outline, top }) = self.mast else { return Ok(()) };
         validate_outline(&outline).map_err(|error| error.of(&format!("robot {}: mast", self.name)))?;
@@ -438,12 +451,12 @@ impl RobotSpec {
             .map_err(|error| error.of(&format!("robot {}", self.name)))
     }
 
-    /// How fast it can brake, in metres per second squared.
+    /// Largest deceleration (m/s²).
     pub fn deceleration(&self) -> f64 {
         self.drive.dynamics().map_or(self.motor.max_acceleration, |dynamics| dynamics.brake)
     }
 
-    /// Checks that every length, speed and count makes sense.
+    /// Checks that every length, speed and count is valid.
     pub fn validate(&self) -> Result<(), ParameterError> {
         self.validate_parts().map_err(|error| error.of(&format!("robot {}", self.name)))?;
         self.validate_mast()
@@ -478,7 +491,7 @@ impl RobotSpec {
                         require(parameter, value, value > 0.0 && value < most, expected)
                     };
                     within("mass centre", dynamics.mass_centre, wheelbase, "a place between the axles")?;
-                    // The integration is stable for cars that are not stiffer or lighter than these.
+                    // The integration is stable within these limits of stiffness and mass.
                     within("radius of gyration", dynamics.gyration, 100.0, "more than 0 and less than 100")?;
                     within("grip", dynamics.grip, 100.0, "more than 0 and less than 100")?;
                     within("tyre stiffness", dynamics.stiffness, 100.0, "more than 0 and less than 100")?;
@@ -503,6 +516,11 @@ impl RobotSpec {
                 require_positive("maximal wheel speed", max_wheel_speed)?;
                 require_positive("ticks per turn", ticks_per_turn)?;
             }
+            DriveSpec::Craft(ref craft) => {
+                let parts = craft.hull.len();
+                require("hull parts of a craft", parts as f64, parts > 0, "at least one")?;
+                craft.validate()?;
+            }
         }
         let lag = self.motor.time_constant;
         require("motor time constant", lag, lag.is_finite() && lag >= 0.0, "a finite number of at least 0")?;
@@ -512,6 +530,10 @@ impl RobotSpec {
         require_not_negative("mass", self.mass)?;
         require_not_negative("friction", self.friction)?;
         self.inertial.validate()?;
+        if let Some(DepthSensorSpec { channel, z }) = self.depth_sensor {
+            require("channel of the depth sensor", channel.into(), channel > 0, "1 to 255")?;
+            require_finite("height of the depth sensor", z)?;
+        }
         for psd in &self.psds {
             require_positive("PSD maximal range", psd.max_range)?;
             psd.mount.validate()?;

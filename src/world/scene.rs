@@ -1,37 +1,39 @@
 use std::sync::Arc;
 
-use super::{Billboard, Marker, Object, Occupancy, OccupancyGrid, RobotSpec, Terrain, Texture, Wall};
+use super::{Billboard, Marker, Object, Occupancy, OccupancyGrid, RobotSpec, Terrain, Texture, Wall, Water};
 use crate::geometry::{Aabb, Point, Pose, Vector};
 
 /// A place without robots: floor, walls, objects and marks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct World {
-    /// The floor. Nothing stops a robot at its edge; only walls do.
+    /// The floor. Its edge does not stop robots; only walls do.
     pub floor: Aabb,
     /// An image stretched over the floor.
     pub floor_texture: Option<Texture>,
     /// The walls.
     pub walls: Vec<Wall>,
-    /// The map that the walls outline, if they come from one: walls alone do not tell on which side of them it is solid.
+    /// The map whose outlines are the walls, if there is one; walls alone do not define their solid side.
     pub map: Option<Arc<OccupancyGrid>>,
-    /// The objects, in the order in which they were placed.
+    /// The objects in the order of their placement.
     pub objects: Vec<Object>,
     /// Marks on the floor.
     pub markers: Vec<Marker>,
-    /// Signs and figures, for cameras alone.
+    /// Signs and figures, visible to cameras only.
     pub billboards: Vec<Billboard>,
-    /// The start pose that the world file itself names.
+    /// Start pose from the world's file.
     pub start: Option<Pose>,
     /// Named places: the letters of a maze.
     pub places: Vec<Place>,
-    /// Hills, instead of a level floor.
+    /// Hills instead of a level floor.
     pub terrain: Option<Terrain>,
-    /// Metres of the water's surface above the floor.
+    /// Height of the water surface above the floor (m).
     pub water_level: Option<f64>,
+    /// What the water is like and how it moves.
+    pub water: Water,
 }
 
 impl World {
-    /// An empty floor from (0, 0), `width` metres along x and `height` metres along y, without walls.
+    /// An empty floor from (0, 0) with `width` metres along x and `height` metres along y, without walls.
     pub fn empty(width: f64, height: f64) -> Self {
         Self {
             floor: Aabb::new(Point::origin(), Point::new(width, height)),
@@ -45,6 +47,7 @@ impl World {
             places: Vec::new(),
             terrain: None,
             water_level: None,
+            water: Water::default(),
         }
     }
 
@@ -71,14 +74,14 @@ impl World {
         self.walls.extend(corners.iter().zip(next).map(|(&a, &b)| Wall::new(a, b)));
     }
 
-    /// Whether a point lies in an occupied cell of the map that the walls outline.
+    /// Whether a point is in an occupied cell of the map of the walls.
     pub fn is_inside_walls(&self, point: Point) -> bool {
         self.map.as_ref().is_some_and(|map| {
             map.cell_at(point).is_some_and(|(column, row)| map.cell(column, row) == Occupancy::Occupied)
         })
     }
 
-    /// The smallest box around floor, walls and objects.
+    /// Bounding box of floor, walls and objects.
     pub fn bounds(&self) -> Aabb {
         let walls = self.walls.iter().flat_map(|w| [w.line.a, w.line.b]);
         let objects = self.objects.iter().flat_map(|o| {
@@ -90,29 +93,29 @@ impl World {
     }
 }
 
-/// A named place in a world: a letter in a maze file, to which scenes refer.
+/// A named place in a world: a letter in a maze file, used in scenes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
     /// The letter as written.
     pub letter: char,
-    /// The middle of its cell.
+    /// Centre of its cell.
     pub position: Point,
-    /// The heading that the letter stands for, if it stands for one.
+    /// Heading of the letter, if it has one.
     pub heading: Option<f64>,
 }
 
 /// A robot placed in a world.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RobotPlacement {
-    /// What it is.
+    /// Its description.
     pub spec: Arc<RobotSpec>,
-    /// Where it starts.
+    /// Start pose.
     pub pose: Pose,
-    /// Metres between the floor and its foot, for robots that swim, dive or are dropped.
+    /// Height of its foot above the floor, for robots that swim, dive or are dropped (m).
     pub elevation: f64,
-    /// The program that a simulation script names for it, as written.
+    /// Its program in the simulation script, as written.
     pub program: Option<String>,
-    /// How many of the world's objects were placed before it: robots and objects are numbered in one row.
+    /// Number of the world's objects placed before it; robots and objects are numbered in one sequence.
     pub objects_before: usize,
 }
 
@@ -123,7 +126,7 @@ impl RobotPlacement {
     }
 }
 
-/// A world with robots in it: what a simulation starts from.
+/// A world with robots: the start of a simulation.
 ///
 /// ```
 /// use roverlab::geometry::Pose;
@@ -136,18 +139,18 @@ impl RobotPlacement {
 pub struct Scene {
     /// Floor, walls, objects and marks.
     pub world: World,
-    /// The robots, in the order in which they were placed.
+    /// The robots in the order of their placement.
     pub robots: Vec<RobotPlacement>,
-    /// What to show of them.
+    /// Display settings.
     pub settings: Settings,
 }
 
-/// What a picture of a scene shows besides its things.
+/// Additional content of a scene's picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Settings {
-    /// The beams of the robots' sensors: `VIS` in a simulation script.
+    /// Sensor beams of the robots: `VIS` in a simulation script.
     pub show_sensors: bool,
-    /// The paths that the robots drove: `TRACE` in a simulation script.
+    /// Trails of the robots: `TRACE` in a simulation script.
     pub show_traces: bool,
 }
 
@@ -162,7 +165,7 @@ impl Scene {
         Self { robots: vec![RobotPlacement::new(Arc::new(spec), pose)], ..Self::new(world) }
     }
 
-    /// The robots' numbers from 1 in the one row in which `EyeSim` numbers robots and objects as they were placed.
+    /// Numbers of the robots, from 1, in `EyeSim`'s single sequence of robots and objects by placement.
     ///
     /// ```
     /// use roverlab::world::formats::{MemoryFiles, sim};
@@ -179,7 +182,7 @@ impl Scene {
         before.enumerate().map(|(index, before)| (index + before + 1) as u32).collect()
     }
 
-    /// The objects' numbers in the row of [`robot_numbers`](Scene::robot_numbers).
+    /// Numbers of the objects in the sequence of [`robot_numbers`](Scene::robot_numbers).
     pub fn object_numbers(&self) -> Vec<u32> {
         let behind =
             |object: usize| self.robots.iter().filter(|robot| robot.objects_before <= object).count();

@@ -1,19 +1,20 @@
 use super::{Object, World};
 use crate::geometry::{Aabb, Point, Vector};
 
-/// A gap of so many metres, and of so many times the size of what lies on one side of it, parts what stands in a world.
+/// Width (m), and width relative to the extent of one side, of a gap that separates the contents of a world.
 const GAP: f64 = 100.0;
 const GAP_IN_SIZES: f64 = 10.0;
-/// Metres to the farthest wall within which a floor ends there.
+/// Distance to the farthest wall within which a floor ends there (m).
 const NEAR: f64 = 1.0;
 
 impl World {
-    /// The box around where a robot can be: the same as [`bounds`](World::bounds) without what stands so far from most of the
-    /// others that it is no part of the same place, as a wall whose coordinates have some digits too many.
+    /// Bounding box of the places that a robot can reach: [`bounds`](World::bounds) without outliers, which
+    /// are too far from most of the other things to belong to the same place. An example is a wall whose
+    /// coordinates have extra digits.
     ///
-    /// What maps a world maps this box. A gap has to be more than 100 m wide, ten times as wide as what lies together, and
-    /// spanned by no more than one wall: two are a corridor. A floor that reaches as far as what is left out was made to do so,
-    /// and is cut as well. Time O(n log n).
+    /// Maps of a world cover this box. A gap must be more than 100 m wide, ten times as wide as the group of
+    /// things, and spanned by at most one wall, because two form a corridor. A floor that extends as far as
+    /// the outliers was made for them and is cut as well. The run time is O(n log n).
     ///
     /// ```
     /// use roverlab::geometry::Point;
@@ -38,7 +39,7 @@ impl World {
         )
     }
 
-    /// How many walls and objects reach out of the [`site`](World::site).
+    /// Number of walls and objects that extend beyond the [`site`](World::site).
     pub fn strays(&self) -> usize {
         let Some((kept, _)) = self.kept() else { return 0 };
         let is_out = |point: Point| !kept.contains(point);
@@ -46,7 +47,7 @@ impl World {
         walls + self.objects.iter().filter(|object| is_out(object.pose.position())).count()
     }
 
-    /// The boxes around most of what stands in the world and around all of it; `None` if they are the same.
+    /// Bounding boxes of most things in the world and of all things; `None` if they are equal.
     fn kept(&self) -> Option<(Aabb, Aabb)> {
         let walls = self.walls.iter().map(|wall| [wall.line.a, wall.line.b]);
         let reach = |object: &Object| Vector::new(1.0, 1.0) * object.kind.shape.bounding_radius();
@@ -58,7 +59,7 @@ impl World {
         let ends: Vec<[Point; 2]> = walls.chain(objects).filter(is_finite).collect();
         let mut points: Vec<Point> = ends.iter().flatten().copied().collect();
         let all = Aabb::around(points.iter().copied())?;
-        // What lies together along one axis may have fallen apart once the other one has been looked at.
+        // A group along one axis may split after a cut along the other.
         loop {
             let before = points.len();
             keep_larger(&mut points, &ends, |point| point.x);
@@ -71,7 +72,7 @@ impl World {
     }
 }
 
-/// Parts points at the widest gap along an axis, if it is wide enough, and keeps the larger part.
+/// Splits points at the widest gap along an axis, if it is wide enough, and keeps the larger part.
 fn keep_larger(points: &mut Vec<Point>, ends: &[[Point; 2]], along: impl Fn(&Point) -> f64) {
     points.sort_by(|a, b| along(a).total_cmp(&along(b)));
     let gap = |i: &usize| along(&points[*i]) - along(&points[i - 1]);
@@ -99,7 +100,7 @@ mod tests {
     fn stray(place: Point) -> World {
         let mut world = World::walled(3.0, 2.0);
         world.walls.push(Wall::new(place, Point::new(place.x, place.y + 1.0)));
-        // A reader without a floor takes the box around all walls.
+        // A reader without a floor uses the bounding box of all walls.
         world.floor = world.bounds();
         world
     }
@@ -120,7 +121,7 @@ mod tests {
 
     #[test]
     fn what_lies_together_stays_together() {
-        // A wall in the middle of a large floor; a hall; a wall no farther away than it may be.
+        // A wall in the middle of a large floor; a hall; a wall at the largest allowed distance.
         let mut wide = World::empty(150.0, 150.0);
         wide.walls.push(Wall::new(Point::new(75.0, 75.0), Point::new(76.0, 75.0)));
         for world in

@@ -3,7 +3,7 @@ use std::sync::Arc;
 
 use image::RgbaImage;
 
-/// An image that a file of a world names: the picture on a floor.
+/// An image that a world's file names: the picture on a floor.
 ///
 /// ```
 /// use image::RgbaImage;
@@ -13,10 +13,10 @@ use image::RgbaImage;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Texture {
-    /// The image's file as the world's file names it.
+    /// Image file as named in the world's file.
     pub file: PathBuf,
-    /// Its pixels, once a [`FileSource`](super::formats::FileSource) has found it: reading a whole scene does
-    /// so, reading the text of a world alone does not.
+    /// Its pixels, once a [`FileSource`](super::formats::FileSource) has found it; this happens when a whole
+    /// scene is read, but not when only the text of a world is read.
     pub image: Option<Arc<RgbaImage>>,
 }
 
@@ -27,14 +27,14 @@ impl Texture {
     }
 }
 
-/// An image that nobody has looked up.
+/// An image that has not been read.
 impl From<PathBuf> for Texture {
     fn from(file: PathBuf) -> Self {
         Self { file, image: None }
     }
 }
 
-/// An image that nobody has looked up.
+/// An image that has not been read.
 impl From<&str> for Texture {
     fn from(file: &str) -> Self {
         PathBuf::from(file).into()

@@ -11,22 +11,22 @@ use crate::geometry::{Point, Segment};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wall {
-    /// The middle line of the wall's foot.
+    /// Centre line of the wall's foot.
     pub line: Segment,
-    /// Metres across; half of it on either side of the line. The ends are square and stand on the line's ends.
+    /// Thickness, half on either side of the line (m). The ends are square and coincide with the line's ends.
     pub thickness: f64,
-    /// Metres above the floor.
+    /// Height above the floor (m).
     pub height: f64,
     /// The colour of its faces.
     pub colour: Colour,
 }
 
 impl Wall {
-    /// EyeSim's thickness of a wall that states none.
+    /// EyeSim's default thickness of a wall.
     pub const DEFAULT_THICKNESS: f64 = 0.010;
-    /// EyeSim's visible height of a wall that states none.
+    /// EyeSim's default visible height of a wall.
     pub const DEFAULT_HEIGHT: f64 = 0.200;
-    /// The colour of a wall that states none.
+    /// Default colour of a wall.
     pub const DEFAULT_COLOUR: Colour = Colour::WHITE;
 
     /// A wall of default thickness, height and colour between two points.

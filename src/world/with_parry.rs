@@ -5,7 +5,7 @@ use super::{Object, ObjectKind, Shape, Wall, World};
 use crate::geometry::{Point, Pose, Segment, math};
 use crate::parameter::debug_as_sentence;
 
-/// A shape of the crate `parry2d` that a world cannot hold.
+/// A `parry2d` shape without an equivalent in a world.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "found a {found}; expected segments, polylines, triangles, polygons, cuboids, balls or compounds of them"
@@ -17,8 +17,8 @@ pub struct ParryError {
 debug_as_sentence!(ParryError);
 
 impl World {
-    /// What stands in the world at a height (m), as shapes of the crate `parry2d` with their poses: a cuboid for each wall
-    /// and box, a segment for each wall without thickness, a ball for each round object. Hills are left out.
+    /// Contents of the world at a height (m) as `parry2d` shapes with poses: a cuboid for each wall and box,
+    /// a segment for each wall of zero thickness, a ball for each round object. Hills are left out.
     ///
     /// ```
     /// use parry2d_f64::math::Vector;
@@ -45,11 +45,12 @@ impl World {
         walls.chain(objects).collect()
     }
 
-    /// Adds a shape of the crate `parry2d`: segments and the edges of polygons as walls without thickness, cuboids as walls
-    /// along their longer side, balls as cylinders. Walls and cylinders get a wall's usual height.
+    /// Adds a `parry2d` shape: segments and polygon edges become walls of zero thickness, cuboids become
+    /// walls along their longer side, and balls become cylinders. Walls and cylinders have the default height
+    /// of walls.
     ///
     /// # Errors
-    /// For any other shape; walls and objects that were added before it stay.
+    /// For any other shape; walls and objects added before the error remain.
     pub fn add_parry_shape(&mut self, pose: ParryPose, shape: &dyn ParryShape) -> Result<(), ParryError> {
         let place = |local: ParryVector| point(pose * local);
         match shape.as_typed_shape() {
@@ -101,7 +102,7 @@ impl World {
     }
 }
 
-/// A wall with its thickness, in the frame of its middle.
+/// A wall with its thickness, in the frame of its centre.
 fn wall_shape(wall: &Wall) -> (ParryPose, SharedShape) {
     let Segment { a, b } = wall.line;
     if wall.thickness == 0.0 {
@@ -112,7 +113,7 @@ fn wall_shape(wall: &Wall) -> (ParryPose, SharedShape) {
     (pose, SharedShape::cuboid(0.5 * along.norm(), 0.5 * wall.thickness))
 }
 
-/// A shape's section at a height above its foot; `None` above and below it.
+/// Section of a shape at a height above its foot; `None` outside of its height.
 fn section(shape: &Shape, height: f64) -> Option<SharedShape> {
     if !(0.0..=shape.height()).contains(&height) {
         return None;

@@ -155,10 +155,10 @@ macro_rules! check_variant {
      { $($takes:ident: $($field:ident),+;)+ } $(but $($rest:ident),+)?) => {{
         let base: $type = $base;
         let mut wrong: Vec<String> = Vec::new();
-        let $type::$variant { $($($field: _,)+)+ $($($rest: _,)+)? } = base else { panic!("another variant") };
+        let $type::$variant { $($($field: _,)+)+ $($($rest: _,)+)? } = base.clone() else { panic!("another variant") };
         $($(
             for value in $crate::check::nonsense() {
-                let mut $parameters = base;
+                let mut $parameters = base.clone();
                 if let $type::$variant { $field, .. } = &mut $parameters {
                     $crate::check::Slots::put($field, 0, value);
                 }

@@ -1,6 +1,8 @@
 use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
 use roverlab::drive::lane_keeping::{BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters};
+use roverlab::drive::marine::{DepthHoldParameters, Dive, DiveParameters};
 use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
+use roverlab::drive::terrain::{Ascent, AscentParameters, SlopeSensor};
 use roverlab::drive::{
     AToB, AToBParameters, AlongWall, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters,
     CoverageMap, CoverageMapParameters, Cruise, CruiseParameters, Follower, FollowerParameters, Formation,
@@ -10,6 +12,7 @@ use roverlab::drive::{
     TwoLevelWallFollower, WallFollower, WallFollowerParameters, WallSensors,
 };
 use roverlab::geometry::{Point, Pose};
+use roverlab::kinematics::marine::CraftSpec;
 use roverlab::kinematics::{Ackermann, Omni};
 use roverlab::random::Stream;
 use roverlab::vision::lane_markings::{RoadCamera, RoadModel};
@@ -43,6 +46,13 @@ fn colours_and_motion() {
     check!(MotionParameters = MotionParameters::default(),
         |p| ends(RobotSpec::s4(), MotionWatch::new(MotionWatchParameters { turning: p, ..MotionWatchParameters::new(1.0) })?),
         { Bounded: block; NotNegative: threshold; Positive: least_noise; });
+}
+
+#[test]
+fn hills() {
+    let sensor = || SlopeSensor::lidar(&RobotSpec::blizzard()).expect("a lidar");
+    check!(AscentParameters = AscentParameters::of(&RobotSpec::blizzard()), |p| Ascent::new(sensor(), p)?,
+        { Bounded: slope, smoothing; Positive: speed, turn_rate, patience, gain, period; });
 }
 
 #[test]
@@ -158,4 +168,14 @@ fn lanes() {
         { Bounded: size, line_width; } but left_hand);
     check!(RoadCamera = camera(), |p| LaneKeeper::new(p, RoadModel::default(), LaneKeeperParameters::default())?,
         { Bounded: field_of_view; AroundZero: tilt; Positive: height; Finite: ahead; } but fisheye);
+}
+
+#[test]
+fn diving() {
+    let dive = |p: DiveParameters| Dive::new(&CraftSpec::mako(), p);
+    check!(DiveParameters = DiveParameters::default(), |p| dive(p)?,
+        { NotNegative: depth; Finite: heading; Positive: duration, turning, period; } but hold);
+    check!(DepthHoldParameters = DepthHoldParameters::default(),
+        |p| dive(DiveParameters { hold: p, ..DiveParameters::default() })?,
+        { Positive: speed, approach, control, observer; });
 }

@@ -5,14 +5,15 @@ use roverlab::maze::{
     LidarLeftParameters, Maze, MazeRunner, MazeRunnerParameters, Rig, RunLimits, Scale,
     TrajectoryTrackerParameters,
 };
-use roverlab::nav::{BugParameters, DistBug, Navigator, NavigatorParameters};
+use roverlab::nav::elevation::{Climber, ElevationMap, ElevationPlanner, Objective};
+use roverlab::nav::{BugParameters, DistBug, Navigator, NavigatorParameters, SummitParameters, SummitSearch};
 use roverlab::scan::{
     LocalisationMap, Localiser, LocaliserParameters, LogOddsMap, LogOddsMapParameters,
     ScanFeaturesParameters, extract_features,
 };
 use roverlab::world::{RobotSpec, World};
 
-use crate::check::{check, ends, simulation};
+use crate::check::{check, check_variant, ends, simulation};
 
 const GOAL: Point = Point::new(2.0, 1.5);
 
@@ -43,6 +44,22 @@ fn mazes() {
     check!(TrajectoryTrackerParameters = TrajectoryTrackerParameters::EYEBOT,
         |p| runner(MazeRunnerParameters { tracker: p, ..MazeRunnerParameters::EYEBOT })?,
         { Positive: reach, heading, period; NotNegative: along; });
+}
+
+#[test]
+fn hills() {
+    let area = roverlab::geometry::Aabb::new(Point::origin(), Point::new(3.0, 3.0));
+    let level = roverlab::world::HeightField::from_fn(31, 31, area, |_| 0.0).expect("a surface");
+    check!(Climber = Climber::of(&RobotSpec::blizzard()), |p| ElevationMap::new(&level, &p)?,
+        { Bounded: slope; NotNegative: step; Positive: radius; });
+    let map = ElevationMap::new(&level, &Climber::of(&RobotSpec::blizzard())).expect("a map");
+    let plans = |objective| ElevationPlanner::astar(&map, objective);
+    check_variant!(Objective::Energy = Objective::Energy { resistance: 0.1 }, |p| plans(p)?, { Positive: resistance; });
+    check_variant!(Objective::Time = Objective::Time { speed: 0.1, climb: 0.1 }, |p| plans(p)?, { Positive: speed, climb; });
+    check!(SummitParameters = SummitParameters::of(&RobotSpec::blizzard()).expect("a lidar"),
+        |p| SummitSearch::new(p)?,
+        { Positive: speed, turn_rate, stride, tolerance, period; NotNegative: slide; Bounded: resolution, extent;
+          Finite: lowest; } but climber, lidar, fence);
 }
 
 #[test]

@@ -5,7 +5,7 @@ export const CHAPTERS = [
   ["Lidar", ["lidar-scan", "localise"]],
   ["Swarms", ["follow-me"]],
   ["Walls", ["wall-following"]],
-  ["Other drives", ["ackermann", "omni"]],
+  ["Other drives", ["ackermann", "omni", "summit"]],
   ["Mazes", ["maze-left", "maze-lidar", "maze-explore", "micromouse"]],
   ["Navigation", ["distbug", "bug-compare", "navigate"]],
   ["Robot vision", ["camera", "edges", "color-tracking", "motion"]],
@@ -31,7 +31,7 @@ export const FIRST = ["seed", "noise", "time-limit"];
 export const LAST = ["start", "goal", "world", "robot", "track", "maze", "line", "input", "quantised", "fault", "supervised"];
 export const FILES = ["world", "robot", "track", "maze", "line", "input"];
 const HIDDEN = new Set([
-  "record", "replay", "picture", "robios", "json", "timing", "realtime", "threads", "processes", "checkpoint", "campaign", "worlds",
+  "record", "force", "fsync", "replay", "picture", "robios", "json", "timing", "realtime", "threads", "processes", "checkpoint", "campaign", "worlds",
   "levels", "save", "runs", "animation", "output", "lcd", "plan", "compare", "steps", "mms", "mms-run", "mms-limit", "rooms",
   "starts", "scenes", "pairs", "courses", "second", "families", "explore", "repeat",
 ]);

@@ -1,5 +1,5 @@
-//! Each system's run of seed 1 in the page: `digests.txt` has the digest of all that the page shows of it, here and in a
-//! browser. `REGENERATE=1` writes it anew.
+//! Each system's run of seed 1 in the page: `digests.txt` has the digest of everything the page shows of it,
+//! here and in a browser. `REGENERATE=1` rewrites it.
 
 use std::fs;
 use std::sync::{Arc, Mutex};
@@ -9,7 +9,7 @@ use serde_json::Value;
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/digests.txt");
 
-/// What the module says of a run's end.
+/// The module's report on a run's end.
 fn ended(words: &str) -> Value {
     let words: Vec<String> = words.split(' ').map(String::from).collect();
     let end = Arc::new(Mutex::new(Value::Null));

@@ -5,53 +5,53 @@ use super::chase::parse_moving;
 use crate::common::{CommonArgs, OF_ONE_RUN, parse_point};
 use crate::driving::Way;
 
-/// The command line of `a-to-b`.
+/// Command line of `a-to-b`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Drives a robot to a goal: turn and straight, arc, dog curve or spline, with feedback all the way",
     after_help = "\
-Without --world, the robot drives over an empty floor. A heading in --goal is kept by every method; a spline arrives with
-it, the others turn at the end. An arc to a goal behind is driven backwards.
+Without --world, the robot drives on an empty floor. Every method reaches the heading in --goal: a spline arrives with
+it, the others turn at the end. An arc to a goal behind the robot is driven backwards.
 
-With --landmark, poles whose places are known correct odometry by the lidar: the world's cylinders, or one beside the goal
-on the empty floor.
+With --landmark, lidar measurements of poles at known places correct odometry: the world's cylinders, or one beside the
+goal on the empty floor.
 
-With --via, a chain of splines through all these places. With --moving, the goal drives ahead from where it is, by its heading,
-and the robot, which is told where it is, begins anew at each step.
+With --via, a chain of splines through all these places. With --moving, the goal moves ahead along its heading; the
+robot knows its position and replans at each step.
 
-With --campaign, random goals instead of one, by every method: errors without noise, with encoder ticks and without; how
-many of the runs with noise end inside the 95 % ellipse that odometry predicts; errors with a landmark.
+With --campaign, random goals instead of one, with every method: errors without noise, with and without encoder ticks;
+the number of runs with noise that end within the 95 % ellipse predicted by odometry; errors with a landmark.
 
 JSON fields:
   method                      turn, arc, dog or spline
   goal, goal_heading_deg      [x, y] mm; the heading or null
   position_error_mm           true distance to the goal at the end
   heading_error_deg           true error of the heading, or null
-  ellipse_mm                  half axes of the 95 % ellipse of odometry's error, the longer one first
-  inside_ellipse              whether the robot really is inside of it; null with --landmark or without noise
+  ellipse_mm                  semi-axes of odometry's 95 % error ellipse, longer one first
+  inside_ellipse              whether the robot is truly inside it; null with --landmark or without noise
   landmark_scans              scans that showed a landmark
   time_limit_s, picture
   rows                        with --campaign only: the table
 Outcomes: reached, caught (a moving goal), blocked, timed_out, collided, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
-    /// How to get there.
+    /// Method of driving to the goal.
     #[arg(long, value_enum, default_value = "spline")]
     pub(crate) method: Way,
 
-    /// How the path is followed.
+    /// Steering law along the path.
     #[arg(long, value_enum, default_value = "cross-track")]
     pub(crate) follower: Follower,
 
-    /// Length of a spline's tangents in terms of the distance to the goal: the book's k.
+    /// Tangent length of a spline as a multiple of the distance to the goal: the book's k.
     #[arg(long, value_name = "K", default_value_t = 1.0, value_parser = parse_scale, allow_hyphen_values = true)]
     pub(crate) scale: f64,
 
-    /// A place that a spline passes on its way; may be repeated, in this order.
+    /// A point that a spline passes; may be repeated, in this order.
     #[arg(long, value_name = "X,Y", value_parser = parse_point, allow_hyphen_values = true)]
     pub(crate) via: Vec<Point>,
 
-    /// The goal moves at so many millimetres, and turns by so many degrees, a second.
+    /// Let the goal move, in millimetres and degrees per second.
     #[arg(long, value_name = "MM[,DEG]", value_parser = parse_moving, allow_hyphen_values = true)]
     pub(crate) moving: Option<Twist>,
 
@@ -85,10 +85,10 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("moving", &["follower"]),
 ]);
 
-/// A way to follow a path by its name on the command line.
+/// Path follower by its name on the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Follower {
-    /// By heading error and distance to the path.
+    /// By heading error and cross-track error.
     CrossTrack,
     /// Along the arc to a point ahead on the path.
     PurePursuit,

@@ -11,20 +11,20 @@ use super::{Args, table};
 use crate::common::{Failure, Outcome, Progress, Report, Trip};
 use crate::driving::{Conditions, Way};
 
-/// What a row of the table is about.
+/// Conditions of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// No noise, and encoders that measure exactly.
+    /// No noise, exact encoders.
     Ideal,
-    /// No noise, with encoder ticks.
+    /// No noise, encoder ticks.
     Ticks,
-    /// Noise as on the real robot, by odometry alone.
+    /// Noise as on the real robot, with odometry alone.
     Odometry,
     /// The same with a landmark.
     Landmark,
 }
 
-/// What came of many runs.
+/// Results of many runs.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Row {
     pub(crate) kind: Kind,
@@ -32,11 +32,11 @@ pub(crate) struct Row {
     pub(crate) runs: u64,
     pub(crate) reached: u64,
     pub(crate) contacts: u64,
-    /// Metres and radians.
+    /// Position error (m) and heading error (rad).
     pub(crate) worst_position: f64,
     pub(crate) mean_position: f64,
     pub(crate) worst_heading: f64,
-    /// Runs that ended in the predicted ellipse.
+    /// Number of runs that ended in the predicted ellipse.
     pub(crate) inside: u64,
     pub(crate) sim_time: f64,
 }
@@ -60,7 +60,7 @@ impl Kind {
         }
     }
 
-    /// The largest errors that are good, in millimetres and degrees.
+    /// Acceptable errors, in millimetres and degrees.
     pub(crate) fn limits(self) -> Option<(f64, f64)> {
         match self {
             Self::Ideal => Some((1.0, 0.1)),
@@ -72,12 +72,13 @@ impl Kind {
 }
 
 impl Row {
-    /// Percent of runs in the ellipse.
+    /// Percentage of runs that ended in the ellipse.
     pub(crate) fn percent_inside(&self) -> f64 {
         100.0 * self.inside as f64 / self.runs as f64
     }
 
-    /// Whether the figures are as they should be. The share inside the ellipse is judged for a thousand runs or more.
+    /// Whether the results are acceptable. The fraction inside the ellipse is judged for a thousand runs or
+    /// more.
     pub(crate) fn is_good(&self) -> bool {
         use roverlab::geometry::units::{to_deg, to_mm};
         let arrived = self.reached == self.runs && self.contacts == 0;
@@ -90,7 +91,7 @@ impl Row {
     }
 }
 
-/// The campaign's work.
+/// Runs the campaign.
 pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
     let rows = rows(args)?;
     let good = rows.iter().all(Row::is_good);
@@ -105,7 +106,7 @@ pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
     .table("rows", table::json(&rows)))
 }
 
-/// The rows of the table, driven one after the other.
+/// Drives the rows of the table, one after the other.
 pub(crate) fn rows(args: &Args) -> Result<Vec<Row>, Failure> {
     let mut progress = Progress::start();
     let mut rows = Vec::new();
@@ -171,7 +172,7 @@ fn add_run(row: &mut Row, args: &Args, seed: u64) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A trip of 0.5 to 2 m over an empty floor, with a heading at its end.
+/// A trip of 0.5 to 2 m over an empty floor, with a final heading.
 fn trip(seed: u64) -> (Trip, f64) {
     let mut stream = Stream::new(seed).child("trip", 0);
     let start = Pose::new(5.0, 5.0, stream.between(-PI, PI));

@@ -9,7 +9,7 @@ use super::drive::Options;
 use crate::common::{Failure, Outcome, Report, Trip, millimetres, point_in_mm, rounded};
 use crate::driving::{Conditions, Run, paced};
 
-/// A goal that drives ahead from where it is, along an arc.
+/// A goal that moves from its position along an arc.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Quarry {
     begin: Pose,
@@ -23,14 +23,14 @@ impl Quarry {
     }
 }
 
-/// How a chase ended, and how long it took.
+/// Outcome of a chase, and its duration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Hunt {
     pub(crate) outcome: ChaseOutcome,
     pub(crate) seconds: f64,
 }
 
-/// `MM` or `MM,DEG`: millimetres and degrees per second.
+/// Parses `MM` or `MM,DEG`, in millimetres and degrees per second.
 pub(super) fn parse_moving(text: &str) -> Result<Twist, String> {
     let numbers: Option<Vec<f64>> = text
         .split(',')
@@ -47,7 +47,7 @@ pub(super) fn parse_moving(text: &str) -> Result<Twist, String> {
     Err("expected at most 1000 mm and 360 degrees per second".into())
 }
 
-/// Drives a robot after a goal that moves. Where that is, the robot is told in the frame of its odometry.
+/// Drives a robot after a moving goal, whose position is given in the robot's odometry frame.
 fn chase<R: Clock + Drive + Odometry + StallDetector + ?Sized>(
     robot: &mut R,
     options: &Options,
@@ -69,7 +69,7 @@ fn chase<R: Clock + Drive + Odometry + StallDetector + ?Sized>(
     Ok(Hunt { outcome, seconds })
 }
 
-/// The command's work with a goal that moves.
+/// The command's work with a moving goal.
 pub(super) fn work(
     args: &Args,
     trip: &Trip,
@@ -100,7 +100,7 @@ pub(super) fn work(
     Ok(common.draw(report, "a_to_b.svg", || picture(args, trip, &run, &quarry, seconds)))
 }
 
-/// The ways of both.
+/// The paths of robot and goal.
 fn picture(args: &Args, trip: &Trip, run: &Run<Hunt>, quarry: &Quarry, seconds: f64) -> Picture {
     const STEPS: u32 = 200;
     let start = trip.start();

@@ -4,21 +4,21 @@ use roverlab::io::{self, Clock, Drive, Lidar, LidarScan, Manoeuvres, Odometry, S
 use roverlab::kinematics::{Differential, OdometryErrors, OdometryUncertainty};
 use roverlab::scan::{Landmark, LandmarkFilter};
 
-/// Where to drive, and how. All places are in the frame of odometry.
+/// Goal and method, in the odometry frame.
 #[derive(Debug, Clone)]
 pub(crate) struct Options {
     pub(crate) method: Method,
     pub(crate) goal: Goal,
-    /// Places to pass on the way.
+    /// Waypoints.
     pub(crate) via: Vec<Point>,
     pub(crate) parameters: AToBParameters,
-    /// Seconds.
+    /// Time limit (s).
     pub(crate) time_limit: f64,
     pub(crate) drive: Differential,
     pub(crate) errors: OdometryErrors,
-    /// Poles that correct odometry; none for odometry alone.
+    /// Poles that correct odometry, if any.
     pub(crate) landmarks: Vec<Landmark>,
-    /// The standard deviation of a lidar's beam, in metres.
+    /// Standard deviation of a lidar beam (m).
     pub(crate) range_error: f64,
 }
 
@@ -28,15 +28,15 @@ impl Options {
     }
 }
 
-/// How a drive ended, as the robot takes it.
+/// Outcome of a drive from the robot's perspective.
 #[derive(Debug, Clone)]
 pub(crate) struct Arrival {
     pub(crate) outcome: AToBOutcome,
-    /// The path that was planned; a dog curve has none.
+    /// The planned path; `None` for a dog curve.
     pub(crate) plan: Option<Path>,
-    /// Odometry at the end, with what may be wrong about it.
+    /// Odometry at the end, with its uncertainty.
     pub(crate) odometry: OdometryUncertainty,
-    /// Scans that showed a landmark.
+    /// Number of scans that showed a landmark.
     pub(crate) sightings: u32,
 }
 

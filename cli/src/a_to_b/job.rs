@@ -10,10 +10,10 @@ use super::{Args, campaign, chase, picture, scene};
 use crate::common::{Failure, Outcome, Report, StandIn, Trip, millimetres, point_in_mm, rounded};
 use crate::driving::{self, Conditions, Run, check_drive, paced};
 
-/// Half of the robots' squared distances, in standard deviations, are below 1.39; 95 of 100 below this.
+/// 95 % quantile of the squared Mahalanobis distance in the plane.
 pub(crate) const NINETY_FIVE: f64 = 5.991;
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     if args.campaign {
         return campaign(args);
@@ -49,7 +49,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(common.draw(report, "a_to_b.svg", || picture::of(args, &trip, &run, &conditions, heading)))
 }
 
-/// Metres to the goal by way of all places on the way.
+/// Length of the way to the goal through all waypoints (m).
 fn way(args: &Args, trip: &Trip) -> f64 {
     let start = trip.start().position();
     let places: Vec<Point> =
@@ -57,7 +57,7 @@ fn way(args: &Args, trip: &Trip) -> f64 {
     places.windows(2).map(|two| (two[1] - two[0]).norm()).sum()
 }
 
-/// What the robot is told, in the frame of its odometry.
+/// Goal and method in the robot's odometry frame.
 pub(crate) fn options(args: &Args, trip: &Trip, heading: Option<f64>, conditions: &Conditions) -> Options {
     let start = trip.start();
     let parameters = AToBParameters {
@@ -84,7 +84,7 @@ pub(crate) fn options(args: &Args, trip: &Trip, heading: Option<f64>, conditions
     }
 }
 
-/// Lets the robot use the world's poles; on the empty floor it gets one.
+/// Gives the robot the world's poles; on the empty floor it adds one.
 pub(crate) fn add_landmarks(args: &Args, trip: &mut Trip, options: &mut Options) -> Result<(), Failure> {
     let start = trip.start();
     if args.common.world.is_none() {
@@ -136,17 +136,18 @@ fn report(args: &Args, trip: &Trip, run: &Run<Arrival>, heading: Option<f64>, li
         .field("time_limit_s", limit)
 }
 
-/// Radians between the robot's true heading and that of the goal.
+/// Difference between the robot's true heading and the goal's (rad).
 pub(crate) fn heading_error(run: &Run<Arrival>, heading: f64) -> f64 {
     angle_difference(run.truth.pose.heading, heading).abs()
 }
 
-/// Whether the robot really is in the 95 % ellipse around where odometry takes it to be.
+/// Whether the robot's true position is in odometry's 95 % ellipse.
 pub(crate) fn inside_ellipse(start: Pose, run: &Run<Arrival>, arrival: &Arrival) -> bool {
     arrival.odometry.distance_squared(start.to_local(run.truth.pose.position())) <= NINETY_FIVE
 }
 
-/// The half axes of the 95 % ellipse in metres, the longer one first, and the direction of that one in odometry's frame.
+/// Semi-axes of the 95 % ellipse, the longer one first (m), and the direction of that one in the odometry
+/// frame (rad).
 pub(crate) fn ellipse(arrival: &Arrival) -> ([f64; 2], f64) {
     let covariance: Matrix2<f64> = arrival.odometry.covariance().fixed_view::<2, 2>(0, 0).into_owned();
     let middle = 0.5 * (covariance[(0, 0)] + covariance[(1, 1)]);

@@ -9,7 +9,7 @@ use super::job::ellipse;
 use crate::common::Trip;
 use crate::driving::{Conditions, Run, pale};
 
-/// A picture of a run: the plan, where the robot was and believed to be, and where odometry may be wrong.
+/// Picture of a run: plan, true and estimated path, and the uncertainty of odometry.
 pub(crate) fn of(
     args: &Args,
     trip: &Trip,

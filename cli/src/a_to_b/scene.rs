@@ -8,12 +8,12 @@ use crate::common::GoalOption;
 
 /// The heading at the goal of the command's own scene.
 const HEADING: f64 = 0.0;
-/// Metres from a goal to the pole beside it, and the pole's radius.
+/// Distance of the pole from the goal, and its radius (m).
 const POLE_DISTANCE: f64 = 0.4;
 const POLE_RADIUS: f64 = 0.04;
 
-/// The command's own scene: an empty floor of 4 m x 4 m, with a marker at the goal. Without one it is the
-/// book's, 1450 mm ahead and 650 mm to the left.
+/// The command's default scene: an empty floor of 4 m x 4 m, with a marker at the goal. The default goal is
+/// the book's, 1450 mm ahead and 650 mm to the left.
 pub(crate) fn scene(goal: Option<GoalOption>) -> Scene {
     let mut world = World::empty(4.0, 4.0);
     let start = Pose::from_mm_deg(1000.0, 1000.0, 0.0);
@@ -23,12 +23,12 @@ pub(crate) fn scene(goal: Option<GoalOption>) -> Scene {
     Scene::with_robot(world, RobotSpec::s4(), start)
 }
 
-/// The heading to arrive with: the one that is asked for, or that of the command's own goal.
+/// Heading on arrival: the requested one, or that of the default goal.
 pub(crate) fn heading(goal: Option<GoalOption>, own_goal: bool) -> Option<f64> {
     goal.map_or(own_goal.then_some(HEADING), |goal| goal.heading)
 }
 
-/// Puts a pole beside a goal, as far as possible from the way there.
+/// Adds a pole beside a goal, as far as possible from the way there.
 pub(crate) fn add_pole(scene: &mut Scene, goal: Point, way: &[Point]) {
     let clearance =
         |place: &Point| way.iter().map(|point| (point - place).norm()).fold(f64::INFINITY, f64::min);
@@ -39,7 +39,7 @@ pub(crate) fn add_pole(scene: &mut Scene, goal: Point, way: &[Point]) {
     scene.world.objects.push(Object::new(Arc::new(kind), Pose::new(best.x, best.y, 0.0)));
 }
 
-/// The world's poles, as a robot that starts at a pose sees them.
+/// The world's poles in the frame of a robot's start pose.
 pub(crate) fn poles(scene: &Scene, start: Pose) -> Vec<Landmark> {
     let objects = scene.world.objects.iter();
     let poles = objects.filter_map(|object| match object.kind.shape {

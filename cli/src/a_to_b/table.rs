@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::campaign::{Kind, Row};
 use crate::common::rounded;
 
-/// The table. Holds nothing that differs between machines.
+/// The table, without anything that differs between machines.
 pub(crate) fn text(rows: &[Row]) -> String {
     let mut text = String::from(
         "what            noise  method  runs  reached  mean mm  worst mm  worst deg  in ellipse  good\n",

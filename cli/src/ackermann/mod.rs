@@ -13,13 +13,13 @@ use crate::common::{
 };
 use crate::driving::{Conditions, Run, Way, check_drive, paced, pale};
 
-/// The command line of `ackermann`.
+/// Command line of `ackermann`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Drives a car by its motor and its steering servo to a goal, within its turning circle",
     after_help = "\
-Without --world, the car drives over an empty floor. Where a method would turn too tightly, the car goes round its turning
-circle. A heading in --goal is met by every method: a car cannot turn at the end.
+Without --world, the car drives on an empty floor. Where a method would turn too tightly, the car follows its turning
+circle. Every method reaches the heading in --goal, because a car cannot turn at the end.
 
 JSON fields:
   method                      turn, arc, dog or spline
@@ -31,7 +31,7 @@ JSON fields:
 Outcomes: reached, missed, blocked, timed_out, collided, failed."
 )]
 pub(crate) struct Args {
-    /// How to get there.
+    /// Method of driving to the goal.
     #[arg(long, value_enum, default_value = "spline")]
     pub(crate) method: Way,
 
@@ -41,17 +41,17 @@ pub(crate) struct Args {
 
 crate::common::shares_options!(Args, common: CommonArgs);
 
-/// Where to drive, and how, in the frame of odometry.
+/// Goal and method, in the odometry frame.
 #[derive(Debug, Clone)]
 pub(crate) struct Options {
     pub(crate) method: Method,
     pub(crate) goal: Goal,
     pub(crate) driver: CarDriver,
-    /// Seconds.
+    /// Time limit (s).
     pub(crate) time_limit: f64,
 }
 
-/// How a drive ended, and the path that was planned.
+/// Outcome of a drive, and the planned path.
 #[derive(Debug, Clone)]
 pub(crate) struct Arrival {
     pub(crate) outcome: CarOutcome,
@@ -71,7 +71,7 @@ pub(crate) fn drive<R: Clock + Odometry + StallDetector + Motors + Servos + ?Siz
     Ok(Arrival { outcome, plan })
 }
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
@@ -105,10 +105,10 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(common.draw(report, "ackermann.svg", || picture(args, &trip, &run, &conditions, heading)))
 }
 
-/// The heading at the goal of the command's own scene.
+/// Heading at the default goal.
 const HEADING: f64 = std::f64::consts::FRAC_PI_2;
 
-/// The trip that the options describe. A car takes the place of another robot.
+/// The trip of the options. Another robot is replaced by a car.
 fn trip(common: &CommonArgs) -> Result<Trip, Failure> {
     common.trip_to_pose_of(&StandIn { spec: RobotSpec::car().into(), suits: is_car }, || scene(common.goal))
 }
@@ -117,7 +117,7 @@ fn is_car(spec: &RobotSpec) -> bool {
     matches!(spec.drive, DriveSpec::Ackermann { .. })
 }
 
-/// An empty floor of 5 m x 5 m with a marker at the goal, ahead to the left without one.
+/// An empty floor of 5 m x 5 m with a marker at the goal, by default ahead to the left.
 fn scene(goal: Option<GoalOption>) -> Scene {
     let mut world = World::empty(5.0, 5.0);
     let start = Pose::from_mm_deg(1500.0, 1500.0, 0.0);
@@ -153,7 +153,7 @@ fn report(args: &Args, trip: &Trip, run: &Run<Arrival>, heading: Option<f64>) ->
         .field("heading_error_deg", turned.map(|error| rounded(units::to_deg(error))))
 }
 
-/// The plan, where the car was and believed to be, and where the goal is.
+/// Plan, true and estimated path, and goal.
 fn picture(
     args: &Args,
     trip: &Trip,

@@ -2,34 +2,34 @@ use roverlab::ParameterError;
 use roverlab::geometry::{Point, Segment, cross};
 use roverlab::world::{Clearance, World};
 
-/// The closed lines along which a robot's middle follows obstacles: where the clearance has one value.
+/// The closed contour lines of the clearance, along which a robot's centre follows obstacles.
 ///
-/// They are traced between the middles of cells by marching squares (W. E. Lorensen and H. E. Cline, SIGGRAPH 1987, in the
-/// plane), with clearances interpolated; their lengths are right to some thousandths.
+/// They are traced between the centres of cells by marching squares (W. E. Lorensen and H. E. Cline, SIGGRAPH
+/// 1987, in the plane), with interpolated clearances; their lengths are accurate to a few thousandths.
 #[derive(Debug, Clone)]
 pub(crate) struct Boundaries {
     pub(crate) all: Vec<Boundary>,
 }
 
-/// One closed line.
+/// A closed contour line.
 #[derive(Debug, Clone)]
 pub(crate) struct Boundary {
     points: Vec<Point>,
-    /// Metres.
+    /// Length (m).
     pub(crate) perimeter: f64,
 }
 
-/// Metres along a cell's edge: fine enough to keep apart what leaves the robot half a centimetre more than it follows at.
+/// Cell size (m): fine enough to separate contours with half a centimetre more room between them.
 const RESOLUTION: f64 = 0.006;
 
-/// Points of a path that are looked at.
+/// Number of path points compared.
 const VOTES: usize = 100;
 
 /// No crossing, or no neighbour.
 const NONE: usize = usize::MAX;
 
 impl Boundaries {
-    /// The lines of one clearance, in metres.
+    /// The contour lines of a clearance (m).
     pub(crate) fn new(world: &World, clearance: f64) -> Result<Self, ParameterError> {
         let field = Clearance::new(world, RESOLUTION, clearance + 2.0 * RESOLUTION)?;
         let mut tracer = Tracer::new(&field, clearance);
@@ -37,8 +37,8 @@ impl Boundaries {
         Ok(Self { all: tracer.lines() })
     }
 
-    /// The line that comes nearest to the most points of a path: the one that it goes along, though other lines may be
-    /// as near where it begins.
+    /// The contour nearest to most points of a path: the one it follows, though another may be as near at its
+    /// start.
     pub(crate) fn followed(&self, path: &[Point]) -> Option<usize> {
         let mut counts = vec![0; self.all.len()];
         let looked_at = path.iter().step_by(path.len() / VOTES + 1);
@@ -46,7 +46,7 @@ impl Boundaries {
         (0..counts.len()).max_by_key(|&line| counts[line]).filter(|_| !path.is_empty())
     }
 
-    /// The line that comes nearest to a point.
+    /// The contour nearest to a point.
     pub(crate) fn nearest(&self, point: Point) -> Option<usize> {
         let distance = |line: &Boundary| {
             line.points.iter().map(|p| (p - point).norm_squared()).fold(f64::INFINITY, f64::min)
@@ -67,7 +67,7 @@ impl Boundary {
         self.points.iter().copied().zip(next.copied())
     }
 
-    /// How often a straight line crosses it.
+    /// Number of times that a straight line crosses it.
     pub(crate) fn crossings(&self, line: Segment) -> usize {
         let side = |from: Point, to: Point, point: Point| cross(to - from, point - from) > 0.0;
         self.pieces()
@@ -78,11 +78,11 @@ impl Boundary {
     }
 }
 
-/// Joins the places where the lines cross the connections between neighbouring cells.
+/// Joins the points where contours cross the connections between neighbouring cells.
 struct Tracer<'a> {
     field: &'a Clearance,
     level: f64,
-    /// For each connection, two for each cell (along x and along y), the two others that it is joined to.
+    /// For each connection, two per cell (along x and along y), the two others joined to it.
     joined: Vec<[usize; 2]>,
 }
 
@@ -114,7 +114,7 @@ impl<'a> Tracer<'a> {
             (0..4).filter(|&k| free[k] != free[(k + 1) % 4]).map(|k| sides[k]).collect();
         match crossed[..] {
             [a, b] => self.join(a, b),
-            // Two opposite corners are free: what is free stays connected.
+            // Two opposite corners are free: the free area stays connected.
             [below, right, above, left] if free[0] => {
                 self.join(below, right);
                 self.join(above, left);
@@ -134,7 +134,7 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    /// Where a line crosses a connection.
+    /// The point where a contour crosses a connection.
     fn place(&self, connection: usize) -> Point {
         let raster = self.field.raster();
         let cell = connection / 2;
@@ -148,7 +148,7 @@ impl<'a> Tracer<'a> {
         (0..self.joined.len()).filter_map(|start| self.line_from(start)).collect()
     }
 
-    /// The line through a connection, which is used up.
+    /// The contour through a connection, whose crossings are consumed.
     fn line_from(&mut self, start: usize) -> Option<Boundary> {
         let mut points = Vec::new();
         let mut at = start;

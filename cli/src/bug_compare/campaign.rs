@@ -11,7 +11,7 @@ use super::ride::{Ride, parameters, ride};
 use super::{Args, job};
 use crate::common::{Failure, Outcome, Report, rounded, share_out, threads};
 
-/// What is left of one run in the campaign.
+/// Checked results of one run in the campaign.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Checked {
     pub(crate) kind: BugKind,
@@ -21,18 +21,18 @@ pub(crate) struct Checked {
     pub(crate) correct: bool,
     pub(crate) contacts: u32,
     pub(crate) sim_time: f64,
-    /// The path's length in terms of its bound, where there is one.
+    /// Path length as a fraction of its bound, if there is one.
     pub(crate) of_bound: Option<f64>,
 }
 
-/// By which part more than those traced the perimeters count.
+/// Relative tolerance of the traced perimeters.
 const TOLERANCE: f64 = 0.02;
-/// Metres by which lines are traced nearer to obstacles than the middle of the narrowest corridor.
+/// Distance by which contours are traced nearer to obstacles than the middle of the narrowest corridor (m).
 const RESERVE: f64 = 0.004;
-/// Metres to a point outside of every field.
+/// Distance of a point outside every field (m).
 const FAR: f64 = 1e3;
 
-/// The work of the campaign.
+/// Runs the campaign.
 pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
     let courses = args.runs.unwrap_or(1000);
     let checked = share_out("courses", courses, threads(args.threads), |index| {
@@ -52,7 +52,7 @@ pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
     job::drawn(args, report, None)
 }
 
-/// Lets all algorithms drive through the course of one seed.
+/// Drives all algorithms through the course of a seed.
 pub(crate) fn check(args: &Args, seed: u64) -> Result<Vec<Checked>, Failure> {
     let setting = of_campaign(seed)?;
     let conditions = setting.conditions(args);
@@ -63,8 +63,8 @@ pub(crate) fn check(args: &Args, seed: u64) -> Result<Vec<Checked>, Failure> {
         if bounded && boundaries.is_none() {
             let parameters = parameters(&setting.trip, args.common.noise);
             let followed = parameters.robot_radius + parameters.clearance;
-            // Robots go through passages that are too narrow for the clearance that they keep elsewhere: so the lines are
-            // those of half the narrowest corridor, which parts nothing, and count as parallels of them.
+            // Robots go through passages too narrow for their usual clearance. So the contours are traced at
+            // half the narrowest corridor, which separates nothing, and paths count as parallels of them.
             let traced = followed.min(0.5 * campaign_options().min_corridor - RESERVE);
             let lines = Boundaries::new(&setting.trip.scene.world, traced).map_err(Failure::run)?;
             boundaries = Some((lines, followed - traced));
@@ -84,16 +84,17 @@ pub(crate) fn check(args: &Args, seed: u64) -> Result<Vec<Checked>, Failure> {
     args.bugs().iter().map(drive).collect()
 }
 
-/// The bound of a ride's path in metres. The robot's middle follows parallels of the lines, so many metres `apart`.
+/// Bound on the length of a ride's path (m). The robot's centre follows parallels of the contours at a
+/// distance of `apart` metres.
 fn bound(setting: &Setting, ride: &Ride, boundaries: &Boundaries, apart: f64) -> Option<f64> {
     let (start, goal) = (setting.trip.start().position(), setting.trip.goal);
     let mut met: Vec<usize> =
         ride.follows.iter().filter_map(|&(from, to)| boundaries.followed(&ride.path[from..to])).collect();
     met.sort_unstable();
     met.dedup();
-    // The lines that the robot drives along: the first one, and one from each hit point.
+    // The robot's straight lines to the goal: from the start, and from each hit point.
     let ways: Vec<Segment> = [start].iter().chain(&ride.hits).map(|&from| Segment::new(from, goal)).collect();
-    // A parallel outside of a closed line is longer by a full turn times the distance, and one inside shorter.
+    // An outer parallel of a closed line is longer by a full turn times the distance, an inner one shorter.
     let far = Segment::new(start, start + direction(0.4) * FAR);
     let terms = met.into_iter().map(|index| {
         let line = &boundaries.all[index];
@@ -109,7 +110,7 @@ fn breaks(run: &Checked) -> bool {
     run.of_bound.is_some_and(|share| share > 1.0)
 }
 
-/// What is told of one algorithm.
+/// Summary of one algorithm.
 struct Row {
     kind: BugKind,
     complete: bool,
@@ -119,7 +120,7 @@ struct Row {
     touched: Vec<u64>,
     bounded: usize,
     broken: Vec<u64>,
-    /// The largest share of a bound.
+    /// Largest fraction of a bound.
     closest: Option<f64>,
 }
 

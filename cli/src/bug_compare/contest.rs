@@ -12,20 +12,20 @@ use super::ride::{Conditions, Ride, ride, ride_with};
 use super::{Args, job};
 use crate::common::{Driven, Failure, StageTruth, Trip, onlooker, share_out, threads};
 
-/// A world with a robot and a goal, and the truth about it.
+/// A world with a robot and a goal, and its ground truth.
 #[derive(Debug, Clone)]
 pub(crate) struct Setting {
-    /// The family's name, or that of the world.
+    /// Name of the family, or of the world.
     pub(crate) family: String,
     pub(crate) seed: u64,
     pub(crate) trip: Trip,
-    /// Metres along the shortest way, if there is one.
+    /// Length of the shortest way, if there is one (m).
     pub(crate) shortest: Option<f64>,
 }
 
-/// Metres along a cell's edge of the grid that knows the truth.
+/// Cell size of the ground truth's grid (m).
 const RESOLUTION: f64 = 0.010;
-/// How much more time than is generous for DistBug the algorithms get: some see nothing ahead.
+/// Time limit as a multiple of a generous one for DistBug: some algorithms see nothing ahead.
 const PATIENCE: f64 = 4.0;
 
 impl Setting {
@@ -46,14 +46,14 @@ impl Setting {
         self.shortest.is_some()
     }
 
-    /// How to drive here.
+    /// Driving conditions.
     pub(crate) fn conditions(&self, args: &Args) -> Conditions {
         let time_limit = args.common.time_limit.unwrap_or_else(|| PATIENCE * self.trip.generous_time_limit());
         Conditions { seed: self.seed, noise: args.common.noise, time_limit }
     }
 }
 
-/// Metres along the shortest way between two places in any direction, if there is one.
+/// Length of the shortest any-angle way between two places, if there is one (m).
 fn shortest_way(ways: &Reachability, start: Point, goal: Point) -> Result<Option<f64>, BitGridError> {
     let raster = ways.raster();
     let (Some(from), Some(to)) = (raster.cell_at(start), raster.cell_at(goal)) else { return Ok(None) };
@@ -64,14 +64,14 @@ fn shortest_way(ways: &Reachability, start: Point, goal: Point) -> Result<Option
     Ok(AnyAngle::new(&floor).plan(from, to).ok().map(|path| path.cost * raster.resolution()))
 }
 
-/// What all algorithms did in one setting.
+/// Runs of all algorithms in one setting.
 #[derive(Debug, Clone)]
 pub(crate) struct Entry {
     pub(crate) setting: Setting,
     pub(crate) rides: Vec<Ride>,
 }
 
-/// Lets all algorithms drive in all settings, in the order of these.
+/// Drives all algorithms in all settings, in order.
 pub(crate) fn entries(args: &Args) -> Result<Vec<Entry>, Failure> {
     let runs = args.runs.unwrap_or(10);
     let own = args.common.world.is_some().then(|| job::own_trip(args)).transpose()?;
@@ -86,8 +86,8 @@ pub(crate) fn entries(args: &Args) -> Result<Vec<Entry>, Failure> {
     })
 }
 
-/// The setting that is shown and recorded: the world of `--world`, or else the first course of the campaign or of the
-/// first family.
+/// The setting to show and record: the world of `--world`, otherwise the first course of the campaign or of
+/// the first family.
 pub(crate) fn shown(args: &Args) -> Result<Setting, Failure> {
     if args.campaign {
         return of_campaign(args.common.seed);
@@ -98,7 +98,7 @@ pub(crate) fn shown(args: &Args) -> Result<Setting, Failure> {
     of_family(args.families()[0], args.common.seed)
 }
 
-/// Lets all algorithms drive in the setting that is shown, side by side in one recording.
+/// Drives all algorithms in the shown setting, in one recording.
 pub(crate) fn recorded(args: &Args) -> Result<Entry, Failure> {
     let setting = shown(args)?;
     let (trip, conditions, bugs) = (&setting.trip, setting.conditions(args), args.bugs());
@@ -120,7 +120,7 @@ pub(crate) fn recorded(args: &Args) -> Result<Entry, Failure> {
     Ok(Entry { setting, rides })
 }
 
-/// The ride of the one algorithm that somebody looks at.
+/// The run of the single algorithm shown to an onlooker.
 fn looked_at(
     setting: Setting,
     conditions: Conditions,
@@ -140,13 +140,13 @@ pub(crate) fn of_family(family: CourseFamily, seed: u64) -> Result<Setting, Fail
     Setting::of_course(family.name(), seed, &course)
 }
 
-/// The course of the campaign that has a seed.
+/// The campaign's course of a seed.
 pub(crate) fn of_campaign(seed: u64) -> Result<Setting, Failure> {
     let course = obstacle_course(&mut Stream::new(seed), &campaign_options()).map_err(Failure::run)?;
     Setting::of_course("course", seed, &course)
 }
 
-/// What courses of the campaign are like: made for the robot that drives.
+/// Options of the campaign's courses, for the robot in use.
 pub(crate) fn campaign_options() -> CourseOptions {
     let robot_radius = RobotSpec::s4().footprint.bounding_radius();
     CourseOptions { robot_radius, ..CourseOptions::default() }
@@ -156,7 +156,7 @@ fn enter(args: &Args, setting: Setting) -> Result<Entry, Failure> {
     let conditions = setting.conditions(args);
     let drive = |&kind| {
         let ride = ride(&setting.trip, kind, conditions)?;
-        // Paths are for the picture, which drives anew; those of many runs would fill the memory.
+        // Pictures drive anew; the paths of many runs would fill the memory.
         Ok(Ride { path: Vec::new(), ..ride })
     };
     let rides = args.bugs().iter().map(drive).collect::<Result<_, Failure>>()?;

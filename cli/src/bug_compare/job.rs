@@ -6,7 +6,7 @@ use super::ride::ride;
 use super::{Args, campaign, picture, table};
 use crate::common::{Failure, Outcome, Report, Trip, onlooker};
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     check(args)?;
     if args.campaign {
@@ -16,7 +16,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let entries = if is_recorded { vec![contest::recorded(args)?] } else { contest::entries(args)? };
     let rows = table::rows(&entries, args.common.noise);
     args.common.tell(table::text(&rows));
-    // Errors of odometry can lead any algorithm astray: verdicts are judged without noise alone.
+    // Odometry errors can mislead any algorithm: verdicts are judged only without noise.
     let good = args.common.noise > 0.0 || table::all_correct(&rows);
     let outcome = if good { Outcome::verdict("compared") } else { Outcome::failure("wrong") };
     let report =
@@ -24,7 +24,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     drawn(args, report, entries.first().filter(|_| is_recorded))
 }
 
-/// A report with the sums over all rides.
+/// A report with the sums over all runs.
 pub(super) fn summed(outcome: Outcome, entries: &[Entry]) -> Report {
     let rides = || entries.iter().flat_map(|entry| &entry.rides);
     Report {
@@ -35,7 +35,7 @@ pub(super) fn summed(outcome: Outcome, entries: &[Entry]) -> Report {
     }
 }
 
-/// Refuses what makes no sense for many runs.
+/// Rejects options that make no sense for many runs.
 fn check(args: &Args) -> Result<(), Failure> {
     let common = &args.common;
     common.check_picture()?;
@@ -62,16 +62,16 @@ fn check(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The trip of the options, for a robot that can do it.
+/// The trip of the options, for a suitable robot.
 pub(super) fn own_trip(args: &Args) -> Result<Trip, Failure> {
-    // The scene of `--world` comes before this empty one.
+    // The scene of `--world` takes precedence over this empty one.
     let empty = || Scene::with_robot(World::walled(1.0, 1.0), RobotSpec::s4(), Pose::new(0.5, 0.5, 0.0));
     let trip = args.common.trip(empty)?;
     args.common.check_turning_with_lidar(trip.spec())?;
     Ok(trip)
 }
 
-/// Draws the paths of all algorithms on one world, if asked for: those that were recorded, or new ones.
+/// Draws the paths of all algorithms in one world, if requested: the recorded ones, or new ones.
 pub(super) fn drawn(args: &Args, report: Report, recorded: Option<&Entry>) -> Result<Report, Failure> {
     let common = &args.common;
     if common.picture.is_none() && common.animation.is_none() {

@@ -4,7 +4,7 @@ use roverlab::picture::{Mark, Picture, SERIES, Style};
 use super::contest::Setting;
 use super::ride::{Conditions, Ending, Ride};
 
-/// The world once for each algorithm, with its path.
+/// One panel per algorithm, with the world and the path.
 pub(super) fn of(setting: &Setting, rides: &[Ride], conditions: Conditions) -> Picture {
     let trip = &setting.trip;
     let panel = |(index, ride): (usize, &Ride)| {
@@ -23,7 +23,7 @@ pub(super) fn of(setting: &Setting, rides: &[Ride], conditions: Conditions) -> P
     picture
 }
 
-/// When it was where: its steps take equally long.
+/// The path with times, as all steps take equally long.
 fn timed(ride: &Ride) -> impl Iterator<Item = (f64, Point)> {
     let step = ride.sim_time / ride.path.len().saturating_sub(1).max(1) as f64;
     (0_u32..).zip(&ride.path).map(move |(index, point)| (f64::from(index) * step, *point))

@@ -7,26 +7,26 @@ use roverlab::nav::{BugEvent, BugKind, BugOutcome, BugParameters, Guarantee};
 
 use crate::common::{Driven, Failure, Stage, StageTruth, Trip};
 
-/// How to drive.
+/// Driving conditions.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Conditions {
     pub(crate) seed: u64,
     pub(crate) noise: f64,
-    /// Simulated seconds.
+    /// Time limit (s).
     pub(crate) time_limit: f64,
 }
 
-/// How an algorithm ended.
+/// How an algorithm's run ended.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Ending {
-    /// With a verdict, or because the time was over.
+    /// With a verdict, or at the time limit.
     Verdict(BugOutcome),
     /// The robot failed.
     Failed(String),
 }
 
 impl Ending {
-    /// The word for it.
+    /// Name of the ending.
     pub(crate) fn word(&self) -> &'static str {
         match self {
             Self::Verdict(BugOutcome::Reached) => "reached",
@@ -38,30 +38,30 @@ impl Ending {
     }
 }
 
-/// One algorithm's run and what is true about it.
+/// One algorithm's run with its ground truth.
 #[derive(Debug, Clone)]
 pub(crate) struct Ride {
     pub(crate) kind: BugKind,
     pub(crate) guarantee: Guarantee,
     pub(crate) ending: Ending,
     pub(crate) contacts: u32,
-    /// Metres.
+    /// Path length (m).
     pub(crate) path_length: f64,
     pub(crate) goal_distance: f64,
-    /// Simulated seconds.
+    /// Simulated time (s).
     pub(crate) sim_time: f64,
-    /// Where obstacles were met, in the world.
+    /// Hit points, in the world.
     pub(crate) hits: Vec<Point>,
-    /// The same as numbers of steps of the path, each with that of the leave or the end after it.
+    /// The same as step numbers of the path, each with the step of the following leave or end.
     pub(crate) follows: Vec<(usize, usize)>,
-    /// Where the robot was at each step, truly.
+    /// True position at each step.
     pub(crate) path: Vec<Point>,
 }
 
 impl Ride {
-    /// Whether the verdict is the truth: `reached` counts if the robot really is at the goal.
+    /// Whether the verdict is true: `reached` requires the robot's true position to be at the goal.
     pub(crate) fn is_correct(&self, reachable: bool, noise: f64) -> bool {
-        // Odometry errs, so "at the goal" is farther away with noise.
+        // With noise, odometry errors allow a larger distance.
         let tolerance = if noise == 0.0 { 0.050 } else { 0.250 };
         match self.ending {
             Ending::Verdict(BugOutcome::Reached) => reachable && self.goal_distance <= tolerance,
@@ -71,7 +71,7 @@ impl Ride {
     }
 }
 
-/// What a bug goes by on a trip.
+/// Parameters of a bug on a trip.
 pub(crate) fn parameters(trip: &Trip, noise: f64) -> BugParameters {
     let radius = trip.spec().footprint.bounding_radius();
     // Odometry without noise needs no correction.
@@ -79,7 +79,7 @@ pub(crate) fn parameters(trip: &Trip, noise: f64) -> BugParameters {
 }
 
 impl Conditions {
-    /// How the simulator runs.
+    /// Options of the simulation.
     pub(crate) fn sim_options(self) -> SimOptions {
         let time_limit = Some(self.time_limit + 1.0);
         SimOptions { time_limit, ..SimOptions::with_noise(self.noise, self.seed) }
@@ -88,13 +88,14 @@ impl Conditions {
 
 /// Drives the first robot of a scene to a goal by one algorithm.
 ///
-/// Fails if the robot cannot be simulated or the algorithm cannot run. What goes wrong on the way is part of the result.
+/// Fails if the robot cannot be simulated or the algorithm cannot run. Failures during the run are part of
+/// the result.
 pub(crate) fn ride(trip: &Trip, kind: BugKind, conditions: Conditions) -> Result<Ride, Failure> {
     let stage = Stage::simulated(&trip.scene, conditions.sim_options(), Vec::new())?;
     ride_with(trip, kind, conditions, stage.robot(0)?, &mut stage.truth(0)?)
 }
 
-/// The same with the robot, and with what is true about it.
+/// The same with a given robot and its ground truth.
 pub(crate) fn ride_with(
     trip: &Trip,
     kind: BugKind,
@@ -126,7 +127,7 @@ pub(crate) fn ride_with(
     for follow in &mut follows {
         follow.1 = follow.1.min(path.len());
     }
-    // Asked before the robot lets go of the world: then its recording ends.
+    // Read before the robot is dropped, which ends its recording.
     let (sim_time, truth) = (truth.time().map_err(Failure::run)?, truth.robot(0).map_err(Failure::run)?);
     drop(robot);
     Ok(Ride {

@@ -1,6 +1,6 @@
 use roverlab::random::Stream;
 
-/// A mean with an interval that holds the true one with 95 % confidence.
+/// A mean with its 95 % confidence interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Interval {
     pub(crate) mean: f64,
@@ -8,12 +8,12 @@ pub(crate) struct Interval {
     pub(crate) high: f64,
 }
 
-/// How often values are drawn anew.
+/// Number of bootstrap samples.
 const RESAMPLES: usize = 2000;
 
-/// The mean of some values, with its interval by the percentile bootstrap, which takes nothing for granted about how they
-/// are distributed (B. Efron, "Bootstrap methods: another look at the jackknife", Annals of Statistics 7(1), 1979).
-/// `None` without values.
+/// Mean of some values, with its interval by the percentile bootstrap, which assumes no distribution (B.
+/// Efron, "Bootstrap methods: another look at the jackknife", Annals of Statistics 7(1), 1979). `None`
+/// without values.
 pub(crate) fn interval(values: &[f64]) -> Option<Interval> {
     let mean_of = |sum: f64| sum / values.len() as f64;
     if values.is_empty() {

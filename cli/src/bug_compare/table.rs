@@ -8,14 +8,14 @@ use super::ride::Ride;
 use super::statistics::{Interval, interval};
 use crate::common::{millimetres, rounded};
 
-/// What one algorithm did in the courses of one family.
+/// Runs of one algorithm in the courses of one family.
 pub(super) struct Row<'a> {
     kind: BugKind,
     family: &'a str,
     runs: Vec<(&'a Setting, &'a Ride, bool)>,
 }
 
-/// The rows of the table, family by family.
+/// Rows of the table, family by family.
 pub(super) fn rows(entries: &[Entry], noise: f64) -> Vec<Row<'_>> {
     let mut rows: Vec<Row<'_>> = Vec::new();
     for Entry { setting, rides } in entries {
@@ -40,7 +40,7 @@ impl Row<'_> {
         self.runs.iter().map(|(_, ride, _)| ride.contacts).sum()
     }
 
-    /// The interval of a figure over the correct runs that have it.
+    /// Interval of a figure over the correct runs that have it.
     fn over_correct(&self, figure: impl Fn(&Setting, &Ride) -> Option<f64>) -> Option<Interval> {
         let correct = self.runs.iter().filter(|(_, _, correct)| *correct);
         interval(&correct.filter_map(|(setting, ride, _)| figure(setting, ride)).collect::<Vec<_>>())
@@ -59,7 +59,7 @@ impl Row<'_> {
     }
 }
 
-/// The table in words: for every family the algorithms, the shortest mean path first.
+/// The table as text: the algorithms of every family, the shortest mean path first.
 pub(super) fn text(rows: &[Row<'_>]) -> String {
     let mut families: Vec<&str> = rows.iter().map(|row| row.family).collect();
     families.dedup();
@@ -102,7 +102,7 @@ fn line(row: &Row<'_>) -> String {
     )
 }
 
-/// The rows for programs.
+/// The rows as JSON.
 pub(super) fn json(rows: &[Row<'_>]) -> Value {
     let row = |row: &Row<'_>| {
         let (path, ratio) = (row.path(), row.ratio());
@@ -122,7 +122,7 @@ pub(super) fn json(rows: &[Row<'_>]) -> Value {
     rows.iter().map(row).collect()
 }
 
-/// Every run for programs.
+/// Every run as JSON.
 pub(super) fn json_runs(rows: &[Row<'_>]) -> Value {
     let run = |row: &Row<'_>, (setting, ride, correct): &(&Setting, &Ride, bool)| {
         json!({
@@ -141,7 +141,7 @@ pub(super) fn json_runs(rows: &[Row<'_>]) -> Value {
     rows.iter().flat_map(|row| row.runs.iter().map(move |entry| run(row, entry))).collect()
 }
 
-/// Whether every verdict is the truth.
+/// Whether every verdict of a complete algorithm is true.
 pub(super) fn all_correct(rows: &[Row<'_>]) -> bool {
     rows.iter().all(|row| row.runs.iter().all(|(_, ride, correct)| *correct || !ride.guarantee.complete))
 }

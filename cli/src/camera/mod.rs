@@ -13,17 +13,17 @@ use crate::driving::{Conditions, Run, paced, pale};
 use crate::room;
 use roverlab::world::Scene;
 
-/// The command line of `camera`.
+/// Command line of `camera`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Takes images with the robot's camera and shows them on its display",
     after_help = "\
-Without --world, the robot stands in a room with things in it. Pan counts to the left and tilt upwards; the head turns 30
-degrees a second.
+Without --world, the robot is in a room with several objects. Pan counts to the left and tilt upwards; the head turns at
+30 degrees per second.
 
 JSON fields:
   width, height, images
-  output                      the file with the last image, or null
+  output                      file of the last image, or null
   mean_brightness             of the last image, 0 to 255
   timing                      with --timing: images_per_s
   picture
@@ -34,11 +34,11 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value = "qvga")]
     pub(crate) resolution: Size,
 
-    /// Where the camera's head turns first: degrees to the left.
+    /// Pan angle of the camera's head, to the left (degrees).
     #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_hyphen_values = true)]
     pub(crate) pan: f64,
 
-    /// Degrees upwards.
+    /// Tilt angle, upwards (degrees).
     #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_hyphen_values = true)]
     pub(crate) tilt: f64,
 
@@ -46,11 +46,11 @@ pub(crate) struct Args {
     #[arg(long, value_name = "F", default_value_t = 1.0, allow_hyphen_values = true)]
     pub(crate) light: f64,
 
-    /// Images to take.
+    /// Number of images to take.
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) images: u32,
 
-    /// Where the last image goes: .png, .ppm or .bmp [target/pictures/camera.png, unless --json].
+    /// File for the last image: .png, .ppm or .bmp [target/pictures/camera.png, unless --json].
     #[arg(long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
 
@@ -62,7 +62,7 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["goal", "animation"]),
 ]);
 
-/// A size of images by its name on the command line.
+/// Image size by its name on the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Size {
     /// 160 x 120.
@@ -92,14 +92,14 @@ impl From<Size> for Resolution {
     }
 }
 
-/// What the robot saw last, and how long all images took on the wall clock, in seconds.
+/// The last image, and the wall-clock time of all images (s).
 #[derive(Debug, Clone)]
 struct Seen {
     image: RgbImage,
     seconds: f64,
 }
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
@@ -126,7 +126,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(common.draw(report, "camera.svg", || drawing(&scene, run.truth.pose)))
 }
 
-/// The scene from above, with what the camera can see.
+/// The scene from above, with the camera's field of view.
 fn drawing(scene: &Scene, pose: Pose) -> Picture {
     let spec = &scene.robots[0].spec;
     let mut drawing = Picture::new(&scene.world);
@@ -145,7 +145,7 @@ fn drawing(scene: &Scene, pose: Pose) -> Picture {
     drawing
 }
 
-/// Positions of the head's servos for the angles of the options, behind those of the drive.
+/// Positions of the head's servos for the given angles, whose numbers follow those of the drive.
 fn head(args: &Args, scene: &Scene) -> Result<[(u8, f64); 2], Failure> {
     let spec = &scene.robots[0].spec;
     let Some(camera) = spec.camera else {
@@ -158,7 +158,7 @@ fn head(args: &Args, scene: &Scene) -> Result<[(u8, f64); 2], Failure> {
     let position = |option: &str, degrees: f64, largest: f64| {
         let most = roverlab::geometry::units::to_deg(largest);
         if degrees.abs() <= most {
-            // A head that cannot turn stays as it is.
+            // A fixed head stays as it is.
             return Ok(if most == 0.0 { 0.0 } else { degrees / most });
         }
         Err(Failure::input(format!(
@@ -170,7 +170,7 @@ fn head(args: &Args, scene: &Scene) -> Result<[(u8, f64); 2], Failure> {
     Ok([(own + 1, pan), (own + 2, tilt)])
 }
 
-/// Seconds from one image of the simulator's camera to the next.
+/// Frame period of the simulator's camera (s).
 const FRAME: f64 = 1.0 / 30.0;
 
 /// Turns the head, then takes images and shows each on the display.
@@ -211,7 +211,7 @@ fn brightness(image: &RgbImage) -> Result<f64, ImageError> {
     )
 }
 
-/// Writes the last image, though never unasked where a program reads the report.
+/// Writes the last image; with `--json` only on request.
 fn save(args: &Args, run: &Run<Seen>) -> Result<Option<PathBuf>, Failure> {
     let unasked = || args.common.unnamed_file("camera.png");
     let (Some(file), Ok(seen)) = (args.output.clone().or_else(unasked), &run.ending) else { return Ok(None) };

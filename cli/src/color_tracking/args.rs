@@ -2,43 +2,43 @@ use roverlab::vision::FindMethod;
 
 use crate::common::{CommonArgs, OF_ONE_RUN};
 
-/// The command line of `color-tracking`.
+/// Command line of `color-tracking`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
-    about = "Teaches the robot a hue at a key press, then lets it find what has it, drive there, or push it home",
+    about = "Learns a hue at a key press, then finds an object of that hue, drives to it, or pushes it home",
     after_help = "\
-Without --world, the scene is drawn by --seed: a room of 4 m x 4 m with a red can and things of other hues in it. The robot
-is taught the colour of a red card that is held before its camera when the first soft key is pressed; --hue takes a hue
-instead. In a world from a file, the object is the one of the taught
-hue that the robot finds; distances are to the nearest that has it.
+Without --world, --seed determines the scene: a room of 4 m x 4 m with a red can and objects of other hues. When the
+first soft key is pressed, the robot learns the colour of a red card before its camera; --hue gives a hue instead. In a
+world from a file, the object is the one of that hue that the robot finds; distances are to the nearest one with the
+hue.
 
-With --job home, the robot drives round the object and pushes it to where it started (section 11.6).
-With --campaign, many scenes: another place of everything, light of 30 to 150 %, noise as --noise says.
+With --job home, the robot drives round the object and pushes it to its own start (section 11.6). With --campaign, many
+scenes with random places, light from 30 to 150 %, and the noise of --noise.
 
 JSON fields:
   job, method, light
   hue                         taught or given, on RoBIOS's scale
-  distance_mm                 true distance from the robot's middle to the object's at the end
-  home_mm                     home: true distance of the object from home at the end
+  distance_mm                 final true distance between the centres of robot and object
+  home_mm                     home: final true distance of the object from home
   time_limit_s, picture
-  scenes, reached, wrong      campaign: how many, and the seeds of those not reached
+  scenes, reached, wrong      campaign: numbers, and the seeds of failures
 Outcomes: reached, home, missed (if the true distance is above 200 mm), blocked, timed_out, collided, failed; with
 --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
-    /// What the robot does.
+    /// Task of the robot.
     #[arg(long, value_enum, default_value = "reach")]
     pub(crate) job: Job,
 
-    /// How it finds the colour in an image.
+    /// Method of finding the colour in an image.
     #[arg(long, value_enum, default_value = "blob")]
     pub(crate) method: Method,
 
-    /// Hue to look for, instead of a taught one: RoBIOS's scale, red 42, green 126, blue 210.
+    /// Hue to look for instead of a taught one, on RoBIOS's scale: red 42, green 126, blue 210.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(..252))]
     pub(crate) hue: Option<u8>,
 
-    /// Hues less than this away from it match.
+    /// Hue tolerance: smaller differences match.
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u8).range(1..))]
     pub(crate) tolerance: u8,
 
@@ -46,11 +46,11 @@ pub(crate) struct Args {
     #[arg(long, value_name = "F", value_parser = parse_light, allow_hyphen_values = true)]
     pub(crate) light: Option<f64>,
 
-    /// Drive in many scenes and print how many went well.
+    /// Drive in many scenes and print the number of successes.
     #[arg(long)]
     pub(crate) campaign: bool,
 
-    /// Scenes of a campaign.
+    /// Number of scenes in a campaign.
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) scenes: u64,
 
@@ -64,7 +64,7 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("!campaign", &["scenes"]),
 ]);
 
-/// What the robot does.
+/// Task of the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Job {
     /// Drive to the object.
@@ -82,12 +82,12 @@ impl Job {
     }
 }
 
-/// How a colour is found.
+/// Method of finding a colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Method {
-    /// By the fullest column.
+    /// By the fullest column of the histogram.
     Histogram,
-    /// By the largest group of pixels.
+    /// By the largest connected blob.
     Blob,
 }
 

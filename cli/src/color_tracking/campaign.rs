@@ -5,12 +5,12 @@ use super::{Args, Job, scene};
 use crate::common::{Failure, Outcome, Report};
 use crate::driving::Conditions;
 
-/// How the scenes of a campaign went.
+/// Results of a campaign.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Tally {
     pub(crate) scenes: u64,
     pub(crate) reached: u64,
-    /// Seeds of the others.
+    /// Seeds of the failures.
     pub(crate) wrong: Vec<u64>,
 }
 
@@ -40,7 +40,7 @@ pub(crate) fn tally(args: &Args) -> Result<Tally, Failure> {
     Ok(tally)
 }
 
-/// Whether the robot does its job in a scene, without touching anything.
+/// Whether the robot does its task in a scene without a contact.
 fn good(args: &Args, seed: u64) -> Result<bool, Failure> {
     let scene = scene::drawn(seed);
     let light = Stream::new(seed).child("light", 0).between(0.3, 1.5);

@@ -13,7 +13,7 @@ use roverlab::world::Colour;
 
 use super::Job;
 
-/// How the robot looks and drives.
+/// Options of a run.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Options {
     pub(crate) job: Job,
@@ -21,11 +21,11 @@ pub(crate) struct Options {
     pub(crate) tolerance: u8,
     pub(crate) camera: CameraGeometry,
     pub(crate) radius: f64,
-    /// Seconds.
+    /// Time limit (s).
     pub(crate) time_limit: f64,
 }
 
-/// How a run ended, as the robot takes it.
+/// Outcome of a run from the robot's perspective.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Ended {
     Reached,
@@ -34,7 +34,7 @@ pub(crate) enum Ended {
     Blocked,
 }
 
-/// The hue of what is held before the camera.
+/// The hue of the object in front of the camera.
 pub(crate) fn teach(robot: &mut (impl Camera + Display + io::Keys)) -> io::Result<Option<u8>> {
     robot.set_menu(["TEACH", "", "", ""])?;
     robot.wait_key()?;
@@ -86,7 +86,7 @@ pub(crate) fn drive<R: Camera + Clock + Display + Drive + Odometry + StallDetect
     }
 }
 
-/// The image on the display, with a line at the column of the object.
+/// Shows the image on the display, with a line at the object's column.
 fn show<R: Display + ?Sized>(robot: &mut R, image: &RgbImage, seen: Option<Sighting>) -> io::Result<()> {
     robot.draw_image(DisplayImage::Rgb(image), Viewport::default())?;
     let Some(seen) = seen else { return Ok(()) };
@@ -95,7 +95,7 @@ fn show<R: Display + ?Sized>(robot: &mut R, image: &RgbImage, seen: Option<Sight
     robot.draw_line(at(0), at(239), Colour::GREEN)
 }
 
-/// The place of the object nearest to another one: that of the colour, where several have it.
+/// Distance of the nearest of several places.
 pub(crate) fn nearest(places: impl IntoIterator<Item = Point>, to: Point) -> Option<f64> {
     places.into_iter().map(|place| (place - to).norm()).reduce(f64::min)
 }

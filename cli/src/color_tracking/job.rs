@@ -9,12 +9,12 @@ use super::{Args, Job, campaign, scene};
 use crate::common::{Failure, Outcome, Report, millimetres};
 use crate::driving::{Conditions, Run, paced};
 
-/// The hue that is taught, if none is given: a red card's.
+/// Colour of the card that teaches the default hue: red.
 const CARD: Colour = Colour::new(200, 24, 24);
-/// Simulated seconds for the job.
+/// Time limit (s).
 const TIME_LIMIT: f64 = 300.0;
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     if args.campaign {
         return campaign(args);
@@ -32,7 +32,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(common.draw(report, "color_tracking.svg", || picture(&scene, &run)))
 }
 
-/// Teaches the robot the card's hue unless one is given, then lets it drive. Returns the hue as well.
+/// Teaches the robot the card's hue unless one is given, then lets it drive. Also returns the hue.
 pub(crate) fn one(
     args: &Args,
     scene: &Scene,
@@ -65,7 +65,7 @@ pub(crate) fn one(
     Ok((hue, run))
 }
 
-/// The hue of a card that is held before the camera at a key press.
+/// The hue of a card held in front of the camera at a key press.
 fn taught(scene: &Scene, conditions: &Conditions) -> Result<u8, Failure> {
     let mut lesson = scene.clone();
     lesson.world.billboards.push(scene::card(scene.robots[0].pose, CARD));
@@ -77,7 +77,7 @@ fn taught(scene: &Scene, conditions: &Conditions) -> Result<u8, Failure> {
     })
 }
 
-/// The objects whose colour the robot looks for, by their index.
+/// Indices of the objects with the wanted colour.
 pub(crate) fn wanted(scene: &Scene, hue_wanted: u8, tolerance: u8) -> Result<Vec<usize>, Failure> {
     let range = HueRange::around(hue_wanted, tolerance, HueScale::Robios).map_err(Failure::input)?;
     let is_it = |object: &Object| {
@@ -88,14 +88,15 @@ pub(crate) fn wanted(scene: &Scene, hue_wanted: u8, tolerance: u8) -> Result<Vec
     Ok(objects.filter(|(_, object)| is_it(object)).map(|(index, _)| index).collect())
 }
 
-/// Metres between the middles of robot and object that count as reached, and from home that count as home.
+/// Distance between the centres of robot and object that counts as reached, and from home that counts as home
+/// (m).
 const REACHED: f64 = 0.2;
 const HOME: f64 = 0.2;
 
-/// Where the object truly is at the end.
+/// True position of the object at the end.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Truth {
-    /// Metres from the robot's middle, and from where the robot started, to the nearest object of the colour.
+    /// Distance of the nearest object of the colour from the robot's centre, and from the robot's start (m).
     pub(crate) distance: Option<f64>,
     pub(crate) home: Option<f64>,
 }
@@ -109,7 +110,7 @@ impl Truth {
         }
     }
 
-    /// How a run ended: the robot's own opinion counts where it is true.
+    /// Outcome of a run: the robot's claim, if it is true.
     pub(crate) fn verdict(&self, ended: Ended) -> Outcome {
         let within = |distance: Option<f64>, limit| distance.is_some_and(|distance| distance <= limit);
         match ended {
@@ -136,7 +137,7 @@ fn report(args: &Args, scene: &Scene, (hue, run): (u8, &Run<Ended>)) -> Result<R
 }
 
 fn picture(scene: &Scene, run: &Run<Ended>) -> Picture {
-    // Things stand where they were pushed to.
+    // Objects are where they were pushed.
     let mut world = scene.world.clone();
     for (object, place) in world.objects.iter_mut().zip(&run.objects) {
         (object.pose.x, object.pose.y) = (place.x, place.y);

@@ -6,10 +6,10 @@ use roverlab::geometry::{Point, Pose, direction};
 use roverlab::random::Stream;
 use roverlab::world::{Billboard, Colour, Object, ObjectKind, RobotSpec, Scene, Shape, World};
 
-/// Metres across the room, and between the rims of two things at least.
+/// Side length of the room, and minimum distance between the rims of two objects (m).
 const ROOM: f64 = 4.0;
 const BETWEEN: f64 = 0.35;
-/// Hues of other things.
+/// Colours of other objects.
 const OTHERS: [(&str, u32); 6] = [
     ("yellow", 0xe0_c0_10),
     ("green", 0x30_a0_30),
@@ -19,14 +19,14 @@ const OTHERS: [(&str, u32); 6] = [
     ("sea-green", 0x10_80_50),
 ];
 
-/// A room with a red can and things of other hues, everything where the seed puts it. The can is the first object.
+/// A room with a red can and objects of other hues, placed by the seed. The can is the first object.
 pub(crate) fn drawn(seed: u64) -> Scene {
     let mut stream = Stream::new(seed).child("colour scene", 0);
     let mut world = World::walled(ROOM, ROOM);
     for wall in &mut world.walls {
         wall.height = 0.3;
     }
-    // In a corner, looking somewhere.
+    // In a corner, with a random heading.
     let start = Pose::new(0.5, 0.5, stream.between(-PI, PI));
     let mut places = vec![(start.position(), 0.2)];
     let can = ObjectKind::predefined("can").unwrap_or_else(|| ObjectKind::new("can", CAN, Colour::RED));
@@ -46,7 +46,7 @@ pub(crate) fn drawn(seed: u64) -> Scene {
 
 const CAN: Shape = Shape::Cylinder { radius: 0.033, height: 0.115 };
 
-/// Puts a thing where there is room for it, some metres from the start at least.
+/// Places an object where there is room, at a minimum distance from the start.
 fn add(
     world: &mut World,
     stream: &mut Stream,
@@ -68,7 +68,7 @@ fn add(
     }
 }
 
-/// A card of a colour before the robot's camera, as somebody holds it to teach the hue.
+/// A coloured card in front of the robot's camera, to teach the hue.
 pub(crate) fn card(start: Pose, colour: Colour) -> Billboard {
     let place = start.position() + direction(start.heading) * 0.25;
     let Colour { red, green, blue } = colour;

@@ -15,10 +15,10 @@ use super::values::{
 };
 use super::{Failure, Origin, Report, is_same_file, onlooker};
 
-/// The folder of files that no option names.
+/// Default folder of files that no option names.
 const UNNAMED: &str = "target/pictures";
 
-/// The options that all commands have. Flatten it into a command's own.
+/// The options shared by all commands, flattened into a command's own.
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Options of all commands (millimetres and degrees)")]
 #[allow(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
@@ -27,15 +27,15 @@ pub(crate) struct CommonArgs {
     #[arg(long, value_name = "FILE")]
     pub(crate) world: Option<PathBuf>,
 
-    /// Robot description [default: the built-in S4].
+    /// Robot description, or the name of a built-in robot [default: S4].
     #[arg(long, value_name = "FILE.robi")]
     pub(crate) robot: Option<PathBuf>,
 
-    /// Where the robot starts.
+    /// Start pose of the robot.
     #[arg(long, value_name = "X,Y,DEG", value_parser = parse_pose, allow_hyphen_values = true)]
     pub(crate) start: Option<Pose>,
 
-    /// Where the robot is to go; some commands take a heading to arrive with.
+    /// Goal of the robot; some commands take a heading on arrival.
     #[arg(long, value_name = "X,Y[,DEG]", value_parser = parse_goal, allow_hyphen_values = true)]
     pub(crate) goal: Option<GoalOption>,
 
@@ -55,7 +55,7 @@ pub(crate) struct CommonArgs {
     #[arg(long, value_name = "FILE", value_parser = parse_picture)]
     pub(crate) picture: Option<PathBuf>,
 
-    /// Draw the run as it moves, again and again, into an .svg file.
+    /// Draw the run as an endless animation into an .svg file.
     #[arg(long, value_name = "FILE.svg", value_parser = parse_animation)]
     pub(crate) animation: Option<PathBuf>,
 
@@ -63,15 +63,23 @@ pub(crate) struct CommonArgs {
     #[arg(long, value_name = "FILE.mcap")]
     pub(crate) record: Option<PathBuf>,
 
-    /// Run against a recording, with its options; others come before them.
+    /// Record in the place of a file that is no recording too.
+    #[arg(long, requires = "record")]
+    pub(crate) force: bool,
+
+    /// Wait until each second of a recording is on the disk.
+    #[arg(long, requires = "record")]
+    pub(crate) fsync: bool,
+
+    /// Run against a recording, with its options; further options override them.
     #[arg(long, value_name = "FILE.mcap")]
     pub(crate) replay: Option<PathBuf>,
 
-    /// Drive a real EyeBot, or what speaks RoBIOS, through this C library; the world is what the robot is told of.
+    /// Drive a real EyeBot, or another RoBIOS system, through this C library; the world is the robot's map.
     #[arg(long, value_name = "LIB")]
     pub(crate) robios: Option<PathBuf>,
 
-    /// Round what the simulated robot is told and tells as RoBIOS does: to whole millimetres and degrees.
+    /// Round the simulated robot's numbers like RoBIOS: to whole millimetres and degrees.
     #[arg(long)]
     pub(crate) quantised: bool,
 
@@ -79,7 +87,7 @@ pub(crate) struct CommonArgs {
     #[arg(long)]
     pub(crate) json: bool,
 
-    /// Report how long it took too, which differs from run to run.
+    /// Report the duration too, which differs from run to run.
     #[arg(long)]
     pub(crate) timing: bool,
 
@@ -87,16 +95,17 @@ pub(crate) struct CommonArgs {
     #[arg(long)]
     pub(crate) realtime: bool,
 
-    /// Inject a fault T seconds into the run: stuck, lost, nan, jump, late, link, hang or clock. May be repeated.
+    /// Inject a fault T seconds into the run: stuck, lost, nan, jump, late, link, hang or clock. May be
+    /// repeated.
     #[arg(long, value_name = "KIND@T")]
     pub(crate) fault: Vec<String>,
 
-    /// Put robots under the safety system, armed and started; what it does is told. Robots of campaigns and
-    /// those that are stepped as a fleet have none.
+    /// Put robots under the safety system, armed and started, and report its actions. Robots of campaigns and
+    /// of fleets have none.
     #[arg(long)]
     pub(crate) supervised: bool,
 
-    /// What the run is, for recordings.
+    /// Description of the run, for recordings.
     #[arg(skip)]
     pub(crate) origin: Origin,
 }
@@ -104,15 +113,15 @@ pub(crate) struct CommonArgs {
 /// The options of a command that drives no robot.
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct PlainArgs {
-    /// Draw what was done into a .svg or .png file.
+    /// Draw the result into a .svg or .png file.
     #[arg(long, value_name = "FILE", value_parser = parse_picture)]
     pub(crate) picture: Option<PathBuf>,
 
-    /// Draw how it was done, again and again, into an .svg file.
+    /// Draw the process as an endless animation into an .svg file.
     #[arg(long, value_name = "FILE.svg", value_parser = parse_animation)]
     pub(crate) animation: Option<PathBuf>,
 
-    /// Seed of what the command draws by itself.
+    /// Seed of random inputs.
     #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true)]
     pub(crate) seed: u64,
 
@@ -120,13 +129,13 @@ pub(crate) struct PlainArgs {
     #[arg(long)]
     pub(crate) json: bool,
 
-    /// Report how long it took too, which differs from run to run.
+    /// Report the duration too, which differs from run to run.
     #[arg(long)]
     pub(crate) timing: bool,
 }
 
 impl CommonArgs {
-    /// Fails if this build cannot do what the options ask for.
+    /// Fails if this build cannot do what the options request.
     pub(crate) fn check(&self) -> Result<(), Failure> {
         self.faults()?;
         if let Some(file) = &self.record {
@@ -142,7 +151,7 @@ impl CommonArgs {
         }
     }
 
-    /// Fails if the options ask for a recording that there cannot be, because no robot drove.
+    /// Fails if the options request a recording although no robot drove.
     pub(crate) fn check_recorded(&self) -> Result<(), Failure> {
         let option = [("--record", &self.record), ("--replay", &self.replay), ("--robios", &self.robios)];
         match option.into_iter().find_map(|(option, file)| file.as_ref().map(|file| (option, file))) {
@@ -164,7 +173,7 @@ impl CommonArgs {
         Ok(())
     }
 
-    /// Fails if the options say what the file of a maze says.
+    /// Fails for options that contradict the file of a maze.
     pub(crate) fn check_maze(&self) -> Result<(), Failure> {
         let options = [
             ("--robot", self.robot.is_some()),
@@ -176,7 +185,7 @@ impl CommonArgs {
         })
     }
 
-    /// Fails if the options say where and how one robot drives, for runs that are about something else.
+    /// Fails for options about place and manner of one robot's drive, in runs that are about something else.
     pub(crate) fn check_placeless(&self, says: &str) -> Result<(), Failure> {
         let options = [
             ("--world", self.world.is_some()),
@@ -190,26 +199,27 @@ impl CommonArgs {
         refuse(&options, |_| says)
     }
 
-    /// Tells a person what happens during a run. Silent with `--json`.
+    /// Prints an event of the run. Silent with `--json`.
     pub(crate) fn tell(&self, event: impl Display) {
         if !self.json && !onlooker::told(&event) {
-            // A reader that went away, as `head` does, is no reason to stop the run.
+            // A closed pipe, as with `head`, does not stop the run.
             let _ = writeln!(std::io::stdout(), "{event}");
         }
     }
 
-    /// Notes something odd about the input. It is told on standard error when the input has turned out to be of use, with
-    /// `--json` as well: that reserves standard output alone. Of input that is refused, the refusal is all that is told.
+    /// Records a warning about the input. It is printed on standard error once the input has been accepted,
+    /// also with `--json`, which only reserves standard output. If the input is rejected, only the rejection
+    /// is printed.
     pub(crate) fn warn(&self, warning: impl Display) {
         self.origin.warn(warning.to_string());
     }
 
-    /// Fails if pictures cannot be written where the options ask for one, before a long run is in vain.
+    /// Fails before a long run if a requested picture cannot be written.
     pub(crate) fn check_picture(&self) -> Result<(), Failure> {
         check_pictures(self.picture.as_deref(), self.animation.as_deref())
     }
 
-    /// Adds a picture of the run to a report: still, and moving if the options ask for that.
+    /// Adds a still picture of the run to a report, and an animated one if requested.
     pub(crate) fn draw(&self, report: Report, name: &str, picture: impl FnOnce() -> Picture) -> Report {
         if onlooker::is_there() {
             onlooker::pictured(picture);
@@ -219,13 +229,13 @@ impl CommonArgs {
         drawn(report, files, |file| self.tell(file), picture)
     }
 
-    /// The picture's file: the one that `--picture` names, or one in the folder for what nobody named.
+    /// File of the picture: the one of `--picture`, or one in the default folder.
     pub(crate) fn picture_file(&self, name: &str) -> Option<PathBuf> {
         self.picture.clone().or_else(|| self.unnamed_file(name))
     }
 
-    /// The file for an output that no option names: in a folder of its own, and only without `--json`. `None`
-    /// if an option names that very file for something else.
+    /// File for an output that no option names, in the default folder; `None` with `--json`, or if an option
+    /// uses that very file for something else.
     pub(crate) fn unnamed_file(&self, name: &str) -> Option<PathBuf> {
         let file = unnamed_file(self.json || onlooker::is_there(), name)?;
         let named = [&self.picture, &self.animation, &self.record, &self.replay, &self.world, &self.robot];
@@ -241,22 +251,22 @@ impl CommonArgs {
 }
 
 impl PlainArgs {
-    /// As [`CommonArgs::check_picture`].
+    /// Like [`CommonArgs::check_picture`].
     pub(crate) fn check_picture(&self) -> Result<(), Failure> {
         check_pictures(self.picture.as_deref(), self.animation.as_deref())
     }
 
-    /// As [`CommonArgs::draw`].
+    /// Like [`CommonArgs::draw`].
     pub(crate) fn draw(&self, report: Report, name: &str, picture: impl FnOnce() -> Picture) -> Report {
         let still = self.picture.clone().or_else(|| unnamed_file(self.json, name));
         drawn(report, (still, self.animation.clone()), |_| (), picture)
     }
 }
 
-/// A file in the folder for what no option names; none where a program reads the report.
+/// A file in the default folder; `None` with `--json`.
 fn unnamed_file(json: bool, name: &str) -> Option<PathBuf> {
     let folder = Path::new(UNNAMED);
-    // If it cannot be made, then saving the file fails, and says why.
+    // If the folder cannot be created, saving the file fails with the reason.
     (!json).then(|| fs::create_dir_all(folder)).map(|_| folder.join(name))
 }
 
@@ -265,7 +275,7 @@ fn check_pictures(still: Option<&Path>, moving: Option<&Path>) -> Result<(), Fai
     moving.map_or(Ok(()), |file| check_writable("--animation", file))
 }
 
-/// Saves a picture, still and moving, and says where.
+/// Saves a picture, still and animated, and reports the files.
 fn drawn(
     report: Report,
     (still, moving): (Option<PathBuf>, Option<PathBuf>),
@@ -305,7 +315,7 @@ fn check_library(library: &Path) -> Result<(), Failure> {
         .map_err(|error| Failure::input(format!("--robios {error}; expected a library of RoBIOS")))
 }
 
-/// Fails if a file cannot be written where an option asks for one.
+/// Fails if a file requested by an option cannot be written.
 pub(crate) fn check_writable(option: &str, file: &Path) -> Result<(), Failure> {
     static TRIALS: AtomicUsize = AtomicUsize::new(0);
     let refused = |found: String, expected: &str| {
@@ -318,7 +328,7 @@ pub(crate) fn check_writable(option: &str, file: &Path) -> Result<(), Failure> {
     if file.is_dir() {
         return refused("a folder of this name".into(), "the name of a file");
     }
-    // Pictures are written beside an older file and then take its place, so it is the folder that counts.
+    // Pictures are written beside an older file and then replace it, so the folder counts.
     let number = TRIALS.fetch_add(1, Ordering::Relaxed);
     let trial = folder.join(format!(".roverlab-{}-{number}.tmp", std::process::id()));
     match File::create(&trial).and_then(|_| fs::remove_file(&trial)) {
@@ -327,7 +337,7 @@ pub(crate) fn check_writable(option: &str, file: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Fails for the first of some options that is given, with the reason why it should not be.
+/// Fails for the first given option of a list, with the reason.
 fn refuse<'a>(options: &[(&'a str, bool)], says: impl Fn(&'a str) -> &'a str) -> Result<(), Failure> {
     options.iter().find(|(_, given)| *given).map_or(Ok(()), |(name, _)| {
         Err(Failure::input(format!("{name}: found one; expected none, as {}", says(name))))

@@ -1,19 +1,21 @@
 use std::ffi::OsString;
-use std::fs;
 use std::path::Path;
 
 use clap::parser::ValueSource;
 use clap::{ArgAction, ArgMatches, Command};
 use roverlab::io::log::Log;
+use roverlab::world::RobotSpec;
 
-use super::files::recorded_name;
+use super::files::{recorded_name, recording_bytes};
 use super::origin::Facts;
 use super::outputs::check_outputs;
 use super::{CommonArgs, Failure, Heeds, Unheeded, heed, parser, stage};
 
 /// Options that do not affect a run.
-const NOT_RECORDED: [&str; 13] = [
+const NOT_RECORDED: [&str; 15] = [
     "record",
+    "force",
+    "fsync",
     "replay",
     "picture",
     "animation",
@@ -23,30 +25,30 @@ const NOT_RECORDED: [&str; 13] = [
     "timing",
     "realtime",
     "robios",
-    // How a run is computed, and where it is kept on the way.
+    // How a run is computed, and where intermediate results are stored.
     "threads",
     "processes",
     "checkpoint",
 ];
 
-/// Options that say what a robot meets: in a replay that is as it was.
+/// Options for the robot's conditions, which a replay takes from the recording.
 const MET: [&str; 4] = ["seed", "noise", "quantised", "fault"];
 
-/// Options that name files which a run reads.
+/// Options with names of input files.
 const FILES: [&str; 6] = ["world", "robot", "maze", "track", "line", "course"];
 
-/// Options with which nothing drives that could be recorded: many runs at once, or none.
+/// Options without a single driving robot to record: many runs at once, or none.
 const UNRECORDED: [&str; 5] = ["campaign", "plan", "input", "compare", "steps"];
 
-/// Why a command line is not one to run.
+/// Reason to reject a command line.
 pub(crate) enum Refusal {
-    /// The parser says why, or shows its help.
+    /// The parser's error, or its help.
     Parser(clap::Error),
-    /// The recording to replay is none, or the files that it names do not go together.
+    /// The recording to replay is invalid, or its files do not match.
     Files(Failure),
 }
 
-/// Reads a command line. With `--replay`, the options of the recording come with it.
+/// Parses a command line. With `--replay`, the recording's options are included.
 pub(crate) fn parse<A>(name: &str, command_line: impl IntoIterator<Item = OsString>) -> Result<A, Refusal>
 where
     A: clap::Parser + AsRef<CommonArgs> + Heeds,
@@ -60,7 +62,7 @@ where
     Ok(args)
 }
 
-/// What stands on a command line, and what is known of the run by it.
+/// Parsed command line and facts about the run.
 fn matches(
     name: &str,
     command: &mut Command,
@@ -78,7 +80,7 @@ fn matches(
     let matches = command.try_get_matches_from_mut(words).map_err(Refusal::Parser)?;
     check_recorded(&matches).map_err(Refusal::Files)?;
     check_outputs(&matches).map_err(Refusal::Files)?;
-    // What an older program recorded was not refused then.
+    // Options recorded by an older program were accepted then.
     let is_recorded = |id: &str| log.is_some() && !repeats(&format!("--{}", id.replace('_', "-")), &given);
     heed::check(&matches, unheeded, |id| !is_recorded(id)).map_err(Refusal::Files)?;
     let options = options(command, &matches);
@@ -88,7 +90,7 @@ fn matches(
     Ok((matches, Facts { program: name.into(), options, log }))
 }
 
-/// Fails if there is to be a recording of what cannot be recorded.
+/// Fails if a recording is requested for a run that cannot be recorded.
 fn check_recorded(matches: &ArgMatches) -> Result<(), Failure> {
     let given = |name: &&&str| {
         matches.try_contains_id(name).is_ok_and(|known| known)
@@ -103,7 +105,7 @@ fn check_recorded(matches: &ArgMatches) -> Result<(), Failure> {
     }
 }
 
-/// Fails if a replay is to meet something other than what was recorded.
+/// Fails if a replay's conditions differ from the recorded ones.
 fn check_met(command: &Command, options: &[String], recorded: &[String]) -> Result<(), Failure> {
     let default = |name: &str| {
         let arg = command.get_arguments().find(|arg| arg.get_long() == Some(name))?;
@@ -125,13 +127,13 @@ fn check_met(command: &Command, options: &[String], recorded: &[String]) -> Resu
     })
 }
 
-/// Whether two values of an option say the same: as text, or as numbers.
+/// Whether two values of an option are equal, as text or as numbers.
 fn is_same(one: Option<&str>, other: Option<&str>) -> bool {
     let number = |text: Option<&str>| text?.parse::<f64>().ok();
     one == other || number(one).is_some_and(|one| Some(one) == number(other))
 }
 
-/// The file behind `--replay`.
+/// The file of `--replay`.
 fn replayed(words: &[OsString]) -> Option<OsString> {
     let words = || words.iter().skip(1).take_while(|word| *word != "--");
     let joined = words().find_map(|word| word.to_str()?.strip_prefix("--replay=").map(OsString::from));
@@ -141,7 +143,7 @@ fn replayed(words: &[OsString]) -> Option<OsString> {
 fn recording(wanted: &str, command: &Command, file: &OsString) -> Result<Log, Failure> {
     let name = Path::new(file).display();
     let refused = |error: &dyn std::fmt::Display| Failure::input(format!("--replay {name}: {error}"));
-    let bytes = fs::read(file).map_err(|error| refused(&error))?;
+    let bytes = recording_bytes(Path::new(file)).map_err(|error| refused(&error))?;
     let log = Log::read(bytes).map_err(|error| refused(&error))?;
     let program = &log.header().program;
     if program != wanted {
@@ -149,7 +151,7 @@ fn recording(wanted: &str, command: &Command, file: &OsString) -> Result<Log, Fa
             "found a recording of the program `{program}`; expected one of `{wanted}`"
         )));
     }
-    // A recording comes from anywhere: it may not have files written, nor other files read than its own.
+    // A recording may come from anywhere: it must not cause files to be written, nor other files to be read.
     match log.header().options.iter().find(|option| !affects_run(command, option)) {
         Some(option) => Err(refused(&format!(
             "found the option {option} in the recording; expected options that affect the run"
@@ -158,15 +160,22 @@ fn recording(wanted: &str, command: &Command, file: &OsString) -> Result<Log, Fa
     }
 }
 
-/// Whether an option is one that recordings hold.
+/// Whether an option is stored in recordings.
 fn affects_run(command: &Command, option: &str) -> bool {
     let name = name_of(option);
     let known = command.get_arguments().any(|arg| arg.get_long() == Some(name));
-    let is_own = |value: &str| value == recorded_name(name, Path::new(value));
+    let is_own = |value: &str| {
+        value == recorded_name(name, Path::new(value)) || (name == "robot" && is_built_in(value))
+    };
     known && !NOT_RECORDED.contains(&name) && (!FILES.contains(&name) || value_of(option).is_some_and(is_own))
 }
 
-/// Whether a recorded option is given anew.
+/// Whether it is a built-in robot's name, and no file has it.
+fn is_built_in(name: &str) -> bool {
+    RobotSpec::predefined(name).is_some() && !Path::new(name).exists()
+}
+
+/// Whether a recorded option is given again.
 fn repeats(option: &str, given: &[OsString]) -> bool {
     given.iter().filter_map(|word| word.to_str()).any(|word| name_of(word) == name_of(option))
 }
@@ -181,7 +190,7 @@ fn value_of(option: &str) -> Option<&str> {
     option.split_once('=').map(|(_, value)| value)
 }
 
-/// The options that affect a run, as they were given, in the order of the command.
+/// The given options that affect a run, in the command's order.
 fn options(command: &Command, matches: &ArgMatches) -> Vec<String> {
     let mut options = Vec::new();
     for arg in command.get_arguments() {
@@ -198,7 +207,11 @@ fn options(command: &Command, matches: &ArgMatches) -> Vec<String> {
         let values =
             matches.get_raw(id).into_iter().flatten().map(|value| value.to_string_lossy().into_owned());
         let is_file = FILES.contains(&id);
-        let values = values.map(|value| if is_file { recorded_name(id, Path::new(&value)) } else { value });
+        let is_name = |value: &str| id == "robot" && is_built_in(value);
+        let values = values.map(|value| match is_file && !is_name(&value) {
+            true => recorded_name(id, Path::new(&value)),
+            false => value,
+        });
         options.extend(values.map(|value| match &name {
             Some(name) => format!("{name}={value}"),
             None => value,

@@ -3,7 +3,7 @@ use std::fmt::{self, Display};
 
 use roverlab::picture::SaveError;
 
-/// Why a command ends without a report.
+/// Reason why a command ends without a report.
 #[derive(Debug)]
 pub(crate) struct Failure {
     status: u8,
@@ -11,9 +11,9 @@ pub(crate) struct Failure {
 }
 
 impl Failure {
-    /// The exit status of a run that failed.
+    /// Exit status of a failed run.
     pub(crate) const RUN: u8 = 1;
-    /// The exit status of a wrong command line or input file.
+    /// Exit status of a wrong command line or input file.
     pub(crate) const INPUT: u8 = 2;
 
     /// The command line or an input file is wrong: what was found, and what was expected.
@@ -21,12 +21,12 @@ impl Failure {
         Self { status: Self::INPUT, message: message.to_string() }
     }
 
-    /// Something went wrong during the run.
+    /// An error during the run.
     pub(crate) fn run(message: impl Display) -> Self {
         Self { status: Self::RUN, message: message.to_string() }
     }
 
-    /// The exit status that belongs to it.
+    /// Its exit status.
     pub(crate) fn status(&self) -> u8 {
         self.status
     }
@@ -39,12 +39,12 @@ impl Display for Failure {
 }
 
 impl From<roverlab::io::Error> for Failure {
-    /// The error and those that caused it, in one line.
+    /// The error and its sources, on one line.
     fn from(error: roverlab::io::Error) -> Self {
         let causes = std::iter::successors(error.source(), |error| (*error).source());
         let causes = causes.map(ToString::to_string);
         Self::run(causes.fold(error.to_string(), |text, cause| {
-            // What became an error of a robot's program as it was says the same.
+            // A wrapped error repeats its source.
             if text.ends_with(&cause) { text } else { format!("{text}: {cause}") }
         }))
     }

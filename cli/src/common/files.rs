@@ -1,5 +1,5 @@
-use std::io;
 use std::path::Path;
+use std::{fs, io};
 
 use roverlab::io::log::{Attachment, Log};
 use roverlab::world::formats::{self, DiskFiles, FileSource, FormatError, Location, Parsed, SourceFile};
@@ -7,7 +7,7 @@ use roverlab::world::{RobotSpec, Scene};
 
 use super::{CommonArgs, onlooker};
 
-/// The name that a file of an option has in recordings: that of the option, with the file's ending. A number is no file but a
+/// Name of an option's file in recordings: that of the option, with the file's extension. A number is no file but a
 /// seed, and stays as it is.
 pub(crate) fn recorded_name(option: &str, path: &Path) -> String {
     if let Some(seed) = path.to_str().filter(|text| text.parse::<u64>().is_ok()) {
@@ -18,15 +18,25 @@ pub(crate) fn recorded_name(option: &str, path: &Path) -> String {
     if plain { format!("{option}.{}", ending.to_ascii_lowercase()) } else { option.to_owned() }
 }
 
+/// The bytes of a recording's file.
+pub(crate) fn recording_bytes(file: &Path) -> io::Result<Vec<u8>> {
+    // A device may have no end, and whoever writes into a pipe may never come.
+    if fs::metadata(file)?.is_file() {
+        fs::read(file)
+    } else {
+        Err(io::Error::other("found a folder or a device"))
+    }
+}
+
 impl CommonArgs {
-    /// The bytes of the file that an option names: from the recording that is replayed, or else from disk; they go
-    /// into the recording that is made. The option must be one of those that `command_line` lists as files.
+    /// The bytes of an option's file, from the replayed recording or from disk; they are added to a new
+    /// recording. The option must be among the files listed in `command_line`.
     pub(crate) fn read(&self, option: &str, path: &Path) -> Result<Vec<u8>, FormatError> {
         let name = recorded_name(option, path);
         let replayed = path.to_str() == Some(&name);
         let log = self.origin.facts().log.filter(|_| replayed);
         if let Some(log) = log {
-            // What a recording lacks is not looked for elsewhere.
+            // A file missing from a recording is not searched elsewhere.
             let lost = || {
                 FormatError::new(&name, Location::START, "no such file in the recording", "its attachment")
             };
@@ -43,21 +53,35 @@ impl CommonArgs {
         Ok(bytes)
     }
 
-    /// The scene in the file of an option, as [`read`](Self::read) finds it, with the files that it names.
+    /// The scene in an option's file, as found by [`read`](Self::read), with its companion files.
     pub(crate) fn load_scene(&self, option: &str, path: &Path) -> Result<Parsed<Scene>, FormatError> {
+        self.load(option, path, formats::parse_scene)
+    }
+
+    /// The robot in the file of an option, with its 3D model where that is found, or the built-in robot of that name.
+    pub(crate) fn load_robot(&self, option: &str, path: &Path) -> Result<Parsed<RobotSpec>, FormatError> {
+        let built_in = path.to_str().filter(|_| !path.exists()).and_then(RobotSpec::predefined);
+        if let Some(value) = built_in {
+            return Ok(Parsed { value, warnings: Vec::new() });
+        }
+        self.load(option, path, formats::parse_robot_tolerantly)
+    }
+
+    /// Reads the file of an option with those that it names; they go into the recording that is made.
+    fn load<T>(
+        &self,
+        option: &str,
+        path: &Path,
+        parse: impl FnOnce(Vec<u8>, &str, &mut dyn FileSource) -> Result<T, FormatError>,
+    ) -> Result<T, FormatError> {
         let bytes = self.read(option, path)?;
         let name = recorded_name(option, path);
         let log = self.origin.facts().log.filter(|log| log.header().attachment(&name).is_some());
         let log = log.filter(|_| path.to_str() == Some(&name));
         let mut files = Companions { main: name, log, disk: DiskFiles::new(), found: Vec::new() };
-        let scene = formats::parse_scene(bytes, &path.display().to_string(), &mut files);
+        let parsed = parse(bytes, &path.display().to_string(), &mut files);
         files.found.into_iter().for_each(|file| self.origin.attach(file));
-        scene
-    }
-
-    /// The robot in the file of an option.
-    pub(crate) fn load_robot(&self, option: &str, path: &Path) -> Result<Parsed<RobotSpec>, FormatError> {
-        formats::parse_robot(self.read(option, path)?, &path.display().to_string())
+        parsed
     }
 }
 
@@ -72,7 +96,7 @@ fn attachment(name: &str, bytes: &[u8]) -> Attachment {
     Attachment { name: name.into(), media_type: media_type.into(), data: bytes.to_vec() }
 }
 
-/// The files that a file names: those of a recording in the order in which they were read, or those on disk.
+/// The files named in a file: from a recording in the order of their reading, or from disk.
 struct Companions {
     main: String,
     log: Option<Log>,

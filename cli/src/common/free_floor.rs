@@ -6,24 +6,24 @@ use roverlab::nav::Reachability;
 use roverlab::world::space::{Solid, Space, Span};
 use roverlab::world::{RobotPlacement, RobotSpec, Scene};
 
-/// Where more robots can stand in a scene: on floor that leads to its first robot.
+/// Free places for more robots in a scene, on floor connected to its first robot.
 pub(crate) struct FreeFloor {
-    /// None in a world that is too large to be divided.
+    /// `None` in a world that is too large for the grid.
     ways: Option<Reachability>,
     from: Point,
 }
 
-/// Metres from circle to circle of places that are tried, how many circles, and the places on each.
+/// Distance between circles of candidate places (m), number of circles, and places per circle.
 const STEP: f64 = 0.1;
 const CIRCLES: u32 = 20;
 const PLACES: u32 = 16;
-/// Metres around a robot that are free.
+/// Free space required around a robot (m).
 const ROOM: f64 = 0.05;
 
 impl FreeFloor {
-    /// The floor around the first robot of a scene, for robots of a kind.
+    /// The floor around the first robot of a scene, for one type of robot.
     pub(crate) fn new(scene: &Scene, spec: &RobotSpec) -> Self {
-        /// Cells along the longer side of the floor, and the finest ones in metres.
+        /// Number of cells along the longer side of the floor, and minimum cell size (m).
         const CELLS: f64 = 800.0;
         const FINEST: f64 = 0.01;
         let size = scene.world.site().size();
@@ -32,8 +32,8 @@ impl FreeFloor {
         Self { ways, from: scene.robots[0].pose.position() }
     }
 
-    /// A free place for one more robot: the wished one, or one as near to it as may be. `None` if all is taken two metres
-    /// around.
+    /// A free place for one more robot, as near as possible to the wished one. `None` if there is none within
+    /// two metres.
     pub(crate) fn place(&self, scene: &Scene, spec: &Arc<RobotSpec>, wished: Pose) -> Option<Pose> {
         let space = space_with(scene, &scene.robots);
         let bounds = scene.world.site();
@@ -53,7 +53,7 @@ impl FreeFloor {
     }
 }
 
-/// What stands in a world, and some robots.
+/// The space with a world's walls and objects, and some robots.
 pub(super) fn space_with(scene: &Scene, robots: &[RobotPlacement]) -> Space {
     let mut space = Space::new(&scene.world.walls);
     for solid in scene.world.objects.iter().map(Solid::from).chain(robots.iter().map(Solid::from)) {

@@ -1,24 +1,24 @@
-//! Options that have no meaning for a run are refused: none is ignored in silence.
+//! Options without meaning for a run are rejected: none is ignored silently.
 
 use clap::ArgMatches;
 use clap::parser::ValueSource;
 
 use super::Failure;
 
-/// When a command does not heed options, and which: their names have underscores.
+/// A condition, and the options not supported under it; their names have underscores.
 ///
-/// `always`; `campaign`: with that option; `!campaign`: without it; `method=turn,arc`: where it has one of
-/// these values, given or by default; `method!=turn`: where it has another one; with `&` between what has to
-/// hold together.
+/// Conditions are `always`; `campaign`: with that option; `!campaign`: without it; `method=turn,arc`: with
+/// one of these values, given or by default; `method!=turn`: with another value; `&` joins conditions that
+/// must hold together.
 pub(crate) type Unheeded = (&'static str, &'static [&'static str]);
 
-/// A command line that says what it does not heed.
+/// A command line that declares its unsupported options.
 pub(crate) trait Heeds {
-    /// What it does not heed, and when.
+    /// The unsupported options, and under which conditions.
     const UNHEEDED: &'static [Unheeded];
 }
 
-/// Options about the one robot of one run, which many runs do not heed.
+/// Options of the single robot of a single run, unsupported by many runs.
 pub(crate) const OF_ONE_RUN: &[&str] = &[
     "world",
     "robot",
@@ -33,7 +33,7 @@ pub(crate) const OF_ONE_RUN: &[&str] = &[
     "supervised",
 ];
 
-/// Fails if an option was given that a command line does not heed. `counts` says which of them count.
+/// Fails if an unsupported option was given. `counts` selects the options to check.
 pub(super) fn check(
     matches: &ArgMatches,
     unheeded: &[Unheeded],
@@ -68,7 +68,7 @@ fn holds(matches: &ArgMatches, part: &str) -> bool {
     }
 }
 
-/// A condition in words.
+/// Text of a condition.
 fn reason(when: &str) -> String {
     let words = |part: &str| match (part.split_once("!="), part.split_once('='), part.strip_prefix('!')) {
         (Some((id, values)), ..) => format!("unless --{} is {}", shown(id), any_of(values)),
@@ -84,7 +84,7 @@ fn any_of(values: &str) -> String {
     values.replace(',', " or ")
 }
 
-/// An option as it is written.
+/// An option as written on the command line.
 fn shown(id: &str) -> String {
     id.replace('_', "-")
 }

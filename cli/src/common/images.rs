@@ -4,17 +4,17 @@ use std::path::Path;
 use image::codecs::pnm::{PnmEncoder, PnmSubtype, SampleEncoding};
 use image::{DynamicImage, ImageError, ImageFormat, ImageResult};
 
-/// Writes an image in the format that the name of the file asks for: whole, or an error says why not.
+/// Writes an image in the format of the file's extension, completely or with an error.
 pub(crate) fn write_image(image: &DynamicImage, file: &Path) -> Result<(), ImageError> {
     let bytes = encoded(image, ImageFormat::from_path(file)?)?;
-    // A writer with a buffer would lose the errors of its last bytes.
+    // A buffered writer would lose the errors of its last bytes.
     std::fs::write(file, bytes).map_err(ImageError::IoError)
 }
 
 fn encoded(image: &DynamicImage, format: ImageFormat) -> ImageResult<Vec<u8>> {
     let mut bytes = Cursor::new(Vec::new());
     if format == ImageFormat::Pnm {
-        // What all programs read: P5 for shades of gray, P6 for colours.
+        // Formats that all programs read: P5 for grayscale, P6 for colour.
         let kind = if image.color().has_color() {
             PnmSubtype::Pixmap(SampleEncoding::Binary)
         } else {

@@ -1,4 +1,4 @@
-//! The one robot behind a C library that speaks RoBIOS.
+//! The robot behind a RoBIOS C library.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use roverlab::world::InertialSpec;
 
 use super::{Driven, Failure, StageTruth};
 
-/// The robot of a library, until it is taken, and what is known about it.
+/// The robot of a library, until it is taken, and its ground truth.
 pub(super) struct Library {
     path: PathBuf,
     robot: Mutex<Option<Driven>>,
@@ -23,7 +23,7 @@ impl fmt::Debug for Library {
 }
 
 impl Library {
-    /// Opens a library, whose robot starts at a pose and has an inertial unit on these channels.
+    /// Opens a library, with the robot's start pose and the channels of its inertial unit.
     #[cfg(feature = "native")]
     pub(super) fn open(path: &Path, start: Pose, inertial: InertialSpec) -> Result<Self, Failure> {
         let robot = roverlab::io::robios::RobiosRobot::open(path).map_err(Failure::input)?;
@@ -33,7 +33,7 @@ impl Library {
         Ok(Self { path: path.into(), robot: Mutex::new(Some(robot)), truth: Mutex::new(Some(truth)) })
     }
 
-    /// There are no libraries in a browser.
+    /// Browsers have no libraries.
     #[cfg(not(feature = "native"))]
     pub(super) fn open(path: &Path, _start: Pose, _inertial: InertialSpec) -> Result<Self, Failure> {
         Err(Failure::input(format!(
@@ -47,7 +47,7 @@ impl Library {
         take(&self.robot).ok_or_else(|| alone(&self.path))
     }
 
-    /// Takes what is known about it, once.
+    /// Takes its ground truth, once.
     pub(super) fn truth(&self) -> Result<StageTruth, Failure> {
         take(&self.truth).ok_or_else(|| alone(&self.path))
     }
@@ -57,7 +57,7 @@ fn take<T>(slot: &Mutex<Option<T>>) -> Option<T> {
     slot.lock().unwrap_or_else(PoisonError::into_inner).take()
 }
 
-/// A library has one robot.
+/// The error for several robots: a library has only one.
 pub(super) fn alone(library: &Path) -> Failure {
     let library = library.display();
     Failure::input(format!(

@@ -1,6 +1,6 @@
-//! What all commands share: their command line, the report that they print, and the way they end.
+//! Shared parts of all commands: command line, report and exit.
 //!
-//! A command is its options and a function that does the work, by the name `work`; `commands` lists it:
+//! A command consists of its options and a function `work`; `commands` lists it:
 //!
 //! ```ignore
 //! #[derive(Debug, clap::Parser)]
@@ -34,21 +34,20 @@
 //! let end = truth.robot(0)?;
 //! ```
 //!
-//! With `--record` the stage writes down what robot and truth are asked and answer, with `--replay` they are made of
-//! a recording, and without either it is the simulator alone. Several robots in threads: take all of them before the
-//! first one drives, and give each thread a truth of its own, `stage.truth(index)`. What goes wrong with a recording
-//! reaches the report by itself. Runs that nobody records, as those of a campaign, use `Stage::simulated`. Robots that are
-//! stepped in one thread come from `common.fleet(&scene, options)`, which is used as a `Fleet` is.
+//! With `--record` the stage records robot and truth, with `--replay` it creates them from a recording, and
+//! without either it is the plain simulator. With several robots in threads, take all of them before the
+//! first one drives, and give each thread its own truth, `stage.truth(index)`. Problems with a recording
+//! reach the report automatically. Unrecorded runs, such as those of a campaign, use `Stage::simulated`.
+//! Robots stepped in one thread come from `common.fleet(&scene, options)`, which is used like a `Fleet`.
 //!
 //! `replay check` finds the command of a recording in `commands`.
 //!
-//! The command line of a recorded run is in the recording, but for what does not affect the run; `--replay` reads it
-//! from there. In place of the names of files are those that the files have in the recording, so a command
-//! reads the file of an option of its own by `common.read("option", path)`, and the option stands in the list
-//! `FILES` of
+//! The command line of a recorded run is stored in the recording, except for options that do not affect the
+//! run; `--replay` reads it from there. File names are replaced by names in the recording. So a command reads
+//! the file of its own option by `common.read("option", path)`, and the option must be in the list `FILES` of
 //! `command_line`; `common.trip` does so for `--world` and `--robot`.
 
-/// Gives out the shared options of a command line, and says which options it does not heed, and when.
+/// Gives access to the shared options of a command line, and declares its unsupported options.
 macro_rules! shares_options {
     ($args:ty, $field:ident: $options:ty $(, unheeded: [$($unheeded:expr),* $(,)?])?) => {
         impl $crate::common::Heeds for $args {
@@ -89,6 +88,7 @@ mod workers;
 pub(crate) use args::check_writable;
 pub(crate) use args::{CommonArgs, PlainArgs};
 pub(crate) use failure::Failure;
+pub(crate) use files::recording_bytes;
 pub(crate) use free_floor::FreeFloor;
 pub(crate) use heed::{Heeds, OF_ONE_RUN, Unheeded};
 pub(crate) use images::write_image;
@@ -100,8 +100,6 @@ pub(crate) use run::{Printed, parser, refused, run, run_plain, run_printing, wri
 pub(crate) use stage::{Claimed, Driven, Stage, StageTruth};
 pub(crate) use supervision::DEADMAN;
 pub(crate) use trip::{StandIn, Trip};
-#[cfg(test)]
-pub(crate) use values::parse_pose;
-pub(crate) use values::{GoalOption, parse_noise, parse_picture, parse_point, parse_seconds};
+pub(crate) use values::{GoalOption, parse_noise, parse_picture, parse_point, parse_pose, parse_seconds};
 pub(crate) use wall_clock::{Pacer, Progress, Stopwatch};
 pub(crate) use workers::{share_out, threads};

@@ -1,4 +1,4 @@
-//! Who looks on while a command works, in place of a terminal and of files: a page in a browser, say.
+//! An onlooker of a command, such as a web page, replaces terminal and files.
 
 use std::borrow::Cow;
 use std::cell::RefCell;
@@ -10,18 +10,19 @@ use roverlab::io::sim::Watcher;
 use roverlab::picture::Picture;
 use roverlab::world::Scene;
 
-/// Looks on while a command works.
+/// Observes a command at work.
 pub trait Onlooker: fmt::Debug {
-    /// A line that a person is told.
+    /// Receives a line of output.
     fn told(&mut self, line: &str);
 
-    /// The file of a name, if there is one.
+    /// The file with a name, if any.
     fn file(&mut self, name: &str) -> Option<Vec<u8>>;
 
-    /// The scene in which robots are about to drive. It may be changed; who drives in it may have been told of it before.
+    /// Receives the scene before robots drive in it, and may change it; robots may have been given the
+    /// original as their map.
     fn scene(&mut self, scene: &mut Scene) -> Box<dyn Watcher>;
 
-    /// The picture of the run, when it is over.
+    /// Receives the picture of the run at its end.
     fn picture(&mut self, picture: &Picture);
 }
 
@@ -29,7 +30,7 @@ thread_local! {
     static ONLOOKER: RefCell<Option<Box<dyn Onlooker>>> = const { RefCell::new(None) };
 }
 
-/// Does something while somebody looks on at what this thread does, or nobody.
+/// Runs `work` with an onlooker of this thread, or without one.
 pub(crate) fn with<T>(onlooker: Option<Box<dyn Onlooker>>, work: impl FnOnce() -> T) -> T {
     ONLOOKER.set(onlooker);
     let result = work();
@@ -37,27 +38,27 @@ pub(crate) fn with<T>(onlooker: Option<Box<dyn Onlooker>>, work: impl FnOnce() -
     result
 }
 
-/// Asks or tells who looks on. `None` if nobody does.
+/// Calls the onlooker. `None` without one.
 fn ask<T>(question: impl FnOnce(&mut dyn Onlooker) -> T) -> Option<T> {
     ONLOOKER.with_borrow_mut(|onlooker| onlooker.as_mut().map(|onlooker| question(onlooker.as_mut())))
 }
 
-/// Whether somebody looks on.
+/// Whether there is an onlooker.
 pub(crate) fn is_there() -> bool {
     ask(|_| ()).is_some()
 }
 
-/// Tells a line to who looks on. Returns whether somebody does.
+/// Sends a line to the onlooker. Returns whether there is one.
 pub(crate) fn told(line: impl fmt::Display) -> bool {
     ask(|onlooker| onlooker.told(&line.to_string())).is_some()
 }
 
-/// The file that somebody who looks on has, or lacks; `None` if nobody looks on.
+/// The onlooker's file, or its absence; `None` without an onlooker.
 pub(crate) fn file(path: &Path) -> Option<io::Result<Vec<u8>>> {
     ask(|onlooker| onlooker.file(&path.display().to_string()).ok_or(io::ErrorKind::NotFound.into()))
 }
 
-/// Shows a scene to who looks on, who may change it and watches what happens there.
+/// Shows a scene to the onlooker, who may change it and watch it.
 pub(crate) fn watched(scene: &Scene) -> (Cow<'_, Scene>, Option<Box<dyn Watcher>>) {
     let shown = ask(|onlooker| {
         let mut scene = scene.clone();
@@ -70,7 +71,7 @@ pub(crate) fn watched(scene: &Scene) -> (Cow<'_, Scene>, Option<Box<dyn Watcher>
     }
 }
 
-/// Shows the picture of a run to who looks on. Returns whether somebody does.
+/// Shows the picture of a run to the onlooker. Returns whether there is one.
 pub(crate) fn pictured(picture: impl FnOnce() -> Picture) -> bool {
     is_there() && {
         let picture = picture();

@@ -6,9 +6,9 @@ use roverlab::io::log::{Attachment, Log};
 
 use super::supervision::Stops;
 
-/// What a run is: the program and the options that affect it, and the recording that it replays.
+/// Identity of a run: its program and relevant options, and the recording that it replays.
 ///
-/// The command line sets it when it has been read. Copies share it.
+/// Set once the command line has been parsed; shared by copies.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Origin {
     facts: Arc<OnceLock<Facts>>,
@@ -19,19 +19,19 @@ pub(crate) struct Origin {
     stops: Stops,
 }
 
-/// What is known about a run from its command line.
+/// Facts about a run from its command line.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Facts {
-    /// The command's name.
+    /// Name of the command.
     pub(crate) program: String,
-    /// The options that affect the run, in the order of `--help`.
+    /// Options that affect the run, in the order of `--help`.
     pub(crate) options: Vec<String>,
-    /// What is replayed.
+    /// The replayed recording.
     pub(crate) log: Option<Log>,
 }
 
 impl Origin {
-    /// Sets what is known, once.
+    /// Sets the facts, once.
     pub(crate) fn set(&self, facts: Facts) {
         let _ = self.facts.set(facts);
     }
@@ -40,7 +40,7 @@ impl Origin {
         self.facts.get().cloned().unwrap_or_default()
     }
 
-    /// Takes in a file that belongs to the run. All must be read before the robots are taken: a recording begins with
+    /// Adds a file of the run. All files must be read before the robots are taken, as a recording begins with
     /// them.
     pub(crate) fn attach(&self, file: Attachment) {
         let mut files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
@@ -56,46 +56,46 @@ impl Origin {
         files.push(file);
     }
 
-    /// The files that belong to the run.
+    /// Files of the run.
     pub(crate) fn files(&self) -> Vec<Attachment> {
         self.files.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Notes something odd about the input.
+    /// Records a warning about the input.
     pub(crate) fn warn(&self, warning: String) {
         self.warnings.lock().unwrap_or_else(PoisonError::into_inner).push(warning);
     }
 
-    /// Tells what is odd about the input, once.
+    /// Prints the warnings about the input, once.
     pub(crate) fn tell_warnings(&self) {
         for warning in self.warnings.lock().unwrap_or_else(PoisonError::into_inner).drain(..) {
-            // Without standard error there is nobody left to tell.
+            // Without standard error nobody can be informed.
             let _ = writeln!(std::io::stderr(), "{warning}");
         }
     }
 
-    /// Notes that there was a stage, so that there is a recording.
+    /// Records that there is a stage, and therefore a recording.
     pub(crate) fn set_staged(&self) {
         self.tell_warnings();
         self.staged.store(true, Ordering::Relaxed);
     }
 
-    /// Whether there was a stage.
+    /// Whether there is a stage.
     pub(crate) fn is_staged(&self) -> bool {
         self.staged.load(Ordering::Relaxed)
     }
 
-    /// What safety systems have done.
+    /// Actions of the safety systems.
     pub(crate) fn stops(&self) -> &Stops {
         &self.stops
     }
 
-    /// Notes what went wrong with a recording. The run goes on, but the program reports it and fails.
+    /// Records a problem with a recording. The run continues, but the program reports it and fails.
     pub(crate) fn note(&self, trouble: String) {
         self.trouble.lock().unwrap_or_else(PoisonError::into_inner).push(trouble);
     }
 
-    /// What has been noted.
+    /// Takes the recorded problems.
     pub(crate) fn take_trouble(&self) -> Vec<String> {
         std::mem::take(&mut *self.trouble.lock().unwrap_or_else(PoisonError::into_inner))
     }

@@ -4,11 +4,11 @@ use clap::ArgMatches;
 
 use super::Failure;
 
-/// Options whose files are written.
+/// Options with output files.
 const OUTPUTS: [&str; 9] =
     ["picture", "animation", "record", "output", "lcd", "statistics", "checkpoint", "csv", "out"];
 
-/// Fails if a file that is to be written is also one that is read, or written for another option.
+/// Fails if an output file is also an input file, or another option's output.
 pub(super) fn check_outputs(matches: &ArgMatches) -> Result<(), Failure> {
     if let Some((_, matches)) = matches.subcommand() {
         return check_outputs(matches);
@@ -32,17 +32,17 @@ pub(super) fn check_outputs(matches: &ArgMatches) -> Result<(), Failure> {
     Ok(())
 }
 
-/// An option, or what stands in its place, as the help shows it.
+/// An option or argument as shown in the help.
 fn shown(id: &str) -> String {
     if ["file", "out"].contains(&id) { format!("<{}>", id.to_uppercase()) } else { format!("--{id}") }
 }
 
-/// Whether two names are those of one file, which need not be there yet.
+/// Whether two names refer to one file, which need not exist yet.
 pub(crate) fn is_same_file(one: &Path, other: &Path) -> bool {
     place(one).is_some_and(|place_of_one| Some(place_of_one) == place(other))
 }
 
-/// Where a file is or would be.
+/// Canonical path of an existing or future file.
 fn place(file: &Path) -> Option<PathBuf> {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     file.canonicalize().ok().or_else(|| Some(folder.canonicalize().ok()?.join(file.file_name()?)))

@@ -17,64 +17,63 @@ impl Outcome {
         Self { word: word.into(), failed: false }
     }
 
-    /// The behaviour did not do its job: `timed_out`, say.
+    /// The behaviour failed, such as `timed_out`.
     pub(crate) fn failure(word: impl Into<String>) -> Self {
         Self { word: word.into(), failed: true }
     }
 
-    /// Whether the behaviour did not do its job.
+    /// Whether the behaviour failed.
     pub(crate) fn is_failure(&self) -> bool {
         self.failed
     }
 }
 
-/// What a command says about its run: in JSON, or in words.
+/// A command's report on its run, as JSON or text.
 ///
-/// What only a simulator knows stays `None` for other robots, and so becomes `null`.
+/// Values known only to a simulator are `None` for other robots, and become `null`.
 #[derive(Debug, Clone)]
 pub(crate) struct Report {
-    /// How the run ended, contacts aside.
+    /// How the run ended, apart from contacts.
     pub(crate) outcome: Outcome,
-    /// Simulated seconds.
+    /// Simulated time (s).
     pub(crate) sim_time: Option<f64>,
-    /// Contacts with walls, objects and robots. Any contact makes the outcome `collided`.
+    /// Number of contacts with walls, objects and robots. Any contact makes the outcome `collided`.
     pub(crate) collisions: Option<u64>,
-    /// The length of the true path in metres.
+    /// Length of the true path (m).
     pub(crate) path_length: Option<f64>,
-    /// Where the robot really is.
+    /// True pose of the robot.
     pub(crate) pose: Option<Pose>,
-    /// Where the robot believes to be.
+    /// Pose by odometry.
     pub(crate) odometry: Option<Pose>,
-    /// What the robot failed with, if that ended the run.
+    /// Error of the robot, if it ended the run.
     pub(crate) error: Option<String>,
-    /// What went wrong after the run, such as a picture that could not be saved. The run did not fail by it, but the
-    /// program did.
+    /// Problem after the run, such as a picture that could not be saved. The run did not fail, but the
+    /// program does.
     pub(crate) trouble: Option<String>,
-    /// Whether the runs have several levels of noise, which the fields tell; that of the options is none of
-    /// them.
+    /// Whether the runs have several noise levels, given in the fields; that of the options does not apply.
     pub(crate) mixed_noise: bool,
-    /// What people read instead of a summary, if there is such.
+    /// Text that replaces the summary, if any.
     pub(crate) words: Option<String>,
     /// The command's own fields; see [`Report::field`].
     pub(crate) fields: Vec<(String, Value)>,
-    /// Those among them that are for programs alone; see [`Report::table`].
+    /// Fields for programs only; see [`Report::table`].
     pub(crate) tables: Vec<&'static str>,
-    /// What differs from run to run: times on the wall clock, and rates. See [`Report::timing`].
+    /// Values that differ from run to run: wall-clock times and rates. See [`Report::timing`].
     pub(crate) timing: Vec<(&'static str, f64)>,
 }
 
-/// What a report says about the program and its options.
+/// Facts about the program and its options in a report.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Header {
     pub(crate) command: &'static str,
     pub(crate) seed: u64,
-    /// `None` where nothing measures.
+    /// Noise level; `None` where nothing is measured.
     pub(crate) noise: Option<f64>,
-    /// Whether to tell what differs from run to run.
+    /// Whether to print values that differ from run to run.
     pub(crate) timing: bool,
 }
 
-/// The fields that every command has; `error` only after one, `timing` only when asked for.
+/// Fields common to all commands; `error` only after one, `timing` only on request.
 const COMMON: [&str; 11] = [
     "example",
     "outcome",
@@ -90,7 +89,7 @@ const COMMON: [&str; 11] = [
 ];
 
 impl Report {
-    /// A report that knows the outcome only.
+    /// A report with only an outcome.
     pub(crate) fn new(outcome: Outcome) -> Self {
         Self {
             outcome,
@@ -113,7 +112,7 @@ impl Report {
     ///
     /// # Panics
     ///
-    /// If the name is taken, or the value has no form in JSON: both are mistakes in the command.
+    /// If the name is taken, or the value has no JSON form: both are bugs in the command.
     #[must_use]
     pub(crate) fn field(mut self, name: &str, value: impl Serialize) -> Self {
         let taken = COMMON.contains(&name) || self.fields.iter().any(|(other, _)| other == name);
@@ -123,44 +122,44 @@ impl Report {
         self
     }
 
-    /// Adds a field that people have read as a table already.
+    /// Adds a field that the text already shows as a table.
     #[must_use]
     pub(crate) fn table(mut self, name: &'static str, rows: impl Serialize) -> Self {
         self.tables.push(name);
         self.field(name, rows)
     }
 
-    /// Adds a time on the wall clock or a rate, rounded to a millionth; its name ends in its unit. One that
-    /// is not finite becomes `null`.
+    /// Adds a wall-clock time or a rate, rounded to a millionth; its name ends in its unit. Values that are
+    /// not finite become `null`.
     #[must_use]
     pub(crate) fn timing(mut self, name: &'static str, value: f64) -> Self {
         self.timing.push((name, rounded(value)));
         self
     }
 
-    /// Adds what else went wrong after the run.
+    /// Adds further problems after the run.
     pub(crate) fn add_trouble(&mut self, more: Vec<String>) {
         let all: Vec<String> = self.trouble.take().into_iter().chain(more).collect();
         self.trouble = (!all.is_empty()).then(|| all.join("\n"));
     }
 
-    /// The word for how the run ended, contacts included.
+    /// Word for the outcome, including contacts.
     pub(crate) fn word(&self) -> &str {
         if self.collided() { "collided" } else { &self.outcome.word }
     }
 
-    /// 0 if the behaviour came to a verdict without touching anything and nothing went wrong afterwards, else 1.
+    /// 0 if the behaviour came to a verdict without contacts and without later problems, otherwise 1.
     pub(crate) fn status(&self) -> u8 {
         u8::from(self.collided() || self.outcome.failed || self.trouble.is_some())
     }
 
-    /// What belongs on standard error: why the robot failed, and what went wrong afterwards.
+    /// Text for standard error: the robot's error and later problems.
     pub(crate) fn message(&self) -> Option<String> {
         let lines: Vec<&str> = self.error.iter().chain(&self.trouble).map(String::as_str).collect();
         (!lines.is_empty()).then(|| lines.join("\n"))
     }
 
-    /// The report as it is printed.
+    /// The report for printing.
     pub(crate) fn printed(&self, header: Header, json: bool) -> Printed {
         let text = if json { self.json(header) } else { self.summary(header) };
         Printed { text, message: self.message(), status: self.status() }
@@ -170,12 +169,12 @@ impl Report {
         self.collisions.is_some_and(|contacts| contacts > 0)
     }
 
-    /// The JSON object, in one line.
+    /// The JSON object on one line.
     pub(crate) fn json(&self, header: Header) -> String {
         serde_json::to_string(&Object { report: self, header }).expect("names and values that JSON can hold")
     }
 
-    /// The same for people, in a few lines.
+    /// The report as short text.
     pub(crate) fn summary(&self, header: Header) -> String {
         if let Some(words) = &self.words {
             return words.clone();
@@ -211,7 +210,7 @@ impl Report {
     }
 }
 
-/// A report as one JSON object.
+/// A report as a JSON object.
 struct Object<'a> {
     report: &'a Report,
     header: Header,
@@ -243,7 +242,7 @@ impl Serialize for Object<'_> {
     }
 }
 
-/// Times and rates in the order in which they were told.
+/// Times and rates in the order of their addition.
 struct Timing<'a>(&'a [(&'static str, f64)]);
 
 impl Serialize for Timing<'_> {
@@ -270,18 +269,18 @@ impl From<Pose> for JsonPose {
     }
 }
 
-/// A length as the fields of commands show it: millimetres, to a thousandth.
+/// A length in the fields of commands: millimetres, rounded to a thousandth.
 pub(crate) fn millimetres(metres: f64) -> f64 {
     rounded(units::to_mm(1000.0 * metres).round() / 1000.0)
 }
 
-/// The same for both coordinates of a point.
+/// Both coordinates of a point in millimetres.
 pub(crate) fn point_in_mm(point: Point) -> [f64; 2] {
     [point.x, point.y].map(millimetres)
 }
 
-/// Without the tail of digits that a change of unit leaves, and without the sign of zero: a millionth is finer than
-/// any sensor.
+/// Without spurious digits from unit conversion, and without negative zero: a millionth is finer than any
+/// sensor.
 pub(crate) fn rounded(value: f64) -> f64 {
     (value * 1e6).round() / 1e6 + 0.0
 }
@@ -292,10 +291,10 @@ fn in_words(pose: Pose) -> String {
     format!("{x}, {y} mm, {heading:.1} deg")
 }
 
-/// Items of a list that are shown, of a longer one.
+/// Number of items shown of a longer list.
 const ITEMS: usize = 8;
 
-/// A value in a line: a point as its coordinates, a list as its items, an object as its fields.
+/// A value on one line: a point as its coordinates, a list as its items, an object as its fields.
 fn short(value: &Value) -> String {
     match value {
         Value::Null => "none".into(),

@@ -9,9 +9,8 @@ use super::report::{Header, rounded};
 use super::wall_clock::Stopwatch;
 use super::{CommonArgs, Failure, Heeds, PlainArgs, Report, heed};
 
-/// Runs a command: reads the command line, does the work, prints the report or one message. Returns the exit
-/// status, which says how it went. 0: the behaviour came to a verdict; 1: it failed; 2: the command line or
-/// an input file is wrong.
+/// Runs a command: parses the command line, does the work, prints the report or one message. Returns the exit
+/// status: 0 for a verdict, 1 for a failure, 2 for a wrong command line or input file.
 pub(crate) fn run<A>(
     command: &'static str,
     command_line: impl IntoIterator<Item = OsString>,
@@ -35,7 +34,7 @@ where
     })
 }
 
-/// The report of a command, with what is told of all of them.
+/// The report of a command, completed by the common facts.
 fn completed(
     command: &'static str,
     common: &CommonArgs,
@@ -56,7 +55,7 @@ fn completed(
     Ok(report.printed(Header { command, seed, noise, timing }, common.json))
 }
 
-/// As [`run`], for a command that drives no robot.
+/// Like [`run`], for a command that drives no robot.
 pub(crate) fn run_plain<A: clap::Parser + AsRef<PlainArgs> + Heeds>(
     command: &'static str,
     command_line: impl IntoIterator<Item = OsString>,
@@ -73,25 +72,25 @@ pub(crate) fn run_plain<A: clap::Parser + AsRef<PlainArgs> + Heeds>(
     })
 }
 
-/// The parser of a command's command line, with the name that it has there.
+/// The parser of a command's command line, under its name.
 pub(crate) fn parser<A: clap::CommandFactory>(name: &str) -> clap::Command {
     let shown = name.replace('_', "-");
-    // What is missing on a command line is told, as all that is wrong with one.
+    // Missing arguments are reported like all other errors.
     A::command().bin_name(format!("roverlab {shown}")).name(shown).arg_required_else_help(false)
 }
 
-/// What is left to be printed when a program's work is done.
+/// Output at the end of a program's work.
 #[derive(Debug)]
 pub(crate) struct Printed {
-    /// For standard output.
+    /// Standard output.
     pub(crate) text: String,
-    /// For standard error.
+    /// Standard error.
     pub(crate) message: Option<String>,
     /// The exit status.
     pub(crate) status: u8,
 }
 
-/// As [`run`], for a program with options and a report of its own.
+/// Like [`run`], for a program with its own options and report.
 pub(crate) fn run_printing<A: clap::Parser + Heeds>(
     name: &str,
     command_line: impl IntoIterator<Item = OsString>,
@@ -109,7 +108,7 @@ pub(crate) fn run_printing<A: clap::Parser + Heeds>(
     }
 }
 
-/// Does the work of a command line that has been read, or says what is wrong with it.
+/// Does the work of a parsed command line, or reports its error.
 fn run_parsed<A>(
     args: Result<A, clap::Error>,
     out: &mut dyn Write,
@@ -122,13 +121,13 @@ fn run_parsed<A>(
     }
 }
 
-/// Prints what came of a command's work. Returns the exit status.
+/// Prints the result of a command's work. Returns the exit status.
 fn ended(printed: Result<Printed, Failure>, out: &mut dyn Write, err: &mut dyn Write) -> u8 {
     match printed {
         Err(failure) => complain(err, &failure),
         Ok(printed) => {
             if let Some(message) = printed.message {
-                // Without standard error there is nobody left to tell; the status still does.
+                // Without standard error nobody can be informed; the status remains.
                 let _ = writeln!(err, "{message}");
             }
             written(writeln!(out, "{}", printed.text), err, printed.status)
@@ -136,7 +135,7 @@ fn ended(printed: Result<Printed, Failure>, out: &mut dyn Write, err: &mut dyn W
     }
 }
 
-/// Says what is wrong with a command line, or shows the help that it asks for. Returns the exit status.
+/// Prints the error of a command line, or the requested help. Returns the exit status.
 pub(crate) fn refused(error: &clap::Error, out: &mut dyn Write, err: &mut dyn Write) -> u8 {
     if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
         return written(write!(out, "{}", error.render()), err, 0);
@@ -144,7 +143,7 @@ pub(crate) fn refused(error: &clap::Error, out: &mut dyn Write, err: &mut dyn Wr
     complain(err, &Failure::input(in_one_line(error)))
 }
 
-/// What is wrong with a command line, in one line: the first paragraph of what the parser says.
+/// The error of a command line on one line: the first paragraph of the parser's message.
 fn in_one_line(error: &clap::Error) -> String {
     let text = error.render().to_string();
     let lines = text.lines().map(str::trim).take_while(|line| !line.is_empty());
@@ -163,7 +162,7 @@ fn in_one_line(error: &clap::Error) -> String {
     }
 }
 
-/// The likeliest of the words that a parser suggests.
+/// The likeliest of the parser's suggestions.
 fn suggestion(words: &ContextValue) -> Option<&str> {
     match words {
         ContextValue::String(word) => Some(word),
@@ -174,12 +173,12 @@ fn suggestion(words: &ContextValue) -> Option<&str> {
 
 /// Prints one message. Returns the exit status.
 fn complain(err: &mut dyn Write, failure: &Failure) -> u8 {
-    // Without standard error there is nobody left to tell; the status still does.
+    // Without standard error nobody can be informed; the status remains.
     let _ = writeln!(err, "{failure}");
     failure.status()
 }
 
-/// The status, if the report was written. A reader that had enough, as `head`, is no failure.
+/// The status, if the report was written. A closed pipe, as with `head`, is not a failure.
 pub(crate) fn written(result: io::Result<()>, err: &mut dyn Write, status: u8) -> u8 {
     match result {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {

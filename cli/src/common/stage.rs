@@ -1,16 +1,14 @@
 use std::collections::BTreeMap;
 use std::fmt;
-use std::fs::File;
-use std::io::BufWriter;
+use std::io::ErrorKind;
 use std::ops::{Deref, DerefMut};
-use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use roverlab::geometry::Pose;
-use roverlab::io::log::{Attachment, FleetIo, GroundTruth, Header, LogError, LogWriter, Player};
+use roverlab::io::log::{Attachment, FleetIo, GroundTruth, Header, LogError, LogFile, LogWriter, Player};
 use roverlab::io::sim::{Fleet, RobotTruth, SimOptions, Simulation, Watcher};
 use roverlab::io::wrappers::{Deadman, Fault, Faulty, Quantised};
-use roverlab::io::{self, Key, RobotIo};
+use roverlab::io::{self, Key, RobotIo, TruthInSpace};
 use roverlab::safety::{SpeedError, StoppingModel};
 use roverlab::world::{RobotPlacement, Scene, formats};
 
@@ -18,42 +16,42 @@ use super::library::{Library, alone};
 use super::supervision::{DEADMAN, Stops, guarded};
 use super::{CommonArgs, Failure, Origin, onlooker};
 
-/// Whether robots are recorded and replayed. A page in a browser has no files for that, and is smaller by the code for it.
+/// Whether robots can be recorded and replayed. A web page has no files, and omits the code.
 pub(super) const RECORDS: bool = cfg!(feature = "native");
 
-/// How many bytes of a recording a robot that is apart may be ahead of the others.
+/// Maximum number of bytes by which a separate robot's recording may be ahead of the others.
 const MOST_AHEAD: usize = 1 << 20;
 
-/// A robot for a command: simulated or replayed, and recorded if the options ask for it.
+/// A command's robot: simulated or replayed, and recorded if requested.
 pub(crate) type Driven = Box<dyn RobotIo + Send>;
 
-/// What is true about a command's robots.
+/// Ground truth of a command's robots.
 pub(crate) type StageTruth = Box<dyn GroundTruth + Send>;
 
-/// Where a command gets its robots from: a simulator, or a recording; and where it records them.
+/// Source of a command's robots, a simulator or a recording, and their recording.
 ///
-/// When it goes, the recording is complete, and the run's [`Origin`] knows what went wrong with it.
+/// Dropping it completes the recording, and reports its problems to the run's [`Origin`].
 #[derive(Debug)]
 pub(crate) struct Stage {
     play: Play,
     faults: Vec<Fault>,
-    /// Whether simulated robots round as RoBIOS does.
+    /// Whether simulated robots round like RoBIOS.
     quantised: bool,
-    /// Who knows what is true, for each robot. Let go before the recording is finished.
+    /// Ground truth of each robot. Dropped before the recording is finished.
     truths: Mutex<BTreeMap<usize, SharedTruth>>,
     recording: Recording,
     guard: Option<Guard>,
-    /// Whether robots stop by themselves when nobody talks to them.
+    /// Whether robots stop by themselves without calls.
     deadman: bool,
 }
 
-/// What the safety systems of robots go by, one for each robot.
+/// Parameters of the robots' safety systems, one each.
 #[derive(Debug, Clone)]
 struct Guard {
     models: Vec<StoppingModel>,
-    /// Whether each robot is alone in a world.
+    /// Whether each robot has its own world.
     apart: bool,
-    /// When something goes wrong with the first one.
+    /// Time of the first robot's first fault (s).
     fault: Option<f64>,
     stops: Stops,
 }
@@ -61,24 +59,24 @@ struct Guard {
 #[derive(Debug)]
 enum Play {
     Simulation(Simulation),
-    /// Each robot alone in a world of its own.
+    /// Each robot in its own world.
     Apart(Vec<Simulation>),
     Recording(Player),
     Library(Library),
 }
 
-/// Where a run is recorded, and what it replays.
+/// The recording being written, and the one being replayed.
 #[derive(Debug, Default)]
 struct Recording {
-    writer: Option<LogWriter<BufWriter<File>>>,
+    writer: Option<LogWriter<LogFile>>,
     player: Option<Player>,
     origin: Origin,
 }
 
-/// Robots that are stepped in one thread: simulated or replayed, and recorded if the options ask for it. For all else as
-/// a [`Stage`].
+/// Robots stepped in one thread: simulated or replayed, and recorded if requested. Otherwise like a
+/// [`Stage`].
 pub(crate) struct StagedFleet<'a> {
-    // Let go before the recording is finished.
+    // Dropped before the recording is finished.
     fleet: Box<dyn FleetIo<'a> + 'a>,
     _recording: Recording,
 }
@@ -97,11 +95,11 @@ impl DerefMut for StagedFleet<'_> {
     }
 }
 
-/// One robot with a world of its own kind: made by the command or replayed, and recorded if the options ask
-/// for it. For all else as a [`Stage`].
+/// A robot with its own kind of world: made by the command or replayed, and recorded if requested. Otherwise
+/// like a [`Stage`].
 #[cfg_attr(not(feature = "native"), allow(dead_code, reason = "only the walking robot needs it"))]
 pub(crate) struct StagedRobot {
-    // Let go before the recording is finished.
+    // Dropped before the recording is finished.
     robot: Driven,
     _recording: Recording,
 }
@@ -120,7 +118,7 @@ impl DerefMut for StagedRobot {
     }
 }
 
-/// Ground truth that several programs ask for.
+/// Ground truth shared by several programs.
 #[derive(Clone)]
 struct SharedTruth(Arc<Mutex<StageTruth>>);
 
@@ -152,10 +150,14 @@ impl GroundTruth for SharedTruth {
     fn object(&mut self, object: usize) -> io::Result<Pose> {
         self.ask(|truth| truth.object(object))
     }
+
+    fn in_space(&mut self, robot: usize) -> io::Result<TruthInSpace> {
+        self.ask(|truth| truth.in_space(robot))
+    }
 }
 
 impl CommonArgs {
-    /// The stage that the options describe: a simulation of a scene, or the recording that `--replay` names.
+    /// The stage of the options: a simulation of a scene, or the recording of `--replay`.
     pub(crate) fn stage(&self, scene: &Scene, options: SimOptions) -> Result<Stage, Failure> {
         let stage = match (self.player(), &self.robios) {
             (Some(player), _) => Stage::new(Play::Recording(player), Vec::new()),
@@ -175,13 +177,13 @@ impl CommonArgs {
         self.recorded(scene, stage, motors(scene))
     }
 
-    /// Fails where many robots drive at once, and a library has only one.
+    /// Fails if several robots drive, as a library has only one.
     fn check_no_library(&self) -> Result<(), Failure> {
         self.robios.as_ref().map_or(Ok(()), |library| Err(alone(library)))
     }
 
-    /// As [`stage`](Self::stage), with copies of the scene's first robot that drive each alone in a copy of its world, and
-    /// each in a thread of its own: what is recorded is merged by time while they drive.
+    /// Like [`stage`](Self::stage), with copies of the scene's first robot, each in its own copy of the world
+    /// and its own thread: their recordings are merged by time while they drive.
     pub(crate) fn stage_apart(
         &self,
         scene: &Scene,
@@ -216,7 +218,7 @@ impl CommonArgs {
             _ => None,
         };
         let stops = self.origin.stops().clone();
-        // How well speeds are measured goes by the noise.
+        // The error of speed measurements depends on the noise level.
         let error = SpeedError::default().scaled(self.noise);
         let models = models.into_iter().map(|model| StoppingModel { error, ..model }).collect();
         let fault = self.faults()?.iter().map(|fault| fault.at).reduce(f64::min);
@@ -224,7 +226,7 @@ impl CommonArgs {
         Ok(Stage { recording: self.recording(scene, player)?, guard, ..stage })
     }
 
-    /// As [`stage`](Self::stage), with all robots stepped in one thread.
+    /// Like [`stage`](Self::stage), with all robots stepped in one thread.
     pub(crate) fn fleet<'a>(&self, scene: &Scene, options: SimOptions) -> Result<StagedFleet<'a>, Failure> {
         self.check_no_library()?;
         let player = self.player();
@@ -252,8 +254,8 @@ impl CommonArgs {
         Ok(StagedFleet { fleet, _recording: recording })
     }
 
-    /// A robot that no scene describes: `own`, or that of the recording which `--replay` names. The scene is what
-    /// viewers show around it.
+    /// A robot without a scene description: `own`, or that of the recording of `--replay`. Viewers show the
+    /// scene around it.
     #[cfg_attr(not(feature = "native"), allow(dead_code, reason = "only the walking robot needs it"))]
     pub(crate) fn staged_robot(
         &self,
@@ -269,12 +271,12 @@ impl CommonArgs {
         Ok(StagedRobot { robot, _recording: recording })
     }
 
-    /// What plays the recording that `--replay` names.
+    /// The player of the recording of `--replay`.
     fn player(&self) -> Option<Player> {
         self.origin.facts().log.as_ref().map(Player::new)
     }
 
-    /// Begins the recording that `--record` asks for.
+    /// Starts the recording of `--record`.
     fn recording(&self, scene: &Scene, player: Option<Player>) -> Result<Recording, Failure> {
         let mut recording = Recording { writer: None, player, origin: self.origin.clone() };
         self.origin.set_staged();
@@ -288,9 +290,15 @@ impl CommonArgs {
             },
             |log| log.header().clone(),
         );
-        let writer = create(file, &header).map_err(|error| {
-            let file = file.display();
-            Failure::input(format!("--record {file}: {error}; expected a file that can be written"))
+        let open = || if self.force { LogFile::replace(file) } else { LogFile::create(file) };
+        let open = || if self.fsync { open().map(LogFile::synced) } else { open() };
+        let writer = open().and_then(|sink| LogWriter::new(sink, &header)).map_err(|error| {
+            let expected = match error.kind() {
+                ErrorKind::AlreadyExists => ", or --force",
+                ErrorKind::ResourceBusy => "",
+                _ => "; expected a file that can be written",
+            };
+            Failure::input(format!("--record {}: {error}{expected}", file.display()))
         })?;
         writer.show(scene);
         recording.writer = Some(writer);
@@ -298,7 +306,7 @@ impl CommonArgs {
     }
 }
 
-/// How the robots of a scene stop.
+/// Stopping models of a scene's robots.
 fn motors(scene: &Scene) -> Vec<StoppingModel> {
     let model = |robot: &RobotPlacement| StoppingModel {
         reaction: 0.0,
@@ -329,18 +337,14 @@ fn texts(scene: &Scene) -> Vec<Attachment> {
     files
 }
 
-fn create(file: &Path, header: &Header) -> std::io::Result<LogWriter<BufWriter<File>>> {
-    LogWriter::new(BufWriter::with_capacity(1 << 16, File::create(file)?), header)
-}
-
 impl Stage {
-    /// A simulation that nobody records, with faults of the first robot.
+    /// An unrecorded simulation, with faults of the first robot.
     pub(crate) fn simulated(scene: &Scene, options: SimOptions, faults: Vec<Fault>) -> Result<Self, Failure> {
         let simulation = Simulation::new(scene, options).map_err(Failure::input)?;
         Ok(Self::new(Play::Simulation(simulation), faults))
     }
 
-    /// Lets somebody look on at a simulation.
+    /// Adds a watcher to a simulation.
     fn watch(&self, watcher: Option<Box<dyn Watcher>>) {
         if let (Play::Simulation(simulation), Some(watcher)) = (&self.play, watcher) {
             simulation.watch(watcher);
@@ -359,7 +363,7 @@ impl Stage {
         }
     }
 
-    /// The same, with robots that stop by themselves when nobody talks to them for [`DEADMAN`] seconds.
+    /// The same, with robots that stop by themselves after [`DEADMAN`] seconds without a call.
     pub(crate) fn with_deadman(self) -> Self {
         Self { deadman: true, ..self }
     }
@@ -369,7 +373,7 @@ impl Stage {
         self.claim(index)?.ready()
     }
 
-    /// A robot that waits to be made ready, which may take its time: each of several in a thread of its own.
+    /// A robot still to be made ready, which may take time: do so in each robot's own thread.
     pub(crate) fn claim(&self, index: usize) -> Result<Claimed, Failure> {
         let simulated = |simulation: &Simulation, index| simulation.robot(index).map_err(Failure::input);
         let robot = match &self.play {
@@ -400,8 +404,9 @@ impl Stage {
         Ok(self.recording.recorder(Box::new(Faulty::new(robot, faults)), index))
     }
 
-    /// What is true, for the program that drives or watches a robot. Of robots apart, each is the first one of its world.
-    /// All who ask about a robot share one handle: a recording keeps one order of questions.
+    /// Ground truth for the program that drives or watches a robot. Each separate robot is the first one of
+    /// its world. All users of a robot's truth share one handle, so that a recording keeps one order of
+    /// queries.
     pub(crate) fn truth(&self, index: usize) -> Result<StageTruth, Failure> {
         let mut truths = self.truths.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = truths.get(&index) {
@@ -425,24 +430,24 @@ impl Stage {
         })
     }
 
-    /// Schedules a key press, in seconds since the start. A replayed robot's keys are in the recording.
+    /// Schedules a key press at a time since the start (s). A replayed robot's keys are in the recording.
     pub(crate) fn press_key(&self, index: usize, time: f64, key: Key) -> io::Result<()> {
         match &self.play {
             Play::Simulation(simulation) => simulation.press_key(index, time, key),
             Play::Apart(simulations) => simulations[index].press_key(0, time, key),
-            // Whoever stands beside a real robot presses its keys.
+            // The user of a real robot presses its keys.
             Play::Recording(_) | Play::Library(_) => Ok(()),
         }
     }
 }
 
-/// A robot that the world waits for, and the safety system that it gets.
+/// A robot that the world waits for, and its safety system.
 pub(crate) struct Claimed {
     robot: Driven,
     guard: Option<Watch>,
 }
 
-/// What a safety system is made of.
+/// Parts of a safety system.
 struct Watch {
     truth: StageTruth,
     who: usize,
@@ -451,7 +456,7 @@ struct Watch {
 }
 
 impl Claimed {
-    /// The robot, armed and started if a safety system guards it.
+    /// The robot, armed and started if it has a safety system.
     pub(crate) fn ready(self) -> Result<Driven, Failure> {
         let Self { robot, guard } = self;
         let Some(Watch { truth, who, model, stops }) = guard else { return Ok(robot) };
@@ -468,7 +473,7 @@ fn replayed_robot(player: &Player, index: usize) -> Result<Driven, Failure> {
     }
 }
 
-/// What is true about a robot of a recording.
+/// Ground truth of a robot of a recording.
 fn replayed_truth(player: &Player, index: usize) -> Result<StageTruth, Failure> {
     if RECORDS {
         Ok(Box::new(player.truth(index).map_err(|error| foreign(&error))?))
@@ -481,13 +486,13 @@ fn no_recordings() -> Failure {
     Failure::input("--replay: found a recording; expected a program that replays")
 }
 
-/// A recording that lacks a robot belongs to another scene.
+/// The error for a recording without the robot, which belongs to another scene.
 fn foreign(error: &LogError) -> Failure {
     Failure::input(format!("--replay: {error}"))
 }
 
 impl Recording {
-    /// A robot that is recorded, if there is a recording.
+    /// Wraps a robot in a recorder, if there is a recording.
     fn recorder(&self, robot: Driven, index: usize) -> Driven {
         match &self.writer {
             Some(writer) if RECORDS => Box::new(writer.recorder(robot, index)),
@@ -498,7 +503,8 @@ impl Recording {
 
 impl Drop for Recording {
     fn drop(&mut self) {
-        if let Some(Err(error)) = self.writer.take().map(LogWriter::finish) {
+        let finished = self.writer.take().map(|writer| writer.finish().and_then(LogFile::complete));
+        if let Some(Err(error)) = finished {
             self.origin.note(format!("--record: the recording is incomplete: {error}"));
         }
         if let Some((time, call)) = self.player.as_ref().and_then(Player::rest) {

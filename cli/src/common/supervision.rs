@@ -5,16 +5,16 @@ use std::sync::{Arc, Mutex, PoisonError};
 use ambassador::Delegate;
 use roverlab::geometry::{Pose, Twist, Vector3, angle_difference};
 use roverlab::io::delegate::{
-    GrayImage, RgbImage, ambassador_impl_Camera, ambassador_impl_Clock, ambassador_impl_Display,
-    ambassador_impl_DistanceSensors, ambassador_impl_Drive, ambassador_impl_Encoders,
-    ambassador_impl_Inertial, ambassador_impl_Keys, ambassador_impl_Lidar, ambassador_impl_Manoeuvres,
-    ambassador_impl_Motors, ambassador_impl_Odometry, ambassador_impl_Radio, ambassador_impl_Servos,
-    ambassador_impl_StallDetector,
+    GrayImage, RgbImage, ambassador_impl_Camera, ambassador_impl_Clock, ambassador_impl_DepthSensor,
+    ambassador_impl_Display, ambassador_impl_DistanceSensors, ambassador_impl_Drive,
+    ambassador_impl_Encoders, ambassador_impl_Inertial, ambassador_impl_Keys, ambassador_impl_Lidar,
+    ambassador_impl_Manoeuvres, ambassador_impl_Motors, ambassador_impl_Odometry, ambassador_impl_Radio,
+    ambassador_impl_Servos, ambassador_impl_StallDetector,
 };
 use roverlab::io::{
-    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill,
-    Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd,
-    Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, DepthSensor, Display, DisplayImage, DisplayOption, DistanceSensors, Drive,
+    Encoders, Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry,
+    Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use roverlab::safety::{
     Causes, Heartbeat, Panel, Requests, SafetyState, StopRecord, StoppingModel, Supervised,
@@ -26,24 +26,24 @@ use serde_json::{Value, json};
 use super::StageTruth;
 use super::stage::Driven;
 
-/// What the safety systems of a run have done, for its report.
+/// Actions of a run's safety systems, for its report.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Stops {
     all: Arc<Mutex<Vec<Stop>>>,
 }
 
-/// What a safety system has done.
+/// A stop by a safety system.
 #[derive(Debug, Clone, Copy)]
 struct Stop {
     robot: usize,
     record: Option<StopRecord>,
-    /// When it truly began.
+    /// True start time (s).
     time: Option<f64>,
-    /// Metres that the robot went after the stop began, and those that it may go.
+    /// Distance travelled after the start of the stop, and its bound (m).
     metres: f64,
     bound: f64,
     fault: Option<Before>,
-    /// Whether it stood at last.
+    /// Whether the robot finally stood.
     stood: bool,
 }
 
@@ -51,15 +51,15 @@ struct Stop {
 #[derive(Debug, Clone, Copy)]
 struct Before {
     time: f64,
-    /// Metres from the last look before it until the robot stood.
+    /// Distance from the last look before it until the robot stood (m).
     metres: f64,
-    /// How fast the wheels went then, and the greatest speed between fault and stop.
+    /// Wheel speed at the fault, and maximum speed between fault and stop (m/s).
     rolling: f64,
     fastest: f64,
 }
 
 impl Stops {
-    /// What is to be told, if there was a safety system.
+    /// The report, if there was a safety system.
     pub(crate) fn take(&self) -> Option<Value> {
         let mut stops = std::mem::take(&mut *self.all.lock().unwrap_or_else(PoisonError::into_inner));
         stops.sort_by_key(|stop| stop.robot);
@@ -90,22 +90,22 @@ impl Stop {
     }
 }
 
-/// What was true about a robot at a look.
+/// True state of a robot at a look.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sight {
     time: f64,
     metres: f64,
     heading: f64,
-    /// How fast it was on average since the look before, and how fast its wheels went that turn it as well.
+    /// Mean speed since the previous look, and wheel speed including turning (m/s).
     speed: f64,
     rolling: f64,
 }
 
-/// Metres that wheels go for a turn of one radian.
+/// Wheel travel per radian of turning (m/rad).
 const ARM: f64 = 0.1;
 
 impl Sight {
-    /// What is seen at a later time.
+    /// The state at a later time.
     fn next(self, time: f64, metres: f64, heading: f64) -> Self {
         let passed = time - self.time;
         let turned = angle_difference(heading, self.heading).abs();
@@ -114,37 +114,37 @@ impl Sight {
     }
 }
 
-/// How far a robot has truly gone.
+/// True distance travelled by a robot.
 #[derive(Debug, Clone, Copy, Default)]
 struct Odometer {
     last: Sight,
     before: Sight,
     stop: Option<Began>,
-    /// When something goes wrong with the robot, the last look before, and the greatest speed from then on to the stop.
+    /// Time of the fault, the last look before it, and the maximum speed from then on to the stop.
     fault: Option<f64>,
     fault_from: Option<Sight>,
     fastest: f64,
 }
 
-/// How a stop began.
+/// Start of a stop.
 #[derive(Debug, Clone, Copy)]
 struct Began {
     time: f64,
     state: SafetyState,
     from: Sight,
-    /// Whether nobody had looked for so long that the robot stopped by itself.
+    /// Whether the looks had paused for so long that the robot stopped by itself.
     alone: bool,
 }
 
-/// Seconds between two looks that are too many: the robot's own watchdog has stopped it meanwhile.
+/// Gap between two looks after which the robot's own watchdog has stopped it (s).
 const GAP: f64 = DEADMAN;
 
 impl Odometer {
-    /// Takes in the way at a time, both true. The state is that after the look before.
+    /// Updates the true motion at a time. `state` is that after the previous look.
     fn read(&mut self, time: f64, (metres, heading): (f64, f64), state: SafetyState) {
         let Self { last, before, .. } = *self;
         if state.is_stop() && self.stop.is_none() {
-            // Behind a gap, the stop began in it.
+            // After a gap, the stop began within it.
             let alone = last.time - before.time >= GAP;
             self.stop =
                 Some(Began { time: last.time, state, from: if alone { before } else { last }, alone });
@@ -165,8 +165,8 @@ impl Odometer {
 
 type Exchange = Box<dyn FnMut(f64, Heartbeat) -> Panel + Send>;
 
-/// A robot under the safety system, which is armed and started before the program gets it, and left standing, if there was a stop,
-/// when the program lets go of it.
+/// A robot under the safety system, which is armed and started before the program gets it. When the program
+/// drops the robot after a stop, it is left standing.
 #[derive(Delegate)]
 #[expect(clippy::duplicated_attributes, reason = "every capability has the same target")]
 #[delegate(Clock, target = "inner")]
@@ -183,6 +183,7 @@ type Exchange = Box<dyn FnMut(f64, Heartbeat) -> Panel + Send>;
 #[delegate(Motors, target = "inner")]
 #[delegate(Servos, target = "inner")]
 #[delegate(Encoders, target = "inner")]
+#[delegate(DepthSensor, target = "inner")]
 #[delegate(Inertial, target = "inner")]
 struct Guarded {
     inner: Supervised<Driven, Exchange>,
@@ -193,16 +194,16 @@ struct Guarded {
     stops: Stops,
 }
 
-/// Seconds without a call after which a supervised robot stops by itself.
+/// Time without a call after which a supervised robot stops by itself (s).
 pub(crate) const DEADMAN: f64 = 0.3;
-/// Seconds within which every robot comes to stand.
+/// Time within which every robot stands (s).
 const PATIENCE: f64 = 15.0;
-/// Waits at most for that: those that fail may take no time at all.
+/// Maximum number of waits for that: failing waits may take no time.
 const ROUNDS: usize = 2000;
-/// Metres per second below which a robot stands.
+/// Speed below which a robot stands (m/s).
 const STANDS: f64 = 1e-4;
 
-/// Puts a robot under the safety system; `fault` is when something goes wrong with it.
+/// Puts a robot under the safety system; `fault` is the time of its first fault (s).
 pub(crate) fn guarded(
     robot: Driven,
     mut truth: StageTruth,
@@ -258,19 +259,19 @@ impl Drop for Guarded {
 }
 
 impl Guarded {
-    /// Lets a stop come to its end. Whether the robot stands then.
+    /// Lets a stop come to its end. Returns whether the robot stands then.
     ///
-    /// Time is the true one: a wait that fails ends before its time, and a clock may stop.
+    /// Uses true time: a failing wait ends early, and a clock may stop.
     fn stands_at_last(&mut self) -> bool {
         let from = self.read().last.time;
         for _ in 0..ROUNDS {
-            // What fails is the fault's; time passes all the same, unless the world has come to its end.
+            // Failures come from the fault; time passes nevertheless, unless the world has ended.
             let _ = self.inner.wait(0.1);
             let now = self.read().last;
             if now.speed < STANDS {
                 return true;
             }
-            // What made the program end may be known to the safety system only when time passes.
+            // The safety system may learn only after some time what ended the program.
             if !self.inner.state().is_stop() || now.time - from > PATIENCE {
                 return false;
             }
@@ -278,14 +279,14 @@ impl Guarded {
         false
     }
 
-    /// Metres that the robot may go from where a stop began.
+    /// Maximum distance of the robot from where a stop began (m).
     fn bound(&self, began: Began, record: Option<StopRecord>) -> f64 {
         let StoppingModel { lag, deceleration, .. } = self.model;
         let stopping = self.parameters.stopping_in(began.state, lag, deceleration);
-        // Without a link, or while a call hangs, the brake is in the hands of the robot's own watchdog.
+        // Without a link, or during a hanging call, the robot's own watchdog brakes.
         let alone = began.alone || record.is_some_and(|record| record.causes.has(Causes::LINK));
         let reaction = stopping.reaction + if alone { DEADMAN } else { 0.0 };
-        // Until it does, the robot follows its last command, and may speed up.
+        // Until then the robot follows its last command, and may accelerate.
         let asked = if alone { self.inner.asked().unwrap_or(0.0) } else { 0.0 };
         StoppingModel { reaction, ..stopping }.distance(began.from.speed.max(asked))
     }

@@ -13,33 +13,33 @@ use super::{CommonArgs, Failure};
 #[derive(Debug, Clone)]
 pub(crate) struct Trip {
     pub(crate) scene: Scene,
-    /// Where the robot is to go, in the world.
+    /// The goal, in the world.
     pub(crate) goal: Point,
 }
 
-/// A marker within so many metres of the robot is that of its start.
+/// Distance from the robot's start within which a marker marks that start (m).
 const AT_START: f64 = 0.05;
-/// A robot nearer to something than this many metres touches it.
+/// Distance below which a robot is in contact (m).
 const TOUCHING: f64 = 1e-3;
 
 impl Trip {
-    /// What drives.
+    /// The driving robot.
     pub(crate) fn spec(&self) -> &RobotSpec {
         &self.scene.robots[0].spec
     }
 
-    /// Where it starts, in the world.
+    /// Its start, in the world.
     pub(crate) fn start(&self) -> Pose {
         self.scene.robots[0].pose
     }
 
-    /// Metres from start to goal, as the crow flies.
+    /// Straight distance from start to goal (m).
     pub(crate) fn distance(&self) -> f64 {
         self.start().distance_to(self.goal)
     }
 
-    /// Simulated seconds that are generous for finding the goal, or that there is no way to it: the time for several
-    /// rounds along both sides of every wall and for the way itself, and ten minutes at least.
+    /// A generous time limit for finding the goal, or the lack of a way (s): time for several rounds along
+    /// both sides of every wall and for the way itself, at least ten minutes.
     pub(crate) fn generous_time_limit(&self) -> f64 {
         let walls: f64 = self.scene.world.walls.iter().map(|wall| wall.line.length()).sum();
         let objects: f64 =
@@ -48,29 +48,30 @@ impl Trip {
     }
 }
 
-/// A lidar that looks this far round, in radians, looks all round.
+/// Field of view from which a lidar counts as all-round (rad).
 const ALL_ROUND: f64 = 0.999 * TAU;
 
-/// The robot that drives where a world has none, or one that a command has no use for.
+/// Default robot, for a world without one or with an unsuitable one.
 #[derive(Debug, Clone)]
 pub(crate) struct StandIn {
     pub(crate) spec: Arc<RobotSpec>,
-    /// Whether the command has a use for a robot.
+    /// Whether a robot suits the command.
     pub(crate) suits: fn(&RobotSpec) -> bool,
 }
 
 impl Default for StandIn {
-    /// An S4, and any robot will do.
+    /// An S4; every robot is suitable.
     fn default() -> Self {
         Self { spec: Arc::new(RobotSpec::s4()), suits: |_| true }
     }
 }
 
 impl CommonArgs {
-    /// The trip that the options describe: `--world`, or `own` without it, with the robot, the start and the goal
-    /// that the options give, or else the world.
+    /// The trip of the options: `--world`, otherwise `own`, with robot, start and goal from the options,
+    /// otherwise from the world.
     ///
-    /// A `.sim` gives its first robot and its first marker that is not where this starts; a `.maz` the letters S and G; a `.wld` its `position`.
+    /// A `.sim` provides its first robot, and its first marker away from the start; a `.maz` the letters S
+    /// and G; a `.wld` its `position`.
     pub(crate) fn trip(&self, own: impl FnOnce() -> Scene) -> Result<Trip, Failure> {
         if self.goal.is_some_and(|goal| goal.heading.is_some()) {
             return Err(Failure::input(
@@ -80,12 +81,12 @@ impl CommonArgs {
         self.trip_to_pose(own)
     }
 
-    /// The same for a command that takes a heading at the goal, which is in `self.goal`.
+    /// The same for a command that takes a heading at the goal, in `self.goal`.
     pub(crate) fn trip_to_pose(&self, own: impl FnOnce() -> Scene) -> Result<Trip, Failure> {
         self.trip_to_pose_of(&StandIn::default(), own)
     }
 
-    /// The same for a command that not every robot can drive in.
+    /// The same for a command with requirements on the robot.
     pub(crate) fn trip_to_pose_of(
         &self,
         stand_in: &StandIn,
@@ -96,13 +97,13 @@ impl CommonArgs {
         Ok(Trip { scene, goal })
     }
 
-    /// The scene that the options describe, for a command without a goal: `--world`, or `own` without it,
-    /// with the robot and the start that the options give, or else the world.
+    /// The scene of the options, for a command without a goal: `--world`, otherwise `own`, with robot and
+    /// start from the options, otherwise from the world.
     pub(crate) fn placed(&self, own: impl FnOnce() -> Scene) -> Result<Scene, Failure> {
         self.placed_of(&StandIn::default(), own)
     }
 
-    /// The same for a command that not every robot can drive in.
+    /// The same for a command with requirements on the robot.
     pub(crate) fn placed_of(
         &self,
         stand_in: &StandIn,
@@ -116,7 +117,7 @@ impl CommonArgs {
         self.placed_in(scene, stand_in)
     }
 
-    /// Tells of what stands so far from all else that maps and pictures leave it out.
+    /// Warns of things so far from everything else that maps and pictures omit them.
     fn warn_of_strays(&self, scene: &Scene) {
         let strays = scene.world.strays();
         if strays > 0 {
@@ -128,7 +129,7 @@ impl CommonArgs {
         }
     }
 
-    /// A scene with the robot and the start that the options give, or else the scene.
+    /// A scene with robot and start from the options, otherwise from the scene.
     pub(crate) fn placed_in(&self, mut scene: Scene, stand_in: &StandIn) -> Result<Scene, Failure> {
         let mut robot = self.driver(&scene, stand_in)?;
         if let Some(file) = &self.robot {
@@ -148,7 +149,7 @@ impl CommonArgs {
         Ok(scene)
     }
 
-    /// The same, and whoever gives a goal is told why there is none.
+    /// The same; fails with a reason if the options give a goal.
     pub(crate) fn placed_without_goal(
         &self,
         why: &str,
@@ -160,7 +161,7 @@ impl CommonArgs {
         }
     }
 
-    /// Refuses a robot that cannot turn on the spot, or has no lidar that looks all round.
+    /// Rejects a robot that cannot turn on the spot, or lacks an all-round lidar.
     pub(crate) fn check_turning_with_lidar(&self, spec: &RobotSpec) -> Result<(), Failure> {
         let found = match spec.lidar {
             _ if matches!(spec.drive, DriveSpec::Ackermann { .. }) => {
@@ -178,12 +179,12 @@ impl CommonArgs {
         Err(Failure::input(format!("{place}found robot {}{found}", spec.name)))
     }
 
-    /// The world's name in messages.
+    /// Name of the world in messages.
     fn world_name(&self) -> String {
         self.world.as_deref().map_or("the command's own world".into(), |file| file.display().to_string())
     }
 
-    /// What a file says. Notes its warnings.
+    /// The content of a file; records its warnings.
     fn parsed<T>(&self, parsed: Result<Parsed<T>, FormatError>) -> Result<T, Failure> {
         let parsed = parsed.map_err(Failure::input)?;
         for warning in &parsed.warnings {
@@ -192,7 +193,7 @@ impl CommonArgs {
         Ok(parsed.value)
     }
 
-    /// The robot that drives, at its start.
+    /// The driving robot, at its start.
     fn driver(&self, scene: &Scene, stand_in: &StandIn) -> Result<RobotPlacement, Failure> {
         let mut robot = match (scene.robots.first(), scene.world.start, self.start) {
             (Some(robot), ..) => robot.clone(),
@@ -212,7 +213,7 @@ impl CommonArgs {
     }
 
     fn destination(&self, scene: &Scene) -> Result<Point, Failure> {
-        // Scripts mark the start as well, before the goal or behind it.
+        // Scripts may also mark the start, before or after the goal.
         let start = scene.robots[0].pose;
         let places = || scene.world.markers.iter().map(|marker| marker.position);
         let marker = places().find(|&place| start.distance_to(place) > AT_START).or_else(|| places().next());
@@ -257,7 +258,7 @@ fn within(bounds: &Aabb) -> String {
     format!("from {} to {} mm", in_mm(bounds.min), in_mm(bounds.max))
 }
 
-/// Metres from the first robot's outline to the nearest wall, object or other robot; 0 in contact.
+/// Distance from the first robot's outline to the nearest wall, object or other robot (m); 0 in contact.
 fn clearance(scene: &Scene) -> f64 {
     const NEAR: f64 = 0.1;
     let space = space_with(scene, &scene.robots[1..]);

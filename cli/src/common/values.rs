@@ -1,16 +1,16 @@
-//! The values of options, and what was expected where they are wrong.
+//! Parsers of option values, with messages about wrong ones.
 
 use std::path::PathBuf;
 
 use roverlab::geometry::{Point, Pose, units};
 use roverlab::picture::FileType;
 
-/// Millimetres of any coordinate, as in world files.
+/// Maximum coordinate, as in world files (mm).
 const FARTHEST: f64 = 1e9;
-/// Degrees of any heading: turns beyond lose the place that they point to.
+/// Maximum heading (degrees): larger angles lose their precision.
 const LARGEST_ANGLE: f64 = 360_000.0;
 
-/// `X,Y,DEG` in millimetres and degrees.
+/// Parses `X,Y,DEG` in millimetres and degrees.
 pub(crate) fn parse_pose(text: &str) -> Result<Pose, String> {
     let [x, y, heading] = numbers(text, "X,Y,DEG: three finite numbers (mm, mm, degrees)")?;
     within([x, y], FARTHEST, "mm")?;
@@ -18,21 +18,21 @@ pub(crate) fn parse_pose(text: &str) -> Result<Pose, String> {
     Ok(Pose::from_mm_deg(x, y, heading))
 }
 
-/// `X,Y` in millimetres.
+/// Parses `X,Y` in millimetres.
 pub(crate) fn parse_point(text: &str) -> Result<Point, String> {
     let [x, y] = numbers(text, "X,Y: two finite numbers (mm)")?;
     within([x, y], FARTHEST, "mm")?;
     Ok(Point::new(units::from_mm(x), units::from_mm(y)))
 }
 
-/// Where the robot is to go: a place, and the heading to arrive with if it matters.
+/// Goal of the robot: position, and optional heading on arrival.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct GoalOption {
     pub(crate) position: Point,
     pub(crate) heading: Option<f64>,
 }
 
-/// `X,Y` or `X,Y,DEG` in millimetres and degrees.
+/// Parses `X,Y` or `X,Y,DEG` in millimetres and degrees.
 pub(crate) fn parse_goal(text: &str) -> Result<GoalOption, String> {
     if text.split(',').count() != 3 {
         return parse_point(text).map(|position| GoalOption { position, heading: None });
@@ -48,14 +48,14 @@ pub(crate) fn parse_noise(text: &str) -> Result<f64, String> {
     if (0.0..=5.0).contains(&level) { Ok(level) } else { Err(wrong(expected)) }
 }
 
-/// A time in seconds, more than 0.
+/// A time above 0 (s).
 pub(crate) fn parse_seconds(text: &str) -> Result<f64, String> {
     let expected = "a finite number of seconds above 0";
     let [seconds] = numbers(text, expected)?;
     if seconds > 0.0 { Ok(seconds) } else { Err(wrong(expected)) }
 }
 
-/// The name of a file that a moving picture can be saved to.
+/// Name of a file for an animated picture.
 pub(crate) fn parse_animation(text: &str) -> Result<PathBuf, String> {
     match FileType::of(text) {
         Ok(FileType::Svg) => Ok(text.into()),
@@ -63,12 +63,12 @@ pub(crate) fn parse_animation(text: &str) -> Result<PathBuf, String> {
     }
 }
 
-/// The name of a file that a picture can be saved to.
+/// Name of a picture file.
 pub(crate) fn parse_picture(text: &str) -> Result<PathBuf, String> {
     FileType::of(text).map(|_| PathBuf::from(text)).map_err(|error| error.to_string())
 }
 
-/// Exactly `N` finite numbers with commas between them.
+/// Exactly `N` finite numbers separated by commas.
 fn numbers<const N: usize>(text: &str, expected: &str) -> Result<[f64; N], String> {
     let parsed: Option<Vec<f64>> = text.split(',').map(finite).collect();
     parsed.and_then(|all| all.try_into().ok()).ok_or_else(|| wrong(expected))
@@ -85,7 +85,7 @@ fn finite(text: &str) -> Option<f64> {
     text.trim().parse().ok().filter(|number: &f64| number.is_finite())
 }
 
-/// The parser of the command line says itself which option has which value.
+/// The parser adds the option and its value to the message.
 fn wrong(expected: &str) -> String {
     format!("expected {expected}")
 }

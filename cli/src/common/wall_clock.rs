@@ -1,4 +1,4 @@
-//! The wall clock: how long a run takes, pacing, and progress. No result may depend on it.
+//! The wall clock: duration of a run, pacing, and progress. No result may depend on it.
 
 use std::fmt::Display;
 use std::io::{IsTerminal, Write};
@@ -6,7 +6,7 @@ use std::time::Duration;
 #[cfg(not(target_family = "wasm"))]
 use std::time::Instant;
 
-/// Measures time on the wall clock; in a browser, where Rust has none, no time passes.
+/// Measures wall-clock time; in browsers, where Rust has no clock, no time passes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stopwatch(#[cfg(not(target_family = "wasm"))] Instant);
 
@@ -49,7 +49,7 @@ impl Pacer {
     }
 }
 
-/// Tells how far long work has come, in one line of standard error that is written anew, if that is a terminal.
+/// Shows the progress of long work on one line of standard error, if that is a terminal.
 #[derive(Debug)]
 pub(crate) struct Progress {
     terminal: bool,
@@ -59,7 +59,7 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Seconds without a word at first, and between two.
+    /// Time before the first output, and between two (s).
     const PATIENCE: f64 = 2.0;
     const INTERVAL: f64 = 0.2;
 
@@ -68,7 +68,7 @@ impl Progress {
         Self { terminal, since: Stopwatch::start(), next: Self::PATIENCE, shown: false }
     }
 
-    /// Shows a state, unless one was shown just now. `text` is asked only if so.
+    /// Shows a state, unless one was shown just now; only then evaluates `text`.
     pub(crate) fn show<T: Display>(&mut self, text: impl FnOnce() -> T) {
         if !self.terminal || self.since.seconds() < self.next {
             return;
@@ -76,11 +76,11 @@ impl Progress {
         self.next = self.since.seconds() + Self::INTERVAL;
         self.shown = true;
         let mut err = std::io::stderr();
-        // Progress that cannot be shown is no reason to stop.
+        // A failure to show progress is no reason to stop.
         let _ = write!(err, "\r\x1b[K{}", text()).and_then(|()| err.flush());
     }
 
-    /// Takes the line away, so that something else can be written.
+    /// Removes the line, so that other output can be written.
     pub(crate) fn clear(&mut self) {
         if std::mem::take(&mut self.shown) {
             let _ = write!(std::io::stderr(), "\r\x1b[K");

@@ -4,14 +4,14 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use super::{Failure, Progress};
 
-/// How many threads work: as many as asked for, or one for each core.
+/// Number of working threads: the requested one, or one per core.
 pub(crate) fn threads(asked: Option<NonZero<usize>>) -> usize {
     let cores = || std::thread::available_parallelism().map_or(1, NonZero::get);
     asked.map_or_else(cores, NonZero::get)
 }
 
-/// The results of some pieces of work in their order, done by several threads. The number of threads makes no difference
-/// to them. The first failure ends it. `things` is what progress counts.
+/// Results of `count` pieces of work in order, done by several threads whose number does not affect them.
+/// Ends at the first failure. `things` names the pieces in the progress line.
 pub(crate) fn share_out<T: Send>(
     things: &str,
     count: u64,

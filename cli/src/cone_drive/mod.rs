@@ -13,29 +13,29 @@ use roverlab::world::RobotSpec;
 use crate::common::{CommonArgs, Failure, Outcome, Report, Stage, rounded};
 use crate::cones::{Course, Judge, Passed, check_campaign, check_race, drawing, judged};
 
-/// The command line of `cone-drive`.
+/// Command line of `cone-drive`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
-    about = "Drives between cones as the book prints it: for the nearest gap left and right of the middle of one scan",
+    about = "Drives between cones as the book's program does: to the gap between the nearest cones left and right of the scan's middle",
     after_help = "\
-The car keeps its speed; ten times a second it steers for the middle between the two cones nearest to the middle of its
-scan. `cone_race` drives the same tracks properly.
+The car keeps its speed. Ten times a second it steers for the midpoint between the two cones nearest to the middle of
+its scan. `cone_race` drives the same tracks with a map and a racing line.
 
 JSON fields:
-  laps, cones_hit, off_course, lap_times_s    as the referee sees it
-  distance_clean_m                            metres to the first cone or off the course
-  tracks, clean, clean_share                  of a campaign
+  laps, cones_hit, off_course, lap_times_s    by the referee
+  distance_clean_m                            metres to the first hit cone or to leaving the course
+  tracks, clean, clean_share                  campaign only
   picture
-Outcomes: finished, collided (a cone was hit, whatever else came of it), penalised (all laps, but the course was left with
-all wheels), timed_out (time was over, or the car was far off its track), failed (the car's program), raced (a campaign).
+Outcomes: finished, collided (a cone was hit, with any other result), penalised (all laps, but the course was left with
+all wheels), timed_out (also if the car was far off its track), failed (the car's program), raced (a campaign).
 Tracks of events, an acceleration or a skidpad, are refused: `cone_race` drives them."
 )]
 pub(crate) struct Args {
-    /// Track to drive on [default: one of our own].
+    /// Track to drive on [default: a generated one].
     #[arg(long, value_name = "FILE")]
     pub(crate) track: Option<PathBuf>,
 
-    /// Laps to drive.
+    /// Number of laps.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=100))]
     pub(crate) laps: u16,
 
@@ -43,7 +43,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "M/S", default_value_t = 3.0)]
     pub(crate) speed: f64,
 
-    /// Drive on so many tracks of our own, from --seed on.
+    /// Drive on this many generated tracks, starting with --seed.
     #[arg(long, value_name = "TRACKS", conflicts_with = "track", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) campaign: Option<u32>,
 
@@ -53,10 +53,10 @@ pub(crate) struct Args {
 
 crate::common::shares_options!(Args, common: CommonArgs);
 
-/// What came out of a drive.
+/// Result of a drive.
 struct Driven {
     verdict: RaceScore,
-    /// Why it ended early, if the car failed.
+    /// Reason for an early end, if the car failed.
     error: Option<String>,
     truth: RobotTruth,
     time: f64,
@@ -64,7 +64,7 @@ struct Driven {
     trail: Vec<Passed>,
 }
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
@@ -85,7 +85,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(common.draw(report, "cone_drive.svg", || picture(&course, &driven)))
 }
 
-/// What is told about a drive.
+/// Report on a drive.
 fn report(args: &Args, course: &Course, driven: &Driven) -> Report {
     let verdict = &driven.verdict;
     let done = verdict.lap_times.len() >= usize::from(args.laps);
@@ -113,7 +113,7 @@ fn report(args: &Args, course: &Course, driven: &Driven) -> Report {
     }
 }
 
-/// How the world of a drive runs.
+/// Options of a drive's simulation.
 fn options(args: &Args, seed: u64) -> SimOptions {
     SimOptions::with_noise(args.common.noise, seed)
 }
@@ -133,17 +133,17 @@ fn drive(course: &Course, args: &Args, stage: &Stage) -> Result<Driven, Failure>
     })
 }
 
-/// Drives until all laps are driven, time is over, or the car is lost.
+/// Drives until all laps are done, time is over, or the car is lost.
 fn laps<R: RobotIo + ?Sized>(course: &Course, args: &Args, car: &mut R, judge: &mut Judge) -> io::Result<()> {
     let mut driver = GapDriver::with_speed(args.speed / RobotSpec::race_car().drive.top_speed())?;
     let laps = usize::from(args.laps);
     let usual = 1.5 * course.corridor.length() * laps as f64 / args.speed + 10.0;
     let limit = args.common.time_limit.unwrap_or(usual);
-    // As the book sets it: 180 points over 180 degrees.
+    // The book's setting: 180 points over 180 degrees.
     car.configure_lidar(LidarSettings { field_of_view: std::f64::consts::PI, tilt: 0.0, points: 180 })?;
     judged(car, &mut driver, limit, judge, |_, _, judge| {
         let verdict = judge.verdict();
-        // Off the track for good: there are no cones to steer by.
+        // Far off the track there are no cones to steer by.
         let lost = verdict.off_course > 0 && lost(course, judge.truth().pose);
         until(lost || verdict.lap_times.len() >= laps)
     })?;

@@ -5,7 +5,7 @@ use super::race::race;
 use crate::common::{Failure, Outcome, Report, Stage, rounded};
 use crate::cones::{Course, Spoils, check_campaign, refuse};
 
-/// Races on so many tracks of our own, from the seed on, and tells of those that were not clean.
+/// Races on a number of generated tracks, starting with the seed, and reports those that were not clean.
 pub(crate) fn run(args: &Args, tracks: u32, spoils: Spoils) -> Result<Report, Failure> {
     let common = &args.common;
     check_campaign(common)?;
@@ -53,7 +53,7 @@ pub(crate) fn run(args: &Args, tracks: u32, spoils: Spoils) -> Result<Report, Fa
         .field("worst_lap_over_optimum", worst.map(rounded)))
 }
 
-/// The mean of some numbers. `None` without any.
+/// Mean of some numbers. `None` without any.
 fn mean(numbers: &[f64]) -> Option<f64> {
     (!numbers.is_empty()).then(|| numbers.iter().sum::<f64>() / numbers.len() as f64)
 }

@@ -8,7 +8,7 @@ use roverlab::world::RobotSpec;
 use super::race::Outcome;
 use crate::cones::{Course, drawing};
 
-/// The track, the cones, the racing line, and the driven line coloured by speed.
+/// Track, cones, racing line, and driven line coloured by speed.
 pub(crate) fn picture(course: &Course, outcome: &Outcome) -> Picture {
     let mut picture = Picture::new(&course.frame(&outcome.trail));
     picture.title(match course.event.as_ref().map(EventCourse::event) {
@@ -36,7 +36,7 @@ pub(crate) fn picture(course: &Course, outcome: &Outcome) -> Picture {
     picture
 }
 
-/// Joins the end of a line to its beginning where the course is a loop.
+/// Closes a line if the course is a loop.
 fn close(line: &mut Vec<Point>, course: &Course) {
     if course.corridor.is_closed() {
         line.extend(line.first().copied());

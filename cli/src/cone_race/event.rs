@@ -1,4 +1,4 @@
-//! One run of an acceleration or a skidpad.
+//! One run of an acceleration or skidpad event.
 
 use roverlab::geometry::Point;
 use roverlab::io::control::SensedBy;
@@ -9,10 +9,10 @@ use super::race::{Ending, Eyes, Outcome, Settings, limits};
 use crate::common::{Failure, Stage};
 use crate::cones::{Course, Judge, judged};
 
-/// Seconds that a run takes at most, where no limit is given.
+/// Default time limit of a run (s).
 const LIMIT: f64 = 90.0;
 
-/// Drives the event of a course. The car knows which one it is, and nothing of the course.
+/// Drives the event of a course. The car knows the event, but not the course.
 pub(crate) fn race(
     course: &Course,
     event: &EventCourse,
@@ -55,7 +55,7 @@ fn drive<R: RobotIo + ?Sized>(
     Ok(Ending::of(outcome, judge.is_complete()))
 }
 
-/// The line that was followed, from the start on, in the frame of the world.
+/// The followed line from the start on, in the world.
 fn line(course: &Course, racer: &EventRacer) -> Vec<Point> {
     let Some((layout, line)) = racer.layout().zip(racer.line()) else { return Vec::new() };
     let place = course.start.compose(&layout.pose);

@@ -1,4 +1,4 @@
-//! Lanes in the log of another car's drive.
+//! Lane detection in the log of another car's drive.
 
 use roverlab::geometry::{Aabb, Point, Segment};
 use roverlab::picture::{Picture, Style};
@@ -9,23 +9,23 @@ use super::{Args, Sensors};
 use crate::common::{Failure, Outcome, Report, rounded};
 use crate::cones::refuse;
 
-/// Metres of the way ahead that are compared with the lane.
+/// Length of the way ahead compared with the lane (m).
 const AHEAD: f64 = 8.0;
-/// Metres from a lane within which a cone is to be on its side.
+/// Distance from a lane within which a cone must be on its side (m).
 const BESIDE: f64 = 3.0;
-/// Metres of ground around the cones in the picture.
+/// Margin around the cones in the picture (m).
 const MARGIN: f64 = 3.0;
 
-/// What came of a log.
+/// Results for a log.
 #[derive(Debug, Default)]
 struct Found {
     lanes: Vec<Vec<Point>>,
     wrong_side: u32,
-    /// Metres from what was driven to the lane.
+    /// Distances of the driven path from the lane (m).
     away: Vec<f64>,
 }
 
-/// Looks for the lane in every frame.
+/// Detects the lane in every frame.
 pub(crate) fn follow(args: &Args, frames: &[ConeFrame]) -> Result<Report, Failure> {
     check(args)?;
     let mut finder = LaneFinder::new(LaneParameters::default())?;
@@ -52,10 +52,10 @@ pub(crate) fn follow(args: &Args, frames: &[ConeFrame]) -> Result<Report, Failur
     Ok(Report { trouble: trouble.map(|error| error.to_string()), ..report })
 }
 
-/// What a log is read by. All other options affect a race, and there is none.
+/// Options valid for a log. All others affect a race, of which there is none.
 const OF_LOGS: [&str; 2] = ["--track", "--sensors"];
 
-/// Fails when an option has no meaning for a log.
+/// Fails for an option without meaning for a log.
 fn check(args: &Args) -> Result<(), Failure> {
     let options = args.common.origin.facts().options;
     let names = options.iter().map(|option| option.split('=').next().unwrap_or(option));
@@ -64,7 +64,7 @@ fn check(args: &Args) -> Result<(), Failure> {
     refuse(&given, "found the log of a drive; expected a track, or a command line without it")
 }
 
-/// The cones of a frame as the sensors tell of them.
+/// The cones of a frame as seen by the sensors.
 fn beheld(frame: &ConeFrame, sensors: Sensors) -> Vec<Cone> {
     match sensors {
         Sensors::Lidar => frame.cones.iter().map(|cone| Cone::unknown(cone.position)).collect(),
@@ -72,7 +72,7 @@ fn beheld(frame: &ConeFrame, sensors: Sensors) -> Vec<Cone> {
     }
 }
 
-/// The places of the next metres.
+/// Positions along the next metres.
 fn ahead(frames: &[ConeFrame]) -> impl Iterator<Item = Point> {
     let mut way = 0.0;
     let mut before = frames.first().map(|frame| frame.car.position());
@@ -83,7 +83,7 @@ fn ahead(frames: &[ConeFrame]) -> impl Iterator<Item = Point> {
     })
 }
 
-/// Metres from a place to a lane; `None` beyond its ends.
+/// Distance of a point from a lane (m); `None` beyond its ends.
 fn distance(lane: &Lane, place: Point) -> Option<f64> {
     let last = lane.points.len().checked_sub(1)?;
     let (nearest, away) = nearest(lane, place)?;
@@ -94,13 +94,13 @@ fn distance(lane: &Lane, place: Point) -> Option<f64> {
     (!beyond).then_some(away)
 }
 
-/// The piece of a lane that is nearest to a place, and metres from it.
+/// The segment of a lane nearest to a point, and its distance (m).
 fn nearest(lane: &Lane, place: Point) -> Option<(usize, f64)> {
     let pieces = lane.points.windows(2).map(|ends| Segment::new(ends[0], ends[1]).distance_to(place));
     pieces.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Whether a cone of a colour beside a lane is on the wrong side of it.
+/// Whether a coloured cone beside a lane is on its wrong side.
 fn is_wrong(lane: &Lane, frame: &ConeFrame) -> bool {
     frame.cones.iter().any(|cone| {
         let Some((piece, away)) = nearest(lane, cone.position) else { return false };
@@ -110,7 +110,7 @@ fn is_wrong(lane: &Lane, frame: &ConeFrame) -> bool {
     })
 }
 
-/// The cones at the end, the lanes, and what was driven.
+/// The final cones, the lanes, and the driven path.
 fn picture(frames: &[ConeFrame], found: &Found) -> Picture {
     let cones = frames.last().map_or(&[][..], |frame| &frame.cones);
     let driven = frames.iter().map(|frame| frame.car.position());

@@ -15,63 +15,64 @@ use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
 use crate::cones::{Course, Spoils, check_race, refuse};
 use race::{Ending, Settings};
 
-/// The command line of `cone-race`.
+/// Command line of `cone-race`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
-    about = "Races on a track of cones that the car does not know: a map in the first lap, then the racing line",
+    about = "Races on an unknown track of cones: mapping in the first lap, then the racing line",
     after_help = "\
-The first lap is driven between the cones that the car sees, and makes the map; all others are on the racing line within
-what both axles hold. The referee adds 2 s for a cone and 10 s for leaving the course with all wheels. Tracks: FSSIM yaml,
-EUFS csv, TUM csv (lined with cones), or one of our own by the seed. Circuits of TUM are several times as wide as tracks of
-Formula Student: on them, the racer is given other widths of the lane, speeds and ranges of its map, a finer camera, and no other knowledge.
-Drive those by lidar: what the camera alone shows of cones so far off is seldom enough to find the start of a lap again.
+In the first lap the car drives between the visible cones and makes the map; in all others it follows the racing line
+within the grip limits of both axles. The referee adds 2 s for a cone and 10 s for leaving the course with all wheels.
+Tracks: FSSIM yaml, EUFS csv, TUM csv (lined with cones), or a generated one by the seed. Circuits of TUM are several
+times as wide as Formula Student tracks: for them, the racer uses other widths of the lane, speeds and map ranges, and a
+finer camera, but no other knowledge. Drive them by lidar: the camera alone rarely shows enough of such distant cones to
+find the start of a lap again.
 
-An acceleration strip or a skidpad, which the file's cones stand for, is driven as the event that it is: one run, whatever
---laps says. The car knows which event it is at and what the rules say of its layout, and fits that to the cones that it
-sees. An acceleration has one time, from line to line; it ends standing in the lane behind the finish. A skidpad has two,
-of the second lap to the right and of the second one to the left. The car's nose starts and stops the clock.
+An acceleration strip or a skidpad, represented by the cones of the file, is driven as that event: one run, independent
+of --laps. The car knows the event and the layout by the rules, and fits it to the visible cones. An acceleration has
+one time, from line to line; it ends at rest in the lane behind the finish. A skidpad has two, those of the second lap
+to the right and the second one to the left. The car's nose starts and stops the clock.
 
-A log of a drive (JSON, as of ft-fsd-path-planning) holds what a car's own map was from moment to moment. Nothing is raced: in
-each of its frames the lane is looked for, and compared with where the car then drove. With --sensors lidar without colours.
+A log of a drive (JSON, as in ft-fsd-path-planning) contains a car's own map over time. There is no race: in each frame
+the lane is computed and compared with the car's later path. With --sensors lidar, colours are ignored.
 
 JSON fields:
   event                                                laps, acceleration, skidpad, or log
-  laps, cones_hit, off_course, lap_times_s, total_s    of the race; the total is with penalties, the laps of an event are
-                                                       its complete runs
+  laps, cones_hit, off_course, lap_times_s, total_s    of the race; the total includes penalties, and the laps of an event
+                                                       are its complete runs
   track_length_m, cones                                of the track
-  racing_line_rms_m                                    distance of the racing line from that of --line, from two laps on
-  lap_over_optimum                                     of each flying lap: its time over the quasi-steady optimum for the same
-                                                       car on the same line; of an event's times: over that of the car from
-                                                       standing, able to stop in the lane behind the finish, or around the
-                                                       inner cones as near as its width lets it
-  mapped                                               whether the whole track was planned after the first lap, or an event's
-                                                       layout was found
+  racing_line_rms_m                                    distance of the racing line from that of --line, for at least two laps
+  lap_over_optimum                                     of each flying lap: ratio of its time to the quasi-steady optimum for
+                                                       the same car on the same line; of an event: ratio to the optimum from
+                                                       standstill with a stop in the lane behind the finish, or around the
+                                                       inner cones as closely as the car's width permits
+  mapped                                               whether the whole track was planned after the first lap, or the
+                                                       event's layout was found
   other_cones_hit, touched                             with a second car
-  tracks, clean, clean_share, finished                 of a campaign: finished are all races whose laps were all driven, clean
-                                                       those of them without a cone, leaving the course or touching
-  laps, cones_hit, off_course                          of a campaign: of all tracks, as the referee sees it
-  mean_racing_speed_m_s                                of a campaign: over all laps but the first ones
+  tracks, clean, clean_share, finished                 of a campaign: finished are all races with complete laps, clean are
+                                                       those without hit cones, leaving the course or contacts
+  laps, cones_hit, off_course                          of a campaign: of all tracks, by the referee
+  mean_racing_speed_m_s                                of a campaign: over all laps except the first ones
   mean_lap_over_optimum, worst_lap_over_optimum        of a campaign: over all flying laps; null without any
-  frames, planned, wrong_side                          of a log: with a lane; and with one that has a cone of a colour on the
-                                                       wrong side
-  from_driven_rms_m, from_driven_most_m                of a log: distance of the lane from the next 8 m that were driven
+  frames, planned, wrong_side                          of a log: frames; with a lane; with a lane that has a coloured cone on
+                                                       the wrong side
+  from_driven_rms_m, from_driven_most_m                of a log: distance of the lane from the next 8 m of the path
   picture, animation
-Outcomes: finished, collided (a cone or the second car was touched, whatever else came of it), penalised (all laps or the
-event, but the course was left with all wheels), timed_out, failed (the car's program), impassable (the car does not fit
-between the cones, which is told before the race), lost (no lane, or cones that do not fit the map or the event: the car
-stops), missed (the car stands, but not in the lane behind its event's finish, or after other laps than the referee counted),
+Outcomes: finished, collided (a cone or the second car was touched, with any other result), penalised (all laps or the event, but
+the course was left with all wheels), timed_out, failed (the car's program), impassable (the car does not fit between the
+cones, which is detected before the race), lost (no lane, or cones that contradict the map or the event: the car stops),
+missed (the car stops outside the lane behind its event's finish, or its laps differ from the referee's count),
 raced (a campaign), planned (a log)."
 )]
 pub(crate) struct Args {
-    /// Track to race on [default: one of our own].
+    /// Track to race on [default: a generated one].
     #[arg(long, value_name = "FILE")]
     pub(crate) track: Option<PathBuf>,
 
-    /// Laps to drive, the first one for the map. An acceleration or a skidpad is driven once.
+    /// Number of laps, the first one for the map. Acceleration and skidpad have a single run.
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=100))]
     pub(crate) laps: u16,
 
-    /// What sees the cones.
+    /// Sensors that detect the cones.
     #[arg(long, value_enum, default_value = "lidar")]
     pub(crate) sensors: Sensors,
 
@@ -79,23 +80,23 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     pub(crate) line: Option<PathBuf>,
 
-    /// Cones beside the track that belong to none of its edges, as a share.
+    /// Fraction of additional cones beside the track that belong to neither edge.
     #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = share)]
     pub(crate) false_cones: f64,
 
-    /// Cones that are missing, as a share.
+    /// Fraction of missing cones.
     #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = share)]
     pub(crate) missing: f64,
 
-    /// Metres over which one side of the track has no cones.
+    /// Length over which one side of the track has no cones, in metres.
     #[arg(long, value_name = "M", default_value_t = 0.0, value_parser = metres)]
     pub(crate) gap: f64,
 
-    /// A second car drives ahead at a stroll, in the middle of the lane that it sees. Only a lidar sees it.
+    /// A slow second car drives ahead, in the middle of the lane that it sees. Only a lidar detects it.
     #[arg(long)]
     pub(crate) other: bool,
 
-    /// Race on so many tracks of our own, from --seed on, and print a table.
+    /// Race on this many generated tracks, starting with --seed, and print a table.
     #[arg(long, value_name = "TRACKS", conflicts_with = "track", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) campaign: Option<u32>,
 
@@ -104,7 +105,7 @@ pub(crate) struct Args {
 }
 
 impl Args {
-    /// What a race is made of, beside its course.
+    /// Settings of a race apart from its course.
     fn settings(&self, seed: u64) -> Settings {
         let (noise, limit) = (self.common.noise, self.common.time_limit);
         Settings {
@@ -120,14 +121,14 @@ impl Args {
 
 crate::common::shares_options!(Args, common: CommonArgs);
 
-/// What sees the cones.
+/// Sensors that detect the cones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Sensors {
-    /// The low lidar: places, no colours.
+    /// The low lidar: positions without colours.
     Lidar,
-    /// The camera above the driver: colours, and places that are the less certain the farther they are.
+    /// The camera above the driver: colours, and positions whose uncertainty grows with distance.
     Camera,
-    /// Places by the lidar, colours by the camera; what has no cone's colour is none.
+    /// Positions by lidar, colours by camera; things without a cone's colour are discarded.
     Both,
 }
 
@@ -141,7 +142,7 @@ fn metres(text: &str) -> Result<f64, String> {
     value.ok_or_else(|| "expected 0 to 200 m".into())
 }
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     check_race(common)?;
@@ -181,7 +182,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(common.draw(report, "cone_race.svg", || drawing::picture(&course, &outcome)))
 }
 
-/// What is told about a track on which no race begins.
+/// Report on a track on which no race can start.
 fn impassable(course: &Course, reason: String) -> Report {
     let report = Report::new(Outcome::failure("impassable"))
         .field("event", event_name(course))
@@ -194,7 +195,7 @@ fn impassable(course: &Course, reason: String) -> Report {
     Report { error: Some(reason), ..report }
 }
 
-/// The event of a course, as it is told.
+/// Name of a course's event.
 fn event_name(course: &Course) -> &'static str {
     match course.event.as_ref().map(EventCourse::event) {
         None | Some(Event::Laps) => "laps",
@@ -216,7 +217,7 @@ fn lost(course: &Course, outcome: &race::Outcome) -> String {
     format!("at ({:.1}, {:.1}) m the car {found}, and stopped; expected {expected}", place.x, place.y)
 }
 
-/// What is told about a race.
+/// Report on a race.
 fn report(course: &Course, outcome: &race::Outcome) -> Report {
     let verdict = &outcome.verdict;
     let (word, lacking) = match &outcome.ending {
@@ -271,10 +272,10 @@ fn published(common: &CommonArgs, file: &Path) -> Result<Vec<Point>, Failure> {
     }
 }
 
-/// Metres from the middle of a track within which a line may be one of it, beside half its width.
+/// Maximum distance of a line from the middle of its track, beyond half the width (m).
 const OFF_TRACK: f64 = 10.0;
 
-/// Fails where a line is not one of a course.
+/// Fails if a line does not belong to a course.
 fn check_line(course: &Course, line: &[Point]) -> Result<(), Failure> {
     let stations = course.corridor.stations();
     let half_width = stations.iter().map(|station| station.left.max(station.right)).fold(0.0, f64::max);
@@ -290,7 +291,7 @@ fn check_line(course: &Course, line: &[Point]) -> Result<(), Failure> {
     )))
 }
 
-/// The root of the mean squared distance of a racing line from another one. `None` without one.
+/// Root mean square distance of a racing line from another one. `None` without one.
 fn distance(other: &[Point], line: &[Point]) -> Option<f64> {
     let spline = ClosedSpline::through(line).ok()?;
     let n = other.len();
@@ -304,7 +305,7 @@ fn distance(other: &[Point], line: &[Point]) -> Option<f64> {
     Some((sum / places.len() as f64).sqrt())
 }
 
-/// Fails when an option has no meaning for an acceleration or a skidpad.
+/// Fails for an option without meaning for an acceleration or skidpad.
 fn check_event(args: &Args) -> Result<(), Failure> {
     let given = [("--other", args.other), ("--line", args.line.is_some())];
     refuse(

@@ -19,7 +19,7 @@ use super::event;
 use crate::common::{Claimed, Failure, Stage};
 use crate::cones::{Course, Judge, Passed, judged};
 
-/// What a race is made of, beside its course.
+/// Settings of a race apart from its course.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Settings {
     pub(crate) laps: usize,
@@ -38,43 +38,43 @@ impl Settings {
         course.scene(&starts.into_iter().flatten().collect::<Vec<_>>())
     }
 
-    /// How the world of a race runs.
+    /// Options of a race's simulation.
     pub(crate) fn options(&self) -> SimOptions {
         SimOptions::with_noise(self.noise, self.seed)
     }
 
-    /// Seconds that a race takes at most: a first lap at a crawl, and all others at a walk.
+    /// Time limit of a race (s): a very slow first lap, and slow further ones.
     fn limit(&self, course: &Course) -> f64 {
         let slow = if self.other { 2.0 } else { 3.0 };
         self.limit.unwrap_or(course.corridor.length() * (1.0 + self.laps as f64 / slow))
     }
 }
 
-/// Metres that a second car is ahead at first.
+/// Initial lead of a second car (m).
 const HEAD_START: f64 = 6.0;
-/// Metres per second of a second car, metres that it looks ahead on its way, and those within which it counts on cones.
+/// Speed of a second car (m/s), its lookahead (m), and its maximum distance to cones (m).
 const STROLL: f64 = 3.0;
 const LOOK_AHEAD: f64 = 3.5;
 const SIGHT: f64 = 24.0;
-/// Metres from its rear axle to halfway between the axles.
+/// Distance from its rear axle to halfway between the axles (m).
 const MIDDLE: f64 = 0.775;
 
-/// The second car, which drives in the middle of the lane that it sees, whatever it was like a lap ago.
+/// The second car, which drives in the middle of the lane that it sees, without a map.
 struct Other {
     car: Claimed,
     pilot: Pilot,
     judge: Judge,
 }
 
-/// What the second car knows.
+/// State of the second car.
 struct Pilot {
     map: ConeMap,
     lane: LaneFinder,
 }
 
-/// Seconds between two decisions of a second car.
+/// Control period of a second car (s).
 const OTHER_PERIOD: f64 = 0.1;
-/// The second car by radio, and what it is told when the race is over.
+/// Radio id of the second car, and the message at the end of the race.
 const OTHER: u32 = 2;
 const OVER: &[u8] = b"over";
 
@@ -87,7 +87,7 @@ impl Other {
         Ok(Self { car: stage.claim(1)?, pilot, judge })
     }
 
-    /// Drives until it hears that the race is over, or time is.
+    /// Drives until the message of the end, or the time limit.
     fn drive(self, limit: f64) -> Result<Second, Failure> {
         let Self { car, mut pilot, mut judge } = self;
         let mut car = car.ready()?;
@@ -114,7 +114,7 @@ impl Behaviour for Pilot {
             self.map.fresh_cones().filter(|cone| (cone.position - pose.position()).norm() < SIGHT).collect();
         let middle = pose.compose(&Pose::new(MIDDLE, 0.0, 0.0));
         let lane = self.lane.step(middle, &near);
-        // Without a lane it stands, and looks on.
+        // Without a lane it stands and keeps looking.
         Ok(ControlFlow::Continue(lane.map_or(Twist::STOP, |lane| pursue(&lane.points, pose))))
     }
 }
@@ -125,7 +125,7 @@ impl<R: RobotIo + ?Sized> Senses<R> for Pilot {
     }
 }
 
-/// The way on a circle to the point of a line that is some metres ahead.
+/// The arc to the point of a line at the lookahead distance.
 fn pursue(line: &[Point], rear: Pose) -> Twist {
     let ahead = line.iter().map(|point| rear.to_local(*point)).filter(|point| point.x > 0.0);
     let off = |point: &Point| (point.coords.norm() - LOOK_AHEAD).abs();
@@ -134,7 +134,7 @@ fn pursue(line: &[Point], rear: Pose) -> Twist {
     Twist::new(STROLL, STROLL * curvature)
 }
 
-/// What came out of a second car's drive.
+/// Result of a second car's drive.
 #[derive(Debug, Clone)]
 pub(crate) struct Second {
     pub(crate) cones_hit: usize,
@@ -144,18 +144,19 @@ pub(crate) struct Second {
 /// How a race ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Ending {
-    /// All laps were driven, or the event.
+    /// All laps, or the event, were driven.
     Finished,
-    /// Time was over.
+    /// The time limit came first.
     TimedOut,
-    /// The car stood without a lane, or without cones that fit its map or its event.
+    /// The car stopped without a lane, or without cones that fit its map or event.
     Lost,
-    /// The car stood, but not behind the finish and before the end of the lane there; or it counted other laps than the referee.
+    /// The car stopped, but not behind the finish and before the end of the lane there; or its lap count
+    /// differs from the referee's.
     Missed,
 }
 
 impl Ending {
-    /// How a race ended for the car, and whether the referee has seen all of it.
+    /// The ending for an outcome of the car; `complete` tells whether the referee saw the whole race.
     pub(super) fn of(outcome: RaceOutcome, complete: bool) -> Self {
         match outcome {
             RaceOutcome::Finished if complete => Self::Finished,
@@ -166,24 +167,24 @@ impl Ending {
     }
 }
 
-/// What came out of a race.
+/// Result of a race.
 #[derive(Debug, Clone)]
 pub(crate) struct Outcome {
     pub(crate) verdict: RaceScore,
-    /// How far it came, or what failed.
+    /// How the race ended, or the error.
     pub(crate) ending: Result<Ending, String>,
     pub(crate) truth: RobotTruth,
     pub(crate) time: f64,
-    /// Where the car was, and how fast, at every decision.
+    /// Pose and speed of the car at every decision.
     pub(crate) trail: Vec<Passed>,
-    /// The racing line in the frame of the world.
+    /// Racing line in the world.
     pub(crate) line: Vec<Point>,
-    /// Of each flying lap on a racing line, the lap time over the quasi-steady optimum on that line.
+    /// For each flying lap on a racing line, the lap time divided by the quasi-steady optimum on that line.
     pub(crate) over_optimum: Vec<f64>,
     pub(crate) standing: Vec<bool>,
     /// Whether the car touched another one.
     pub(crate) touched: bool,
-    /// What became of a second car.
+    /// Result of a second car.
     pub(crate) other: Option<Second>,
 }
 
@@ -199,7 +200,7 @@ impl Outcome {
     }
 }
 
-/// What a car sees cones with.
+/// A car's cone detection.
 pub(super) struct Eyes {
     sensors: Sensors,
     camera: CameraSight,
@@ -240,12 +241,13 @@ impl Eyes {
     }
 }
 
-/// What a racer has planned, in its map's frame.
+/// A racer's plans, in its map's frame.
 #[derive(Default)]
 struct Plans {
     /// The first racing line.
     first: Vec<Point>,
-    /// Of each lap: seconds of the quasi-steady optimum on its racing line. `None` for laps that do not begin at full speed.
+    /// For each lap, the quasi-steady optimum on its racing line (s). `None` for laps that do not begin at
+    /// full speed.
     optima: Vec<Option<f64>>,
     racing: bool,
 }
@@ -272,7 +274,7 @@ impl Plans {
     }
 }
 
-/// What the car can do at most, in balance: what the optimum is for.
+/// Steady-state limits of the car, for the optimum.
 pub(super) fn limits() -> Result<CarLimits, Failure> {
     CarLimits::of(&RobotSpec::race_car()).ok_or_else(|| Failure::run("a racing car without tyres"))
 }
@@ -292,7 +294,7 @@ pub(crate) fn race(course: &Course, settings: &Settings, stage: &Stage) -> Resul
         let other = other.map(|other| scope.spawn(move || other.drive(limit)));
         let mut car = car.ready()?;
         let driven = drive(course, settings, car.as_mut(), &mut judge, |racer| plans.see(racer, &limits));
-        // A car that does not hear it drives until time is over.
+        // A car that misses the message drives until the time limit.
         let told = if other.is_some() { car.send(OTHER, OVER) } else { Ok(()) };
         drop(car);
         let other = other.map(|other| other.join().expect("the second car's thread does not panic"));

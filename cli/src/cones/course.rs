@@ -1,4 +1,4 @@
-//! What is raced on: a file, or a track of our own.
+//! Race courses: from a file, or generated.
 
 use std::path::Path;
 
@@ -14,38 +14,38 @@ use roverlab::world::{Scene, World};
 use super::Passed;
 use crate::common::{CommonArgs, Failure};
 
-/// Cones, the corridor that the referee goes by, and the start.
+/// Cones, the referee's corridor, and the start.
 #[derive(Debug, Clone)]
 pub(crate) struct Course {
     pub(crate) cones: Vec<Cone>,
     pub(crate) corridor: Corridor,
     pub(crate) start: Pose,
-    /// Whether it is much wider than a track of Formula Student, as circuits of TUM are: the racer is told so.
+    /// Whether it is much wider than a Formula Student track, like TUM's circuits; the racer is informed.
     pub(crate) wide: bool,
-    /// That of an acceleration or a skidpad, if it is none of laps.
+    /// The acceleration or skidpad event, if it is not a course of laps.
     pub(crate) event: Option<EventCourse>,
 }
 
-/// Metres of ground around what was driven.
+/// Margin around the driven path (m).
 const MARGIN: f64 = 5.0;
-/// Metres beyond the ground around the cones within which a picture shows where a car has left.
+/// Margin beyond the ground around the cones within which a picture shows a car that left it (m).
 const BEYOND: f64 = 40.0;
 
-/// What is done to the cones before the race.
+/// Disturbances of the cones before the race.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Spoils {
-    /// Cones beside the track that belong to none of its edges, as a share.
+    /// Fraction of additional cones beside the track that belong to neither edge.
     pub(crate) false_cones: f64,
-    /// Cones that are missing, as a share.
+    /// Fraction of missing cones.
     pub(crate) missing: f64,
-    /// Metres over which one side has no cones.
+    /// Length over which one side has no cones (m).
     pub(crate) gap: f64,
 }
 
-/// Metres from the rear axle at the start to the line where time is taken, if a file has none ahead of the car.
+/// Distance from the rear axle at the start to the timing line, if a file has none ahead of the car (m).
 const RUN_UP: f64 = 6.0;
 
-/// The middle of the line where time is taken: ahead of the car at the start, so that the first lap counts as well.
+/// The middle of the timing line: ahead of the car at the start, so that the first lap is timed as well.
 fn line_of(track: &ConeTrack, start: Pose) -> Point {
     let gates = track.gates.iter().map(|[a, b]| a + (b - a) * 0.5);
     let mut ahead = gates.filter(|middle| {
@@ -78,7 +78,7 @@ impl Course {
         Self::of_laps(file, path)
     }
 
-    /// The track of a file, for the event that its cones stand for.
+    /// The track of a file, for the event given by its cones.
     pub(crate) fn for_its_event(file: TrackFile, path: &Path) -> Result<Self, Failure> {
         if let TrackFile::Cones(track) = &file
             && let Some(start) = track.start_pose()
@@ -90,7 +90,7 @@ impl Course {
         Self::of_laps(file, path)
     }
 
-    /// What a track file holds.
+    /// Content of a track file.
     pub(crate) fn read(common: &CommonArgs, path: &Path) -> Result<TrackFile, Failure> {
         let bytes = common.read("track", path).map_err(Failure::input)?;
         let text = String::from_utf8_lossy(&bytes);
@@ -134,7 +134,7 @@ impl Course {
         Ok(Self { cones: track.cones.clone(), corridor, start, wide: false, event: None })
     }
 
-    /// Takes cones away and adds others.
+    /// Removes and adds cones.
     pub(crate) fn spoil(&mut self, spoils: Spoils, seed: u64) {
         let random = Stream::new(seed);
         let (mut missing, mut added) = (random.child("missing", 0), random.child("false", 0));
@@ -164,8 +164,8 @@ impl Course {
         }
     }
 
-    /// Why the car cannot go around it, whatever its program: a gate between a blue and a yellow cone is
-    /// narrower than the car.
+    /// Reason why no car can drive around it: a gate between a blue and a yellow cone is narrower than the
+    /// car.
     pub(crate) fn impassable(&self) -> Option<String> {
         let width = 2.0 * Self::outline().half_width;
         let of = |paint: ConeColour| self.cones.iter().filter(move |cone| cone.colour == paint);
@@ -183,7 +183,7 @@ impl Course {
         })
     }
 
-    /// The pose in the middle, so many metres behind the line.
+    /// The pose in the middle, a distance behind the line (m).
     pub(crate) fn ahead(&self, metres: f64) -> Pose {
         let stations = self.corridor.stations();
         let spacing = self.corridor.length() / stations.len() as f64;
@@ -197,7 +197,7 @@ impl Course {
         World { objects: Vec::new(), ..self.scene(&[]).world }
     }
 
-    /// The ground around the cones and around what was driven, for pictures; far off the track, a car may leave it.
+    /// The ground around cones and driven path, for pictures, up to a limit.
     pub(crate) fn frame(&self, trail: &[Passed]) -> World {
         let mut world = self.ground();
         let most = world.floor.inflated(BEYOND);
@@ -208,12 +208,12 @@ impl Course {
         world
     }
 
-    /// The ground with the cones, and with cars.
+    /// The ground with the cones and cars.
     pub(crate) fn scene(&self, cars: &[Pose]) -> Scene {
         ConeTrack { cones: self.cones.clone(), ..ConeTrack::default() }.scene(cars)
     }
 
-    /// How it is raced.
+    /// Parameters of the racer.
     pub(crate) fn parameters(&self, laps: usize) -> RacerParameters {
         let mut parameters = RacerParameters { laps, ..RacerParameters::default() };
         if self.wide {
@@ -226,7 +226,7 @@ impl Course {
                 half_width: [3.0, 11.0],
                 usual: 5.5,
                 loose: 2.0,
-                // Where a circuit crosses itself, no edge goes around the corner.
+                // At a self-crossing of a circuit, no edge turns the corner.
                 sharpest: 1.0,
                 ..LaneParameters::default()
             };
@@ -234,17 +234,17 @@ impl Course {
         parameters
     }
 
-    /// Pixels of a camera that shows the cones of both edges.
+    /// Camera resolution at which the cones of both edges are visible.
     pub(crate) fn resolution(&self) -> Resolution {
         if self.wide { Resolution::Cam1Mp } else { Resolution::Vga }
     }
 
-    /// The outline of the car.
+    /// Outline of the car.
     pub(crate) fn outline() -> CarOutline {
         RacerParameters::default().outline
     }
 
-    /// The referee's wheels in the frame of the car.
+    /// The referee's wheel positions in the car's frame.
     pub(crate) fn wheels() -> [Point; 4] {
         [(0.0, 0.6), (0.0, -0.6), (1.55, 0.6), (1.55, -0.6)].map(|(x, y)| Point::new(x, y))
     }

@@ -1,4 +1,4 @@
-//! What pictures of drives between cones have in common.
+//! Shared parts of pictures of drives between cones.
 
 use roverlab::geometry::Point;
 use roverlab::picture::{Figure, Picture, Style};
@@ -7,10 +7,10 @@ use roverlab::world::{Colour, RobotSpec};
 
 use super::{Course, Passed};
 
-/// Metres from the middle of the rear axle to that of the car.
+/// Distance from the middle of the rear axle to the middle of the car (m).
 const MIDDLE: f64 = 0.8;
 
-/// The cones, those that do not stand in red.
+/// The cones, fallen ones in red.
 pub(crate) fn cones(picture: &mut Picture, course: &Course, stands: impl Fn(usize) -> bool) {
     for (index, cone) in course.cones.iter().enumerate() {
         let style = if stands(index) {
@@ -33,7 +33,7 @@ fn name(colour: ConeColour) -> &'static str {
     }
 }
 
-/// The car as it drove, and its way coloured by speed.
+/// The moving car, and its path coloured by speed.
 pub(crate) fn car(picture: &mut Picture, trail: &[Passed]) {
     let middle = |passed: &Passed| passed.pose.to_world(Point::new(MIDDLE, 0.0));
     picture.speed_trace(trail.iter().map(|passed| (passed.time, middle(passed), passed.speed)));
@@ -42,7 +42,7 @@ pub(crate) fn car(picture: &mut Picture, trail: &[Passed]) {
     picture.add(Figure::Robot { poses, footprint: RobotSpec::race_car().footprint }, style);
 }
 
-/// The times and the penalties in words.
+/// Lap times and penalties as text.
 pub(crate) fn caption(verdict: &RaceScore) -> String {
     let times: Vec<String> = verdict.lap_times.iter().map(|time| format!("{time:.2}")).collect();
     let laps = if times.is_empty() { "no laps".into() } else { format!("laps {} s", times.join(", ")) };

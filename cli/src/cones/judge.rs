@@ -1,4 +1,4 @@
-//! Who watches a car: the referee, with what is true about it.
+//! Observation of a car: the referee with the ground truth.
 
 use std::ops::ControlFlow;
 
@@ -41,7 +41,7 @@ impl Whistle {
     }
 }
 
-/// When a car was where, and how fast, at the end of a pass.
+/// Time, pose and speed of a car at the end of a pass.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Passed {
     pub(crate) time: f64,
@@ -49,20 +49,20 @@ pub(crate) struct Passed {
     pub(crate) speed: f64,
 }
 
-/// Watches one car.
+/// Observes one car.
 pub(crate) struct Judge {
     truth: StageTruth,
     index: usize,
     referee: Whistle,
     cones: Vec<Point>,
-    /// How many cones have fallen, of the contacts at the last look.
+    /// Number of fallen cones at the last look.
     hits: usize,
-    /// What was true when it looked last, and when that was.
+    /// Ground truth at the last look, and its time.
     last: RobotTruth,
     time: f64,
-    /// Where the car was, and how fast, at the end of every pass.
+    /// Pose and speed of the car at the end of every pass.
     trail: Vec<Passed>,
-    /// Metres to the first cone or off the course.
+    /// Distance driven before the first cone or leaving the course (m).
     clean: Option<f64>,
 }
 
@@ -83,12 +83,12 @@ impl Judge {
         })
     }
 
-    /// What the referee has seen.
+    /// The referee's score.
     pub(crate) fn verdict(&self) -> &RaceScore {
         self.referee.verdict()
     }
 
-    /// Whether all times of an event were taken and the car is within its lane still; always for laps.
+    /// Whether all times of an event were taken and the car is still within its lane; always `true` for laps.
     pub(crate) fn is_complete(&self) -> bool {
         match &self.referee {
             Whistle::Laps(_) => true,
@@ -96,22 +96,22 @@ impl Judge {
         }
     }
 
-    /// Seconds since the beginning.
+    /// Time since the beginning (s).
     pub(crate) fn time(&self) -> f64 {
         self.time
     }
 
-    /// What was true when it looked last.
+    /// Ground truth at the last look.
     pub(crate) fn truth(&self) -> &RobotTruth {
         &self.last
     }
 
-    /// Where the car was and how fast.
+    /// Poses and speeds of the car.
     pub(crate) fn trail(&self) -> &[Passed] {
         &self.trail
     }
 
-    /// Metres to the first cone or off the course, or to the end.
+    /// Distance driven before the first cone or leaving the course, or in all (m).
     pub(crate) fn clean_metres(&self) -> f64 {
         self.clean.unwrap_or(self.last.path_length)
     }
@@ -121,19 +121,19 @@ impl Judge {
         self.last.contact_places.iter().any(|place| !self.cones.contains(place))
     }
 
-    /// Which cones the car has left standing.
+    /// Which cones are still standing.
     pub(crate) fn standing(&self) -> Vec<bool> {
         self.cones.iter().map(|cone| !self.last.contact_places.contains(cone)).collect()
     }
 
-    /// Counts the cones among the contacts, if there are others than at the last look: most looks see none.
+    /// Counts the cones among the contacts, if these have changed: usually they have not.
     fn count_hits(&mut self, contacts: &[Point]) {
         if contacts != self.last.contact_places {
             self.hits = contacts.iter().filter(|place| self.cones.contains(place)).count();
         }
     }
 
-    /// Looks at the car.
+    /// Observes the car.
     pub(crate) fn look(&mut self) -> io::Result<()> {
         let now = self.truth.robot(self.index)?;
         self.count_hits(&now.contact_places);
@@ -148,7 +148,7 @@ impl Judge {
     }
 }
 
-/// Lets a behaviour drive a car, while the judge looks at every tick and `watch` at every decision.
+/// Lets a behaviour drive a car; the judge observes every tick, and `watch` every decision.
 pub(crate) fn judged<R, B, V>(
     car: &mut R,
     behaviour: &mut B,
@@ -178,7 +178,7 @@ where
     }
 }
 
-/// Lets time pass in ticks, at each of which the judge looks.
+/// Lets time pass in ticks, with an observation at each.
 pub(crate) fn pass<R: Clock + ?Sized>(robot: &mut R, judge: &mut Judge, seconds: f64) -> io::Result<()> {
     let (time, metres) = (judge.time, judge.last.path_length);
     for _ in 0..(seconds / TICK).round().max(1.0) as usize {

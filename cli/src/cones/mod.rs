@@ -1,4 +1,4 @@
-//! What the commands that drive between cones share.
+//! Shared parts of the commands that drive between cones.
 
 mod course;
 pub(crate) mod drawing;

@@ -1,8 +1,8 @@
-//! Options that races between cones have no use for.
+//! Options without meaning for races between cones.
 
 use crate::common::{CommonArgs, Failure};
 
-/// Fails when an option has no meaning for a race.
+/// Fails for an option without meaning for a race.
 pub(crate) fn check_race(common: &CommonArgs) -> Result<(), Failure> {
     let places = [
         ("--world", common.world.is_some()),
@@ -17,13 +17,13 @@ pub(crate) fn check_race(common: &CommonArgs) -> Result<(), Failure> {
     refuse(&paced, "a race is not paced by the wall clock; expected a command line without it")
 }
 
-/// Fails when an option has no meaning for races on many tracks, besides those that have none for one.
+/// Fails for an option without meaning for races on many tracks, in addition to those of one race.
 pub(crate) fn check_campaign(common: &CommonArgs) -> Result<(), Failure> {
     common.check_placeless("the tracks of a campaign are drawn")?;
     refuse(&[("--supervised", common.supervised)], "found a campaign; expected it with one race")
 }
 
-/// Fails for the first of some options that is given, with what is wrong with it.
+/// Fails for the first given option of a list, with the reason.
 pub(crate) fn refuse(options: &[(&str, bool)], wrong: &str) -> Result<(), Failure> {
     let given = options.iter().find(|(_, given)| *given);
     given.map_or(Ok(()), |(option, _)| Err(Failure::input(format!("{option}: {wrong}"))))

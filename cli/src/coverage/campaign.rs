@@ -8,28 +8,28 @@ use super::{Args, ENOUGH, cover};
 use crate::common::{Failure, Outcome, Progress, Report, rounded};
 use crate::driving::Conditions;
 
-/// What came of many rooms.
+/// Results of many rooms.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Row {
     pub(crate) rooms: u64,
-    /// Rooms that were covered by the plan to its end.
+    /// Number of rooms whose plan was driven to its end.
     pub(crate) finished: u64,
     pub(crate) contacts: u64,
-    /// Shares of the floor.
+    /// Covered fractions of the floor.
     pub(crate) least: f64,
     pub(crate) mean: f64,
-    /// Path lengths in terms of area over width.
+    /// Path lengths divided by area over width.
     pub(crate) mean_ratio: f64,
     pub(crate) largest_ratio: f64,
-    /// What a random drive covers in the same time.
+    /// Fractions covered by a random drive in the same time.
     pub(crate) random_mean: f64,
     pub(crate) random_most: f64,
     pub(crate) sim_time: f64,
-    /// Seeds of rooms in which something was amiss: the first ones.
+    /// Seeds of the first rooms with a problem.
     pub(crate) amiss: Vec<u64>,
 }
 
-/// The longest good path in terms of area over width.
+/// Maximum length of a good path divided by area over width.
 const RATIO: f64 = 1.5;
 const LISTED: usize = 10;
 
@@ -43,7 +43,7 @@ impl Row {
     }
 }
 
-/// The campaign's work.
+/// Runs the campaign.
 pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
     let row = row(args)?;
     args.common.tell(text(&row));
@@ -52,7 +52,7 @@ pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
         .table("rows", json(&row)))
 }
 
-/// What comes of all rooms.
+/// Results of all rooms.
 pub(crate) fn row(args: &Args) -> Result<Row, Failure> {
     let mut row = Row {
         rooms: args.rooms,
@@ -96,7 +96,7 @@ fn conditions(args: &Args, seed: u64, limit: f64) -> Result<Conditions, Failure>
     Ok(Conditions { seed, common: None, ..Conditions::new(&args.common, limit)? })
 }
 
-/// The table. Holds nothing that differs between machines.
+/// The table, without anything that differs between machines.
 pub(crate) fn text(row: &Row) -> String {
     let percent = |share: f64| format!("{:.1} %", 100.0 * share);
     let mut text = String::from("drive    rooms  contacts   least    mean  mean path  longest path  good\n");

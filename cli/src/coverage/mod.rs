@@ -25,22 +25,22 @@ use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Wall, World}
 use crate::common::{CommonArgs, Failure, OF_ONE_RUN, Outcome, Report, rounded};
 use crate::driving::{Conditions, Run, check_lidar, draw_contacts, paced, world_with_others};
 
-/// The command line of `coverage`.
+/// Command line of `coverage`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
-    about = "Drives over the whole floor of a room that it knows, in lanes like a lawn mower's",
+    about = "Covers the floor of a known room in parallel lanes, like a lawn mower",
     after_help = "\
-Without --world, the room has a wall that juts in and two crates. The robot knows the world and its start, and keeps track of
-itself by matching scans. What it can cover is the floor under it wherever it can get 15 mm away from everything.
+Without --world, the room has a projecting wall and two crates. The robot knows the world and its start, and tracks its
+pose by matching scans. The coverable floor is what is under the robot wherever it can be 15 mm away from all obstacles.
 
-With --campaign, rooms of many sizes with walls that jut in, crates and cans.
+With --campaign, rooms of many sizes with projecting walls, crates and cans.
 
 JSON fields:
-  coverage_percent            share of that floor that it has truly passed over
-  area_m2                     that floor
+  coverage_percent            fraction of that floor that it has truly passed over
+  area_m2                     area of that floor
   planned_length_mm           length of the plan
-  path_ratio                  true path length in terms of area over the robot's width
-  random_drive_percent        what a random drive of the same duration covers
+  path_ratio                  true path length relative to area divided by the robot's width
+  random_drive_percent        coverage of a random drive of the same duration
   time_limit_s, picture
   rows                        with --campaign only: the table
 Outcomes: covered (98 % or more), incomplete, timed_out, collided, failed; with --campaign: passed, wrong."
@@ -50,7 +50,7 @@ pub(crate) struct Args {
     #[arg(long)]
     pub(crate) campaign: bool,
 
-    /// Rooms in a campaign.
+    /// Number of rooms in a campaign.
     #[arg(long, value_name = "N", default_value_t = 50, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) rooms: u64,
 
@@ -63,12 +63,12 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("!campaign", &["rooms"]),
 ]);
 
-/// The share of the floor that is enough.
+/// Sufficient fraction of the floor.
 const ENOUGH: f64 = 0.98;
-/// Steps between scans.
+/// Number of steps between scans.
 const EVERY: u32 = 3;
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     if args.campaign {
@@ -94,19 +94,19 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(common.draw(report, "coverage.svg", || picture(args, scene, &done)))
 }
 
-/// What came of a room.
+/// Result in a room.
 pub(crate) struct Covered {
     pub(crate) plan: CoveragePlan,
     pub(crate) run: Run<TourOutcome>,
-    /// What the robot has covered, and what share of it a random drive covers in the same time.
+    /// The covered floor, and the fraction covered by a random drive in the same time.
     pub(crate) map: CoverageMap,
     pub(crate) random: f64,
-    /// The path's length in terms of area over width.
+    /// Path length divided by area over width.
     pub(crate) ratio: f64,
     pub(crate) time_limit: f64,
 }
 
-/// Lets the robot cover its floor, and measures. `conditions` are for a time limit.
+/// Lets the robot cover its floor, and measures the result. `conditions` are given for a time limit.
 pub(crate) fn cover(
     scene: &Scene,
     conditions: impl FnOnce(f64) -> Result<Conditions, Failure>,
@@ -139,7 +139,7 @@ pub(crate) fn cover(
     Ok(Covered { plan, run, map, random, ratio, time_limit: conditions.time_limit })
 }
 
-/// A room with a wall that juts in and two crates.
+/// A room with a projecting wall and two crates.
 fn scene() -> Scene {
     let mut world = World::walled(3.2, 2.4);
     let kind = ObjectKind::predefined("crate").map(|kind| Arc::new(ObjectKind { fixed: true, ..kind }));
@@ -172,7 +172,7 @@ fn drive<R: Clock + Drive + Odometry + Lidar + ?Sized>(
     control::run(robot, &mut SensedBy::new(tour, locate), time_limit, |_, _, _| watch())
 }
 
-/// What a random drive covers in the same time.
+/// Fraction covered by a random drive in the same time.
 fn random_share(
     conditions: &Conditions,
     scene: &Scene,
@@ -197,7 +197,7 @@ fn random_share(
     Ok(map.share())
 }
 
-/// The plan, the way, and what was left out.
+/// Plan, path, and uncovered floor.
 fn picture(args: &Args, scene: &Scene, done: &Covered) -> Picture {
     let Covered { plan, run, map, ratio, .. } = done;
     let mut picture = Picture::new(&scene.world);

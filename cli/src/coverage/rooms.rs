@@ -5,10 +5,10 @@ use roverlab::geometry::{Point, Pose};
 use roverlab::random::Stream;
 use roverlab::world::{Object, ObjectKind, RobotSpec, Scene, Wall, World};
 
-/// Metres from the start to what stands in a room.
+/// Minimum distance of things from the start (m).
 const FREE: f64 = 0.35;
 
-/// A room drawn with a seed: walls that jut in from the sides, crates and cans, and an S4 in a corner.
+/// A room generated from a seed: projecting walls, crates and cans, and an S4 in a corner.
 pub(super) fn room(seed: u64) -> Scene {
     let mut stream = Stream::new(seed).child("floor", 0);
     let (width, depth) = (stream.between(2.0, 4.0), stream.between(1.6, 3.0));

@@ -3,53 +3,53 @@ use std::path::PathBuf;
 
 use crate::common::{CommonArgs, parse_noise};
 
-/// The command line of `distbug`.
+/// Command line of `distbug`.
 #[derive(Debug, clap::Parser)]
 #[command(
     about = "Drives a robot with a lidar to a goal among unknown obstacles, or proves that there is no way (DistBug)",
     after_help = "\
-Without --world, the robot drives through a world of the command's own. A .sim gives robot, start and goal (its first
-robot and its first marker), a .maz start and goal (the letters S and G), a .wld the start (`position`); --robot,
---start and --goal come before them. Other robots stand still.
+Without --world, the robot drives in a built-in world. A .sim provides robot, start and goal (its first robot and first
+marker), a .maz start and goal (the letters S and G), a .wld the start (`position`); --robot, --start and --goal take
+precedence. Other robots stand still.
 
-Without --time-limit, the time is generous for the size of the world. Without --picture, the run is drawn into
+The default --time-limit is generous for the size of the world. Without --picture, the run is drawn to
 target/pictures/distbug.svg, except with --json.
 
-With --campaign, generated courses instead of one. A verdict is correct if it is `unreachable` and there is no way, or
-`reached`, there is a way, and the robot really is within 50 mm of the goal, or within 250 mm with noise. Contacts are
-counted apart. The results do not depend on --threads; the course of one seed is that of `--seed SEED --worlds 1`.
+With --campaign, generated courses instead of one. A verdict is correct if it is `unreachable` and there is no path, or
+`reached`, there is a path, and the robot is truly within 50 mm of the goal, or within 250 mm with noise. Contacts are
+counted separately. The results do not depend on --threads; the course of one seed is that of `--seed SEED --worlds 1`.
 
 JSON fields:
   goal                       [x, y] mm
   goal_distance_mm           true distance at the end
-  hit_points, leave_points   lists of [x, y] mm in the world, as the robot takes them
+  hit_points, leave_points   lists of [x, y] mm in the world, as estimated by the robot
   contact_points             list of [x, y] mm, true
-  time_limit_s               simulated seconds after which the run would have ended
-  picture                    the file's name, or null
-  error                      why the robot failed, only if it did
-  worlds, levels             with --campaign only: how many courses; what came of them at each level of noise
+  time_limit_s               time limit of the run in simulated seconds
+  picture                    file name, or null
+  error                      reason, only if the robot failed
+  worlds, levels             with --campaign only: number of courses; results at each noise level
   timing                     with --timing and --campaign: real_time_factor
-Outcomes: reached, unreachable, no_room (the robot's own size forbids the goal), timed_out, collided, failed; with --campaign: passed, wrong."
+Outcomes: reached, unreachable, no_room (the robot is too large for the goal), timed_out, collided, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
-    /// Drive through many generated courses and compare the verdicts with the truth. Their noise is that of
-    /// --levels, and the time of each is generous for its size.
+    /// Drive through many generated courses and compare the verdicts with the truth. Their noise levels are
+    /// given by --levels, and their time limits depend on their size.
     #[arg(long, conflicts_with_all = ["noise", "time_limit", "realtime", "quantised", "supervised"])]
     pub(crate) campaign: bool,
 
-    /// How many courses a campaign draws. Each has the next seed.
+    /// Number of courses in a campaign. Each has the next seed.
     #[arg(long, value_name = "N", default_value_t = 1000, requires = "campaign", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) worlds: u64,
 
-    /// Levels of noise of a campaign.
+    /// Noise levels of a campaign.
     #[arg(long, value_name = "F,...", default_value = "0,1,2", requires = "campaign", value_delimiter = ',', value_parser = parse_noise, allow_hyphen_values = true)]
     pub(crate) levels: Vec<f64>,
 
-    /// How many threads drive in a campaign [default: one for each core].
+    /// Number of threads in a campaign [default: one per core].
     #[arg(long, value_name = "N", requires = "campaign", allow_hyphen_values = true)]
     pub(crate) threads: Option<NonZero<usize>>,
 
-    /// Write the courses of a campaign that went wrong into this folder, as .sim and .wld.
+    /// Write the failed courses of a campaign into this folder, as .sim and .wld.
     #[arg(long, value_name = "DIR", requires = "campaign")]
     pub(crate) save: Option<PathBuf>,
 

@@ -2,7 +2,7 @@ use super::trial::{Judgement, Trial, trial};
 use super::{Args, save, table};
 use crate::common::{Failure, Outcome, Report, Stopwatch, share_out, threads};
 
-/// The work of a campaign.
+/// Runs a campaign.
 pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
     args.common.check_placeless("the courses of a campaign are generated")?;
     if let Some(folder) = &args.save {
@@ -29,7 +29,7 @@ pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
     .timing("real_time_factor", sim_time / wall_time.max(1e-9)))
 }
 
-/// All trials in the order of their seeds, driven by as many threads as the options say.
+/// All trials in the order of their seeds, driven by several threads.
 pub(crate) fn trials(args: &Args) -> Result<Vec<Trial>, Failure> {
     share_out("courses", args.worlds, threads(args.threads), |index| {
         trial(args.common.seed.wrapping_add(index), &args.levels)

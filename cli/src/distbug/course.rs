@@ -4,8 +4,8 @@ use std::sync::Arc;
 use roverlab::geometry::{Point, Pose, direction, units};
 use roverlab::world::{Colour, Marker, Object, ObjectKind, RobotSpec, Scene, Wall, World};
 
-/// The command's own world, 4.5 m by 4.5 m, with a robot and a marker at its goal: a C, a crescent, a hook
-/// and a room with a door on the far side lie between them.
+/// The command's default world, 4.5 m by 4.5 m, with a robot and a marker at its goal. In between are a C, a
+/// crescent, a hook and a room with a door on the far side.
 pub(crate) fn scene() -> Scene {
     let mut world = World::walled(4.5, 4.5);
     c_shape(&mut world);
@@ -28,7 +28,7 @@ fn at(x: f64, y: f64) -> Point {
     Point::new(units::from_mm(x), units::from_mm(y))
 }
 
-/// Walls along a line through points in millimetres.
+/// Walls along a polyline, in millimetres.
 fn add_line(world: &mut World, points: &[(f64, f64)]) {
     world.walls.extend(points.windows(2).map(|ends| {
         let [a, b] = [ends[0], ends[1]].map(|(x, y)| at(x, y));
@@ -36,12 +36,12 @@ fn add_line(world: &mut World, points: &[(f64, f64)]) {
     }));
 }
 
-/// Opens towards the robot, which drives into it.
+/// A C that opens towards the robot, which drives into it.
 fn c_shape(world: &mut World) {
     add_line(world, &[(950.0, 1500.0), (1550.0, 1500.0), (1550.0, 850.0), (1100.0, 850.0)]);
 }
 
-/// A thick arc, its hollow side towards the robot.
+/// A thick arc, concave towards the robot.
 fn crescent(world: &mut World) {
     let (middle, pieces) = (at(2150.0, 2000.0), 24);
     let arc = |radius: f64, shift: f64, reach: f64| {
@@ -63,14 +63,14 @@ fn hook(world: &mut World) {
     add_line(world, &[(2750.0, 2900.0), (2750.0, 3500.0), (2250.0, 3500.0), (2250.0, 3250.0)]);
 }
 
-/// A zig-zag and a block that the robot passes by.
+/// A zigzag and a block that the robot passes.
 fn bystanders(world: &mut World) {
     add_line(world, &[(500.0, 2500.0), (900.0, 2750.0), (500.0, 3000.0), (900.0, 3250.0)]);
     let block = (0..6).map(|i| at(3400.0, 1500.0) + direction(TAU * (f64::from(i) + 0.3) / 6.0) * 0.34);
     world.add_loop(&block.collect::<Vec<_>>());
 }
 
-/// A room around the goal, whose door looks away from the robot.
+/// A room around the goal, with its door facing away from the robot.
 fn room(world: &mut World) {
     add_line(
         world,

@@ -8,84 +8,84 @@ use roverlab::nav::{BugEvent, BugOutcome, BugParameters, DistBug, WallSide};
 use crate::common::{Failure, Stage, StageTruth, Trip};
 use crate::driving::Trail;
 
-/// How to drive.
+/// Driving options.
 #[derive(Debug, Clone)]
 pub(crate) struct Options {
     pub(crate) seed: u64,
     pub(crate) noise: f64,
-    /// Simulated seconds.
+    /// Time limit (s).
     pub(crate) time_limit: f64,
 }
 
 /// How the behaviour ended.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Ending {
-    /// With a verdict, or because the time was over.
+    /// With a verdict, or at the time limit.
     Verdict(BugOutcome),
     /// The robot failed.
     Failed(String),
 }
 
-/// Something that happened during a run. Points are in the world.
+/// An event of a run. Points are in the world.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Event {
-    /// Simulated seconds.
+    /// Time (s).
     pub(crate) time: f64,
     pub(crate) happening: Happening,
 }
 
-/// What happened.
+/// Kind of an event.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Happening {
-    /// An obstacle was in the way, at so many metres from the goal.
+    /// An obstacle was met, at a distance from the goal (m).
     Hit { point: Point, side: WallSide, distance: f64 },
-    /// The robot left the obstacle, with the way free for so many metres.
+    /// The obstacle was left, with a free range towards the goal (m).
     Leave { point: Point, free: f64, distance: f64 },
     /// The robot touched something.
     Contact { point: Point },
 }
 
-/// A run and what is known of it afterwards.
+/// A run with its ground truth.
 #[derive(Debug, Clone)]
 pub(crate) struct Drive {
     pub(crate) ending: Ending,
     pub(crate) events: Vec<Event>,
-    /// What is true about the robot in the end.
+    /// Ground truth at the end.
     pub(crate) truth: RobotTruth,
-    /// Where odometry takes the robot to be in the world.
+    /// Pose by odometry, in the world.
     pub(crate) odometry: Pose,
-    /// Simulated seconds.
+    /// Simulated time (s).
     pub(crate) sim_time: f64,
-    /// Metres from the robot to the goal, truly.
+    /// True distance of the robot from the goal (m).
     pub(crate) goal_distance: f64,
-    /// Where the robot was at each step, truly and by odometry.
+    /// True path, and path by odometry.
     pub(crate) trail: Trail,
     pub(crate) odometry_path: Vec<(f64, Point)>,
-    /// What the robot saw last, in the world as the robot takes it.
+    /// Points of the last scan, placed by the robot's own pose estimate.
     pub(crate) seen: Vec<Point>,
 }
 
 impl Drive {
-    /// The points of the events that `pick` picks.
+    /// Points of the events accepted by `pick`.
     pub(crate) fn points(&self, pick: impl Fn(&Happening) -> Option<Point>) -> Vec<Point> {
         self.events.iter().filter_map(|event| pick(&event.happening)).collect()
     }
 
-    /// Where obstacles were met.
+    /// Hit points.
     pub(crate) fn hit_points(&self) -> Vec<Point> {
         self.points(|h| if let Happening::Hit { point, .. } = h { Some(*point) } else { None })
     }
 
-    /// Where obstacles were left.
+    /// Leave points.
     pub(crate) fn leave_points(&self) -> Vec<Point> {
         self.points(|h| if let Happening::Leave { point, .. } = h { Some(*point) } else { None })
     }
 }
 
-/// Drives the first robot of a stage to a goal by DistBug. `watch` is called with the time at every step, and with
-/// what happened there.
+/// Drives the first robot of a stage to a goal by DistBug. `watch` is called at every step with its time and
+/// events.
 ///
-/// Fails if there is no such robot, or it cannot run DistBug. What goes wrong on the way is part of the result.
+/// Fails if there is no such robot, or it cannot run DistBug. Failures during the run are part of the result.
 pub(crate) fn drive(
     trip: &Trip,
     options: &Options,
@@ -102,12 +102,12 @@ pub(crate) fn drive(
         let time = log.truth.time().unwrap_or_default();
         watch(time, log.note(time, bug));
     });
-    // The robot lets go of the world, so that what is true stays as it is.
+    // Dropping the robot freezes the world, and therefore the ground truth.
     drop(robot);
     log.finish(&bug, trip.goal, ending(result))
 }
 
-/// How the simulator runs.
+/// Options of the simulation.
 pub(crate) fn sim_options(options: &Options) -> SimOptions {
     // The behaviour's own limit comes first, unless its clock has stopped.
     const RESERVE: f64 = 1.0;
@@ -125,7 +125,7 @@ fn ending(result: io::Result<BugOutcome>) -> Ending {
     }
 }
 
-/// What has been seen of a run so far.
+/// Observations of a run so far.
 struct Log {
     truth: StageTruth,
     start: Pose,
@@ -147,10 +147,10 @@ impl Log {
         }
     }
 
-    /// Takes down the step at a time. Returns what happened in it.
+    /// Records the step at a time. Returns its events.
     fn note(&mut self, time: f64, bug: &mut DistBug) -> &[Event] {
         let before = self.events.len();
-        // The robot of the truth is the one that drives, so there is one.
+        // The truth is that of the driving robot, so it exists.
         if let Ok(truth) = self.truth.robot(0) {
             let touched = truth.contact_places.iter().skip(self.contacts);
             self.events.extend(touched.map(|&point| Event { time, happening: Happening::Contact { point } }));

@@ -6,7 +6,7 @@ use roverlab::nav::{BugOutcome, WallSide};
 use super::{Args, Drive, Ending, Event, Happening, Options, campaign, drive, picture, scene, sim_options};
 use crate::common::{CommonArgs, Failure, Outcome, Pacer, Progress, Report, Trip, millimetres, point_in_mm};
 
-/// The work of the command: drives, tells what happens, draws.
+/// The command's work: drives, reports events, draws.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     if args.campaign {
         return campaign::campaign(args);
@@ -23,7 +23,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(common.draw(report, "distbug.svg", || picture::of(&trip, &drive, &options)))
 }
 
-/// Drives and tells what happens.
+/// Drives and reports events.
 fn watched(common: &CommonArgs, trip: &Trip, options: &Options) -> Result<Drive, Failure> {
     let (start, goal) = (in_words(trip.start().position()), in_words(trip.goal));
     let heading = units::to_deg(trip.start().heading);
@@ -53,7 +53,7 @@ fn watched(common: &CommonArgs, trip: &Trip, options: &Options) -> Result<Drive,
     Ok(drive)
 }
 
-/// A line of what a person is told during the run.
+/// A line of output during the run.
 fn line(time: f64, text: impl Display) -> String {
     format!("{time:8.2} s  {text}")
 }

@@ -1,4 +1,4 @@
-//! The command `distbug`: the behaviour in a simulated world, watched, and a campaign through many of them.
+//! The command `distbug`: the behaviour in a simulated world, observed, and a campaign through many of them.
 
 mod args;
 mod campaign;

@@ -6,7 +6,7 @@ use super::{Drive, Ending, Happening, Options};
 use crate::common::Trip;
 use crate::driving::pale;
 
-/// A picture of a run: the world, where the robot was and believed to be, and what it met and saw.
+/// Picture of a run: the world, true and estimated path, and what the robot met and saw.
 pub(crate) fn of(trip: &Trip, drive: &Drive, options: &Options) -> Picture {
     let spec = trip.spec();
     let mut picture = Picture::new(&trip.scene.world);

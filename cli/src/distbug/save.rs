@@ -7,7 +7,7 @@ use roverlab::world::formats::wld;
 use super::trial::{Run, Trial};
 use crate::common::Failure;
 
-/// Makes the folder, so that a long campaign is not in vain.
+/// Creates the folder before a long campaign.
 pub(super) fn prepare(folder: &Path) -> Result<(), Failure> {
     fs::create_dir_all(folder).map_err(|error| {
         let name = folder.display();
@@ -15,8 +15,7 @@ pub(super) fn prepare(folder: &Path) -> Result<(), Failure> {
     })
 }
 
-/// Writes the courses on which a run went wrong: `course-SEED.sim`, which the command `distbug` can run, and
-/// the
+/// Writes the courses of failed runs: `course-SEED.sim`, which the command `distbug` can run, and the
 /// `course-SEED.wld` that it names.
 pub(super) fn failures(trials: &[Trial], folder: &Path) -> Result<(), Failure> {
     trials

@@ -8,7 +8,7 @@ use super::trial::{Judgement, Run, Trial};
 use super::{Args, Ending};
 use crate::common::rounded;
 
-/// What the runs at one level of noise have in common.
+/// Runs at one noise level.
 struct Row<'a> {
     noise: f64,
     runs: Vec<&'a Run>,
@@ -35,18 +35,18 @@ impl<'a> Row<'a> {
         self.count(|run| run.contacts > 0)
     }
 
-    /// The share of correct verdicts in percent, rounded down: only all are 100 %.
+    /// Percentage of correct verdicts, rounded down: 100 % only if all are correct.
     fn percent(&self) -> f64 {
         (1000.0 * self.judged(Judgement::Correct) as f64 / self.runs.len() as f64).floor() / 10.0
     }
 
-    /// The mean of path lengths in terms of the shortest ones; `None` without any.
+    /// Mean path length relative to the shortest path; `None` without any.
     fn path_ratio(&self) -> Option<f64> {
         let ratios: Vec<f64> = self.runs.iter().filter_map(|run| run.path_ratio).collect();
         (!ratios.is_empty()).then(|| ratios.iter().sum::<f64>() / ratios.len() as f64)
     }
 
-    /// The worst distance to the goal, in metres, of the runs that took themselves to be there.
+    /// Largest distance from the goal among the runs that reported arrival (m).
     fn worst_distance(&self) -> Option<f64> {
         let reached = Ending::Verdict(BugOutcome::Reached);
         let arrived = self.runs.iter().filter(|run| run.ending == reached);
@@ -62,7 +62,7 @@ fn rows<'a>(noises: &'a [f64], trials: &'a [Trial]) -> impl Iterator<Item = Row<
     noises.iter().enumerate().map(|(index, &noise)| Row::of(trials, index, noise))
 }
 
-/// The table, and the seeds of the courses that went wrong. Holds nothing that differs between machines.
+/// The table, and the seeds of failed courses, without anything that differs between machines.
 pub(crate) fn text(noises: &[f64], trials: &[Trial]) -> String {
     let mut text = String::from("noise  runs  correct  reached  unreachable  timed out");
     for (_, name) in Judgement::WRONG {
@@ -96,7 +96,7 @@ fn line(row: &Row<'_>) -> String {
     format!("{line}  {:>7}  {ratio:>10}  {worst:>8}  {:>6.0}\n", row.contacts(), row.sim_time())
 }
 
-/// The seeds that went wrong at one level of noise, and how; empty if none did.
+/// Seeds and kinds of failures at one noise level; empty without any.
 fn wrong_seeds(noise: f64, index: usize, trials: &[Trial]) -> String {
     let wrong: Vec<String> = trials
         .iter()
@@ -117,7 +117,7 @@ fn why(run: &Run) -> String {
     }
 }
 
-/// The table, what its short words mean, and where courses have been saved.
+/// The table, its abbreviations, and the folder of saved courses.
 pub(super) fn explained(args: &Args, trials: &[Trial]) -> String {
     let mut text = text(&args.levels, trials);
     text.push_str(
@@ -135,7 +135,7 @@ pub(super) fn explained(args: &Args, trials: &[Trial]) -> String {
     text
 }
 
-/// The table for programs: one object for each level of noise.
+/// The table as JSON: one object per noise level.
 pub(super) fn json(noises: &[f64], trials: &[Trial]) -> Vec<Value> {
     rows(noises, trials).enumerate().map(|(index, row)| level(&row, index, trials)).collect()
 }

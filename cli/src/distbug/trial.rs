@@ -6,47 +6,47 @@ use roverlab::world::{Colour, Marker, RobotSpec, Scene};
 use super::{Ending, Options, drive, sim_options};
 use crate::common::{Failure, Stage, Trip};
 
-/// One course of a campaign, driven once at every level of noise.
+/// One course of a campaign, driven once at every noise level.
 #[derive(Debug, Clone)]
 pub(crate) struct Trial {
-    /// The seed of the course and of the runs.
+    /// Seed of the course and the runs.
     pub(crate) seed: u64,
     pub(crate) trip: Trip,
     pub(crate) runs: Vec<Run>,
 }
 
-/// What came of one run.
+/// Result of one run.
 #[derive(Debug, Clone)]
 pub(crate) struct Run {
     pub(crate) ending: Ending,
     pub(crate) judgement: Judgement,
     pub(crate) contacts: u32,
-    /// Metres.
+    /// True distance from the goal (m).
     pub(crate) goal_distance: f64,
-    /// The length of the robot's way in terms of the shortest one; for correct runs to the goal alone.
+    /// Path length relative to the shortest path; only for correct runs to the goal.
     pub(crate) path_ratio: Option<f64>,
-    /// Seconds.
+    /// Simulated time (s).
     pub(crate) sim_time: f64,
 }
 
-/// Whether a verdict is correct.
+/// Judgement of a verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Judgement {
     Correct,
-    /// "Reached", too far from the goal.
+    /// "Reached", but too far from the goal.
     FarFromGoal,
-    /// "Reached" though there is no way; the robot is mistaken about where it is.
+    /// "Reached" although no way exists: the robot's pose estimate is wrong.
     NotReached,
-    /// "Unreachable" though there is a way.
+    /// "Unreachable" although a way exists.
     NotUnreachable,
-    /// No verdict in the time.
+    /// No verdict within the time limit.
     TimedOut,
     /// The robot failed.
     Failed,
 }
 
 impl Judgement {
-    /// What a table calls the wrong ones.
+    /// Names of the wrong judgements in a table.
     pub(crate) const WRONG: [(Judgement, &'static str); 5] = [
         (Judgement::FarFromGoal, "off"),
         (Judgement::NotReached, "false r."),
@@ -78,12 +78,12 @@ impl Run {
     }
 }
 
-/// How far from the goal, in metres, "reached" is still correct. Odometry errs, so more with noise.
+/// Distance from the goal up to which "reached" is correct (m); larger with noise because of odometry errors.
 pub(crate) fn tolerance(noise: f64) -> f64 {
     if noise == 0.0 { 0.050 } else { 0.250 }
 }
 
-/// Draws the course of a seed and drives an S4 through it at some levels of noise.
+/// Generates the course of a seed and drives an S4 through it at several noise levels.
 pub(crate) fn trial(seed: u64, noises: &[f64]) -> Result<Trial, Failure> {
     let spec = RobotSpec::s4();
     let radius = spec.footprint.bounding_radius();
@@ -111,7 +111,7 @@ pub(crate) fn trial(seed: u64, noises: &[f64]) -> Result<Trial, Failure> {
     Ok(Trial { seed, trip, runs })
 }
 
-/// Metres along the shortest way of a robot of some radius, if there is one.
+/// Length of the shortest way for a robot radius, if there is one (m).
 fn shortest_way(course: &Course, radius: f64) -> Result<Option<f64>, Failure> {
     const RESOLUTION: f64 = 0.010;
     if !course.reachable {
@@ -121,7 +121,7 @@ fn shortest_way(course: &Course, radius: f64) -> Result<Option<f64>, Failure> {
     Ok(ways.shortest_path_length(course.start.position(), course.goal))
 }
 
-/// The course as a scene whose first marker is its goal, as a `.sim` holds it.
+/// The course as a scene with its goal as first marker, as in a `.sim`.
 fn trip(course: &Course, spec: RobotSpec) -> Trip {
     let mut world = course.world.clone();
     world.markers.push(Marker { position: course.goal, colour: Colour::GREEN, alpha: 255 });

@@ -1,4 +1,4 @@
-//! What the driving commands share: a simulated robot that is watched, and what is said about its run.
+//! Shared parts of the driving commands: an observed simulated robot, and the report on its run.
 
 mod way;
 
@@ -7,7 +7,7 @@ use std::sync::Arc;
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::log::GroundTruth;
 use roverlab::io::sim::{NoiseModel, RobotTruth, SimOptions};
-use roverlab::io::{self, Drive, Key};
+use roverlab::io::{self, Drive, Key, TruthInSpace};
 use roverlab::kinematics::OdometryErrors;
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::world::{Colour, DriveSpec, Object, ObjectKind, RobotSpec, Scene, Shape, World};
@@ -16,53 +16,55 @@ use crate::common::{CommonArgs, Driven, Failure, Outcome, Pacer, Report, Stage};
 
 pub(crate) use way::Way;
 
-/// How the simulator runs.
+/// Conditions of a simulation.
 #[derive(Debug, Clone)]
 pub(crate) struct Conditions {
     pub(crate) seed: u64,
     pub(crate) noise: f64,
-    /// Brightness of the light that cameras see by.
+    /// Brightness of the light for cameras.
     pub(crate) light: f64,
-    /// Key presses and when, in seconds.
+    /// Key presses with their times (s).
     pub(crate) keys: Vec<(f64, Key)>,
-    /// Whether robots push what is loose and light.
+    /// Whether robots push loose, light objects.
     pub(crate) pushing: bool,
-    /// Speeds that other robots keep, by their indices.
+    /// Constant velocities of other robots, by index.
     pub(crate) others: Vec<(usize, Twist)>,
     pub(crate) ideal_encoders: bool,
-    /// Simulated seconds.
+    /// Time limit (s).
     pub(crate) time_limit: f64,
-    /// What decides where the robot comes from; a simulator that nobody records without it.
+    /// Options that select the robot's source; without them, an unrecorded simulator.
     pub(crate) common: Option<CommonArgs>,
 }
 
-/// When a robot was where, in seconds.
+/// Poses of a robot with their times (s).
 pub(crate) type Trail = Vec<(f64, Pose)>;
 
-/// How a robot's program ended: what it says, or why the robot failed.
+/// End of a robot's program: its result, or the robot's error.
 pub(crate) type Ending<T> = Result<T, String>;
 
-/// A run and what is true about it.
+/// A run with its ground truth.
 #[derive(Debug, Clone)]
 pub(crate) struct Run<T> {
     pub(crate) ending: Ending<T>,
     pub(crate) truth: RobotTruth,
-    /// Where odometry takes the robot to be in the world.
+    /// Pose by odometry, in the world.
     pub(crate) odometry: Pose,
-    /// Simulated seconds.
+    /// Simulated time (s).
     pub(crate) sim_time: f64,
-    /// When it was where, truly and by odometry.
+    /// True path, and path by odometry.
     pub(crate) trail: Trail,
     pub(crate) odometry_path: Vec<(f64, Point)>,
-    /// The same of the robots that keep a speed, truly.
+    /// True paths of the other moving robots.
     pub(crate) others: Vec<Trail>,
-    /// Where the scene's objects are at the end.
+    /// Final positions of the scene's objects.
     pub(crate) objects: Vec<Point>,
+    /// Where the robot was in space, in a world with hills, at each moment of the trail but the first.
+    pub(crate) in_space: Vec<TruthInSpace>,
 }
 
 impl Conditions {
     pub(crate) fn new(common: &CommonArgs, time_limit: f64) -> Result<Self, Failure> {
-        // Wrong ones are found before anything begins.
+        // Wrong ones are detected before anything begins.
         common.faults()?;
         Ok(Self {
             seed: common.seed,
@@ -77,7 +79,7 @@ impl Conditions {
         })
     }
 
-    /// The errors that the robot's odometry is known to have.
+    /// The known error model of the robot's odometry.
     pub(crate) fn odometry_errors(&self) -> OdometryErrors {
         let NoiseModel { wheel_scale, wheel_mismatch, track, slip, .. } =
             NoiseModel::real().scaled(self.noise);
@@ -98,7 +100,7 @@ impl Conditions {
         })
     }
 
-    /// The same for a program with a watcher, who learns the true pose at each step.
+    /// The same with a watcher that gets the true pose at each step.
     pub(crate) fn run_watched<T>(
         &self,
         scene: &Scene,
@@ -123,12 +125,13 @@ impl Conditions {
         }
         let start = scene.robots[0].pose;
         for &(other, twist) in &self.others {
-            // A robot whose program ends keeps its speed.
+            // A robot whose program has ended keeps its speed.
             stage.robot(other)?.set_speed(twist).map_err(Failure::run)?;
         }
         let mut robot = stage.robot(0)?;
         let mut truth = stage.truth(0)?;
         let (mut trail, mut odometry_path) = (vec![(0.0, start)], vec![(0.0, start.position())]);
+        let (has_hills, mut in_space) = (scene.world.terrain.is_some(), Vec::new());
         let mut others: Vec<Trail> = self.others.iter().map(|_| Trail::new()).collect();
         let result = program(&mut robot, &mut || {
             let seen = truth.robot(0);
@@ -137,16 +140,19 @@ impl Conditions {
                 trail.push((time, robot.pose));
                 odometry_path.push((time, start.compose(&robot.odometry).position()));
             }
+            if has_hills {
+                in_space.extend(truth.in_space(0).ok());
+            }
             for (other, trail) in self.others.iter().zip(&mut others) {
                 trail.extend(truth.pose(other.0).ok().map(|pose| (time, pose)));
             }
             watch(time);
             trail.last().map_or(start, |(_, pose)| *pose)
         });
-        // The robot lets go of the world, so that what is true stays as it is.
+        // Dropping the robot freezes the world, and therefore the ground truth.
         drop(robot);
         let objects = scene.world.objects.iter().enumerate().map(|(index, object)| {
-            // What nobody pushes stays where it was.
+            // Objects that cannot be pushed stay in place.
             let moved = if self.pushing { truth.object(index).ok() } else { None };
             moved.unwrap_or(object.pose).position()
         });
@@ -161,12 +167,13 @@ impl Conditions {
             odometry_path,
             others,
             objects,
+            in_space,
         })
     }
 }
 
 impl<T> Run<T> {
-    /// A report with what is true about the run and with the outcome that `outcome` finds.
+    /// A report with the run's ground truth and the outcome determined by `outcome`.
     pub(crate) fn report(&self, outcome: impl FnOnce(&T) -> Outcome) -> Report {
         let (outcome, error) = match &self.ending {
             Ok(ended) => (outcome(ended), None),
@@ -184,12 +191,12 @@ impl<T> Run<T> {
         }
     }
 
-    /// Where the robot really was.
+    /// True positions of the robot.
     pub(crate) fn positions(&self) -> impl Iterator<Item = Point> {
         self.trail.iter().map(|(_, pose)| pose.position())
     }
 
-    /// Draws a robot as it drove, where it started, where it believed to be and what it touched.
+    /// Draws a robot's drive, start, odometry and contacts.
     pub(crate) fn draw(&self, picture: &mut Picture, spec: &RobotSpec) {
         picture.drive(&self.trail, &spec.footprint);
         picture.trace(self.odometry_path.iter().copied(), Style::odometry());
@@ -198,7 +205,7 @@ impl<T> Run<T> {
     }
 }
 
-/// Keeps simulated time from running ahead of the wall clock, if the options ask for it.
+/// Paces simulated time by the wall clock, if requested.
 pub(crate) fn paced(common: &CommonArgs) -> impl FnMut(f64) {
     let (pacer, realtime) = (Pacer::start(), common.realtime);
     move |time| {
@@ -208,24 +215,24 @@ pub(crate) fn paced(common: &CommonArgs) -> impl FnMut(f64) {
     }
 }
 
-/// Draws where robots touched something.
+/// Draws the contacts of robots.
 pub(crate) fn draw_contacts(picture: &mut Picture, places: &[Point]) {
     for &place in places {
         picture.mark(Mark::Contact, place);
     }
 }
 
-/// The style of robots that stand by, or of where one was.
+/// Style of standing robots and former poses.
 pub(crate) fn pale() -> Style {
     Style::new(Colour::from_hex(0x8a_90_9c)).opacity(0.5)
 }
 
-/// Some things by their number.
+/// A number with its noun.
 pub(crate) fn counted(number: usize, thing: &str) -> String {
     format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
 }
 
-/// Metres between a robot's left and right wheels.
+/// Distance between a robot's left and right wheels (m).
 pub(crate) fn track(spec: &RobotSpec) -> f64 {
     match spec.drive {
         DriveSpec::Differential { track, .. }
@@ -236,7 +243,7 @@ pub(crate) fn track(spec: &RobotSpec) -> f64 {
     }
 }
 
-/// The world as the first robot of a scene finds it: the others stand in it.
+/// The world for the first robot of a scene, with the other robots as obstacles.
 pub(crate) fn world_with_others(scene: &Scene) -> World {
     let mut world = scene.world.clone();
     for other in &scene.robots[1..] {
@@ -248,7 +255,7 @@ pub(crate) fn world_with_others(scene: &Scene) -> World {
     world
 }
 
-/// Refuses a robot without a lidar.
+/// Rejects a robot without a lidar.
 pub(crate) fn check_lidar(scene: &Scene) -> Result<(), Failure> {
     match scene.robots[0].spec.lidar {
         Some(_) => Ok(()),
@@ -256,7 +263,7 @@ pub(crate) fn check_lidar(scene: &Scene) -> Result<(), Failure> {
     }
 }
 
-/// Refuses a robot with a drive that the command has no use for.
+/// Rejects a robot with an unsuitable drive.
 pub(crate) fn check_drive(
     common: &CommonArgs,
     spec: &RobotSpec,

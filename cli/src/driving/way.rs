@@ -1,6 +1,6 @@
 use roverlab::drive::Method;
 
-/// A method by its name on the command line.
+/// Driving method by its name on the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Way {
     /// Turn, on the spot or on the turning circle, then drive straight.

@@ -5,31 +5,31 @@ use clap::value_parser;
 use super::Kernel;
 use crate::common::CommonArgs;
 
-/// The command line of `edges`.
+/// Command line of `edges`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Edges, colours and lines: a kernel on an image file, or live on the robot's display",
     after_help = "\
-With --input, the kernel works on an image file (PNG, PNM or BMP), and --output takes the result (by its ending .png, .pgm,
-.ppm or .bmp). Without, a robot in its room turns and shows what the kernel makes of its camera's images on its display; --output
-takes the last display.
+With --input, the kernel processes an image file (PNG, PNM or BMP), and --output saves the result (.png, .pgm, .ppm or
+.bmp). Without it, a robot in its room turns and shows the processed images of its camera on its display; --output saves
+the last display.
 
-A definition says what is meant where the book and OpenCV differ:
+--definition decides where the book and OpenCV differ:
                  book (the default)                               opencv
   gray           (R + B) / 4 + G / 2                              0.299 R + 0.587 G + 0.114 B
   laplace        border 0                                         border by mirror image
   sobel_l1, _l2  a third of the gradient, border 0                the gradient, border by mirror image
-  canny          after a Gaussian of 7 x 7 with sigma 1.5         as it is
+  canny          after a Gaussian of 7 x 7 with sigma 1.5         without smoothing
   hue            a circle of 252, 255 without colour or light     a circle of 180
   saturation     255 - 255 min / I                                255 (max - min) / max
   intensity      (R + G + B) / 3                                  max
   hue_match      255-hue circle of the book's Program 11.9        180-hue circle
-  hough_prob...  pixels vote in an order drawn by --seed          OpenCV's order, and its rule of votes taken back
-With --smooth, --min-saturation and --min-intensity either can be had with both.
+  hough_prob...  pixels vote in an order drawn by --seed          OpenCV's order, and its rule of withdrawn votes
+--smooth, --min-saturation and --min-intensity apply to both.
 
 JSON fields:
   kernel, definition, width, height, output
-  timing                      with --timing: ns_per_pixel, of the kernel's fastest run of --repeat
+  timing                      with --timing: ns_per_pixel of the fastest of --repeat runs
   mean                        of the result's bytes
   lines                       hough: [{rho, theta_deg, votes}]; hough_probabilistic: [[x0, y0, x1, y1]]
   blobs                       blobs: [{area, x, y, min, max}]
@@ -39,19 +39,19 @@ JSON fields:
 Outcomes: filtered, shown, collided, failed."
 )]
 pub(crate) struct Args {
-    /// Image to work on.
+    /// Input image.
     #[arg(long, value_name = "FILE")]
     pub(crate) input: Option<PathBuf>,
 
-    /// What to do with it.
+    /// Kernel to apply.
     #[arg(long, value_enum, default_value = "laplace")]
     pub(crate) kernel: Kernel,
 
-    /// Where the result goes.
+    /// File for the result.
     #[arg(long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
 
-    /// Whose definition counts where they differ.
+    /// Definition to use where they differ.
     #[arg(long, value_enum, default_value = "book")]
     pub(crate) definition: Definition,
 
@@ -59,23 +59,24 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     pub(crate) second: Option<PathBuf>,
 
-    /// canny, and what works on its edges: gradient that continues an edge.
+    /// canny and kernels on its edges: gradient that continues an edge.
     #[arg(long, value_name = "N", default_value_t = 50, allow_hyphen_values = true)]
     pub(crate) low: u16,
 
-    /// canny, and what works on its edges: gradient that starts an edge.
+    /// canny and kernels on its edges: gradient that starts an edge.
     #[arg(long, value_name = "N", default_value_t = 100, allow_hyphen_values = true)]
     pub(crate) high: u16,
 
-    /// threshold: shades above this become white [128]; hough: votes [100, 50 for segments]; overlay: edges [50].
+    /// threshold: gray levels above this become white [128]; hough: votes [100, 50 for segments]; overlay:
+    /// edges [50].
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) threshold: Option<u32>,
 
-    /// Width of a Gaussian in pixels; without it the fixed weights of its size.
+    /// Standard deviation of a Gaussian in pixels; by default the fixed weights of its size.
     #[arg(long, value_name = "F", allow_hyphen_values = true)]
     pub(crate) sigma: Option<f64>,
 
-    /// Smooth first by a Gaussian of this size: 0, 3, 5 or 7 [canny by the book: 7, else 0].
+    /// Size of a Gaussian applied first: 0, 3, 5 or 7 [canny by the book: 7, otherwise 0].
     #[arg(long, value_name = "N", value_parser = parse_smooth)]
     pub(crate) smooth: Option<usize>,
 
@@ -83,7 +84,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) hue: Option<u8>,
 
-    /// Hues less than this away from it match.
+    /// Hue tolerance: smaller differences match.
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = value_parser!(u8).range(1..), allow_hyphen_values = true)]
     pub(crate) tolerance: u8,
 
@@ -95,47 +96,47 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", requires = "hue_low", allow_hyphen_values = true)]
     pub(crate) hue_high: Option<u8>,
 
-    /// Least saturation of a pixel with a hue, 0 to 255 [book: 128, opencv: 0].
+    /// Minimum saturation of a pixel with a hue, 0 to 255 [book: 128, opencv: 0].
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) min_saturation: Option<u8>,
 
-    /// Least intensity of a pixel with a hue, 0 to 255 [book: 26, opencv: 0].
+    /// Minimum intensity of a pixel with a hue, 0 to 255 [book: 26, opencv: 0].
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) min_intensity: Option<u8>,
 
-    /// hue: by the book's formulas instead of RoBIOS's whole numbers, every colour unless a least one is given.
+    /// hue: use the book's formulas instead of RoBIOS's integers, for every colour unless a minimum is given.
     #[arg(long)]
     pub(crate) exact: bool,
 
-    /// hough, `hough_probabilistic`, blobs: the input is an image of edges already.
+    /// hough, `hough_probabilistic`, blobs: the input is already an edge image.
     #[arg(long)]
     pub(crate) binary: bool,
 
-    /// hough: steps of the angle in half a turn.
+    /// hough: number of angle steps in half a turn.
     #[arg(long, value_name = "N", default_value_t = 180, value_parser = value_parser!(u16).range(1..=3600), allow_hyphen_values = true)]
     pub(crate) angles: u16,
 
-    /// hough: pixels between two distances.
+    /// hough: distance step in pixels.
     #[arg(long, value_name = "F", default_value_t = 1.0, allow_hyphen_values = true)]
     pub(crate) rho: f64,
 
-    /// `hough_probabilistic`: pixels that a line reaches at least.
+    /// `hough_probabilistic`: minimum length of a line in pixels.
     #[arg(long, value_name = "N", default_value_t = 30, allow_hyphen_values = true)]
     pub(crate) min_length: usize,
 
-    /// `hough_probabilistic`: pixels that may be missing in a line.
+    /// `hough_probabilistic`: maximum gap in a line in pixels.
     #[arg(long, value_name = "N", default_value_t = 5, allow_hyphen_values = true)]
     pub(crate) max_gap: usize,
 
-    /// hog: the whole descriptor among the JSON fields.
+    /// hog: include the whole descriptor in the JSON fields.
     #[arg(long)]
     pub(crate) descriptor: bool,
 
-    /// blobs: pixels of the smallest.
+    /// blobs: minimum size in pixels.
     #[arg(long, value_name = "N", default_value_t = 20, allow_hyphen_values = true)]
     pub(crate) min_area: usize,
 
-    /// Runs of the kernel, of which the fastest is reported; live: images.
+    /// Runs of the kernel, of which the fastest is reported; live: number of images.
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = value_parser!(u32).range(1..=100_000), allow_hyphen_values = true)]
     pub(crate) repeat: u32,
 
@@ -167,7 +168,7 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("kernel!=blobs", &["min_area"]),
 ]);
 
-/// Whose definition of a kernel counts.
+/// Definition of a kernel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Definition {
     /// The book's and RoBIOS's.

@@ -1,11 +1,11 @@
-//! Options that do not go together, and errors of the kernels in the words of the command line.
+//! Contradictory options, and errors of the kernels in terms of the command line.
 
 use roverlab::vision::ImageError;
 
 use super::{Args, Definition, Kernel};
 use crate::common::Failure;
 
-/// Fails for options that contradict each other.
+/// Fails for contradictory options.
 pub(crate) fn check(args: &Args) -> Result<(), Failure> {
     let kernel = args.kernel.name();
     if args.kernel.thresholds_shades()
@@ -39,7 +39,7 @@ pub(crate) fn check(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// An error of a kernel, with the option that it comes from.
+/// A kernel's error with the option that caused it.
 pub(crate) fn refused(error: &ImageError) -> Failure {
     let option = match error {
         ImageError::Parameter(error) => option_of(error.name()),

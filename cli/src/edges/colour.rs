@@ -1,4 +1,4 @@
-//! Kernels on colours.
+//! Colour kernels.
 
 use image::{GrayImage, RgbImage};
 use roverlab::vision::{
@@ -8,7 +8,7 @@ use roverlab::vision::{
 
 use super::parameters::Parameters;
 
-/// Hue, saturation and intensity by the book's formulas, or hue, saturation and value as `OpenCV` has them.
+/// Hue, saturation and intensity by the book's formulas, or hue, saturation and value as in `OpenCV`.
 pub(crate) fn hsi(input: &RgbImage, p: &Parameters) -> Result<RgbImage, ImageError> {
     let mut output = RgbImage::new(input.width(), input.height());
     match p.scale {
@@ -18,7 +18,7 @@ pub(crate) fn hsi(input: &RgbImage, p: &Parameters) -> Result<RgbImage, ImageErr
     Ok(output)
 }
 
-/// The other way round.
+/// The inverse conversion.
 pub(crate) fn hsi_to_rgb(input: &RgbImage, p: &Parameters) -> Result<RgbImage, ImageError> {
     let mut output = RgbImage::new(input.width(), input.height());
     match p.scale {
@@ -28,14 +28,14 @@ pub(crate) fn hsi_to_rgb(input: &RgbImage, p: &Parameters) -> Result<RgbImage, I
     Ok(output)
 }
 
-/// One of the three.
+/// One of the three channels.
 pub(crate) fn channel(input: &RgbImage, p: &Parameters, channel: usize) -> Result<GrayImage, ImageError> {
     let whole = hsi(input, p)?;
     let bytes = whole.pixels().map(|pixel| pixel.0[channel]).collect();
     Ok(GrayImage::from_raw(input.width(), input.height(), bytes).unwrap_or_default())
 }
 
-/// Hues by the book's formulas, none where a pixel has too little colour or light.
+/// Hues by the book's formulas; 0 for pixels with too little saturation or intensity.
 pub(crate) fn exact_hue(input: &RgbImage, p: &Parameters) -> Result<GrayImage, ImageError> {
     let mut output = channel(input, p, 0)?;
     for (out, pixel) in output.iter_mut().zip(input.pixels()) {
@@ -52,7 +52,7 @@ pub(crate) fn hue(input: &RgbImage, p: &Parameters) -> Result<GrayImage, ImageEr
     Ok(output)
 }
 
-/// White where the hue is right.
+/// White where the hue matches.
 pub(crate) fn matches(input: &RgbImage, p: &Parameters) -> Result<GrayImage, ImageError> {
     let mut output = GrayImage::new(input.width(), input.height());
     hue_match_into(input.try_into()?, (&mut output).try_into()?, p.range, p.scale, p.limits)?;

@@ -44,7 +44,7 @@ pub(crate) fn work(args: &Args, input: &Path) -> Result<Report, Failure> {
     Ok(fields.into_iter().fold(report, |report, (name, value)| report.field(name, value)))
 }
 
-/// An image file in colour.
+/// Loads an image file in colour.
 fn load(option: &str, file: &Path) -> Result<RgbImage, Failure> {
     let wrong = |error: &dyn std::fmt::Display| {
         Failure::input(format!("{option} {}: {error}; expected a PNG, PNM or BMP image", file.display()))
@@ -58,7 +58,7 @@ fn load(option: &str, file: &Path) -> Result<RgbImage, Failure> {
     Ok(image)
 }
 
-/// Red, green and blue of eight bits each: the upper ones where a file has sixteen, as OpenCV reads such files.
+/// Red, green and blue with eight bits each: the upper bits of files with sixteen, as in OpenCV.
 fn eight_bits(image: DynamicImage) -> RgbImage {
     let deep = matches!(
         image,
@@ -76,7 +76,7 @@ fn eight_bits(image: DynamicImage) -> RgbImage {
     })
 }
 
-/// Writes an image in the format that its name asks for.
+/// Writes an image in the format of its extension.
 pub(crate) fn save(image: &DynamicImage, file: &Path) -> Result<(), Failure> {
     write_image(image, file).map_err(|error| {
         Failure::input(format!(

@@ -10,29 +10,29 @@ use serde_json::{Value, json};
 use super::parameters::{Parameters, gaussian};
 use super::{Args, Definition, colour, marks};
 
-/// A kernel by its name on the command line.
+/// Kernel by its name on the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 #[value(rename_all = "snake_case")]
 pub(crate) enum Kernel {
-    /// Colour to shades of gray.
+    /// Colour to grayscale.
     Gray,
-    /// Shades of gray to colour.
+    /// Grayscale to colour.
     GrayToRgb,
-    /// The Laplace operator's absolute value.
+    /// Absolute value of the Laplacian.
     Laplace,
-    /// The Laplace operator where it is positive.
+    /// Positive part of the Laplacian.
     LaplaceSaturated,
-    /// The Sobel gradient's magnitude, |dx| + |dy|.
+    /// L1 magnitude of the Sobel gradient, |dx| + |dy|.
     SobelL1,
-    /// The Sobel gradient's Euclidean magnitude.
+    /// Euclidean magnitude of the Sobel gradient.
     SobelL2,
-    /// Canny's edges.
+    /// Canny edges.
     Canny,
-    /// A Gaussian of 3 x 3 pixels.
+    /// 3 x 3 Gaussian.
     Gaussian3,
-    /// A Gaussian of 5 x 5 pixels.
+    /// 5 x 5 Gaussian.
     Gaussian5,
-    /// A Gaussian of 7 x 7 pixels.
+    /// 7 x 7 Gaussian.
     Gaussian7,
     /// White above a threshold.
     Threshold,
@@ -42,30 +42,30 @@ pub(crate) enum Kernel {
     Hue,
     /// The saturation of every pixel.
     Saturation,
-    /// The intensity of every pixel (by `OpenCV`: the value).
+    /// The intensity of every pixel (in `OpenCV`: the value).
     Intensity,
-    /// Hue, saturation and intensity (or value) in the place of red, green and blue.
+    /// Hue, saturation and intensity (or value) instead of red, green and blue.
     Hsi,
-    /// Back to red, green and blue, of an image with hue, saturation and intensity (or value) in their place.
+    /// Back to red, green and blue, from hue, saturation and intensity (or value).
     HsiToRgb,
-    /// White where the hue is right.
+    /// White where the hue matches.
     HueMatch,
-    /// Sums of the columns and rows of the hue match.
+    /// Column and row sums of the hue match.
     Projections,
     /// The absolute difference to --second.
     Difference,
-    /// Connected pixels of the hue match.
+    /// Connected components of the hue match.
     Blobs,
-    /// Straight lines of Canny's edges.
+    /// Straight lines in Canny edges.
     Hough,
-    /// Straight lines with their ends.
+    /// Line segments in Canny edges.
     HoughProbabilistic,
     /// Histograms of oriented gradients.
     Hog,
 }
 
 impl Kernel {
-    /// Its name on the command line.
+    /// Name on the command line.
     pub(crate) fn name(self) -> String {
         use clap::ValueEnum as _;
         self.to_possible_value().map_or(String::new(), |value| value.get_name().to_owned())
@@ -75,13 +75,13 @@ impl Kernel {
         matches!(self, Self::Canny | Self::Hough | Self::HoughProbabilistic)
     }
 
-    /// Whether it works on colours, not on shades of gray.
+    /// Whether it works on colour images, not on grayscale.
     pub(crate) fn works_on_colours(self) -> bool {
         use Kernel::{Hsi, HsiToRgb, Hue, HueMatch, Intensity, Projections, Saturation};
         matches!(self, Hue | Saturation | Intensity | Hsi | HsiToRgb | HueMatch | Projections)
     }
 
-    /// Whether `--threshold` is a shade of gray for it.
+    /// Whether `--threshold` is a gray level for it.
     pub(crate) fn thresholds_shades(self) -> bool {
         matches!(self, Self::Threshold | Self::Overlay)
     }
@@ -91,7 +91,7 @@ impl Kernel {
     }
 }
 
-/// What a kernel makes of an image: another image, and what else there is to say.
+/// Result of a kernel: an image, and further fields.
 #[derive(Debug, Clone)]
 pub(crate) struct Processed {
     pub(crate) image: DynamicImage,
@@ -196,12 +196,12 @@ impl Runner {
         })
     }
 
-    /// Options that are out of range for a kernel have been refused.
+    /// Values out of range for a kernel have been rejected.
     fn threshold(&self, default: u32) -> u32 {
         self.args.threshold.unwrap_or(default)
     }
 
-    /// The image in shades of gray, smoothed if the options ask for it.
+    /// The grayscale image, smoothed if requested.
     fn gray(&self, input: &RgbImage) -> Result<GrayImage, ImageError> {
         let mut gray = GrayImage::new(input.width(), input.height());
         gray_into(input.try_into()?, (&mut gray).try_into()?, self.parameters.weights)?;
@@ -271,7 +271,7 @@ impl Runner {
 fn projections(mask: GrayImage) -> Result<Processed, ImageError> {
     let (mut columns, mut rows) = (vec![0; mask.width() as usize], vec![0; mask.height() as usize]);
     projections_into((&mask).try_into()?, &mut columns, &mut rows)?;
-    // Counts of matching pixels, as the book draws them.
+    // Numbers of matching pixels, as drawn in the book.
     let counts = |sums: Vec<u32>| json!(sums.into_iter().map(|sum| sum / 255).collect::<Vec<u32>>());
     Ok(Processed { image: mask.into(), fields: vec![("columns", counts(columns)), ("rows", counts(rows))] })
 }

@@ -1,4 +1,4 @@
-//! A kernel on what the robot sees, shown on its display.
+//! A kernel on the robot's camera images, shown on its display.
 
 use image::{DynamicImage, RgbImage};
 use roverlab::geometry::Twist;
@@ -10,7 +10,7 @@ use super::{Args, file};
 use crate::common::{Failure, Outcome, Report};
 use crate::driving::{Conditions, paced};
 
-/// Seconds between two images.
+/// Time between two images (s).
 const PERIOD: f64 = 0.1;
 
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
@@ -21,7 +21,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let scene = common.placed(crate::room::scene)?;
     let conditions = Conditions::new(common, f64::from(args.repeat) * PERIOD + 1.0)?;
     let mut runner = Runner::new(args).map_err(|error| refused(&error))?;
-    // What is wrong with the options shows before the robot moves.
+    // Wrong options show before the robot moves.
     let (width, height) = Resolution::Qvga.dimensions();
     runner.run(&RgbImage::new(width, height), None).map_err(|error| refused(&error))?;
     let mut frames = 0;
@@ -49,7 +49,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(report)
 }
 
-/// Turns on the spot and shows images. Returns the display at the end.
+/// Turns on the spot and shows images. Returns the final display.
 fn show(
     robot: &mut (impl Camera + Clock + Display + Drive),
     runner: &mut Runner,

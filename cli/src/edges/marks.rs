@@ -1,4 +1,4 @@
-//! What was found in an image, drawn into it and said in words.
+//! Draws what was found in an image and describes it.
 
 use image::{GrayImage, Rgb, RgbImage};
 use roverlab::geometry::{math, units};
@@ -41,7 +41,7 @@ pub(crate) fn lines(edges: &GrayImage, lines: &[HoughLine]) -> Processed {
     Processed { image: image.into(), fields: vec![("lines", lines.into())] }
 }
 
-/// Straight lines with their ends.
+/// Line segments.
 pub(crate) fn segments(edges: &GrayImage, segments: &[LineSegment]) -> Processed {
     let mut image = dimmed(edges);
     let place = |(x, y): (usize, usize)| (x as f64, y as f64);
@@ -71,7 +71,7 @@ fn put(image: &mut RgbImage, x: u32, y: u32) {
     }
 }
 
-/// Connected pixels, with their boxes drawn over the image.
+/// Connected components, with their boxes drawn over the image.
 pub(crate) fn blobs(input: &RgbImage, mask: &GrayImage, min_area: usize) -> Result<Processed, ImageError> {
     let mut components = Components::new();
     let blobs = components.find(mask.try_into()?, min_area);
@@ -99,7 +99,8 @@ pub(crate) fn blobs(input: &RgbImage, mask: &GrayImage, min_area: usize) -> Resu
     Ok(Processed { image: image.into(), fields: vec![("blobs", found.into())] })
 }
 
-/// The descriptor's length and digest, and the whole of it if asked for; the picture shows how strong each cell's strongest direction is.
+/// Length and digest of the descriptor, and its values if requested; the picture shows the strength of each
+/// cell's strongest direction.
 pub(crate) fn hog(gray: &GrayImage, hog: &mut Hog, whole: bool) -> Result<Processed, ImageError> {
     let view: roverlab::vision::GrayView<'_> = gray.try_into()?;
     let (across, down) = hog.blocks(view.size());
@@ -110,7 +111,7 @@ pub(crate) fn hog(gray: &GrayImage, hog: &mut Hog, whole: bool) -> Result<Proces
         (most * 255.0) as u8
     });
     let picture = GrayImage::from_raw(across as u32, down as u32, strongest.collect()).unwrap_or_default();
-    // FNV-1a over the bits, the same on every platform.
+    // FNV-1a over the bits, equal on every platform.
     let digest = descriptor
         .iter()
         .flat_map(|value| value.to_bits().to_le_bytes())

@@ -14,7 +14,7 @@ pub(crate) use kernel::{Kernel, Processed};
 
 use crate::common::{Failure, Report};
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     checks::check(args)?;
     match &args.input {

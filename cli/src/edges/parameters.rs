@@ -5,19 +5,19 @@ use roverlab::vision::{
 
 use super::{Args, Definition};
 
-/// What the options and the definition say about the kernels.
+/// Parameters of the kernels from options and definition.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Parameters {
     pub(crate) weights: GrayWeights,
     pub(crate) border: Border,
     pub(crate) sobel: SobelScale,
     pub(crate) thresholds: CannyThresholds,
-    /// A Gaussian before everything else.
+    /// A Gaussian applied first.
     pub(crate) smooth: Option<GaussianKernel>,
     pub(crate) scale: HueScale,
     pub(crate) range: HueRange,
     pub(crate) limits: HueLimits,
-    /// The same for hues by the book's formulas, which have none of their own.
+    /// The limits for hues by the book's formulas, which have none of their own.
     pub(crate) exact_limits: HueLimits,
 }
 
@@ -48,7 +48,7 @@ impl Parameters {
     }
 }
 
-/// A Gaussian of a size, with a width of one's own or without.
+/// A Gaussian of a size, with an optional standard deviation.
 pub(crate) fn gaussian(size: usize, sigma: Option<f64>) -> Result<GaussianKernel, ImageError> {
     match (size, sigma) {
         (_, Some(sigma)) => GaussianKernel::new(size, sigma),

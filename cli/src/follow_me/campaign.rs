@@ -10,7 +10,7 @@ use super::scene::{Mode, hall};
 use super::swarm::run;
 use crate::common::{Failure, Outcome, Progress, Report, millimetres};
 
-/// What came of many seeds for one kind of swarm.
+/// Results of many seeds for one kind of swarm.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Row {
     pub(crate) mode: Mode,
@@ -19,15 +19,15 @@ pub(crate) struct Row {
     pub(crate) runs: u64,
     pub(crate) lost: u64,
     pub(crate) contacts: u64,
-    /// Metres.
+    /// Gaps between robots (m).
     pub(crate) mean_gap: f64,
     pub(crate) largest_gap: f64,
     pub(crate) sim_time: f64,
-    /// Seeds with contacts or lost robots: the first ones.
+    /// First seeds with contacts or lost robots.
     pub(crate) amiss: Vec<u64>,
 }
 
-/// The swarms of a campaign: mode, followers, obstacles.
+/// The swarms of a campaign: mode, number of followers, number of obstacles.
 const SWARMS: [(Mode, usize, usize); 6] = [
     (Mode::Lidar, 1, 0),
     (Mode::Lidar, 1, 4),
@@ -39,13 +39,13 @@ const SWARMS: [(Mode, usize, usize); 6] = [
 const LISTED: usize = 10;
 
 impl Row {
-    /// Whether nobody was lost and nothing was touched.
+    /// Whether no robot was lost and nothing was touched.
     pub(crate) fn is_good(&self) -> bool {
         self.lost == 0 && self.contacts == 0
     }
 }
 
-/// The campaign's work.
+/// Runs the campaign.
 pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
     let rows = rows(args)?;
     args.common.tell(text(&rows));
@@ -104,7 +104,7 @@ fn add_run(row: &mut Row, args: &Args, seed: u64) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The table. Holds nothing that differs between machines.
+/// The table, without anything that differs between machines.
 pub(crate) fn text(rows: &[Row]) -> String {
     let mut text =
         String::from("mode    followers  obstacles  runs  lost  contacts  mean gap mm  max gap mm  good\n");

@@ -14,41 +14,41 @@ use crate::common::{
 };
 use crate::driving::{counted, draw_contacts, paced};
 
-/// The command line of `follow-me`.
+/// Command line of `follow-me`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Lets robots follow a leader: one by lidar, five by raised lidars, a chain, or a formation by radio",
     after_help = "\
-Without --world, a LabBot leads round a hall that is another one for each seed. With --world, the first robot of a .sim leads
-and all others follow; letters in a maze stand for robots there. A world with one robot or none gets --followers behind the
-one that leads from its place, or a LabBot at --start. It leads past the world's markers, or past the corners of
-the floor without any.
+Without --world, a LabBot leads round a hall that depends on the seed. With --world, the first robot of a .sim leads and
+all others follow; letters in a maze represent robots. In a world with at most one robot, --followers robots are placed
+behind the leader at its place, or behind a LabBot at --start. It leads past the world's markers, or without markers
+past the corners of the floor.
 
---robios and --fault are for one robot alone, and refused.
+--robios and --fault are rejected, because they apply to a single robot.
 
-With --campaign, many seeds for one follower, for five, for five among obstacles, for five by radio, and for a chain of 20.
+With --campaign, many seeds for one follower, five, five among obstacles, five by radio, and a chain of 20.
 
 JSON fields:
-  followers, mode             how many there are, and how they know where to go: lidar, raised, chain or radio
-  lost                        how many are three times as far away as they should be in the end, or have not seen the robot
-                              ahead for three seconds
-  mean_gap_mm, max_gap_mm     distance to the robot ahead, from 10 s on
-  obstacles                   things in the world
+  followers, mode             their number, and how they follow: lidar, raised, chain or radio
+  lost                        number of those that are three times as far away as required at the end, or have not seen the
+                              robot ahead for three seconds
+  mean_gap_mm, max_gap_mm     distance to the robot ahead, after the first 10 s
+  obstacles                   number of objects in the world
   time_limit_s, picture
   rows                        with --campaign only: the table
-Collisions, pose, odometry and path length: contacts are those of all robots, the rest is the leader's.
-Outcomes: followed, lost, blocked (the leader found no way on: it drove less than a third of what it could), collided; with --campaign: passed, wrong."
+Collisions are those of all robots; pose, odometry and path length are the leader's.
+Outcomes: followed, lost, blocked (the leader found no way and drove less than a third of the possible distance), collided; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
-    /// How many robots follow [default: those of the world, or 1].
+    /// Number of followers [default: those of the world, or 1].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=100), allow_hyphen_values = true)]
     pub(crate) followers: Option<u16>,
 
-    /// How they know where to go [default: lidar for one, raised up to five, chain beyond].
+    /// How the followers locate the leader [default: lidar for one, raised up to five, chain beyond].
     #[arg(long, value_enum)]
     pub(crate) mode: Option<Mode>,
 
-    /// Cans on the leader's way.
+    /// Number of cans on the leader's way.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(..=50), allow_hyphen_values = true)]
     pub(crate) obstacles: u16,
 
@@ -56,7 +56,7 @@ pub(crate) struct Args {
     #[arg(long)]
     pub(crate) campaign: bool,
 
-    /// Seeds in a campaign.
+    /// Number of seeds in a campaign.
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) runs: u64,
 
@@ -70,10 +70,10 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("!campaign", &["runs"]),
 ]);
 
-/// Simulated seconds of a run.
+/// Simulated time of a run (s).
 pub(super) const SECONDS: f64 = 90.0;
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     refuse(common)?;
@@ -113,7 +113,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(common.draw(report, "follow_me.svg", || picture(args, &scene, &run, mode)))
 }
 
-/// What the robots of a fleet cannot do.
+/// Rejects options that the robots of a fleet do not support.
 fn refuse(common: &CommonArgs) -> Result<(), Failure> {
     let given = [
         ("--fault", !common.fault.is_empty()),
@@ -163,7 +163,7 @@ fn scene(args: &Args) -> Result<(Scene, Vec<Point>), Failure> {
     Ok((scene, waypoints))
 }
 
-/// Puts followers behind the leader of a scene, or where there is room.
+/// Places followers behind the leader of a scene, or where there is room.
 fn add_followers(scene: &mut Scene, mode: Mode, followers: usize, seed: u64) -> Result<(), Failure> {
     let start = scene.robots[0].pose;
     let mut stream = Stream::new(seed).child("followers", 0);
@@ -181,7 +181,7 @@ fn add_followers(scene: &mut Scene, mode: Mode, followers: usize, seed: u64) -> 
     Ok(())
 }
 
-/// Places well inside of the corners of the floor, counter-clockwise.
+/// Points well inside the corners of the floor, counter-clockwise.
 fn corners(scene: &Scene) -> Vec<Point> {
     let floor = scene.world.floor;
     let inset = (0.25 * floor.size().x.min(floor.size().y)).min(1.0);
@@ -190,7 +190,7 @@ fn corners(scene: &Scene) -> Vec<Point> {
     vec![high, Point::new(low.x, high.y), low, Point::new(high.x, low.y)]
 }
 
-/// The ways of all robots, and where they end.
+/// Paths of all robots, and their final poses.
 fn picture(args: &Args, scene: &Scene, run: &SwarmRun, mode: Mode) -> Picture {
     let mut picture = Picture::new(&scene.world);
     let followers = counted(scene.robots.len() - 1, "follower");

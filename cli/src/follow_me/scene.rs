@@ -6,16 +6,17 @@ use roverlab::world::{
     LidarSpec, Mount, Object, ObjectKind, PsdSpec, RobotPlacement, RobotSpec, Scene, World,
 };
 
-/// How the followers know where to go.
+/// How the followers locate the leader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Mode {
-    /// A level lidar sees the leader, among all else.
+    /// A level lidar sees the leader among everything else.
     Lidar,
-    /// A raised lidar sees the leader alone, which is higher than the followers; eight distance sensors see the rest.
+    /// A raised lidar sees only the leader, which is taller than the followers; eight distance sensors see
+    /// the rest.
     Raised,
     /// Each follows the one before it by a level lidar.
     Chain,
-    /// The leader sends where it is.
+    /// The leader sends its pose.
     Radio,
 }
 
@@ -29,12 +30,12 @@ impl Mode {
         }
     }
 
-    /// The robots that follow so.
+    /// The followers' robot.
     pub(crate) fn spec(self) -> Arc<RobotSpec> {
         Arc::new(if self == Self::Raised { lidarbot() } else { RobotSpec::s4() })
     }
 
-    /// What suits a number of followers.
+    /// Suitable mode for a number of followers.
     pub(crate) fn for_followers(followers: usize) -> Self {
         match followers {
             0 | 1 => Self::Lidar,
@@ -44,7 +45,8 @@ impl Mode {
     }
 }
 
-/// The book's `LidarBot`: an S4 with a lidar above the other followers and four more distance sensors (programs 5.8 and 5.9).
+/// The book's `LidarBot`: an S4 with a lidar above the other followers and four more distance sensors
+/// (programs 5.8 and 5.9).
 pub(crate) fn lidarbot() -> RobotSpec {
     let s4 = RobotSpec::s4();
     let ray = |id: u8, name: &str, y: f64, yaw: f64| PsdSpec {
@@ -72,8 +74,8 @@ pub(crate) fn lidarbot() -> RobotSpec {
     }
 }
 
-/// A hall with a LabBot that leads, and followers behind it; obstacles in the leader's path if asked for. With the leader's
-/// waypoints.
+/// A hall with a leading LabBot, followers behind it, and optional obstacles in the leader's path; also
+/// returns the leader's waypoints.
 pub(crate) fn hall(mode: Mode, followers: usize, obstacles: usize, seed: u64) -> (Scene, Vec<Point>) {
     let length = match mode {
         Mode::Chain => 6.0 + 0.36 * followers as f64,
@@ -93,7 +95,7 @@ pub(crate) fn hall(mode: Mode, followers: usize, obstacles: usize, seed: u64) ->
     (scene, waypoints)
 }
 
-/// Where followers stand at first, each turned a little.
+/// Start poses of followers, with small random turns.
 pub(crate) fn behind(start: Pose, mode: Mode, followers: usize, stream: &mut Stream) -> Vec<Pose> {
     let pose = |follower| {
         let place = start.to_world(place(mode, follower));
@@ -102,7 +104,7 @@ pub(crate) fn behind(start: Pose, mode: Mode, followers: usize, stream: &mut Str
     (1..=followers).map(pose).collect()
 }
 
-/// Where a follower stands at first, in the leader's frame: one behind the other, or in rows of three and two as in the book.
+/// Start of a follower in the leader's frame: in a file, or in rows of three and two as in the book.
 fn place(mode: Mode, follower: usize) -> Point {
     match mode {
         Mode::Lidar => Point::new(-0.5 * follower as f64, 0.0),
@@ -115,15 +117,15 @@ fn place(mode: Mode, follower: usize) -> Point {
     }
 }
 
-/// Followers in a row of three and two.
+/// Number of followers in a row of three and one of two.
 const ROW: usize = 5;
 
-/// Metres by which the row of a follower is behind the first one.
+/// Distance of a follower's row behind the first one (m).
 fn rows_behind(follower: usize) -> f64 {
     0.9 * (follower.saturating_sub(1) / ROW) as f64
 }
 
-/// A way round the hall that is another one for each seed.
+/// A route round the hall, different for each seed.
 fn waypoints(stream: &mut Stream, width: f64, depth: f64) -> Vec<Point> {
     let mut about =
         |x: f64, y: f64| Point::new(x + stream.between(-0.25, 0.25), y + stream.between(-0.25, 0.25));

@@ -15,17 +15,17 @@ use crate::driving::Trail;
 
 use super::scene::Mode;
 
-/// What became of a swarm.
+/// Result of a swarm.
 #[derive(Debug, Clone)]
 pub(crate) struct SwarmRun {
-    /// Where the robots were, the leader first.
+    /// Paths of the robots, the leader first.
     pub(crate) paths: Vec<Trail>,
     pub(crate) odometry: Vec<Pose>,
     pub(crate) contacts: u64,
     pub(crate) contact_places: Vec<Point>,
-    /// The followers, from 1, that have lost the robot ahead of them or their place.
+    /// Followers, counted from 1, that have lost the robot ahead or their position.
     pub(crate) lost: Vec<usize>,
-    /// The mean distance to the robot ahead, and the largest after the first seconds, in metres.
+    /// Mean distance to the robot ahead, and maximum after the first seconds (m).
     pub(crate) mean_gap: f64,
     pub(crate) largest_gap: f64,
     pub(crate) sim_time: f64,
@@ -33,24 +33,24 @@ pub(crate) struct SwarmRun {
 }
 
 impl SwarmRun {
-    /// Whether the leader hardly got anywhere, so that there was little to follow.
+    /// Whether the leader hardly moved, so that there was little to follow.
     pub(crate) fn is_leader_held(&self) -> bool {
         self.leader_path < CruiseParameters::default().speed * self.sim_time / 3.0
     }
 }
 
-/// Seconds in which a swarm forms.
+/// Time in which a swarm forms (s).
 const FORMING: f64 = 10.0;
-/// A follower whose true gap is this many times what it should be is lost.
+/// Ratio of true to wished gap from which a follower counts as lost.
 const TOO_FAR: f64 = 3.0;
-/// Seconds from one step to the next, and between points of the paths.
+/// Control period, and time between path points (s).
 const PERIOD: f64 = 0.1;
 
-/// A follower's eyes and memory.
+/// A follower's perception and memory.
 struct Eyes {
     scan: LidarScan,
     points: Vec<Point>,
-    /// What single rays have seen lately, in the frame of odometry, and when.
+    /// Recent points of single rays in the odometry frame, with their times.
     memory: VecDeque<(f64, Point)>,
 }
 
@@ -59,7 +59,7 @@ impl Eyes {
         Self { scan: LidarScan::default(), points: Vec::new(), memory: VecDeque::new() }
     }
 
-    /// What a lidar that looks over the floor sees.
+    /// Reads a lidar that sees everything on the floor.
     fn look_round(&mut self, robot: &mut dyn RobotIo) -> io::Result<()> {
         robot.scan_into(&mut self.scan)?;
         self.points.clear();
@@ -67,9 +67,9 @@ impl Eyes {
         Ok(())
     }
 
-    /// What eight distance sensors see, and have seen in the last moments; the lidar looks over the other followers.
+    /// Reads eight distance sensors and keeps recent points; the lidar looks over the other followers.
     fn look_by_rays(&mut self, robot: &mut dyn RobotIo, rays: &[(u8, Pose)], pose: Pose) -> io::Result<()> {
-        /// Points that are remembered, for how many seconds, and metres beyond which they do not matter.
+        /// Maximum number of points, maximum age (s), and maximum distance (m) remembered.
         const REMEMBERED: usize = 48;
         const LATELY: f64 = 4.0;
         const NEAR: f64 = 1.0;
@@ -82,7 +82,7 @@ impl Eyes {
                 self.memory.push_back((now, seen));
             }
         }
-        // Other robots are elsewhere by now.
+        // Other robots have moved on.
         let is_old = |&(seen, _): &(f64, Point)| seen < now - LATELY;
         while self.memory.len() > REMEMBERED || self.memory.front().is_some_and(is_old) {
             self.memory.pop_front();
@@ -93,7 +93,7 @@ impl Eyes {
     }
 }
 
-/// The rays of a robot's distance sensors.
+/// Rays of a robot's distance sensors.
 fn rays_of(scene: &Scene, robot: usize) -> Vec<(u8, Pose)> {
     let mount = |psd: &roverlab::world::PsdSpec| Pose::new(psd.mount.x, psd.mount.y, psd.mount.yaw);
     scene.robots[robot].spec.psds.iter().map(|psd| (psd.id, mount(psd))).collect()
@@ -106,24 +106,24 @@ fn radius_of(scene: &Scene, robot: usize) -> f64 {
     }
 }
 
-/// Whom a follower follows: in a chain the one before it, else the leader.
+/// The robot that a follower follows: in a chain the previous one, otherwise the leader.
 pub(crate) fn ahead_of(mode: Mode, follower: usize) -> usize {
     if mode == Mode::Chain { follower - 1 } else { 0 }
 }
 
-/// The wished distance of a follower to the robot ahead of it.
+/// Wished distance of a follower to the robot ahead of it.
 pub(crate) fn gap_of(scene: &Scene, mode: Mode, follower: usize) -> f64 {
     let started =
         scene.robots[follower].pose.distance_to(scene.robots[ahead_of(mode, follower)].pose.position());
     match mode {
         Mode::Lidar => 0.45,
         Mode::Chain => 0.36,
-        // Side by side and in rows as they stand at first.
+        // Side by side and in rows, as at the start.
         Mode::Raised | Mode::Radio => started,
     }
 }
 
-/// Lets a leader drive past waypoints and the others follow, for so many seconds.
+/// Lets a leader drive past waypoints and the others follow, for a time (s).
 pub(crate) fn run<'a>(
     fleet: &mut (dyn FleetIo<'a> + 'a),
     scene: &Scene,
@@ -211,7 +211,7 @@ fn control_leader<'a>(
     let step = move |robot: &mut dyn RobotIo| {
         eyes.look_round(robot)?;
         let pose = robot.pose()?;
-        // What is behind follows, and does not matter.
+        // Robots behind follow and are no obstacles.
         let ahead: Vec<Point> = eyes.points.iter().copied().filter(|point| point.x > -0.05).collect();
         let twist = cruise.step(pose, &ahead)?;
         robot.set_speed(twist)?;

@@ -7,10 +7,10 @@ use roverlab::random::Stream;
 
 use super::Method;
 
-/// Individuals of the first generation.
+/// Size of the population.
 const INDIVIDUALS: usize = 20;
 
-/// Evolves numbers that cost least: all that it takes. Genes lie between 0 and 1, whatever they stand for.
+/// Evolves numbers with minimum cost. Genes lie between 0 and 1, whatever they encode.
 pub(crate) fn evolve(
     method: Method,
     genes: usize,
@@ -40,7 +40,7 @@ pub(crate) fn evolve(
     Ok(evolution.population().clone())
 }
 
-/// Genes within their bounds; the evolution strategy knows none.
+/// Genes clamped to their bounds, which the evolution strategy does not know.
 pub(crate) fn inside(genes: &[f64]) -> Vec<f64> {
     genes.iter().map(|gene| gene.clamp(0.0, 1.0)).collect()
 }

@@ -12,18 +12,18 @@ use evolve::{evolve, inside};
 use spline::Spline;
 use wall::Wall;
 
-/// The command line of `genetic`.
+/// Command line of `genetic`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Evolves the scale of a spline's tangents, or the gains of a wall follower",
     after_help = "\
-A spline leads from --start to --goal X,Y,DEG: it shall be short and not bend sharply. A wall follower shall keep its
-distance in the simulator, with noise. Fitness is minus the cost. --record is for --task wall: it records a drive with the
-best gains.
+A spline leads from --start to --goal X,Y,DEG; it should be short without sharp bends. A wall follower should keep its
+distance in the simulator, with noise. Fitness is minus the cost. --record requires --task wall and records a drive with
+the best gains.
 
 JSON fields:
-  task, method, evaluations, fitness          what was asked, and the best that was found with how many trials
-  scale, length_mm, radius_mm                 of the best spline, and of its sharpest bend
+  task, method, evaluations, fitness          the task; number of trials and the best fitness
+  scale, length_mm, radius_mm                 of the best spline; radius of its sharpest bend
   proportional, integral, derivative          the best gains
   best, mean                                  fitness of each generation
   picture
@@ -34,11 +34,11 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value = "spline")]
     pub(crate) task: Task,
 
-    /// How to evolve it.
+    /// Evolution method.
     #[arg(long, value_enum, default_value = "genetic")]
     pub(crate) method: Method,
 
-    /// Generations.
+    /// Number of generations.
     #[arg(long, value_name = "G", default_value_t = 40, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) generations: u32,
 
@@ -52,27 +52,27 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("task=wall", &["start", "goal"]),
 ]);
 
-/// What is evolved.
+/// Evolution task.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Task {
     /// The scale of a spline's tangents.
     Spline,
-    /// The gains of a PID controller that follows a wall.
+    /// The gains of a PID wall follower.
     Wall,
 }
 
-/// A method of evolution.
+/// Evolution method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Method {
-    /// Generation after generation.
+    /// Generational genetic algorithm.
     Genetic,
-    /// Two children at a time.
+    /// Steady state: two children at a time.
     SteadyState,
     /// Evolution strategy with covariance matrix adaptation.
     CmaEs,
 }
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
@@ -118,7 +118,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     }))
 }
 
-/// Fails when an option has no meaning here.
+/// Fails for an option without meaning here.
 fn check(args: &Args) -> Result<(), Failure> {
     let common = &args.common;
     let drives = args.task == Task::Wall;

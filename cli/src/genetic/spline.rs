@@ -8,10 +8,10 @@ use serde_json::{Map, Value, json};
 
 use crate::common::{CommonArgs, millimetres, rounded};
 
-/// What a bend costs, in cubic metres: a bend of radius 0.5 m costs as much as 0.32 m of way.
+/// Cost of a bend (m³): a bend of radius 0.5 m costs as much as 0.32 m of path.
 const BEND: f64 = 0.08;
 
-/// A spline whose scale is to be found.
+/// A spline with unknown scale.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Spline {
     start: Pose,
@@ -29,7 +29,7 @@ impl Spline {
         Self { start, goal }
     }
 
-    /// The length of the way, and what its sharpest bend adds.
+    /// Path length plus the cost of its sharpest bend.
     pub(crate) fn cost(&self, genes: &[f64]) -> Result<f64> {
         let path = self.path(genes)?;
         Ok(path.length() + BEND * path.max_curvature() * path.max_curvature())
@@ -64,7 +64,7 @@ impl Spline {
         picture
     }
 
-    /// The way; nothing where there is none.
+    /// The path's points; empty without a path.
     fn points(&self, genes: &[f64]) -> Vec<Point> {
         let path = self.path(genes);
         path.map_or_else(
@@ -74,7 +74,7 @@ impl Spline {
     }
 }
 
-/// Scales that are tried: 0.1 to 6.
+/// Scale encoded by the genes: 0.1 to 6.
 fn scale(genes: &[f64]) -> f64 {
     0.1 + 5.9 * genes[0]
 }

@@ -12,19 +12,19 @@ use serde_json::{Map, Value, json};
 use crate::common::{CommonArgs, Failure, rounded};
 use crate::driving::Trail;
 
-/// A wall to follow, for which the gains of a PID controller are to be found.
+/// A wall to follow by a PID controller with unknown gains.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Wall {
     noise: f64,
 }
 
-/// The floor, in metres: a corridor's length of wall, and room to go wrong.
+/// Size of the floor (m): a wall of a corridor's length, and room for errors.
 const FLOOR: (f64, f64) = (6.0, 2.0);
-/// Seconds of a trial.
+/// Duration of a trial (s).
 const SECONDS: f64 = 20.0;
-/// Seconds until the robot should have come to its distance.
+/// Time in which the robot should reach its distance (s).
 const SETTLING: f64 = 4.0;
-/// What a contact costs, in metres.
+/// Cost of a contact (m).
 const CONTACT: f64 = 1.0;
 
 impl Wall {
@@ -43,7 +43,7 @@ impl Wall {
         }
     }
 
-    /// The root of the mean squared distance from the line, in metres.
+    /// Root mean square distance from the line (m).
     pub(crate) fn cost(self, genes: &[f64], trial: Trial) -> Result<f64> {
         let simulation = Simulation::new(&scene(), self.options(trial.random().bits()))?;
         let (mut robot, mut truth) = (simulation.robot(0)?, simulation.truth());
@@ -60,7 +60,7 @@ impl Wall {
         fields.as_object().cloned().unwrap_or_default()
     }
 
-    /// Drives with the best gains, which is recorded if the options ask for it, and draws the way.
+    /// Drives with the best gains, recorded if requested, and draws the path.
     pub(crate) fn picture(self, common: &CommonArgs, best: &[f64]) -> std::result::Result<Picture, Failure> {
         let mut picture = Picture::new(&World::walled(FLOOR.0, FLOOR.1));
         let stage = common.stage(&scene(), self.options(common.seed))?;
@@ -79,7 +79,7 @@ fn scene() -> Scene {
     Scene::with_robot(World::walled(FLOOR.0, FLOOR.1), RobotSpec::s4(), start)
 }
 
-/// Drives along the wall: what it costs, and where the robot was.
+/// Drives along the wall; returns the cost and the path.
 fn drive<R: Clock + DistanceSensors + Drive + Odometry + StallDetector>(
     genes: &[f64],
     robot: &mut R,
@@ -102,7 +102,7 @@ fn drive<R: Clock + DistanceSensors + Drive + Odometry + StallDetector>(
     Ok((math::hypot((squares / f64::max(count, 1.0)).sqrt(), CONTACT * f64::from(contacts)), way))
 }
 
-/// Gains that are tried: 0 to 20, 0 to 4, 0 to 30.
+/// Gains encoded by the genes: 0 to 20, 0 to 4, 0 to 30.
 fn gains(genes: &[f64]) -> [f64; 3] {
     [20.0 * genes[0], 4.0 * genes[1], 30.0 * genes[2]]
 }

@@ -9,7 +9,7 @@ use roverlab::world::{BitGrid, GridCell};
 use super::{Algorithm, Args, own_map, picture};
 use crate::common::{Failure, Outcome, Progress, Report, Stopwatch, rounded};
 
-/// What came of all queries.
+/// Results of all queries.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Result {
     pub(crate) map: String,
@@ -17,35 +17,35 @@ pub(crate) struct Result {
     pub(crate) width: usize,
     pub(crate) height: usize,
     pub(crate) queries: usize,
-    /// Queries that are none, because an end of them is blocked.
+    /// Number of queries with a blocked end.
     pub(crate) skipped: usize,
     pub(crate) solved: usize,
     pub(crate) optimal: usize,
-    /// Lengths in terms of the published ones, of the queries that have got a path and a length.
+    /// Path lengths relative to the published ones, for queries with both.
     pub(crate) ratios: Vec<f64>,
-    /// Microseconds of each query, in ascending order.
+    /// Time of each query, ascending (µs).
     pub(crate) times: Vec<f64>,
     pub(crate) preprocess_ms: f64,
     pub(crate) expanded: usize,
-    /// The first query that no way answers, in words.
+    /// Description of the first query without a path.
     pub(crate) without_way: Option<String>,
 }
 
 impl Result {
-    /// Whether all is as it should be.
+    /// Whether all results are correct.
     pub(crate) fn is_good(&self) -> bool {
         let asked = self.queries - self.skipped;
         self.solved == asked && (!self.algorithm.is_octile() || self.optimal == asked)
     }
 
-    /// The time that a share of the queries stays below.
+    /// Quantile of the query times.
     pub(crate) fn time(&self, share: f64) -> Option<f64> {
         let rank = (share * self.times.len() as f64).ceil() as usize;
         self.times.get(rank.saturating_sub(1)).copied()
     }
 }
 
-/// Cells between which ways lead, and the planner for them, once there was a query.
+/// Cells of one kind (ground or water), and their planner once there was a query.
 struct Domain {
     grid: BitGrid,
     planner: Option<Box<dyn GridPlanner>>,
@@ -61,7 +61,7 @@ impl Domain {
     }
 }
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> std::result::Result<Report, Failure> {
     args.plain.check_picture()?;
     let (name, grids, queries) = if let (Some(map), Some(scen)) = (&args.map, &args.scen) {
@@ -81,7 +81,7 @@ pub(crate) fn work(args: &Args) -> std::result::Result<Report, Failure> {
     Ok(args.plain.draw(report, "grid_benchmark.svg", || picture::of(&result.map, &domain.grid, query)))
 }
 
-/// The name, the grids to plan on (ground, then water) and the queries of published files.
+/// Name, grids (ground, then water) and queries of published files.
 fn published(map: &Path, scen: &Path) -> std::result::Result<(String, Vec<BitGrid>, Vec<Query>), Failure> {
     let map_of_all = movingai::load_map(map).map_err(Failure::input)?.value;
     let (grid, water) = (map_of_all.grid(), map_of_all.water());
@@ -196,7 +196,7 @@ fn answer(
     Ok(result)
 }
 
-/// What is wrong if all queries begin or end where nothing can be.
+/// Explains that all queries begin or end in blocked cells.
 fn no_query(query: &Query, domains: &[Domain], args: &Args) -> String {
     let is_free = |cell: GridCell| domains.iter().any(|domain| domain.grid.is_free(cell));
     let (start, goal) = (query.start, query.goal);

@@ -11,27 +11,26 @@ use std::path::PathBuf;
 
 use crate::common::PlainArgs;
 
-/// The command line of `grid-benchmark`.
+/// Command line of `grid-benchmark`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Answers the queries of a scenario file on a grid map and compares the paths' lengths with the published ones",
     after_help = "\
-Without --map and --scen, the map is one of rooms and the queries are drawn; --seed says which. Their lengths are then
-Dijkstra's.
+Without --map and --scen, map (with rooms) and queries are random, by --seed. The reference lengths are then Dijkstra's.
 
 JSON fields:
   map, algorithm, width, height
-  queries                     how many
-  skipped                     those that start or end in a blocked cell, or lead from water to land or from land to water
-  solved                      those with a path
-  optimal                     those whose path is as long as published, within max(0.006, 2e-5 of the length)
-  mean_ratio, worst_ratio     length in terms of the published one
-  mean_expanded               nodes taken off the queue, per query
-  timing                      with --timing: median_us and p95_us of a query, preprocess_ms to get ready for the map
-  picture                     the longest query, by four planners
-Outcomes: solved; wrong if a query that was not skipped got no path, or one of an octile planner is not as long as published.
-Water (`W`) is a map of its own: ways lead within it and within the land. A query that starts or ends outside of the map is
-none."
+  queries                     number of queries
+  skipped                     queries that start or end in a blocked cell, or lead from water to land or vice versa
+  solved                      queries with a path
+  optimal                     queries with a path of the published length, within max(0.006, 2e-5 of the length)
+  mean_ratio, worst_ratio     ratio of the length to the published one
+  mean_expanded               nodes removed from the queue, per query
+  timing                      with --timing: median_us and p95_us of a query, preprocess_ms of the map
+  picture                     the longest query with four planners
+Outcomes: solved; wrong if a query that was not skipped has no path, or an octile planner's path differs in length from the
+published one. Water (`W`) is a separate map: paths are within water or within land. A query that starts or ends outside
+of the map is invalid."
 )]
 pub(crate) struct Args {
     /// MovingAI map.
@@ -42,11 +41,11 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE.scen", requires = "map")]
     pub(crate) scen: Option<PathBuf>,
 
-    /// The planner.
+    /// Planner.
     #[arg(long, value_enum, default_value = "jps_plus")]
     pub(crate) algorithm: Algorithm,
 
-    /// Answer every query so often and count the fastest time.
+    /// Number of times to answer every query; the fastest time counts.
     #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true)]
     pub(crate) repeat: NonZero<u32>,
 
@@ -56,7 +55,7 @@ pub(crate) struct Args {
 
 crate::common::shares_options!(Args, plain: PlainArgs, unheeded: [("map", &["seed"])]);
 
-/// The planners.
+/// Planner by its name on the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 #[value(rename_all = "snake_case")]
 pub(crate) enum Algorithm {
@@ -66,16 +65,16 @@ pub(crate) enum Algorithm {
     Astar,
     /// Jump point search without preparation.
     Jps,
-    /// Jump point search with all jumps prepared.
+    /// Jump point search with precomputed jumps.
     JpsPlus,
-    /// The shortest paths in any direction.
+    /// The shortest any-angle paths.
     AnyAngle,
     /// Paths through a quadtree's free squares, pulled straight.
     Quadtree,
 }
 
 impl Algorithm {
-    /// Its name on the command line.
+    /// Name on the command line.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Dijkstra => "dijkstra",
@@ -87,7 +86,7 @@ impl Algorithm {
         }
     }
 
-    /// Whether its paths are of the kind whose lengths scenario files hold.
+    /// Whether its paths are octile, like those of scenario files.
     pub(crate) fn is_octile(self) -> bool {
         matches!(self, Self::Dijkstra | Self::Astar | Self::Jps | Self::JpsPlus)
     }

@@ -3,7 +3,7 @@ use roverlab::random::Stream;
 use roverlab::world::formats::movingai::Query;
 use roverlab::world::{BitGrid, GridCell};
 
-/// Rooms in a row, cells across each of them with one wall, and how many queries.
+/// Rooms per row, cells per room including one wall, and number of queries.
 const ROOMS: usize = 16;
 const ROOM: usize = 16;
 const QUERIES: usize = 200;

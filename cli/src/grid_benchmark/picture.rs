@@ -1,4 +1,4 @@
-//! Pictures of grids and of what planners do on them. Lengths are cells; the first row is at the top.
+//! Pictures of grids and of planners at work. Lengths are in cells; the first row is at the top.
 
 use roverlab::geometry::Point;
 use roverlab::nav::grid::{AnyAngle, GridPath, GridPlanner, GridSearch, JumpPointSearch};
@@ -6,13 +6,13 @@ use roverlab::picture::{Mark, Picture, SERIES, Style, ramp};
 use roverlab::world::formats::movingai::Query;
 use roverlab::world::{BitGrid, GridCell, Wall, World};
 
-/// How many colours tell when a cell was expanded, and the seconds of a film from one to the next.
+/// Number of colours for the order of expansion, and time between them in a film (s).
 const SHADES: usize = 10;
 const SHADE: f64 = 0.6;
-/// About how many pixels a panel is wide.
+/// Approximate width of a panel (pixels).
 const PANEL: f64 = 240.0;
 
-/// Dijkstra's algorithm, A*, jump point search and paths in any direction with one query.
+/// Dijkstra's algorithm, A*, jump point search and any-angle planning for one query.
 pub(crate) fn of(map: &str, grid: &BitGrid, query: &Query) -> Picture {
     let end = SHADE * SHADES as f64;
     let mut panels = Vec::new();
@@ -79,12 +79,12 @@ pub(crate) fn draw_path(picture: &mut Picture, grid: &BitGrid, path: &GridPath, 
     picture.during(from..).line(points, style).during(..);
 }
 
-/// Where a point in cells is in the picture.
+/// Position of a point, given in cells, in the picture.
 pub(crate) fn place(grid: &BitGrid, point: Point) -> Point {
     Point::new(point.x, grid.height() as f64 - point.y)
 }
 
-/// The blocked cells, in rectangles as wide as they go and then as high.
+/// The blocked cells as rectangles, maximal in width first, then in height.
 pub(crate) fn of_grid(grid: &BitGrid) -> Picture {
     let (width, height) = (grid.width(), grid.height());
     let mut world = World::empty(width as f64, height as f64);
@@ -102,14 +102,14 @@ pub(crate) fn of_grid(grid: &BitGrid) -> Picture {
         open = kept;
         open.extend(runs.iter().filter(|run| !known.contains(run)).map(|(from, to)| (*from, *to, row)));
     }
-    // Those of one thickness are drawn as one.
+    // Walls of equal thickness are drawn as one.
     world.walls.sort_by(|a, b| a.thickness.total_cmp(&b.thickness));
     let mut picture = Picture::new(&world);
     picture.without_scale();
     picture
 }
 
-/// A rectangle as a wall along its longer side, a little too wide, so that no seam shows between two.
+/// A rectangle as a wall along its longer side, slightly too wide, to hide seams.
 fn rectangle([left, right]: [f64; 2], [top, bottom]: [f64; 2]) -> Wall {
     const SEAM: f64 = 0.1;
     let (x, y) = (0.5 * (left + right), 0.5 * (top + bottom));
@@ -123,7 +123,7 @@ fn rectangle([left, right]: [f64; 2], [top, bottom]: [f64; 2]) -> Wall {
     wall
 }
 
-/// The runs of blocked cells in a row: the first one and the one behind the last.
+/// The runs of blocked cells in a row: the first cell, and the one after the last.
 fn blocked(grid: &BitGrid, row: usize) -> Vec<(usize, usize)> {
     let mut runs: Vec<(usize, usize)> = Vec::new();
     for column in (0..grid.width()).filter(|&column| !grid.is_free(GridCell::new(column, row))) {

@@ -17,22 +17,22 @@ use serde_json::{Value, json};
 use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres, rounded};
 use crate::driving::{Conditions, Run, check_lidar, paced};
 
-/// The command line of `lidar-scan`.
+/// Command line of `lidar-scan`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Takes a lidar scan, plots it on the robot's display, and finds walls, corners and objects in it",
     after_help = "\
-Without --world, the robot stands in a room with a corner that juts in, and two cans.
+Without --world, the robot is in a room with a projecting corner and two cans.
 
 JSON fields:
-  beams                       how many the scan has
-  walls                       how many straight walls it shows
-  corners                     a list of {x_mm, y_mm, angle_deg}: the angle on the robot's side; above 180 it juts in
+  beams                       number of beams in the scan
+  walls                       number of straight walls in it
+  corners                     a list of {x_mm, y_mm, angle_deg}: the angle on the robot's side; above 180 it projects
   objects                     a list of {x_mm, y_mm, radius_mm}
   peaks_deg, dips_deg         directions of the scan's local extrema, counter-clockwise from straight ahead
-  corner_error_mm             largest true distance from a corner that was found to the nearest end of a wall; null
+  corner_error_mm             largest true distance from a detected corner to the nearest end of a wall; null
                               without corners
-  object_error_mm             the same from an object to the nearest one of the world
+  object_error_mm             the same from a detected object to the nearest one in the world
   lcd, picture
 Outcomes: scanned, failed."
 )]
@@ -47,7 +47,7 @@ pub(crate) struct Args {
 
 crate::common::shares_options!(Args, common: CommonArgs);
 
-/// What came of a scan.
+/// Result of a scan.
 #[derive(Debug, Clone)]
 pub(crate) struct Seen {
     pub(crate) scan: LidarScan,
@@ -56,7 +56,7 @@ pub(crate) struct Seen {
     pub(crate) display: RgbImage,
 }
 
-/// Beams that are averaged and metres that make an extremum: as on the display.
+/// Number of averaged beams, and prominence of an extremum (m), as on the display.
 const WINDOW: usize = 5;
 const PROMINENCE: f64 = 0.08;
 
@@ -74,7 +74,7 @@ pub(crate) fn scan<R: Clock + Lidar + Display + ?Sized>(
     Ok(Seen { scan, features, extrema, display })
 }
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
@@ -108,7 +108,7 @@ fn save_display(args: &Args, run: &Run<Seen>) -> (Option<PathBuf>, Option<String
     }
 }
 
-/// A square with a corner that juts in, and two cans.
+/// A square room with a projecting corner, and two cans.
 fn scene() -> Scene {
     let mut world = World::empty(3.0, 3.0);
     let corners = [(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (1.9, 3.0), (1.9, 1.9), (0.0, 1.9)];
@@ -165,14 +165,14 @@ fn fields(report: Report, seen: &Seen, scene: &Scene) -> Report {
         .field("object_error_mm", object_error.map(millimetres))
 }
 
-/// The largest distance from one of some places to the nearest one of others.
+/// Largest distance of the found points from the nearest real one (m).
 fn farthest(found: impl Iterator<Item = Point>, real: &[Point]) -> Option<f64> {
     found
         .map(|place| real.iter().map(|other| (other - place).norm()).fold(f64::INFINITY, f64::min))
         .reduce(f64::max)
 }
 
-/// The room with what the scan shows of it.
+/// The room with the features found in the scan.
 fn picture(scene: &Scene, run: &Run<Seen>, noise: f64, seed: u64) -> Picture {
     let pose = scene.robots[0].pose;
     let mut picture = Picture::new(&scene.world);

@@ -12,37 +12,37 @@ use super::{Args, Finding};
 use crate::common::{Failure, Outcome, Progress, Report, millimetres, rounded};
 use crate::driving::Conditions;
 
-/// What came of many starts in one world.
+/// Results of many starts in one world.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Row {
     pub(crate) world: String,
-    /// From how many places the world looks the same.
+    /// Number of places from which the world looks the same.
     pub(crate) symmetry: usize,
     pub(crate) starts: u64,
-    /// The share that has to be right, in percent.
+    /// Required percentage of correct answers.
     pub(crate) share: u64,
-    /// One place, and the right one; or as many as look the same, the right one among them.
+    /// One place, the correct one; or all places that look the same, including the correct one.
     pub(crate) right: u64,
-    /// More or fewer places, the right one among them.
+    /// More or fewer places, including the correct one.
     pub(crate) several: u64,
     pub(crate) lost: u64,
-    /// Answers that are not true.
+    /// Number of wrong answers.
     pub(crate) wrong: u64,
     pub(crate) contacts: u64,
-    /// Metres, stated deviations and radians, of those that are right.
+    /// Largest errors of correct answers: position (m), stated deviations, heading (rad).
     pub(crate) worst_position: f64,
     pub(crate) worst_deviations: f64,
     pub(crate) worst_heading: f64,
     pub(crate) sim_time: f64,
-    /// Seeds of the wrong ones: the first ones.
+    /// First seeds with wrong answers.
     pub(crate) amiss: Vec<u64>,
 }
 
-/// A place is right within so many metres, stated deviations and radians.
+/// Maximum errors of a correct place.
 const NEAR: Error = Error { position: 0.1, deviations: 5.0, heading: 3.0 * std::f64::consts::PI / 180.0 };
 const LISTED: usize = 10;
 
-/// How far a place is from the robot's: metres, the same in stated deviations, radians.
+/// Error of a place: position (m), the same in stated deviations, heading (rad).
 #[derive(Debug, Clone, Copy)]
 struct Error {
     position: f64,
@@ -83,7 +83,7 @@ impl Row {
         }
     }
 
-    /// Whether enough is right, nothing is wrong, and nothing was touched.
+    /// Whether enough answers are correct, none is wrong, and nothing was touched.
     pub(crate) fn is_good(&self) -> bool {
         100 * self.right >= self.share * self.starts && self.wrong == 0 && self.contacts == 0
     }
@@ -113,7 +113,7 @@ impl Row {
     }
 }
 
-/// The campaign's work.
+/// Runs the campaign.
 pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
     let rows = rows(args)?;
     args.common.tell(text(&rows));
@@ -162,7 +162,7 @@ fn row(place: &Place, args: &Args, progress: &mut Progress) -> Result<Row, Failu
     Ok(row)
 }
 
-/// The table. Holds nothing that differs between machines.
+/// The table, without anything that differs between machines.
 pub(crate) fn text(rows: &[Row]) -> String {
     let mut text = String::from(
         "world        looks alike  starts  right  several  lost  wrong  contacts  worst mm  deviations  worst deg  mean s  good\n",

@@ -5,38 +5,38 @@ use roverlab::io::{self, Clock, DistanceSensors, Drive, Lidar, LidarScan, Odomet
 use roverlab::random::Stream;
 use roverlab::scan::{Hypothesis, Localisation, LocalisationMap, Localiser, LocaliserParameters};
 
-/// What the robot knows and is told.
+/// Driving options.
 #[derive(Debug, Clone)]
 pub(crate) struct Options {
     pub(crate) map: LocalisationMap,
     pub(crate) localiser: LocaliserParameters,
     pub(crate) random: RandomDriveParameters,
     pub(crate) seed: u64,
-    /// Simulated seconds for which it drives as long as there are several places.
+    /// Time for which it drives while there are several places (s).
     pub(crate) patience: f64,
 }
 
-/// What the robot has found out.
+/// Result of the localisation.
 #[derive(Debug, Clone)]
 pub(crate) struct Finding {
     pub(crate) localisation: Localisation,
     pub(crate) hypotheses: Vec<Hypothesis>,
-    /// Scans that were taken into account.
+    /// Number of scans used.
     pub(crate) scans: u32,
-    /// The last scan.
+    /// Last scan.
     pub(crate) scan: LidarScan,
-    /// When it took itself to be where, after each scan.
+    /// Hypotheses after each scan, with their times.
     pub(crate) history: Vec<(f64, Vec<Pose>)>,
 }
 
-/// Scans in a row with one place after which the robot is content.
+/// Number of consecutive scans with one place after which the robot stops.
 const CONTENT: u32 = 12;
-/// Steps of driving from one scan that is matched to the next.
+/// Number of steps between matched scans.
 const EVERY: u32 = 4;
-/// Seconds in which the robot comes to rest.
+/// Time for coming to rest (s).
 const REST: f64 = 1.0;
 
-/// Drives about until one place explains all scans, or patience is over. `watch` is called after each step.
+/// Drives about until one place explains all scans, or the time is over. `watch` is called after each step.
 pub(crate) fn drive<R: Clock + Drive + Odometry + DistanceSensors + Lidar + ?Sized>(
     robot: &mut R,
     options: &Options,
@@ -59,7 +59,7 @@ pub(crate) fn drive<R: Clock + Drive + Odometry + DistanceSensors + Lidar + ?Siz
         watch();
         io::Result::Ok(until(content >= CONTENT))
     })?;
-    // The last scan is taken at rest, so that its place is the robot's.
+    // The last scan is taken at rest, so that its pose is the robot's.
     robot.wait(REST)?;
     let scan = robot.scan()?;
     localiser.update(robot.pose()?, &scan)?;

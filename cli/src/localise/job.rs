@@ -10,25 +10,25 @@ use super::{campaign, picture, worlds};
 use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres, rounded};
 use crate::driving::{Conditions, Run, check_lidar, paced, world_with_others};
 
-/// The command line of `localise`.
+/// Command line of `localise`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
-    about = "Finds out where the robot is in a world that it knows, by matching scans while it drives about",
+    about = "Localises a robot in a known world by matching scans while it drives around",
     after_help = "\
-Without --world, the robot is somewhere in an office of its own, at a place drawn with the seed. It is told the world, and
-neither its place nor its heading. It drives about at random until one place explains all that it saw, or --patience is over.
+Without --world, the robot is at a random place, by the seed, in a built-in office. It knows the world, but neither its
+position nor its heading. It drives around at random until a single place explains all its scans, or --patience is over.
 
-With --campaign, many starts in worlds and halls, some of which look the same from several places; with --world too, many
-starts in that world. An answer is wrong if it names a single place more than 100 mm or 5 of its deviations away, or one of
-several that look the same, or several places none of which is the robot's.
+With --campaign, many starts in worlds and halls, some of which look the same from several places; with --world, many
+starts in that world. An answer is wrong if it is a single place more than 100 mm or 5 standard deviations away, or one
+of several identical places, or several places that do not include the robot's.
 
 JSON fields:
   position_error_mm, heading_error_deg
                               of the most probable place; null if there is none
-  hypotheses                  how many places explain what was seen
-  places                      a list of {x_mm, y_mm, heading_deg, probability}, the most probable one first
-  deviation_mm, deviation_deg standard deviations of the most probable place: the larger one of x and y, and the heading
-  scans                       how many were matched
+  hypotheses                  number of places that explain the scans
+  places                      a list of {x_mm, y_mm, heading_deg, probability}, most probable one first
+  deviation_mm, deviation_deg standard deviations of the most probable place: the larger one of x and y, and heading
+  scans                       number of matched scans
   time_limit_s, picture
   rows                        with --campaign only: the table
 Outcomes: localised, several_hypotheses, lost, collided, timed_out, failed; with --campaign: passed, wrong."
@@ -60,7 +60,7 @@ fn parse_patience(text: &str) -> Result<f64, String> {
     patience.ok_or_else(|| "expected 1 to 100000 s".into())
 }
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     if args.campaign {
         return campaign(args);
@@ -75,7 +75,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(common.draw(report, "localise.svg", || picture::of(&scene, &run, conditions.noise, conditions.seed)))
 }
 
-/// The office, with a robot somewhere in it.
+/// The office, with a robot at a random pose.
 fn own_scene(seed: u64) -> Scene {
     let (world, spec) = (worlds::office(), RobotSpec::s4());
     let starts = worlds::Starts::new(&world, spec.footprint.bounding_radius());
@@ -83,7 +83,7 @@ fn own_scene(seed: u64) -> Scene {
     Scene::with_robot(world, spec, start)
 }
 
-/// Lets the robot find out.
+/// Lets the robot localise itself.
 pub(super) fn run(
     args: &Args,
     scene: &Scene,
@@ -105,7 +105,7 @@ pub(super) fn run(
     conditions.run(scene, pace, |robot, step| drive(robot, &options, step))
 }
 
-/// Metres and radians from the most probable place to the robot.
+/// Position (m) and heading error (rad) of the most probable place.
 pub(super) fn errors(run: &Run<Finding>) -> Option<(f64, f64)> {
     let best = run.ending.as_ref().ok()?.localisation.best()?;
     let truth = run.truth.pose;

@@ -7,7 +7,7 @@ use super::Finding;
 use super::job::errors;
 use crate::driving::Run;
 
-/// A picture of a run: the world, the way, the last scan as the most probable place shows it, and all places.
+/// Picture of a run: the world, the path, the last scan at the most probable place, and all places.
 pub(crate) fn of(scene: &Scene, run: &Run<Finding>, noise: f64, seed: u64) -> Picture {
     let outline = scene.robots[0].spec.footprint;
     let mut picture = Picture::new(&scene.world);
@@ -28,7 +28,7 @@ pub(crate) fn of(scene: &Scene, run: &Run<Finding>, noise: f64, seed: u64) -> Pi
     ));
     let ends = finding.history.iter().skip(1).map(|(time, _)| *time).chain([run.sim_time]);
     for (index, ((from, places), until)) in finding.history.iter().zip(ends).enumerate() {
-        // The first places stay in the still picture: of them, those that are left were chosen.
+        // The first hypotheses stay in the still picture, as the final ones were selected from them.
         let first =
             Style::new(Colour::from_hex(0xe2_85_2b)).opacity(0.35).labelled("where it might be, by one scan");
         let (style, until) = if index == 0 { (first, f64::INFINITY) } else { (guess(), until) };
@@ -50,7 +50,7 @@ pub(crate) fn of(scene: &Scene, run: &Run<Finding>, noise: f64, seed: u64) -> Pi
     picture
 }
 
-/// Where the robot takes itself to be.
+/// Style of a hypothesis.
 fn guess() -> Style {
     Style::new(Colour::from_hex(0xd0_60_10))
 }

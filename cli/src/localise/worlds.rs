@@ -13,14 +13,14 @@ use roverlab::world::{Object, ObjectKind, Wall, World};
 pub(crate) struct Place {
     pub(crate) name: String,
     pub(crate) world: World,
-    /// From how many places it looks the same.
+    /// Number of places from which it looks the same.
     pub(crate) symmetry: usize,
-    /// The share of starts in percent from which the robot has to find out all that there is to know. In a large hall it may
-    /// see nothing but the floor.
+    /// Required percentage of fully successful starts. In a large hall the robot may see nothing but the
+    /// floor.
     pub(crate) share: u64,
 }
 
-/// Some rooms with doors between them: the command's own world.
+/// A few rooms connected by doors: the command's default world.
 pub(crate) fn office() -> World {
     let mut world = World::walled(5.0, 4.0);
     let walls = [
@@ -36,8 +36,8 @@ pub(crate) fn office() -> World {
     world
 }
 
-/// An L, a hall with crates, an office, a generated room and a generated course; a rectangle and a square, which look the
-/// same from two and from four places; empty halls, and halls with one to four marks.
+/// An L, a hall with crates, an office, a generated room and a generated course; a rectangle and a square,
+/// with symmetries of order two and four; empty halls, and halls with one to four marks.
 pub(crate) fn worlds() -> Vec<Place> {
     let mut angle = World::empty(4.0, 3.0);
     let corners = [(0.0, 0.0), (4.0, 0.0), (4.0, 1.6), (2.2, 1.6), (2.2, 3.0), (0.0, 3.0)];
@@ -65,7 +65,8 @@ pub(crate) fn worlds() -> Vec<Place> {
     small.into_iter().chain(halls.into_iter().chain(marked).map(|(size, marks)| hall(size, marks))).collect()
 }
 
-/// A square hall with some short walls as marks. Where the lidar sees from wall to wall, all can be found out.
+/// A square hall with short walls as marks. Where the lidar sees from wall to wall, the pose is fully
+/// determined.
 fn hall(size: u32, marks: u32) -> Place {
     const SEEN: u32 = 14;
     let metres = f64::from(size);
@@ -82,7 +83,8 @@ fn hall(size: u32, marks: u32) -> Place {
     Place { name, world, symmetry, share: if size <= SEEN { 98 } else { 0 } }
 }
 
-/// Where a robot may start: with room for it, where the world's own start can be reached, or else inside of the walls round it.
+/// Possible starts: with room for the robot, connected to the world's own start, otherwise inside the outer
+/// walls.
 pub(crate) struct Starts<'w> {
     world: &'w World,
     free: Reachability,
@@ -91,14 +93,14 @@ pub(crate) struct Starts<'w> {
 impl<'w> Starts<'w> {
     /// Fails for a world that is too large.
     pub(crate) fn new(world: &'w World, radius: f64) -> Result<Self, ParameterError> {
-        /// Metres along a cell; in a large world, so many cells along it.
+        /// Cell size (m), and maximum number of cells along a side.
         const RESOLUTION: f64 = 0.02;
         const CELLS: f64 = 2000.0;
         let resolution = RESOLUTION.max(world.site().size().max() / CELLS);
         Ok(Self { world, free: Reachability::new(world, radius + 0.05, resolution)? })
     }
 
-    /// A random pose, unless there is no room.
+    /// A random pose; `None` without room.
     pub(crate) fn draw(&self, seed: u64) -> Option<Pose> {
         const TRIES: usize = 10_000;
         let bounds = self.world.site();

@@ -9,33 +9,33 @@ use super::place::{Place, unexplored};
 use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres, rounded};
 use crate::driving::{Conditions, paced};
 
-/// The command line of `maze-explore`.
+/// Command line of `maze-explore`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Explores a whole maze by recursion, then drives to the goal by the shortest way and back",
     after_help = "\
---world takes a maze of any format (EyeSim's .maz, the micromouse text format, .maze, map, num); it says where the robot starts.
-Cells are 360 mm wide, for an S4, as in the book, or 180 mm with --micromouse.
+--world accepts a maze in any format (EyeSim's .maz, the micromouse text format, .maze, map, num), including the start.
+Cells are 360 mm wide for an S4, as in the book, or 180 mm with --micromouse.
 
 JSON fields:
   width, height               cells
-  early_marking               whether cells that are known on all sides are left out
-  visited_cells, looks        cells that the robot has been in, and stops to look around
-  unknown_walls               walls that it does not know: those that cannot be reached
-  wrong_walls                 walls that it knows wrongly
-  exploration_s               simulated seconds until it is back at the start
-  steps                       steps of the shortest way to the goal; null without one
-  at_goal                     whether it truly was there
-  localisation_error_mm       true error of where the robot takes itself to be in the end
+  early_marking               whether cells known on all sides are skipped
+  visited_cells, looks        visited cells, and stops for measurements
+  unknown_walls               walls that remain unknown because they are inaccessible
+  wrong_walls                 walls with a wrong result
+  exploration_s               simulated seconds until the return to the start
+  steps                       steps of the shortest path to the goal; null without one
+  at_goal                     whether it was truly there
+  localisation_error_mm       final true error of the robot's position estimate
   picture                     always
 Outcomes: returned, unreachable, missed, timed_out, collided, failed."
 )]
 pub(crate) struct ExploreArgs {
-    /// Go into every cell, also into those that are known on all sides.
+    /// Enter every cell, even those known on all sides.
     #[arg(long)]
     pub(crate) thorough: bool,
 
-    /// A micromouse in a maze of competition size.
+    /// Use a micromouse in a maze of competition size.
     #[arg(long)]
     pub(crate) micromouse: bool,
 
@@ -45,7 +45,7 @@ pub(crate) struct ExploreArgs {
 
 crate::common::shares_options!(ExploreArgs, common: CommonArgs);
 
-/// What the robot says after its drive.
+/// The robot's result.
 #[derive(Debug, Clone)]
 struct Told {
     exploration: Exploration,
@@ -55,7 +55,7 @@ struct Told {
     pose: Pose,
 }
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &ExploreArgs) -> Result<Report, Failure> {
     args.common.check_picture()?;
     let place = Place::new(&args.common, args.micromouse)?;

@@ -6,41 +6,41 @@ use super::place::Place;
 use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres};
 use crate::driving::{Conditions, paced};
 
-/// How to drive from cell to cell.
+/// Method of driving from cell to cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Drive {
-    /// By odometry alone, as the book's first program.
+    /// By odometry alone, like the book's first program.
     Open,
-    /// In the middle between the walls, by a proportional controller as the book's second program: it swings.
+    /// Centred between the walls by a proportional controller, like the book's second program; it oscillates.
     P,
-    /// The same by a PID controller, which odometry helps to see through the noise of the readings.
+    /// Centred by a PID controller, with odometry to reduce the noise of the readings.
     Pid,
 }
 
-/// The command line of `maze-left`.
+/// Command line of `maze-left`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
-    about = "Keeps the left hand on the wall of a maze until the goal or the start is reached",
+    about = "Follows the left wall of a maze until the goal or the start is reached",
     after_help = "\
---world takes a maze of any format (EyeSim's .maz, the micromouse text format, .maze, map, num); it says where the robot starts.
-Cells are 360 mm wide, for an S4, as in the book, or 180 mm with --micromouse.
+--world accepts a maze in any format (EyeSim's .maz, the micromouse text format, .maze, map, num), including the start.
+Cells are 360 mm wide for an S4, as in the book, or 180 mm with --micromouse.
 
 JSON fields:
   drive                       open, p or pid
   width, height               cells
-  cells                       cells driven, as the robot counts them
-  at_goal, back               whether the robot takes itself to be in the goal, or at the start again
-  really                      whether it truly is there
-  off_middle_mm               from the middle of the cell where it takes itself to be
+  cells                       driven cells, by the robot's count
+  at_goal, back               whether the robot estimates to be in the goal, or back at the start
+  really                      whether it is truly there
+  off_middle_mm               distance from the middle of the estimated cell
   picture                     always
-Outcomes: goal, returned, lost (it is not where it takes itself to be), stuck, timed_out, collided, failed."
+Outcomes: goal, returned, lost (the estimated cell is wrong), stuck, timed_out, collided, failed."
 )]
 pub(crate) struct LeftArgs {
-    /// How to drive from cell to cell.
+    /// Method of driving from cell to cell.
     #[arg(long, value_enum, default_value_t = Drive::Pid)]
     pub(crate) drive: Drive,
 
-    /// A micromouse in a maze of competition size.
+    /// Use a micromouse in a maze of competition size.
     #[arg(long)]
     pub(crate) micromouse: bool,
 
@@ -50,7 +50,7 @@ pub(crate) struct LeftArgs {
 
 crate::common::shares_options!(LeftArgs, common: CommonArgs);
 
-/// How a robot drives through a place.
+/// Driving parameters in a maze.
 fn parameters(
     args: &LeftArgs,
     place: &Place,
@@ -72,7 +72,7 @@ fn parameters(
     })
 }
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &LeftArgs) -> Result<Report, Failure> {
     args.common.check_picture()?;
     let place = Place::new(&args.common, args.micromouse)?;

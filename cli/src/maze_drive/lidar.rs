@@ -10,20 +10,20 @@ use super::place::Place;
 use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres};
 use crate::driving::{Conditions, paced};
 
-/// The command line of `maze-lidar`.
+/// Command line of `maze-lidar`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
-    about = "Follows the left wall of a maze by a lidar until the goal or the start is reached, and draws what it saw",
+    about = "Follows the left wall of a maze by lidar until the goal or the start is reached, and draws a map",
     after_help = "\
---world takes a maze of any format (EyeSim's .maz, the micromouse text format, .maze, map, num); it says where the robot starts.
-Cells are 360 mm wide. The map has every point that the lidar saw where odometry put it, so that it bends as odometry errs.
+--world accepts a maze in any format (EyeSim's .maz, the micromouse text format, .maze, map, num), including the start.
+Cells are 360 mm wide. The map contains all lidar points at their odometry positions, so odometry errors distort it.
 
 JSON fields:
   width, height               cells
-  cells                       cells that the robot has really been in
-  map_points                  points of the map
+  cells                       cells that the robot has truly visited
+  map_points                  number of points in the map
   map_error_mm                mean distance of the map's points from the nearest wall
-  odometry_error_mm           where odometry takes the robot to be in the end, from where it is
+  odometry_error_mm           final true error of odometry
   picture                     always
 Outcomes: goal, returned, timed_out, collided, failed."
 )]
@@ -34,7 +34,7 @@ pub(crate) struct LidarArgs {
 
 crate::common::shares_options!(LidarArgs, common: CommonArgs);
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &LidarArgs) -> Result<Report, Failure> {
     args.common.check_picture()?;
     let place = Place::new(&args.common, false)?;
@@ -85,11 +85,11 @@ pub(crate) fn work(args: &LidarArgs) -> Result<Report, Failure> {
     }))
 }
 
-/// Walls by the squares of a grid that they come near, as a map has millions of points.
+/// Walls indexed by the grid squares near them, as a map has millions of points.
 struct NearWalls<'a> {
     walls: &'a [Wall],
     side: f64,
-    /// By column and row, the walls that are less than a side away from anywhere in the square.
+    /// By column and row, the walls less than one side length away from the square.
     squares: BTreeMap<(i64, i64), Vec<&'a Wall>>,
 }
 
@@ -109,12 +109,12 @@ impl<'a> NearWalls<'a> {
         Self { walls, side, squares }
     }
 
-    /// Metres from a point to the nearest wall; 0 within one.
+    /// Distance of a point from the nearest wall (m); 0 within one.
     fn distance(&self, point: Point) -> f64 {
         let square = ((point.x / self.side).floor() as i64, (point.y / self.side).floor() as i64);
         let near = self.squares.get(&square).map_or(&[][..], Vec::as_slice);
         let distance = nearest(near.iter().copied(), point);
-        // Farther than a side, another wall may be nearer.
+        // Beyond a side length, another wall may be nearer.
         if distance <= self.side { distance } else { nearest(self.walls.iter(), point) }
     }
 }

@@ -8,7 +8,7 @@ use roverlab::world::{RobotSpec, Scene};
 use crate::common::{CommonArgs, Failure};
 use crate::driving::Run;
 
-/// The commands' own maze: all of its walls hang together, and the goal is in a corner of it.
+/// The commands' default maze: all walls are connected, and the goal is in a corner.
 const OWN: &str = "\
 o---o---o---o---o---o
 |           |       |
@@ -23,7 +23,7 @@ o   o---o   o---o   o
 o---o---o---o---o---o
 ";
 
-/// A maze, and the robot that drives in it.
+/// A maze, and its robot.
 #[derive(Debug, Clone)]
 pub(super) struct Place {
     pub(super) file: MazeFile,
@@ -32,7 +32,7 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// The maze of `--world`, or the commands' own, in the size of a robot.
+    /// The maze of `--world`, or the default one, at the robot's scale.
     pub(super) fn new(common: &CommonArgs, small: bool) -> Result<Self, Failure> {
         common.check_maze()?;
         let file = match &common.world {
@@ -60,7 +60,7 @@ impl Place {
         Scene::with_robot(self.scale.world(self.maze()), self.spec.clone(), start)
     }
 
-    /// The cell so many cells to the east and to the north of the start; `None` outside of the maze.
+    /// The cell at an offset east and north of the start; `None` outside the maze.
     pub(super) fn cell(&self, (east, north): (i32, i32)) -> Option<Cell> {
         let start = self.maze().start();
         let x = u16::try_from(i32::from(start.x) + east).ok()?;
@@ -82,7 +82,7 @@ impl Place {
         picture
     }
 
-    /// The same with where the robot was.
+    /// The same with the robot's path.
     pub(super) fn picture_of<T>(&self, title: &str, caption: String, run: &Run<T>) -> Picture {
         let mut picture = self.picture(title);
         picture.caption(caption);
@@ -90,7 +90,7 @@ impl Place {
         picture
     }
 
-    /// Whether a point lies in a cell of the goal.
+    /// Whether a point lies in a goal cell.
     pub(super) fn is_at_goal(&self, point: Point) -> bool {
         self.scale.cell_of(self.maze(), point).is_some_and(|cell| self.maze().is_goal(cell))
     }

@@ -12,34 +12,34 @@ use super::explore::{Told, drive, goal_error, kit, limit, stage};
 use crate::common::{Failure, Outcome, Report, millimetres, rounded, share_out};
 use crate::driving::{Conditions, Run};
 
-/// What a run through a maze came to.
+/// Result of a run through a maze.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Trial {
     pub(crate) maze: String,
     pub(crate) side: usize,
     pub(crate) seed: u64,
-    /// Whether the run had no noise. With noise, a short run may be late by more than the part that is asked.
+    /// Whether the run had no noise. With noise, a short run may exceed the allowed delay.
     pub(crate) ideal: bool,
     pub(crate) proved: bool,
     pub(crate) contacts: u32,
-    /// Walls that the robot knows wrongly.
+    /// Number of walls in the robot's map that are wrong.
     pub(crate) wrong_walls: usize,
-    /// Whether its plan is as fast as that through the true maze.
+    /// Whether its plan is as fast as that for the true maze.
     pub(crate) best_plan: bool,
-    /// By how much the fast run took longer than planned, relatively; none where there is no way.
+    /// Relative delay of the fast run compared with the plan; `None` without a way.
     pub(crate) late: Option<f64>,
-    /// Cells between where the fast run truly ended and the middle of the goal; none without one.
+    /// True distance of the fast run's end from the middle of the goal (cells); `None` without one.
     pub(crate) goal_error: Option<f64>,
-    /// Metres between where the robot was in the end and where it took itself to be.
+    /// Final error of the robot's pose estimate (m).
     pub(crate) lost: f64,
     pub(crate) sim_time: f64,
     pub(crate) error: Option<String>,
 }
 
 impl Trial {
-    /// Relative difference to the plan that is good.
+    /// Maximum relative delay compared with the plan.
     const LATE: f64 = 0.02;
-    /// Cells from the middle of the goal at which a fast run may end.
+    /// Maximum distance of a fast run's end from the middle of the goal (cells).
     const NEAR: f64 = 0.25;
 
     pub(crate) fn is_good(&self) -> bool {
@@ -50,7 +50,7 @@ impl Trial {
         self.late.is_none_or(|late| late.abs() <= Self::LATE)
     }
 
-    /// What went wrong, in words.
+    /// Description of the failures.
     fn trouble(&self) -> Option<String> {
         let mut list: Vec<String> = self.error.iter().cloned().collect();
         let mut add = |wrong: bool, what: String| {
@@ -86,7 +86,7 @@ pub(crate) fn campaign(args: &Args, folder: &Path) -> Result<Report, Failure> {
     let failures = trials.iter().filter_map(|trial| {
         Some(json!({ "maze": trial.maze, "seed": trial.seed, "trouble": trial.trouble()? }))
     });
-    // Contacts are in the rows, and decide the outcome there.
+    // Contacts are in the rows, which determine the outcome.
     Ok(Report { sim_time: Some(trials.iter().map(|trial| trial.sim_time).sum()), ..Report::new(outcome) }
         .field("folder", folder)
         .field("mazes", mazes.len())
@@ -94,7 +94,7 @@ pub(crate) fn campaign(args: &Args, folder: &Path) -> Result<Report, Failure> {
         .field("failures", failures.collect::<Vec<_>>()))
 }
 
-/// The mazes of a folder and those below it, in the order of their names; files of other kinds are left out.
+/// The mazes of a folder and its subfolders, ordered by name; other files are ignored.
 fn mazes(folder: &Path) -> Result<Vec<(String, MazeFile)>, Failure> {
     let mut paths = BTreeSet::new();
     collect(folder, &mut paths)?;
@@ -117,7 +117,7 @@ fn collect(folder: &Path, paths: &mut BTreeSet<PathBuf>) -> Result<(), Failure> 
     for entry in fs::read_dir(folder).map_err(unreadable)? {
         let entry = entry.map_err(unreadable)?;
         let path = entry.path();
-        // Links are not followed, so that none leads round in a circle.
+        // Links are not followed, to avoid loops.
         if entry.file_type().map_err(unreadable)?.is_dir() {
             collect(&path, paths)?;
         } else {
@@ -164,11 +164,11 @@ fn judged(args: &Args, name: &str, file: &MazeFile, seed: u64, run: &Run<()>, to
         contacts: run.truth.contacts,
         wrong_walls: told.map_or(0, |told| {
             let sides = truth.cells().flat_map(|cell| Direction::ALL.map(|side| (cell, side)));
-            // A robot takes the outer wall for granted; gaps in it are defects of the file.
+            // A robot assumes the outer wall; gaps in it are defects of the file.
             let sides = sides.filter(|&(cell, side)| truth.neighbour(cell, side).is_some());
             let wrong = |&(cell, side): &(_, _)| {
                 let known = told.known.wall(cell, side);
-                // An unknown wall of the file stands in the world.
+                // An unknown wall of the file exists in the world.
                 let stands = truth.wall(cell, side) != WallState::Absent;
                 known != WallState::Unknown && (known == WallState::Present) != stands
             };
@@ -189,7 +189,7 @@ fn judged(args: &Args, name: &str, file: &MazeFile, seed: u64, run: &Run<()>, to
     }
 }
 
-/// Seconds of the fastest run through the true maze.
+/// Duration of the fastest run through the true maze (s).
 fn best_time(args: &Args, file: &MazeFile) -> Option<f64> {
     let (_, scale, parameters) = kit(args.doubled);
     let mut planner = FastPlanner::new(scale, parameters.racing).ok()?;
@@ -251,7 +251,7 @@ fn rows(trials: &[Trial]) -> Vec<Row> {
     sides.into_iter().map(of).chain([Row::new("all".into(), &trials.iter())]).collect()
 }
 
-/// The table, and what went wrong.
+/// The table, and the failures.
 fn text(trials: &[Trial]) -> String {
     let mut text = String::from(
         "size  mazes  runs  proved  collided  best plan  raced  on time  worst late %  worst lost mm\n",

@@ -16,22 +16,22 @@ use super::{Args, picture, scene};
 use crate::common::{Driven, Failure, Outcome, Report, millimetres, rounded};
 use crate::driving::{Conditions, Run, draw_contacts, paced};
 
-/// What the robot says after its drive.
+/// The robot's result.
 #[derive(Debug, Clone)]
 pub(crate) struct Told {
     pub(crate) exploration: Exploration,
-    /// What it knows about the maze.
+    /// The known maze.
     pub(crate) known: Maze,
     pub(crate) plan: Option<FastPlan>,
-    /// Seconds of the fast run.
+    /// Duration of the fast run (s).
     pub(crate) race: Option<f64>,
-    /// Steps of the watcher before the fast run.
+    /// Number of observed steps before the fast run.
     pub(crate) explored_steps: usize,
-    /// Where it takes itself to be in the end.
+    /// Final pose estimate.
     pub(crate) pose: Pose,
 }
 
-/// The robot, and the maze in its size.
+/// The robot, and the maze at its scale.
 pub(crate) fn kit(doubled: bool) -> (RobotSpec, Scale, MazeRunnerParameters) {
     if doubled {
         (RobotSpec::s4(), Scale::DOUBLED, MazeRunnerParameters::EYEBOT)
@@ -68,12 +68,12 @@ pub(crate) fn explore(args: &Args) -> Result<Report, Failure> {
     Ok(args.common.draw(report, "micromouse.svg", || picture_of(&file, &run, told, (&spec, scale))))
 }
 
-/// Metres from where a robot is to the middle of the nearest cell of the goal.
+/// Distance of a robot from the middle of the nearest goal cell (m).
 pub(crate) fn goal_error(truth: Pose, maze: &Maze, scale: Scale) -> f64 {
     maze.goals().map(|goal| truth.distance_to(scale.centre(goal))).fold(f64::INFINITY, f64::min)
 }
 
-/// Simulated seconds that are more than any maze needs.
+/// A time limit sufficient for any maze (s).
 pub(crate) fn limit(maze: &Maze) -> f64 {
     600.0 + 40.0 * maze.cell_count() as f64
 }
@@ -83,8 +83,8 @@ pub(crate) fn stage(file: &MazeFile, spec: &RobotSpec, scale: Scale) -> Scene {
     Scene::with_robot(scale.world(&file.maze), spec.clone(), start)
 }
 
-/// The robot's program: it knows the size of the maze, its start and its goal. What it says of the maze holds even if the fast
-/// run fails.
+/// The robot's program, which knows the maze's size, start and goal. Its result of the exploration remains
+/// valid if the fast run fails.
 pub(crate) fn drive(
     robot: &mut Driven,
     args: &Args,

@@ -14,16 +14,16 @@ use super::plan::with_maze;
 use super::{Args, scene};
 use crate::common::{Failure, Outcome, Printed, Report, Stopwatch, rounded, run_printing};
 
-/// Bytes of the longest line that is read.
+/// Maximum length of a line (bytes).
 const LINE: usize = 4096;
-/// Lines that may be on their way.
+/// Maximum number of lines in transit.
 const PIPE: usize = 1024;
-/// Lines that are no command, and lines in all, after which a program is stopped.
+/// Maximum number of invalid lines, and of all lines, before a program is stopped.
 const NONSENSE: u64 = 1000;
 const LINES: u64 = 2_000_000;
 
-/// A mouse for the simulator, if the command line asks for one: commands go to standard output, and what is
-/// left to say to standard error. Returns the exit status.
+/// Acts as a mouse for the simulator, if requested: commands go to standard output, everything else to
+/// standard error. Returns the exit status.
 pub(crate) fn drive_for_another(words: &[OsString]) -> Option<u8> {
     let [_, command, options @ ..] = words else { return None };
     if command != "micromouse" || !options.iter().any(|word| word == "--mms") {
@@ -71,7 +71,7 @@ fn too_long(who: &str) -> Failure {
     Failure::run(format!("{who}: found a line of more than {LINE} bytes; expected shorter ones"))
 }
 
-/// What came of reading a line.
+/// Result of reading a line.
 #[derive(Debug)]
 enum Heard {
     Line(String),
@@ -90,10 +90,10 @@ fn read_line(input: &mut dyn BufRead) -> Heard {
     }
 }
 
-/// Runs a mouse that was written for the simulator, and tells its score.
+/// Runs a mouse written for the simulator, and reports its score.
 pub(crate) fn run_program(args: &Args, command: &str) -> Result<Report, Failure> {
     let mut file = scene::maze(args)?;
-    // In that simulator, and mice have no other way to know.
+    // As in that simulator; mice cannot learn them otherwise.
     file.maze.set_start(Cell::default(), Direction::North);
     file.maze.set_goals(file.maze.centre());
     let mut program = Program::start(command)?;
@@ -121,8 +121,8 @@ pub(crate) fn run_program(args: &Args, command: &str) -> Result<Report, Failure>
         .field("best_run_effective_distance", best.map(|run| run.effective)))
 }
 
-/// A program under way. Two threads hold its streams, so that it cannot stop us by not reading or not writing; they end with
-/// the streams, and nobody waits for them.
+/// A running program. Two threads own its streams, so that it cannot block this process; they end with the
+/// streams, without being joined.
 struct Program {
     name: String,
     child: Child,
@@ -169,7 +169,7 @@ impl Program {
         Ok(Self { name: name.to_owned(), child, said, answers: Some(answers) })
     }
 
-    /// Answers until the program ends, or until something is wrong with it.
+    /// Answers until the program ends or misbehaves.
     fn serve(&mut self, referee: &mut MmsReferee, args: &Args) -> Result<(), String> {
         let clock = Stopwatch::start();
         let name = self.name.clone();
@@ -209,7 +209,7 @@ impl Program {
         }
     }
 
-    /// Waits for the program's end, or makes it end.
+    /// Waits for the program's end, or kills it.
     fn stop(&mut self, patience: f64) -> Result<(), String> {
         self.answers = None;
         let clock = Stopwatch::start();

@@ -12,7 +12,7 @@ pub(crate) use args::Args;
 
 use crate::common::{Failure, Report};
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     args.common.check_picture()?;
     if let Some(command) = &args.mms_run {

@@ -4,7 +4,7 @@ use roverlab::maze::files::MazeFile;
 use roverlab::maze::{Cell, Maze, Route, Scale};
 use roverlab::picture::{Mark, Picture, SERIES, Style};
 
-/// The maze, its start and its goal.
+/// The maze with start and goal.
 pub(crate) fn of_maze(maze: &Maze, scale: Scale) -> Picture {
     let mut picture = Picture::new(&scale.world(maze));
     let half = 0.5 * scale.cell;
@@ -44,12 +44,12 @@ pub(crate) fn of_plan(file: &MazeFile, short: Option<&Route>, straight: Option<&
     picture
 }
 
-/// The middles of a route's cells, a little aside so that two routes can be told apart.
+/// Centres of a route's cells, shifted to tell two routes apart.
 fn points(route: &Route, scale: Scale, shift: f64) -> Vec<Point> {
     route.cells().map(|cell: Cell| scale.centre(cell) + Vector::new(shift, shift)).collect()
 }
 
-/// Where the robot drove: pale while it explored, coloured by its speed on the fast run.
+/// The robot's path: pale during exploration, coloured by speed on the fast run.
 pub(crate) fn add_drive(picture: &mut Picture, trail: &[(f64, Pose)], split: usize) {
     let style = Style::new(SERIES[1]).width(1.6).opacity(0.6).labelled("exploration");
     picture.trace(trail[..split].iter().map(|(time, pose)| (*time, pose.position())), style);

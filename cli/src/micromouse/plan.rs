@@ -6,10 +6,10 @@ use roverlab::maze::{
 use super::{Args, picture, scene};
 use crate::common::{Failure, Outcome, Report};
 
-/// Plans the way through a maze.
+/// Plans the route through a maze.
 pub(crate) fn plan(args: &Args) -> Result<Report, Failure> {
     let file = scene::maze(args)?;
-    // Turns are counted for a robot that faces north, as the answers that are compared are.
+    // Turns are counted for a robot that faces north, like the reference answers.
     let mut maze = file.maze.clone();
     maze.set_start(maze.start(), Direction::North);
     let best = |preference| shortest_route(&maze, Unknown::Closed, preference);
@@ -24,7 +24,7 @@ pub(crate) fn plan(args: &Args) -> Result<Report, Failure> {
     Ok(args.common.draw(report, "micromouse.svg", draw))
 }
 
-/// Adds what the file says.
+/// Adds the content of the maze file.
 pub(crate) fn with_maze(report: Report, args: &Args, file: &MazeFile) -> Report {
     let maze = &file.maze;
     report

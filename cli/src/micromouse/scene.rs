@@ -3,7 +3,7 @@ use roverlab::maze::files::{self, MazeFile, MazeFormat};
 use super::Args;
 use crate::common::Failure;
 
-/// The command's own maze: small, with a way round on either side and a staircase for diagonals.
+/// The command's default maze: small, with a way round on either side and a staircase for diagonals.
 const OWN: &str = "\
 o---o---o---o---o---o---o---o---o
 |               |               |
@@ -24,7 +24,7 @@ o   o   o---o   o---o   o---o   o
 o---o---o---o---o---o---o---o---o
 ";
 
-/// The maze that the options name, or the command's own.
+/// The maze of the options, or the default one.
 pub(crate) fn maze(args: &Args) -> Result<MazeFile, Failure> {
     args.common.check_maze()?;
     let named = args.maze.as_ref().map(|file| ("maze", file));
@@ -38,7 +38,7 @@ pub(crate) fn maze(args: &Args) -> Result<MazeFile, Failure> {
     file.map_err(Failure::input)
 }
 
-/// A format by its name in reports.
+/// Name of a format in reports.
 pub(crate) fn name(format: MazeFormat) -> &'static str {
     match format {
         MazeFormat::Text => "text",

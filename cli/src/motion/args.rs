@@ -1,30 +1,30 @@
 use crate::common::{CommonArgs, OF_ONE_RUN};
 
-/// The command line of `motion`.
+/// Command line of `motion`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
-    about = "Watches for motion in three sectors of the image and turns to where most of it is, also while turning",
+    about = "Detects motion in three sectors of the image and turns to the strongest one, also while turning",
     after_help = "\
-Without --world, two robots among cans: one watches, the other drives in circles. In a world from a file, the second robot
-does the same; --still lets it stand.
+Without --world, there are two robots among cans: one observes, the other drives in circles. In a world from a file, the
+second robot does the same; with --still it does not move.
 
-With --campaign, pairs of images 0.1 s apart by a standing robot, of other robots that stand or drive: the threshold at which
-at most one still pair in 1000 is an alarm, the share of moving pairs above it, and the same for the book's method, the mean
-of the absolute difference, with its threshold of 15 and with one of its own.
+With --campaign, pairs of images 0.1 s apart from a standing robot, of other robots that stand or drive: the threshold
+at which at most one still pair in 1000 causes an alarm, the fraction of moving pairs above it, and the same for the
+book's method, the mean absolute difference, with its threshold of 15 and with an optimal one.
 
 JSON fields:
-  images, alarms              compared images; those with motion
+  images, alarms              number of compared images; of those with motion
   sectors                     alarms by sector: left, middle, right
-  strongest                   the largest change of blocks, in standard deviations of the noise
-  turned_deg                  how far the robot turned, by its true heading
+  strongest                   largest change of blocks, in standard deviations of the noise
+  turned_deg                  true change of the robot's heading
   time_limit_s, picture
-  pairs                       campaign: of each kind
+  pairs                       campaign: number of each kind
   threshold, false_alarms, detected
-  at_best, book, book_at_best the same with the lowest threshold of few alarms; for the book's method
+  at_best, book, book_at_best the same with the lowest threshold with few alarms; for the book's method
 Outcomes: watched, collided, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
-    /// The other robot stands still.
+    /// Keep the other robot still.
     #[arg(long)]
     pub(crate) still: bool,
 
@@ -32,11 +32,11 @@ pub(crate) struct Args {
     #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = parse_light, allow_hyphen_values = true)]
     pub(crate) light: f64,
 
-    /// Compare many pairs of images and print what is found in them.
+    /// Compare many pairs of images and print the detection rates.
     #[arg(long)]
     pub(crate) campaign: bool,
 
-    /// Pairs of each kind in a campaign.
+    /// Number of pairs of each kind in a campaign.
     #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) pairs: u64,
 

@@ -10,22 +10,22 @@ use super::watch::bearing;
 use super::{Args, scene};
 use crate::common::{Failure, Outcome, Report, rounded};
 
-/// Seconds between the two images of a pair, and pairs of each kind in a scene.
+/// Time between the two images of a pair (s), and number of pairs per scene.
 const APART: f64 = 0.1;
 const IN_A_SCENE: u64 = 20;
-/// Still pairs in so many, of which one may be an alarm.
+/// Number of still pairs per allowed alarm.
 const RATE: u64 = 1000;
 /// The book's threshold (Program 11.14).
 const BOOK: f64 = 15.0;
 
-/// What is measured in pairs of images: the largest change of a block, and the mean difference.
+/// Measures of image pairs: largest change of a block, and mean difference.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Pairs {
     pub(crate) still: Vec<[f64; 2]>,
     pub(crate) moving: Vec<[f64; 2]>,
 }
 
-/// What a threshold makes of pairs: alarms in still ones, and the share of moving ones that are found.
+/// Performance of a threshold: alarms in still pairs, and detected fraction of moving ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Roc {
     pub(crate) threshold: f64,
@@ -34,14 +34,14 @@ pub(crate) struct Roc {
 }
 
 impl Pairs {
-    /// What a threshold of one of the two measures makes of the pairs.
+    /// Performance of a threshold on one of the two measures.
     pub(crate) fn at(&self, measure: usize, threshold: f64) -> Roc {
         let above = |pairs: &[[f64; 2]]| pairs.iter().filter(|pair| pair[measure] > threshold).count();
         let detected = above(&self.moving) as f64 / self.moving.len().max(1) as f64;
         Roc { threshold, false_alarms: above(&self.still), detected }
     }
 
-    /// The lowest threshold with at most so many alarms.
+    /// The lowest threshold with at most `alarms` alarms.
     pub(crate) fn best(&self, measure: usize, alarms: usize) -> Roc {
         let mut values: Vec<f64> = self.still.iter().map(|pair| pair[measure]).collect();
         values.sort_by(|a, b| b.total_cmp(a));
@@ -92,7 +92,7 @@ pub(crate) fn pairs(args: &Args) -> Result<Pairs, Failure> {
     Ok(pairs)
 }
 
-/// The pairs of one scene, of those in which the other robot is in view and, if it is to move, did so.
+/// The pairs of one scene in which the other robot is in view and, if required, moved.
 fn in_scene(args: &Args, seed: u64, moves: bool) -> io::Result<Vec<[f64; 2]>> {
     let scene = scene::drawn(seed);
     let options = SimOptions { light: args.light, ..SimOptions::with_noise(args.common.noise, seed) };
@@ -105,10 +105,10 @@ fn in_scene(args: &Args, seed: u64, moves: bool) -> io::Result<Vec<[f64; 2]>> {
         let turn = stream.between(1.0, 2.5) * if stream.chance(0.5) { 1.0 } else { -1.0 };
         other.set_speed(Twist::new(speed, turn))?;
     }
-    // Whose program has ended keeps its speed.
+    // A robot whose program has ended keeps its speed.
     drop(other);
     let mut robot = simulation.robot(0)?;
-    // Motors take a while.
+    // The motors take time to respond.
     robot.wait(1.0)?;
     let mut detector = MotionDetector::new(MotionParameters::default()).map_err(|e| wrong(&e))?;
     let mut found = Vec::new();

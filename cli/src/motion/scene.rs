@@ -5,7 +5,7 @@ use roverlab::geometry::{Point, Pose};
 use roverlab::random::Stream;
 use roverlab::world::{Colour, Object, ObjectKind, RobotPlacement, RobotSpec, Scene, Wall, World};
 
-/// The book's scene: a robot that watches, and another one between two cans (Program 11.16).
+/// The book's scene: a watching robot, and another one between two cans (Program 11.16).
 pub(crate) fn book() -> Scene {
     let mut world = room();
     for (x, y) in [(1.55, 1.05), (1.55, 1.95)] {
@@ -15,7 +15,7 @@ pub(crate) fn book() -> Scene {
     with_two(world, Pose::new(0.6, 1.5, 0.0), Pose::new(1.55, 1.65, 0.0))
 }
 
-/// Another scene for every seed: the second robot is before the first one.
+/// A different scene for every seed: the second robot is in front of the first one.
 pub(crate) fn drawn(seed: u64) -> Scene {
     let mut stream = Stream::new(seed).child("motion scene", 0);
     let mut world = room();

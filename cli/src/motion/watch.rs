@@ -8,22 +8,22 @@ use super::{Args, campaign, scene};
 use crate::common::{Failure, Outcome, Report, rounded};
 use crate::driving::{Conditions, Run, paced};
 
-/// Simulated seconds of watching.
+/// Time of watching (s).
 const TIME_LIMIT: f64 = 10.0;
-/// How the other robot drives: circles of a quarter of a metre.
+/// Motion of the other robot: circles with a radius of 0.25 m.
 const CIRCLE: Twist = Twist::new(0.2, 0.8);
 
-/// What was seen.
+/// Result of watching.
 #[derive(Debug, Clone, Default)]
 struct Seen {
     images: u32,
     sectors: [u32; 3],
     strongest: f64,
-    /// When there was motion, in which sector, and how the robot stood then.
+    /// Times and sectors of motion, with the robot's pose.
     alarms: Vec<(f64, usize)>,
 }
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     if args.campaign {
         args.common.check_placeless("the pairs of a campaign are drawn")?;
@@ -83,7 +83,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(common.draw(report, "motion.svg", || picture(&scene, &run)))
 }
 
-/// The other robot's way, and the sector of each alarm as the robot looked then.
+/// The other robot's path, and the sector of each alarm at the robot's pose.
 fn picture(scene: &Scene, run: &Run<Seen>) -> Picture {
     let spec = &scene.robots[0].spec;
     let mut drawing = Picture::new(&scene.world);
@@ -121,10 +121,10 @@ fn picture(scene: &Scene, run: &Run<Seen>) -> Picture {
     drawing
 }
 
-/// Metres to the arcs of alarms.
+/// Radius of the alarm sectors (m).
 const REACH: f64 = 0.6;
 
-/// The image on the display, with a bar under the sector where something moves.
+/// Shows the image on the display, with a bar below the sector in motion.
 fn show<R: Display + ?Sized>(robot: &mut R, watch: &MotionWatch, image: &image::GrayImage) -> io::Result<()> {
     robot.draw_image(DisplayImage::Gray(image), Viewport::default())?;
     let Some(sector) = watch.motion().and_then(|motion| motion.strongest) else { return Ok(()) };
@@ -133,7 +133,7 @@ fn show<R: Display + ?Sized>(robot: &mut R, watch: &MotionWatch, image: &image::
     robot.draw_rectangle((left, 230), (left + 105, 239), colour, io::Fill::Solid)
 }
 
-/// The direction of one place from a pose, in radians to the left of straight ahead.
+/// Bearing of a place from a pose, positive to the left (rad).
 pub(super) fn bearing(from: roverlab::geometry::Pose, to: roverlab::geometry::Point) -> f64 {
     let place = from.to_local(to);
     math::atan2(place.y, place.x)

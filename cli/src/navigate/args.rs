@@ -3,44 +3,44 @@ use std::num::NonZero;
 use crate::common::{CommonArgs, Failure, OF_ONE_RUN};
 use roverlab::geometry::units;
 
-/// The command line of `navigate`.
+/// Command line of `navigate`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
-    about = "Drives a robot with a lidar to a goal in a known world, past what the world is not known to hold",
+    about = "Drives a robot with a lidar to a goal in a known world with unmapped obstacles",
     after_help = "\
-Without --world, the robot drives through a world of the command's own, in which it does not know of three obstacles. With
---world, what --unmapped says is added to it, where it leaves a way, and the robot is told of the world without that. Other
-robots stand still, and nobody tells of them either.
+Without --world, the robot drives in a built-in world with three obstacles unknown to it. With --world, the obstacles of
+--unmapped are added where they leave a way, and the robot knows the world without them. Other robots stand still and
+are also unknown to it.
 
---world also takes MovingAI maps (.map): cells of 500 mm, the lower left corner of the map at 0,0. Unknown cells of a ROS map
-are floor.
+--world also accepts MovingAI maps (.map): cells of 500 mm, with the lower left corner of the map at 0,0. Unknown cells
+of a ROS map are floor.
 
-With --campaign, generated worlds in each of which up to five obstacles are unmapped; every goal can be reached.
+With --campaign, generated worlds with up to five unmapped obstacles each; every goal is reachable.
 
 JSON fields:
   goal                        [x, y] mm
   goal_distance_mm            true distance at the end
-  position_error_mm           how far the robot is from where it takes itself to be, at the end
+  position_error_mm           final true error of the robot's position estimate
   planned_length_mm           length of the first plan, or null
-  clearance_mm                what the first plan keeps beside the robot, or null
-  replans                     how often what was seen changed the plan
-  recoveries                  how often the robot did not get on and backed off, or doubted what it had seen
-  unmapped                    obstacles that the robot was not told of
+  clearance_mm                clearance beside the robot in the first plan, or null
+  replans                     number of plan changes caused by scans
+  recoveries                  number of times that the robot backed off without progress, or discarded earlier measurements
+  unmapped                    obstacles unknown to the robot
   contact_points              list of [x, y] mm, true
   time_limit_s, picture
   runs, reached, contacts, wrong_seeds   with --campaign only
 Outcomes: reached, unreachable, stuck, timed_out, collided, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
-    /// Room to be kept beside the robot where there is enough [default: 0.65 of its radius].
+    /// Clearance beside the robot where there is room [default: 0.65 of its radius].
     #[arg(long, value_name = "MM", value_parser = parse_length, allow_hyphen_values = true)]
     pub(crate) clearance: Option<f64>,
 
-    /// Room beside the robot that a passage must leave on either side [default: 0.2 of its radius].
+    /// Clearance required on either side of a passage [default: 0.2 of its radius].
     #[arg(long, value_name = "MM", value_parser = parse_length, allow_hyphen_values = true)]
     pub(crate) least_clearance: Option<f64>,
 
-    /// Obstacles that the robot is not told of [default: 0 with --world].
+    /// Number of obstacles missing from the robot's map [default: 0 with --world].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=100), allow_hyphen_values = true)]
     pub(crate) unmapped: Option<u32>,
 
@@ -48,11 +48,11 @@ pub(crate) struct Args {
     #[arg(long)]
     pub(crate) campaign: bool,
 
-    /// Worlds of a campaign; each has the next seed.
+    /// Number of worlds in a campaign; each has the next seed.
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) runs: u64,
 
-    /// How many threads drive in a campaign [default: one for each core].
+    /// Number of threads in a campaign [default: one per core].
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) threads: Option<NonZero<usize>>,
 

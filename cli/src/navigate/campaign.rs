@@ -7,14 +7,14 @@ use super::drive::{Arrival, drive};
 use crate::common::{Failure, Outcome, Report, rounded, share_out, threads};
 use crate::driving::Conditions;
 
-/// A generated world and what came of it.
+/// A generated world and its result.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Trial {
     pub(crate) seed: u64,
-    /// The verdict, or none if the robot failed.
+    /// The verdict; `None` if the robot failed.
     pub(crate) outcome: Option<NavigatorOutcome>,
     pub(crate) contacts: u32,
-    /// Metres, in truth.
+    /// True distance from the goal (m).
     pub(crate) goal_distance: f64,
     pub(crate) unmapped: u32,
     pub(crate) replans: usize,
@@ -23,19 +23,19 @@ pub(crate) struct Trial {
     pub(crate) path_length: f64,
 }
 
-/// So many metres from the goal, in truth, it still counts as reached.
+/// True distance from the goal up to which it counts as reached (m).
 const NEAR: f64 = 0.1;
-/// The share of worlds whose goal is to be reached.
+/// Required fraction of reached goals.
 const SHARE: f64 = 0.99;
 
 impl Trial {
-    /// Whether the robot really is at the goal.
+    /// Whether the robot is truly at the goal.
     pub(crate) fn is_reached(&self) -> bool {
         self.outcome == Some(NavigatorOutcome::Reached) && self.goal_distance <= NEAR
     }
 }
 
-/// The campaign's work.
+/// Runs the campaign.
 pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
     let trials = trials(args)?;
     let count = |is: &dyn Fn(&Trial) -> bool| trials.iter().filter(|trial| is(trial)).count();

@@ -8,7 +8,7 @@ use roverlab::world::{Colour, Marker, Object, ObjectKind, RobotSpec, Scene, Wall
 
 use crate::common::{Failure, Trip};
 
-/// A robot with a place to go, and the world as it is told.
+/// A trip, and the robot's map of the world.
 #[derive(Debug, Clone)]
 pub(crate) struct Course {
     pub(crate) trip: Trip,
@@ -16,16 +16,16 @@ pub(crate) struct Course {
     pub(crate) unmapped: u32,
 }
 
-/// Passages next to something unmapped are so wide, in terms of the robot's width.
+/// Width of passages next to an unmapped obstacle, as a multiple of the robot's width.
 const PASSAGE: f64 = 1.5;
-/// How often a place for one is drawn.
+/// Number of attempts to place an obstacle.
 const TRIES: usize = 60;
-/// Metres that one keeps from the robot's start and from the goal.
+/// Minimum distance of an obstacle from start and goal (m).
 const APART: f64 = 0.30;
-/// The most cells for finding out whether there is a way.
+/// Maximum number of cells for checking that a way exists.
 const MAX_CELLS: f64 = 1e6;
 
-/// The command's own world, 4 m by 3 m: three rooms with two doors each.
+/// The command's default world, 4 m by 3 m: three rooms with two doors each.
 pub(crate) fn scene() -> Scene {
     let mut world = World::walled(4.0, 3.0);
     let at = |x: f64, y: f64| Point::new(units::from_mm(x), units::from_mm(y));
@@ -45,7 +45,7 @@ pub(crate) fn scene() -> Scene {
     Scene::with_robot(world, RobotSpec::s4(), Pose::from_mm_deg(400.0, 400.0, 0.0))
 }
 
-/// A generated world whose goal can be reached, with two to five obstacles that the robot is not told of.
+/// A generated world with a reachable goal, and two to five unmapped obstacles.
 pub(crate) fn generated(seed: u64) -> Result<Course, Failure> {
     let spec = RobotSpec::s4();
     let options = CourseOptions {
@@ -60,7 +60,7 @@ pub(crate) fn generated(seed: u64) -> Result<Course, Failure> {
     changed(trip, count, &mut stream)
 }
 
-/// The trip in a world to which obstacles have been added that leave a way; fewer where there is no room for all.
+/// The trip in a world with added obstacles that leave a way; fewer where there is no room for all.
 pub(crate) fn changed(mut trip: Trip, count: u32, stream: &mut Stream) -> Result<Course, Failure> {
     let known = trip.scene.world.clone();
     let radius = PASSAGE * trip.spec().footprint.bounding_radius();
@@ -79,7 +79,7 @@ pub(crate) fn changed(mut trip: Trip, count: u32, stream: &mut Stream) -> Result
             );
             let mut world = trip.scene.world.clone();
             add(&mut world, place, stream);
-            // Half in a wall it would hardly be seen.
+            // An obstacle half inside a wall would hardly be seen.
             let in_wall = known.walls.iter().any(|wall| wall.line.distance_to(place) < 0.5 * APART);
             let apart = |point: Point| (place - point).norm() > APART + WALL && !in_wall;
             let ways = Reachability::new(&world, radius, resolution).map_err(Failure::run)?;
@@ -93,9 +93,9 @@ pub(crate) fn changed(mut trip: Trip, count: u32, stream: &mut Stream) -> Result
     Ok(Course { trip, known, unmapped })
 }
 
-/// An unmapped obstacle lies at most so far from the known way, in metres along each axis, so that it matters.
+/// Maximum distance of an unmapped obstacle from the known way along each axis (m), so that it matters.
 const SPREAD: f64 = 0.15;
-/// Half the length of the longest unmapped wall, in metres.
+/// Half the length of the longest unmapped wall (m).
 const WALL: f64 = 0.3;
 
 fn add(world: &mut World, place: Point, stream: &mut Stream) {

@@ -3,16 +3,16 @@ use roverlab::io::{self, Clock, Drive, Lidar, Odometry, control};
 use roverlab::nav::{Navigator, NavigatorEvent, NavigatorOutcome, NavigatorParameters};
 use roverlab::world::World;
 
-/// How a drive ended, as the robot takes it.
+/// Outcome of a drive from the robot's perspective.
 #[derive(Debug, Clone)]
 pub(crate) struct Arrival {
     pub(crate) outcome: NavigatorOutcome,
     pub(crate) events: Vec<NavigatorEvent>,
-    /// Where the robot takes itself to be.
+    /// The robot's pose estimate.
     pub(crate) believed: Pose,
-    /// The first plan.
+    /// First plan.
     pub(crate) plan: Vec<Point>,
-    /// Where it has seen something that it was not told of.
+    /// Seen obstacles missing from the map.
     pub(crate) seen: Vec<Point>,
 }
 
@@ -25,7 +25,7 @@ impl Arrival {
         })
     }
 
-    /// How many events are of a kind.
+    /// Number of events of a kind.
     pub(crate) fn count(&self, is: impl Fn(&NavigatorEvent) -> bool) -> usize {
         self.events.iter().filter(|event| is(event)).count()
     }
@@ -39,7 +39,7 @@ impl Arrival {
     }
 }
 
-/// Drives a robot through a world that it is told of. `watch` is called after each step with what happened in it.
+/// Drives a robot through a mapped world. `watch` is called after each step with its events.
 pub(crate) fn drive<R: Clock + Drive + Odometry + Lidar + ?Sized>(
     robot: &mut R,
     (known, start, goal): (&World, Pose, Point),

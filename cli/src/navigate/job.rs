@@ -8,10 +8,10 @@ use super::{Args, campaign, picture};
 use crate::common::{Failure, Outcome, Report, millimetres, point_in_mm};
 use crate::driving::{Conditions, Run, paced};
 
-/// Obstacles of the command's own world that the robot is not told of, unless the command line says how many.
+/// Default number of unmapped obstacles in the command's default world.
 const UNMAPPED: u32 = 3;
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     if args.campaign {
         return campaign(args);
@@ -62,7 +62,7 @@ fn told(event: &NavigatorEvent) -> String {
     }
 }
 
-/// An outcome in words.
+/// Text of an outcome.
 pub(super) fn verdict(outcome: NavigatorOutcome) -> &'static str {
     match outcome {
         NavigatorOutcome::Reached => "goal reached",

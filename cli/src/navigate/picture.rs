@@ -7,7 +7,7 @@ use super::drive::Arrival;
 use super::job::verdict;
 use crate::driving::{Conditions, Run, pale};
 
-/// A picture of a run: the first plan, where the robot was and believed to be, and what it has seen that it was not told of.
+/// Picture of a run: the first plan, true and estimated path, and seen obstacles missing from the map.
 pub(crate) fn of(course: &Course, run: &Run<Arrival>, conditions: &Conditions) -> Picture {
     let trip = &course.trip;
     let spec = trip.spec();

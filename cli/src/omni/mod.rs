@@ -10,34 +10,34 @@ use roverlab::world::{DriveSpec, RobotSpec, Scene, World};
 use crate::common::{CommonArgs, Failure, Outcome, Report, StandIn, Trip, millimetres, point_in_mm, rounded};
 use crate::driving::{Conditions, Run, check_drive, paced, pale};
 
-/// The command line of `omni`.
+/// Command line of `omni`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Drives a robot on Mecanum wheels by its four motors: in a square without turning, or straight while it spins",
     after_help = "\
-Without --world, the robot drives over an empty floor. The square lies ahead to the left of the start. The line ends at
---goal, or as far ahead as the square is wide.
+Without --world, the robot drives on an empty floor. The square is ahead and to the left of the start. The line ends at
+--goal, or after a side of the square.
 
 JSON fields:
   task                        square or spin
-  goal                        [x, y] mm: where the way ends
-  position_error_mm           true distance to it at the end
-  max_deviation_mm            largest true distance to the way
+  goal                        [x, y] mm: end of the path
+  position_error_mm           final true distance to it
+  max_deviation_mm            largest true distance to the path
   max_heading_error_deg       square: largest true change of the heading
-  turned_deg                  spin: by how much the robot has truly turned in all
+  turned_deg                  spin: total true rotation of the robot
   time_limit_s, picture
 Outcomes: reached, missed, timed_out, collided, failed."
 )]
 pub(crate) struct Args {
-    /// What to drive.
+    /// Task to drive.
     #[arg(long, value_enum, default_value = "square")]
     pub(crate) task: Task,
 
-    /// Length of the square's sides and of the line.
+    /// Length of the square's sides, or of the line, in millimetres.
     #[arg(long, value_name = "MM", default_value_t = 1000.0, value_parser = parse_side, allow_hyphen_values = true)]
     pub(crate) side: f64,
 
-    /// Degrees per second of the spin.
+    /// Spin rate in degrees per second.
     #[arg(long, value_name = "DEG", default_value_t = 60.0, value_parser = parse_spin, allow_hyphen_values = true)]
     pub(crate) spin: f64,
 
@@ -54,7 +54,7 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
 pub(crate) enum Task {
     /// A square without turning.
     Square,
-    /// A straight line while turning about itself.
+    /// A straight line while spinning.
     Spin,
 }
 
@@ -68,13 +68,13 @@ fn parse_spin(text: &str) -> Result<f64, String> {
     spin.ok_or_else(|| "expected -180 to 180 degrees per second".into())
 }
 
-/// Where to drive, in the frame of odometry.
+/// Route and options, in the odometry frame.
 #[derive(Debug, Clone)]
 pub(crate) struct Options {
     pub(crate) route: Vec<Point>,
     pub(crate) parameters: OmniParameters,
     pub(crate) driver: OmniDriver,
-    /// Simulated seconds.
+    /// Time limit (s).
     pub(crate) time_limit: f64,
 }
 
@@ -88,7 +88,7 @@ pub(crate) fn drive<R: Clock + Odometry + Motors + ?Sized>(
     control::run(robot, &mut tracker.by(options.driver), options.time_limit, |_, _, _| watch())
 }
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
@@ -109,7 +109,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(common.draw(report, "omni.svg", || picture(args, &trip, &run, &way, &conditions)))
 }
 
-/// The trip that the options describe. An Omni takes the place of a robot on other wheels.
+/// The trip of the options. A robot on other wheels is replaced by an Omni.
 fn trip(args: &Args) -> Result<Trip, Failure> {
     let common = &args.common;
     let (side, square) = (units::from_mm(args.side), args.task == Task::Square);
@@ -133,7 +133,7 @@ fn scene(side: f64) -> Scene {
     Scene::with_robot(World::empty(extent, extent), RobotSpec::omni(), start)
 }
 
-/// The points to pass, as the robot sees them.
+/// The route in the robot's frame.
 fn route(args: &Args, goal: Point) -> Vec<Point> {
     let side = units::from_mm(args.side);
     match args.task {
@@ -185,13 +185,13 @@ fn report(args: &Args, run: &Run<OmniOutcome>, way: &[Point]) -> Report {
     }
 }
 
-/// Metres from a place to the nearest leg of a way.
+/// Distance of a place from the nearest leg of a path (m).
 fn distance_to_way(place: Point, way: &[Point]) -> f64 {
     let legs = way.windows(2).map(|ends| Segment::new(ends[0], ends[1]).distance_to(place));
     legs.fold(f64::INFINITY, f64::min)
 }
 
-/// The way, where the robot was, and how it stood there.
+/// The route, and the robot's path and headings.
 fn picture(
     args: &Args,
     trip: &Trip,
@@ -217,7 +217,7 @@ fn picture(
     picture
 }
 
-/// Poses of the run that are some way apart.
+/// Poses of the run at a distance from each other.
 fn stations(run: &Run<OmniOutcome>) -> Vec<Pose> {
     const APART: f64 = 0.33;
     let mut stations = vec![run.trail[0].1];

@@ -13,23 +13,23 @@ use serde_json::{Value, json};
 use crate::common::{Failure, Outcome, PlainArgs, Report, Stopwatch};
 use crate::grid_benchmark::picture::{draw_path, of_grid, place};
 
-/// The command line of `quadtree`.
+/// Command line of `quadtree`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Divides a map into free and blocked squares, and plans a path through the free ones",
     after_help = "\
-Pictures have their first row at the top and obstacles in black; the rows of a ROS map count from the bottom. Without --map,
-the map has some discs in it; --seed says where. A map whose size is no power of two is divided as if it were part of a larger
-one; squares lie within the map.
+Pictures have their first row at the top and obstacles in black; the rows of a ROS map count from the bottom. Without
+--map, the map has some discs, placed by --seed. A map whose size is not a power of two is divided like part of a larger
+one; squares are within the map.
 
 JSON fields:
   map, width, height
-  free_leaves, blocked_leaves how many squares
-  smallest, largest           sides of the free ones, in cells; null without any
-  links                       pairs of free squares that share a part of an edge
-  list                        with --list: the free squares, as the book's program prints them
+  free_leaves, blocked_leaves numbers of squares
+  smallest, largest           side lengths of the free ones in cells; null without any
+  links                       pairs of free squares that share part of an edge
+  list                        with --list: the free squares in the format of the book's program
   path                        with --from and --to: cost in cells, and points [x, y] in cells
-  timing                      with --timing: decompose_us and list_us, to divide the map and to list its free squares
+  timing                      with --timing: decompose_us and list_us, durations of the division and of the list of free squares
 Outcomes: decomposed, and with --from and --to found or unreachable."
 )]
 pub(crate) struct Args {
@@ -41,15 +41,15 @@ pub(crate) struct Args {
     #[arg(long)]
     pub(crate) list: bool,
 
-    /// Do not divide squares of this side, a power of two; they count as blocked if a cell of theirs is.
+    /// Minimum side of squares, a power of two; such squares count as blocked if any of their cells is.
     #[arg(long, value_name = "CELLS", default_value_t = 1, allow_hyphen_values = true)]
     pub(crate) minimum: usize,
 
-    /// Cell to plan a path from.
+    /// Start cell of a path.
     #[arg(long, value_name = "COLUMN,ROW", value_parser = cell, requires = "to", allow_hyphen_values = true)]
     pub(crate) from: Option<GridCell>,
 
-    /// Cell to plan a path to.
+    /// Goal cell of a path.
     #[arg(long, value_name = "COLUMN,ROW", value_parser = cell, requires = "from", allow_hyphen_values = true)]
     pub(crate) to: Option<GridCell>,
 
@@ -67,7 +67,7 @@ fn cell(text: &str) -> Result<GridCell, String> {
     }
 }
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     args.plain.check_picture()?;
     let (name, grid) = match &args.map {
@@ -112,7 +112,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(Report { words: Some(list.join("\n")), ..report.field("list", list) })
 }
 
-/// A path, or none if there is no way.
+/// A path; `None` without one.
 fn plan(tree: &Quadtree, from: GridCell, to: GridCell) -> Result<Option<GridPath>, Failure> {
     use roverlab::nav::grid::PlanError;
     match QuadtreePlanner::new(tree).plan(from, to) {
@@ -122,7 +122,7 @@ fn plan(tree: &Quadtree, from: GridCell, to: GridCell) -> Result<Option<GridPath
     }
 }
 
-/// The leaves, and a path: the one that was asked for, or one between the first free leaf and the last.
+/// The leaves and a path: the requested one, or one between the first and the last free leaf.
 fn picture(args: &Args, grid: &BitGrid, tree: &Quadtree) -> Picture {
     let free = tree.free_leaves();
     let mut picture = of_grid(grid);
@@ -171,7 +171,7 @@ fn load(path: &Path) -> Result<BitGrid, Failure> {
     .map_err(Failure::input)
 }
 
-/// Some discs on a square.
+/// Random discs in a square.
 fn own_map(seed: u64) -> BitGrid {
     let mut stream = Stream::new(seed).child("discs", 0);
     let size = 128;

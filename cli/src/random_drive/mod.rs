@@ -17,25 +17,25 @@ use roverlab::world::{Object, ObjectKind, RobotPlacement, RobotSpec, Scene, Worl
 use crate::common::{CommonArgs, Failure, FreeFloor, Outcome, Report, rounded};
 use crate::driving::{Conditions, Trail, counted, draw_contacts, paced};
 
-/// The command line of `random-drive`.
+/// Command line of `random-drive`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
-    about = "Drives straight on, turns by a random angle where something is ahead, and so on; one robot or several",
+    about = "Drives straight until an obstacle is ahead, turns by a random angle, and repeats; one robot or several",
     after_help = "\
-Without --world, the robots drive in a room with two crates and a can. With a .sim, all of its robots drive. If these
-are fewer than --robots, more stand at places that --seed chooses. --fault is for one robot alone.
+Without --world, the robots drive in a room with two crates and a can. With a .sim, all of its robots drive; if there
+are fewer than --robots, --seed places additional ones. --fault requires a single robot.
 
 JSON fields:
-  robots                      how many drive
-  turns                       how often they have turned, all together
-  coverage_percent            share of the floor that the robots' bodies have passed over, of what the first one could reach
-                              15 mm away from everything
+  robots                      number of driving robots
+  turns                       total number of turns
+  coverage_percent            fraction of the floor that the robots have passed over, relative to that which the first one can
+                              reach 15 mm away from all obstacles
   time_limit_s, picture
 Collisions are those of all robots; pose, odometry and path length are the first one's.
 Outcomes: driven, collided, failed."
 )]
 pub(crate) struct Args {
-    /// How many robots drive [default: those of the world, or 1].
+    /// Number of robots [default: those of the world, or 1].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=6), allow_hyphen_values = true)]
     pub(crate) robots: Option<u8>,
 
@@ -45,14 +45,14 @@ pub(crate) struct Args {
 
 crate::common::shares_options!(Args, common: CommonArgs);
 
-/// Simulated seconds of a run.
+/// Simulated time of a run (s).
 const SECONDS: f64 = 120.0;
-/// Places around which room for one more robot is looked for.
+/// Number of places tried for an additional robot.
 const PLACES_TRIED: u32 = 50;
-/// Seconds between points of the paths of several robots.
+/// Time between path points of several robots (s).
 const STEP: f64 = 0.1;
 
-/// What became of the robots.
+/// Result of the robots.
 struct Outing {
     paths: Vec<Trail>,
     turns: u32,
@@ -61,7 +61,7 @@ struct Outing {
     report: Report,
 }
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
@@ -85,7 +85,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(common.draw(report, "random_drive.svg", || picture(args, &scene, &outing, share)))
 }
 
-/// A room with two crates and a can, and robots in it, larger and smaller ones, as in the book.
+/// A room with two crates and a can, and robots of different sizes, as in the book.
 fn scene(robots: usize) -> Scene {
     let mut world = World::walled(3.0, 2.4);
     for (name, x, y) in [("crate", 1.1, 0.7), ("crate", 2.2, 1.7), ("can", 1.6, 1.5)] {
@@ -109,7 +109,7 @@ fn scene(robots: usize) -> Scene {
     scene
 }
 
-/// Puts more robots like the first one anywhere into a scene, until it has so many.
+/// Adds robots like the first one at random places until a scene has `robots` of them.
 fn add_robots(scene: &mut Scene, robots: usize, seed: u64) -> Result<(), Failure> {
     let found = scene.robots.len();
     if found > robots {
@@ -209,7 +209,7 @@ fn together(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure>
     Ok(Outing { turns: turns.iter().map(|turns| turns.get()).sum(), contacts, contact_places, report, paths })
 }
 
-/// The share of the floor that the robots have passed over.
+/// Fraction of the floor that the robots have passed over.
 fn covered(scene: &Scene, paths: &[Trail]) -> Option<f64> {
     let radius = scene.robots[0].spec.footprint.bounding_radius();
     let parameters = CoverageMapParameters { radius, ..CoverageMapParameters::default() };
@@ -218,7 +218,7 @@ fn covered(scene: &Scene, paths: &[Trail]) -> Option<f64> {
     Some(map.share())
 }
 
-/// The ways of all robots.
+/// Paths of all robots.
 fn picture(args: &Args, scene: &Scene, outing: &Outing, share: Option<f64>) -> Picture {
     let mut picture = Picture::new(&scene.world);
     let ending = if outing.contacts > 0 { "collided" } else { "no contact" };

@@ -2,16 +2,16 @@ use std::path::PathBuf;
 
 use crate::common::{Heeds, Unheeded, parse_picture};
 
-/// The command line of `replay`.
+/// Command line of `replay`.
 #[derive(Debug, clap::Parser)]
 #[command(
-    about = "Replays recordings, shows what is in them, saves what is left of damaged ones",
+    about = "Replays recordings, shows their content, and recovers damaged ones",
     after_help = "\
 JSON fields: example, command, outcome;
   check     program, difference: null, or {robot, time_s, found, expected}
-  recover   chunks, messages, header (whether it is saved), lost_bytes
+  recover   chunks, messages, header (whether it is recovered), lost_bytes
   info      program, version, schema, seed, options, robots, start_s, end_s, bytes, chunks, topics, attachments,
-            attachments_hash, attachments_lost (whether some are), compression
+            attachments_hash, attachments_lost (whether any are lost), compression
   export    rows, csv, picture
 Outcomes: same, different, recovered, read, exported. The exit status is 1 for `different`."
 )]
@@ -28,22 +28,22 @@ impl Heeds for Args {
     const UNHEEDED: &'static [Unheeded] = &[];
 }
 
-/// What to do.
+/// Task of the command.
 #[derive(Debug, Clone, clap::Subcommand)]
 pub(crate) enum Command {
-    /// Runs the program that a recording names on what it recorded, and compares the new recording byte for byte.
+    /// Runs the recording's program on the recorded inputs, and compares the new recording byte for byte.
     Check {
         /// The recording.
         file: PathBuf,
     },
-    /// Gives back every complete chunk of a recording that was cut off or damaged.
+    /// Recovers every complete chunk of a truncated or damaged recording.
     Recover {
         /// The damaged recording.
         file: PathBuf,
         /// The file to write.
         out: PathBuf,
     },
-    /// Shows what a recording holds.
+    /// Shows the content of a recording.
     Info {
         /// The recording.
         file: PathBuf,

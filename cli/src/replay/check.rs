@@ -10,7 +10,7 @@ use super::{Found, read};
 use crate::commands::{self, COMMANDS};
 use crate::common::Failure;
 
-/// A file that goes away.
+/// A file that is removed when dropped.
 struct Temporary(PathBuf);
 
 impl Temporary {
@@ -23,7 +23,7 @@ impl Temporary {
 
 impl Drop for Temporary {
     fn drop(&mut self) {
-        // A file that is not there needs no removal.
+        // A missing file needs no removal.
         let _ = fs::remove_file(&self.0);
     }
 }
@@ -52,7 +52,7 @@ pub(super) fn check(file: &Path) -> Result<Found, Failure> {
     Ok(Found { fields, text, good: difference.is_none() })
 }
 
-/// What the program of a recording records on the recorded inputs.
+/// The recording of the program's run on the recorded inputs.
 fn replayed(file: &Path, log: &Log) -> Result<Log, Failure> {
     let name = &log.header().program;
     let program = commands::named(name).ok_or_else(|| {

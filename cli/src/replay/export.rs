@@ -26,7 +26,7 @@ pub(super) fn export(log: &Log, csv: Option<&Path>, picture: Option<&Path>) -> R
     Ok(Found { fields, text, good: true })
 }
 
-/// All calls in the order of robots and time, and their number.
+/// All calls ordered by robot and time, and their number.
 fn table(log: &Log) -> (String, usize) {
     let mut table = String::from("robot,time_s,topic,method,arguments,result,error\n");
     let mut rows = 0;
@@ -46,7 +46,7 @@ fn table(log: &Log) -> (String, usize) {
     (table, rows)
 }
 
-/// A field of a table, in quotes if it needs them.
+/// A field of a table, quoted if necessary.
 fn quoted(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))
@@ -55,7 +55,7 @@ fn quoted(text: &str) -> String {
     }
 }
 
-/// The world with the robots' paths, true and by odometry.
+/// The world with the robots' true paths and paths by odometry.
 fn drawn(log: &Log) -> Result<Picture, Failure> {
     let world = match log.header().attachment("scene.wld") {
         Some(file) => {
@@ -78,7 +78,7 @@ fn drawn(log: &Log) -> Result<Picture, Failure> {
     Ok(picture)
 }
 
-/// Where a robot was: in truth, or by its odometry from a start.
+/// A robot's path: true, or by odometry from a start.
 fn path(log: &Log, robot: usize, start: Pose, truth: bool) -> Vec<Point> {
     let entries = log.entries(robot).filter(|entry| entry.truth == truth);
     let places = entries.filter(|entry| matches!(entry.method.as_str(), "pose" | "robot"));

@@ -4,7 +4,7 @@ use serde_json::json;
 use super::Found;
 use crate::common::Failure;
 
-/// What a recording holds.
+/// Content of a recording.
 #[allow(clippy::unnecessary_wraps, reason = "as the other commands")]
 pub(super) fn info(log: &Log) -> Result<Found, Failure> {
     let header = log.header();

@@ -11,17 +11,17 @@ use std::path::Path;
 use roverlab::io::log::{Log, recover};
 use serde_json::{Value, json};
 
-use crate::common::{Failure, Printed};
+use crate::common::{Failure, Printed, recording_bytes};
 pub(crate) use args::{Args, Command};
 
-/// What a command found out: its report, and whether it is good.
+/// Result of a command: its report, and whether it succeeded.
 struct Found {
     fields: Value,
     text: String,
     good: bool,
 }
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Printed, Failure> {
     let found = match &args.command {
         Command::Check { file } => check::check(file),
@@ -36,7 +36,7 @@ pub(crate) fn work(args: &Args) -> Result<Printed, Failure> {
 }
 
 fn bytes(file: &Path) -> Result<Vec<u8>, Failure> {
-    fs::read(file)
+    recording_bytes(file)
         .map_err(|error| Failure::input(format!("{}: {error}; expected a recording", file.display())))
 }
 

@@ -1,4 +1,4 @@
-//! A room worth looking at: coloured walls, things, a figure, a sign, and another robot.
+//! A room with interesting views: coloured walls, objects, a figure, a sign, and another robot.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use roverlab::world::{
     Billboard, Colour, Marker, Object, ObjectKind, RobotPlacement, RobotSpec, Scene, Shape, Wall, World,
 };
 
-/// Four metres by three, with the robot near its west side, looking east.
+/// Four metres by three, with the robot near the west side, looking east.
 pub(crate) fn scene() -> Scene {
     let mut world = World::walled(4.0, 3.0);
     let colours = [0xe8_d9_b8, 0xb9_cd_c4, 0xd8_b4_a0, 0xc6_c8_dc].map(Colour::from_hex);
@@ -45,7 +45,7 @@ fn board(x: f64, y: f64, width: f64, height: f64, image: RgbaImage) -> Billboard
     Billboard { pose: Pose::new(x, y, PI), width, height, elevation: 0.0, image: Arc::new(image) }
 }
 
-/// Someone in a yellow coat: head, body and legs of a picture of 44 x 72 pixels.
+/// A person in a yellow coat: head, body and legs in a picture of 44 x 72 pixels.
 fn figure() -> RgbaImage {
     RgbaImage::from_fn(44, 72, |x, y| {
         let (dx, dy) = (f64::from(x) - 21.5, f64::from(y));
@@ -65,7 +65,7 @@ fn figure() -> RgbaImage {
     })
 }
 
-/// A red octagon with a white bar on a pole: 56 x 96 pixels.
+/// A red octagon with a white bar, on a pole: 56 x 96 pixels.
 fn stop_sign() -> RgbaImage {
     RgbaImage::from_fn(56, 96, |x, y| {
         let (dx, dy) = ((f64::from(x) - 27.5).abs(), (f64::from(y) - 27.5).abs());

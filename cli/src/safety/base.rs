@@ -1,4 +1,5 @@
-//! The other end of the radio link: the base station with its crew, and a camera that sees how far the car truly goes.
+//! The other end of the radio link: the base station with its crew, and a camera that measures the car's true
+//! motion.
 
 use roverlab::ParameterError;
 use roverlab::geometry::Pose;
@@ -7,38 +8,39 @@ use roverlab::safety::{BaseStation, Causes, Heartbeat, Panel, SafetyState, Stati
 use super::crew::{Crew, Event};
 use crate::common::{DEADMAN, StageTruth};
 
-/// What the car did about something: it stopped, or the driver got it.
+/// The car's response to an event: it stopped, or the driver took over.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Answer {
-    /// What had happened, and when, if anything had that it had not answered before.
+    /// The unanswered event and its time, if any.
     pub(crate) event: Option<(Event, f64)>,
-    /// When the state changed, by the car's clock, to what, and why.
+    /// Time of the state change by the car's clock, the new state, and its causes.
     pub(crate) time: f64,
     pub(crate) state: SafetyState,
     pub(crate) causes: Causes,
 }
 
 impl Answer {
-    /// Seconds from the event to this.
+    /// Reaction time since the event (s).
     pub(crate) fn reaction(&self) -> Option<f64> {
         self.event.map(|(_, time)| self.time - time)
     }
 }
 
-/// A stop as the camera saw it.
+/// A stop as seen by the camera.
 #[derive(Debug, Clone)]
 pub(crate) struct SeenStop {
     pub(crate) answer: Answer,
-    /// The speed when it began.
+    /// Speed at its start (m/s).
     pub(crate) speed: f64,
-    /// Whether nobody had looked for so long that the car had stopped by itself: it began with the last look before.
+    /// Whether the looks had paused for so long that the car stopped by itself; the stop then began with the
+    /// last look before.
     pub(crate) alone: bool,
-    /// Where it began, and where the car stood, and how far it had gone at both.
+    /// Start and end pose, and distance travelled at both (m).
     pub(crate) places: [Pose; 2],
     pub(crate) metres: [f64; 2],
 }
 
-/// What the camera saw at a time.
+/// Observation of the camera at a time.
 #[derive(Debug, Clone, Copy, Default)]
 struct Look {
     time: f64,
@@ -54,19 +56,19 @@ pub(crate) struct Base {
     truth: StageTruth,
     last: Look,
     before: Look,
-    /// Whether the car of the last stop has not stood yet.
+    /// Whether the car has not come to rest in the last stop yet.
     open: bool,
     pub(crate) stops: Vec<SeenStop>,
-    /// How often the driver got the car while it drove by itself.
+    /// Takeovers by the driver from autonomous driving.
     pub(crate) takeovers: Vec<Answer>,
-    /// When the car asked last, by its own clock, and the last event that it has answered.
+    /// Time of the car's last request by its own clock, and the last answered event.
     asked: f64,
     answered: Option<(Event, f64)>,
-    /// When the state changed, and to what.
+    /// Times of state changes, and the new states.
     pub(crate) states: Vec<(f64, SafetyState)>,
 }
 
-/// Metres per second below which the car stands.
+/// Speed below which the car stands (m/s).
 const STANDING: f64 = 0.005;
 
 impl Base {
@@ -93,7 +95,7 @@ impl Base {
         Look { time, pose: truth.pose, metres: truth.path_length, speed }
     }
 
-    /// Takes in the state that the car has had since the last look.
+    /// Records the car's state since the last look.
     fn note(&mut self, heartbeat: Heartbeat, look: Look) {
         let before = self.states.last().map_or(SafetyState::Manual, |(_, state)| *state);
         if heartbeat.state != before {

@@ -1,13 +1,13 @@
-//! The people around the car: they arm and start it, let something happen, and set it going again.
+//! The people around the car: they arm and start it, trigger events, and restart it.
 
 use roverlab::safety::{BaseStation, SafetyState, SupervisedParameters};
 
-/// Something that happens while the car drives.
+/// An event while the car drives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Event {
-    /// The button on board is pressed.
+    /// The on-board button is pressed.
     Button,
-    /// A stop is ordered from the base station.
+    /// The base station orders a stop.
     Remote,
     /// The radio link breaks.
     Radio,
@@ -34,7 +34,7 @@ impl Event {
         }
     }
 
-    /// Seconds after which the car has to answer it: one control period after it can be noticed.
+    /// Time within which the car must respond (s): one control period after the event can be noticed.
     pub(crate) fn allowed(self, parameters: &SupervisedParameters) -> f64 {
         let noticed = match self {
             Self::Button | Self::Remote | Self::Pedal | Self::Wheel => 0.0,
@@ -45,19 +45,19 @@ impl Event {
         noticed + parameters.period
     }
 
-    /// Begins or ends it.
+    /// Starts or ends the event.
     fn set(self, station: &mut BaseStation, on: bool) {
         match self {
             Self::Button => station.panel.emergency_button = on,
             Self::Remote if on => station.stop(),
             Self::Radio if on => station.connect(false),
-            // What the station orders, it takes back.
+            // The station takes back its own order.
             Self::Remote => station.take_back(),
             Self::Radio => {
                 station.connect(true);
                 station.take_back();
             }
-            // The program sees to it by itself.
+            // The program does this by itself.
             Self::Hang => {}
             Self::Pedal => station.panel.brake = if on { 0.6 } else { 0.0 },
             Self::Wheel => station.panel.steering_force = if on { -0.4 } else { 0.0 },
@@ -65,25 +65,25 @@ impl Event {
     }
 }
 
-/// Seconds of a step of the program that drives.
+/// Period of the driving program (s).
 pub(crate) const STEP: f64 = 0.05;
 
-/// Seconds that the car drives before something happens, and stands before it is armed again.
+/// Time that the car drives before an event, and stands before it is armed again (s).
 const DRIVES: f64 = 5.0;
 const STANDS: f64 = 1.0;
 
-/// The crew, with what is to happen.
+/// The crew, with its schedule of events.
 #[derive(Debug)]
 pub(crate) struct Crew {
     events: Vec<Event>,
     next: usize,
-    /// Seconds that the car has driven, or stood, without a break.
+    /// Time that the car has driven, or stood, without interruption (s).
     driven: f64,
     stood: f64,
-    /// What goes on, and when it began.
+    /// The current event, and its start.
     pub(crate) now: Option<(Event, f64)>,
     hang: bool,
-    /// From when on all sensors are well again.
+    /// Time from which all sensors work again (s).
     well: f64,
 }
 
@@ -97,12 +97,12 @@ impl Crew {
         std::mem::take(&mut self.hang)
     }
 
-    /// Whether everything has happened, and the car drives again.
+    /// Whether all events have happened, and the car drives again.
     pub(crate) fn is_done(&self) -> bool {
         self.next == self.events.len() && self.now.is_none() && self.driven > 1.0
     }
 
-    /// What the crew does in a step of some seconds.
+    /// The crew's actions in a step.
     pub(crate) fn act(
         &mut self,
         station: &mut BaseStation,
@@ -124,9 +124,9 @@ impl Crew {
         {
             event.set(station, false);
         }
-        // Who looks at the sensors sees those that still fail, so nobody vouches for them.
+        // An inspection would reveal failing sensors, so nobody confirms them.
         station.panel.sensors_checked = self.stood > 0.5 * STANDS && time > self.well;
-        // Buttons are pressed and let go.
+        // Buttons are pressed and released.
         station.panel.requests.arm = self.stood > STANDS && (self.stood / step).round() as u64 % 20 < 5;
         station.panel.requests.start = state == SafetyState::Armed && self.stood > 1.5 * STANDS;
     }

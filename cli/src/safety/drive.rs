@@ -17,7 +17,7 @@ use super::crew::{Crew, Event, STEP};
 use crate::common::{DEADMAN, Driven as Robot, Failure, Stage, rounded};
 use crate::cones::{Course, Judge, pass};
 
-/// A stop, and what was true about it.
+/// A stop with its ground truth.
 #[derive(Debug, Clone)]
 pub(crate) struct Stopped {
     seen: SeenStop,
@@ -25,7 +25,7 @@ pub(crate) struct Stopped {
 }
 
 impl Stopped {
-    /// Where it began, and where the car stood.
+    /// Poses at its start and at rest.
     pub(crate) fn places(&self) -> [Pose; 2] {
         self.seen.places
     }
@@ -34,12 +34,12 @@ impl Stopped {
         self.seen.metres[1] - self.seen.metres[0]
     }
 
-    /// The distance as a share of what is allowed.
+    /// Stopping distance as a fraction of its bound.
     pub(crate) fn share(&self) -> f64 {
         self.distance() / self.bound.max(1e-9)
     }
 
-    /// Whether the car stood within the distance that is allowed.
+    /// Whether the car stopped within the bound.
     pub(crate) fn is_within(&self) -> bool {
         self.distance() <= self.bound + 1e-6
     }
@@ -53,7 +53,7 @@ impl Stopped {
     }
 }
 
-/// What the car did, for the report.
+/// The car's response, for the report.
 pub(crate) fn told(answer: &Answer) -> Value {
     json!({
         "event": answer.event.map(|(event, _)| event.name()),
@@ -79,19 +79,19 @@ impl fmt::Display for Stopped {
     }
 }
 
-/// What came out of a drive.
+/// Result of a drive.
 pub(crate) struct Driven {
     pub(crate) stops: Vec<Stopped>,
     pub(crate) takeovers: Vec<Answer>,
     /// Whether each event was answered in time.
     pub(crate) prompt: bool,
     pub(crate) states: Vec<(f64, SafetyState)>,
-    /// Whether everything happened in time.
+    /// Whether all events happened within the time limit.
     pub(crate) done: bool,
     pub(crate) judge: Judge,
 }
 
-/// Drives until everything has happened.
+/// Drives until all events have happened.
 pub(crate) fn drive(course: &Course, args: &Args, stage: &Stage) -> Result<Driven, Failure> {
     let mut judge = Judge::new(course, stage.truth(0)?, 0).map_err(Failure::run)?;
     let events = if args.event.is_empty() { Event::ALL.to_vec() } else { args.event.clone() };
@@ -114,11 +114,11 @@ pub(crate) fn drive(course: &Course, args: &Args, stage: &Stage) -> Result<Drive
     Ok(Driven { stops, takeovers, prompt, states, done, judge })
 }
 
-/// Metres that the car may go in a stop.
+/// Maximum stopping distance (m).
 fn bound(parameters: &SupervisedParameters, seen: &SeenStop) -> f64 {
     let spec = RobotSpec::race_car();
     let stopping = parameters.stopping_in(seen.answer.state, spec.motor.time_constant, spec.deceleration());
-    // Without a link, or while a call hangs, the brake is in the hands of the car's own watchdog.
+    // Without a link, or during a hanging call, the car's own watchdog brakes.
     let alone = seen.alone || seen.answer.causes.has(Causes::LINK);
     let reaction = stopping.reaction + if alone { DEADMAN } else { 0.0 };
     StoppingModel { reaction, ..stopping }.distance(seen.speed)
@@ -129,7 +129,7 @@ fn is_prompt(answer: &Answer, parameters: &SupervisedParameters) -> bool {
     answer.event.is_none_or(|(event, time)| answer.time - time <= event.allowed(parameters) + 1e-6)
 }
 
-/// From when on no fault disturbs a sensor any more.
+/// Time from which no fault disturbs a sensor any more (s).
 fn well(faults: &[Fault]) -> f64 {
     let end = |fault: &Fault| match fault.kind {
         FaultKind::Hang(seconds) => fault.at + seconds,
@@ -145,23 +145,23 @@ fn fence(half: Option<f64>) -> Vec<Point> {
     half.flat_map(|half| corners.map(|(x, y)| Point::new(half * x, half * y))).collect()
 }
 
-/// The program that drives, until everything has happened. Whether it has, within some seconds.
+/// The driving program, until all events have happened. Returns whether they did within the limit (s).
 fn program(car: &mut Supervised<Robot, Base>, judge: &mut Judge, limit: f64) -> Result<bool, ParameterError> {
     let mut racer = Racer::new(RacerParameters { laps: 100, ..RacerParameters::rolling() })?;
     let mut scan = LidarScan::default();
     while judge.time() < limit && !car.station_mut().crew.is_done() {
-        // A sensor that fails stops the car; the program goes on with what it has.
+        // A failing sensor stops the car; the program continues with the remaining data.
         let seen = car.scan_into(&mut scan).map(|()| sightings(&scan)).unwrap_or_default();
         if let (Ok(pose), Ok(speed)) = (car.pose(), car.speed())
             && pose.is_finite()
         {
             let _ = car.set_speed(racer.decide(pose, speed, &seen));
         }
-        // Who hangs lets time pass at once.
+        // A hanging program lets time pass at once.
         if car.station_mut().crew.lets_hang() {
             let _ = car.wait(1.0);
         }
-        // A wait that fails has taken its time, but for a car that is out of reach for good.
+        // A failing wait takes its time, except for a car that is permanently out of reach.
         let before = judge.time();
         let passed = pass(car, judge, STEP);
         if passed.is_err() && (judge.look().is_err() || judge.time() <= before) {

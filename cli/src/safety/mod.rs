@@ -15,33 +15,33 @@ use crate::cones::{Course, check_race, drawing};
 use crew::Event;
 use drive::{Driven, Stopped};
 
-/// The command line of `safety`.
+/// Command line of `safety`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
-    about = "A racing car under its safety system: it is armed and started, something happens, it stands, and is set going again",
+    about = "A racing car with its safety system: it is armed and started, stops after an incident, and is started again",
     after_help = "\
-The car drives between cones at up to 6 m/s. Whatever happens, it has to stand within the distance that is proved for its
-model, and it stands until somebody arms it again. A car that nobody talks to for 0.3 s stops by itself. What happens has to be
-answered within one control period of when it can be noticed. Faults of `--fault` come on top; while a sensor fails, nobody
-vouches for it, and the car is not armed again.
+The car drives between cones at up to 6 m/s. After any incident it must stop within the distance proved for its model,
+and stand until it is armed again. A car without calls for 0.3 s stops by itself. Each incident must be answered within
+one control period after it becomes detectable. Faults of `--fault` come in addition; while a sensor is faulty, it is
+not confirmed, and the car is not armed again.
 
 JSON fields:
-  stops               of each: event, state, causes, time_s, reaction_ms after the event, speed_m_s, distance_m, bound_m
-  takeovers           the same of each time that the driver got the car, up to reaction_ms
+  stops               for each: event, state, causes, time_s, reaction_ms after the event, speed_m_s, distance_m, bound_m
+  takeovers           the same for each handover to the driver, up to reaction_ms
   states              [seconds, state] of every change
   picture
-Outcomes: stood (every stop within its bound), overran, late (something was not answered in time), timed_out."
+Outcomes: stood (every stop within its bound), overran, late (an incident was not answered in time), timed_out."
 )]
 pub(crate) struct Args {
-    /// Track to drive on [default: one of our own].
+    /// Track to drive on [default: a generated one].
     #[arg(long, value_name = "FILE")]
     pub(crate) track: Option<PathBuf>,
 
-    /// What happens, one after the other [default: everything]. May be repeated.
+    /// Events, in this order [default: all]. May be repeated.
     #[arg(long, value_enum)]
     pub(crate) event: Vec<Event>,
 
-    /// Metres from the start that the car must not leave, in both directions of both axes.
+    /// Distance from the start that the car must not exceed along either axis, in metres.
     #[arg(long, value_name = "M")]
     pub(crate) fence: Option<f64>,
 
@@ -51,7 +51,7 @@ pub(crate) struct Args {
 
 crate::common::shares_options!(Args, common: CommonArgs);
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
@@ -107,7 +107,7 @@ fn report(course: &Course, driven: &Driven) -> Report {
     }
 }
 
-/// The way, coloured by speed, and where the car stood.
+/// The path, coloured by speed, and the stops.
 fn picture(course: &Course, driven: &Driven) -> Picture {
     let mut picture = Picture::new(&course.ground());
     picture.title("Stops under the safety system");

@@ -17,7 +17,7 @@ struct Row {
     random: f64,
 }
 
-/// Compares evolution with as many random gaits of the same kind.
+/// Compares evolution with the same number of random gaits of the same kind.
 pub(crate) fn work(args: &Args, seeds: u32) -> Result<Report, Failure> {
     let mut rows = Vec::new();
     for (init, name) in [(Init::Neutral, "neutral"), (Init::Uniform, "uniform")] {

@@ -14,15 +14,15 @@ use super::WORKER;
 use super::options::{Args, Figure, Init};
 use crate::common::{Failure, Progress, Stopwatch};
 
-/// Control points of the cycle.
+/// Number of control points of the cycle.
 const CYCLE: usize = 10;
-/// The largest step between control points of the first generation near the middle, in bytes.
+/// Maximum step between control points in a neutral first generation (bytes).
 const STEP: u8 = 5;
 
-/// The floor that a recording shows: width and depth in metres.
+/// Floor shown in a recording: width and depth (m).
 const FLOOR: (f64, f64) = (4.0, 0.5);
 
-/// How a gait is tried.
+/// Trial of a gait.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Trials {
     pub(crate) figure: Figure,
@@ -38,17 +38,17 @@ impl Default for Trials {
 }
 
 impl Trials {
-    /// 1 plus the way along the floor in millimetres.
+    /// 1 plus the distance walked in millimetres.
     pub(crate) fn fitness(&self, bytes: &[u8]) -> Result<f64> {
         Ok(1.0 + 1000.0 * self.way(bytes)?.abs())
     }
 
-    /// Metres along the floor, from where the robot has come to rest on its feet.
+    /// Distance walked along the floor, from the resting position on its feet (m).
     pub(crate) fn way(&self, bytes: &[u8]) -> Result<f64> {
         self.walk(bytes, &mut Starman::new(&self.spec())?, |starman| Ok(starman.pose()?.x))
     }
 
-    /// Walks a gait. Returns metres along the floor, which `place` tells, from where the robot has come to rest.
+    /// Walks a gait. Returns the distance along the floor by `place`, from the resting position (m).
     pub(crate) fn walk<R: Clock + Servos + ?Sized>(
         &self,
         bytes: &[u8],
@@ -62,7 +62,7 @@ impl Trials {
         Ok(place(robot)? - start)
     }
 
-    /// The robot that is tried.
+    /// The robot under trial.
     pub(crate) fn spec(&self) -> StarmanSpec {
         let spec = match self.figure {
             Figure::Book => StarmanSpec::book(),
@@ -71,7 +71,7 @@ impl Trials {
         StarmanSpec { time_step: self.time_step, ..spec }
     }
 
-    /// A random gait to begin with.
+    /// A random initial gait.
     pub(crate) fn beginning(&self, init: Init, random: &mut Stream) -> Vec<u8> {
         let points = self.leading + CYCLE;
         match init {
@@ -81,12 +81,12 @@ impl Trials {
     }
 }
 
-/// What a run came to.
+/// Result of a run.
 #[derive(Debug, Clone)]
 pub(crate) struct Evolved {
     pub(crate) generations: u64,
     pub(crate) evaluations: u64,
-    /// Evaluations in a second of the wall clock.
+    /// Evaluations per second of wall-clock time.
     pub(crate) rate: f64,
     pub(crate) best_first: f64,
     pub(crate) best_last: f64,
@@ -96,13 +96,14 @@ pub(crate) struct Evolved {
     pub(crate) threads: usize,
 }
 
-/// Evolves a gait as the command line says.
+/// Evolves a gait with the options of the command line.
 pub(crate) fn evolve(args: &Args) -> std::result::Result<Evolved, Failure> {
     let (mut evaluator, threads) = evaluator(args)?;
     run(args, args.common.seed, args.init, evaluator.as_mut(), threads)
 }
 
-/// Walks a gait on the robot that can be recorded and replayed. Returns metres along the floor, by the robot itself.
+/// Walks a gait on a robot that can be recorded and replayed. Returns the robot's own distance along the
+/// floor (m).
 pub(crate) fn walk(args: &Args, bytes: &[u8]) -> std::result::Result<f64, Failure> {
     let trials = args.trials();
     let room = Scene::new(World::empty(FLOOR.0, FLOOR.1));
@@ -110,7 +111,7 @@ pub(crate) fn walk(args: &Args, bytes: &[u8]) -> std::result::Result<f64, Failur
     Ok(trials.walk(bytes, &mut *robot, |robot| Ok(robot.pose()?.x))?)
 }
 
-/// Threads or processes that try gaits, and how many.
+/// Evaluator with threads or processes, and their number.
 type Workers = (Box<dyn Evaluator<Vec<u8>>>, usize);
 
 fn evaluator(args: &Args) -> std::result::Result<Workers, Failure> {
@@ -174,7 +175,7 @@ pub(crate) fn run(
     })
 }
 
-/// The population that a checkpoint holds, if there is one: of this run, as its beginning shows.
+/// The population of a checkpoint, if there is one: it must belong to this run, judging by its start.
 fn kept(
     args: &Args,
     settings: &str,

@@ -16,10 +16,10 @@ use crate::common::{Failure, Outcome, Report, rounded};
 pub(crate) use options::Args;
 use options::Figure;
 
-/// The word that makes this program evaluate what another one sends it.
+/// Argument that makes this program evaluate gaits for another process.
 const WORKER: &str = "--evaluate-for-another";
 
-/// Evaluates gaits that come on standard input, if the command line says so. Returns the exit status.
+/// Evaluates gaits from standard input, if requested. Returns the exit status.
 pub(crate) fn work_for_another(words: &[OsString]) -> Option<u8> {
     let words: Vec<&str> = words.iter().skip(1).map(|word| word.to_str()).collect::<Option<_>>()?;
     let [WORKER, seconds, leading, figure] = words.as_slice() else { return None };
@@ -31,7 +31,7 @@ pub(crate) fn work_for_another(words: &[OsString]) -> Option<u8> {
     Some(u8::from(ended.is_err()))
 }
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     args.check()?;
     if args.steps {
@@ -66,7 +66,7 @@ fn walk(args: &Args) -> Result<Report, Failure> {
     Ok(args.common.draw(report, "starman.svg", || strip::picture(args, &walk)))
 }
 
-/// Writes the statistics of all generations where the option says.
+/// Writes the statistics of all generations to the option's file.
 fn keep_statistics(args: &Args, history: &[GenerationStatistics]) -> Result<(), String> {
     let Some(file) = &args.statistics else { return Ok(()) };
     let told = |error: &dyn std::fmt::Display| format!("--statistics {}: {error}", file.display());

@@ -5,87 +5,87 @@ use roverlab::evolve::{Gait, OnePoint, Recipe, Selection, Uniform};
 use super::evolution::Trials;
 use crate::common::{CommonArgs, Failure, check_writable, parse_seconds};
 
-/// The longest trial, in seconds.
+/// Maximum duration of a trial (s).
 const LONGEST: f64 = 3600.0;
 
-/// The command line of `starman`.
+/// Command line of `starman`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "A round robot with five limbs learns to walk by a genetic algorithm",
     after_help = "\
-Fitness is 1 plus the millimetres that a gait brings the robot along the floor. The best gait's walk is drawn into
+Fitness is 1 plus the distance along the floor of a gait in millimetres. The best gait is drawn to
 target/pictures/starman.svg, except with --json.
 
-Fitness counts from where the robot has come to rest at its gait's first control point. --statistics keeps a row of numbers
-or a chart of each generation.
+The distance counts from the robot's rest position at the first control point of its gait. --statistics saves a row of
+numbers or a chart of each generation.
 
 JSON fields:
-  generations, evaluations       made by this run, a checkpoint's included
+  generations, evaluations       number in this run, including a checkpoint's
   timing                         with --timing: evaluations_per_s by this process, real_time_factor
-  best_first, best_last, ratio   greatest fitness of the first and of all generations
-  population_hash                tells final populations apart
-  best_gait                      its bytes, five for each control point
-  way_mm                         where the best gait's walk ends along the floor, which --record records
-  threads, picture               the file of the strip, if there is one
-With --compare, `rows`: seed, best_first, best_last, ratio, random (the best of as many random gaits), and how often
-evolution was better. With --steps, `rows`: time step, and of the gaits that go more than 5 mm their number and the median
-change of the way when the step is halved.
+  best_first, best_last, ratio   highest fitness of the first and of all generations
+  population_hash                hash of the final population
+  best_gait                      its bytes, five per control point
+  way_mm                         final position of the best gait along the floor, which --record records
+  threads, picture               file of the strip, if there is one
+With --compare, `rows`: seed, best_first, best_last, ratio, random (the best of as many random gaits), and the number of
+seeds with better evolution. With --steps, `rows`: time step, and of the gaits that move more than 5 mm their number and the
+median change of the distance when the step is halved.
 Outcomes: evolved, compared, failed."
 )]
 pub(crate) struct Args {
-    /// Individuals in a generation.
+    /// Number of individuals in a generation.
     #[arg(long, value_name = "P", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) population: u32,
 
-    /// Generations.
+    /// Number of generations.
     #[arg(long, value_name = "G", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) generations: u32,
 
-    /// Simulated seconds of a trial, of which the first two are for coming to rest.
+    /// Simulated seconds of a trial; the first two are for coming to rest.
     #[arg(long, value_name = "S", default_value = "10", value_parser = parse_seconds, allow_hyphen_values = true)]
     pub(crate) seconds: f64,
 
-    /// Threads to evaluate in; 0: one for each processor.
+    /// Number of evaluation threads; 0 for one per processor.
     #[arg(long, value_name = "T", default_value_t = 0, value_parser = clap::value_parser!(u16).range(..=512))]
     pub(crate) threads: u16,
 
-    /// Evaluate in so many processes instead.
+    /// Evaluate in this many processes instead.
     #[arg(long, value_name = "N", conflicts_with = "threads", value_parser = clap::value_parser!(u16).range(1..=512))]
     pub(crate) processes: Option<u16>,
 
-    /// The robot: the book's, or the figure in the plane that it came from.
+    /// The robot: the book's, or the planar figure it is based on.
     #[arg(long, value_enum, default_value = "book")]
     pub(crate) figure: Figure,
 
-    /// The first generation: near the servos' middle as in the book, or all bytes alike.
+    /// The first generation: near the servos' middle as in the book, or uniformly random bytes.
     #[arg(long, value_enum, default_value = "neutral")]
     pub(crate) init: Init,
 
-    /// How parents are chosen; the book spins the wheel.
+    /// Selection of parents; the book uses the roulette wheel.
     #[arg(long, value_enum, default_value = "tournament")]
     pub(crate) selection: Choice,
 
-    /// How two parents become two children; the book cuts at one point.
+    /// Crossover of two parents; the book cuts at one point.
     #[arg(long, value_enum, default_value = "uniform")]
     pub(crate) crossover: Cross,
 
-    /// Bits flipped in a generation [default: three times as many as individuals].
+    /// Number of bits flipped in a generation [default: three times the population].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=10_000_000))]
     pub(crate) mutations: Option<u32>,
 
-    /// Control points of the sequence that leads into the cycle of ten.
+    /// Number of control points of the sequence that leads into the cycle of ten.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=100))]
     pub(crate) leading: u8,
 
-    /// Keep the run in a file after every generation, and go on from there if there is one.
+    /// Save the run to a file after every generation, and continue from an existing one.
     #[arg(long, value_name = "FILE")]
     pub(crate) checkpoint: Option<PathBuf>,
 
-    /// Write the statistics of all generations, as a table (.csv) or drawn (.svg or .png).
+    /// Write the statistics of all generations, as a table (.csv) or a drawing (.svg or .png).
     #[arg(long, value_name = "FILE")]
     pub(crate) statistics: Option<PathBuf>,
 
-    /// Compare with random search, for so many seeds and both ways to begin.
+    /// Compare with random search, for this many seeds and both kinds of initialisation.
     #[arg(
         long,
         value_name = "SEEDS",
@@ -94,7 +94,7 @@ pub(crate) struct Args {
     )]
     pub(crate) compare: Option<u32>,
 
-    /// Print how much the way of so many gaits as --population says changes when the time step is halved.
+    /// Print how much the distance of --population gaits changes when the time step is halved.
     #[arg(
         long,
         conflicts_with_all = ["leading", "checkpoint", "animation", "statistics", "picture", "processes", "record", "replay"]
@@ -105,41 +105,41 @@ pub(crate) struct Args {
     pub(crate) common: CommonArgs,
 }
 
-/// How the first generation is made.
+/// Initialisation of the first generation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Init {
     /// Small random steps from the servos' middle.
     Neutral,
-    /// Any byte with the same chance.
+    /// Uniformly random bytes.
     Uniform,
 }
 
-/// What learns to walk.
+/// Robot that learns to walk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Figure {
-    /// The book's robot with servos of 30 degrees a second.
+    /// The book's robot with servos of 30 degrees per second.
     Book,
     /// Longer limbs that snap to their angles.
     Planar,
 }
 
-/// How parents are chosen.
+/// Selection of parents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Choice {
-    /// The fittest of three drawn at random.
+    /// The fittest of three random individuals.
     Tournament,
     /// In proportion to fitness.
     Wheel,
-    /// By rank alone.
+    /// By rank.
     Rank,
 }
 
-/// How two parents become two children.
+/// Crossover of two parents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Cross {
-    /// Each byte of either parent.
+    /// Each byte from either parent.
     Uniform,
-    /// What is behind a cut is swapped.
+    /// Swaps the parts behind a cut.
     OnePoint,
 }
 
@@ -154,7 +154,7 @@ impl Args {
         Trials { figure, seconds, leading, ..Trials::default() }
     }
 
-    /// What affects the run, for checkpoints.
+    /// Settings that affect the run, for checkpoints.
     pub(crate) fn settings(&self) -> String {
         let Self { population, seconds, leading, figure, init, selection, crossover, .. } = self;
         let (mutations, seed) = (self.mutation_count(), self.common.seed);
@@ -164,7 +164,7 @@ impl Args {
         )
     }
 
-    /// How a generation comes from the one before.
+    /// Operators of the evolution.
     pub(crate) fn recipe(&self) -> Recipe<Vec<u8>> {
         Recipe {
             selection: match self.selection {
@@ -184,7 +184,7 @@ impl Args {
         self.mutations.unwrap_or(3 * self.population) as usize
     }
 
-    /// Fails when an option has no meaning here.
+    /// Fails for an option without meaning here.
     pub(crate) fn check(&self) -> Result<(), Failure> {
         self.common.check_picture()?;
         self.check_seconds()?;
@@ -215,7 +215,7 @@ impl Args {
         )))
     }
 
-    /// Fails when what a run shall leave behind cannot be written, before it is in vain.
+    /// Fails before a long run if an output file cannot be written.
     fn check_files(&self) -> Result<(), Failure> {
         let forms = [
             ("--checkpoint", &self.checkpoint, &[][..]),

@@ -6,19 +6,19 @@ use serde::Serialize;
 use super::options::Args;
 use crate::common::{Failure, Outcome, Report, rounded};
 
-/// What halving a time step does to the ways of gaits.
+/// Effect of halving a time step on the distances of gaits.
 #[derive(Debug, Clone, Copy, Serialize)]
 struct Row {
     time_step_ms: f64,
     median_way_mm: f64,
-    /// Of the gaits that go far enough to count.
+    /// Number of gaits that go far enough to count.
     counted: Option<usize>,
-    /// The change of a gait's way when this step is halved, relative to the way; the median over the gaits.
+    /// Median relative change of a gait's distance when this step is halved.
     median_change: Option<f64>,
 }
 
 const STEPS_MS: [f64; 4] = [10.0, 5.0, 2.5, 1.25];
-/// Gaits that bring the robot less far than this, in metres, are no gaits: their ways are noise.
+/// Minimum distance of a gait that counts (m); shorter ones are noise.
 const LEAST_WAY: f64 = 0.005;
 
 /// Prints the table.
@@ -46,7 +46,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(Report::new(Outcome::verdict("compared")).field("gaits", gaits.len()).table("rows", &rows))
 }
 
-/// Waves of random phase through the limbs, which walk on purpose as evolved gaits do.
+/// Waves of random phase through the limbs, which walk like evolved gaits.
 fn gaits(args: &Args) -> Vec<Vec<u8>> {
     let mut random = Stream::new(args.common.seed).child("waves", 0);
     let mut wave = || {

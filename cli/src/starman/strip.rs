@@ -7,19 +7,19 @@ use roverlab::world::{Colour, Wall, World};
 use super::evolution::Trials;
 use super::options::Args;
 
-/// A gait as it was walked.
+/// A gait as walked.
 #[derive(Debug, Clone)]
 pub(crate) struct Walk {
-    /// Seconds between two postures.
+    /// Time between two postures (s).
     pub(crate) interval: f64,
-    /// Metres along the floor from where it had come to rest.
+    /// Distance along the floor from the resting position (m).
     pub(crate) way: f64,
     pub(crate) postures: Vec<StarmanPosture>,
     pub(crate) body_radius: f64,
 }
 
 impl Walk {
-    /// Walks a gait and looks on.
+    /// Walks a gait and records its postures.
     pub(crate) fn of(trials: &Trials, bytes: &[u8]) -> Result<Self> {
         let spec = trials.spec();
         let mut watched = Watched { robot: Starman::new(&spec)?, postures: Vec::new() };
@@ -34,7 +34,7 @@ impl Walk {
     }
 }
 
-/// A Starman of which pictures are taken while it waits.
+/// A Starman whose postures are recorded while it waits.
 struct Watched {
     robot: Starman,
     postures: Vec<StarmanPosture>,
@@ -70,13 +70,13 @@ impl Servos for Watched {
     }
 }
 
-/// Postures of the strip.
+/// Number of postures in the strip.
 const FIGURES: usize = 5;
-/// Between two figures of the strip, in metres, and from its floor to that of the walk.
+/// Distance between two figures of the strip, and between its floor and that of the walk (m).
 const GAP: f64 = 0.42;
 const ROW: f64 = 0.42;
 
-/// The walk, and above it some of its postures side by side, each on its own piece of floor.
+/// The walk, and above it some of its postures side by side, each on its own floor.
 pub(crate) fn picture(args: &Args, walk: &Walk) -> Picture {
     let width = GAP * FIGURES as f64;
     let mut world = World::empty(width, 2.0 * ROW);
@@ -112,10 +112,10 @@ pub(crate) fn picture(args: &Args, walk: &Walk) -> Picture {
     picture
 }
 
-/// The height of the floor in the picture, in metres.
+/// Height of the floor in the picture (m).
 const FLOOR: f64 = 0.05;
 
-/// A body and its limbs as they move.
+/// A moving body and its limbs.
 fn draw<'a>(
     picture: &mut Picture,
     walk: &Walk,

@@ -10,12 +10,12 @@ use roverlab::random::Stream;
 use roverlab::world::{Wall, World};
 use serde_json::Value;
 
-/// Runs the command with some options: status, standard output, standard error.
+/// Runs the command with options. Returns status, standard output, and standard error.
 fn run(options: &[&str]) -> (u8, String, String) {
     said("bug_compare", options)
 }
 
-/// The report.
+/// The report of a run.
 fn report(options: &[&str]) -> Value {
     let (status, out, err) = run(&[&["--json"], options].concat());
     assert_eq!((status, err.as_str(), out.lines().count()), (0, "", 1), "{out}");
@@ -83,7 +83,7 @@ fn a_world_of_ones_own_is_compared_and_drawn() {
     }
 }
 
-/// Goals in a wall and outside, the truth about which the robots find out.
+/// Goals in a wall and outside, which the robots find out.
 #[test]
 fn goals_that_nobody_can_reach_are_told() {
     let field = data("field.wld");
@@ -117,10 +117,10 @@ fn the_campaign_checks_verdicts_and_bounds() {
     }
 }
 
-/// Lines to the goal that graze an obstacle or go on behind the goal, ends of thin walls before narrow gaps, obstacles met
-/// where others are as near, places to leave that are seen for a moment only, walls of no thickness that are seen along
-/// themselves, ends that a robot turns back at, ways that seem to lead out of a closed room, dead ends in which it turns round the
-/// other way, and places to leave that are passed the other way round a corner.
+/// Lines to the goal that graze an obstacle or continue behind the goal, ends of thin walls before narrow
+/// gaps, obstacles met where others are as near, leave points visible only for a moment, thin walls seen
+/// edge-on, ends at which a robot turns back, ways that seem to lead out of a closed room, dead ends in which
+/// it turns the other way, and leave points passed the other way round a corner.
 #[test]
 fn hard_worlds_are_done_right() {
     for (seed, bugs) in [
@@ -200,18 +200,18 @@ fn boundaries_have_the_perimeters_that_geometry_says() {
     let block = [corner(1.0, 1.0), corner(2.0, 1.0), corner(2.0, 1.6), corner(1.0, 1.6)];
     world.walls.extend((0..4).map(|k| Wall { thickness: 0.0, ..Wall::new(block[k], block[(k + 1) % 4]) }));
     let boundaries = Boundaries::new(&world, 0.1).unwrap();
-    // Inside of the block, round it, and inside of the border. Squares of 6 mm cut each of four corners.
+    // Inside the block, round it, and inside the border. Squares of 6 mm cut each of four corners.
     let mut perimeters: Vec<f64> = boundaries.all.iter().map(|line| line.perimeter).collect();
     perimeters.sort_by(f64::total_cmp);
     let border = 4.0 * (3.0 - 2.0 * (0.1 + 0.5 * Wall::DEFAULT_THICKNESS));
     for (found, expected) in perimeters.iter().zip([2.0 * (0.8 + 0.4), 3.2 + TAU * 0.1, border]) {
         assert!((found - expected).abs() < 0.001 * expected + 4.0 * 0.006, "{found} for {expected}");
     }
-    // Round the whole of it as well.
+    // Also round the whole of it.
     assert!((3..=4).contains(&perimeters.len()), "{perimeters:?}");
     let round = &boundaries.all[boundaries.nearest(corner(0.85, 1.3)).unwrap()];
     assert!((round.perimeter - (3.2 + TAU * 0.1)).abs() < 0.02);
-    // A path that begins nearer to the border goes round the block nevertheless.
+    // A path that begins nearer to the border still goes round the block.
     let path = [corner(0.2, 1.3), corner(0.9, 1.4), corner(0.91, 1.2), corner(0.9, 1.0)];
     assert_eq!(boundaries.followed(&path), boundaries.nearest(corner(0.85, 1.3)));
     assert_eq!(boundaries.followed(&[]), None);
@@ -230,7 +230,8 @@ fn a_ring_of_walls_has_a_round_boundary() {
     assert!((outside.perimeter / (TAU * 0.4) - 1.0).abs() < 0.004, "{}", outside.perimeter);
 }
 
-/// Of 200 samples of a known mean, about 95 % of the intervals hold it: a few less, since samples are small.
+/// Of 200 samples with a known mean, about 95 % of the intervals contain it: slightly fewer, as samples are
+/// small.
 #[test]
 fn intervals_hold_the_mean_as_often_as_they_say() {
     let mut stream = Stream::new(3);

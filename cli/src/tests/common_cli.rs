@@ -1,4 +1,4 @@
-//! The command line and the report that all commands share.
+//! The command line and report shared by all commands.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -25,7 +25,7 @@ struct Args {
 
 crate::common::shares_options!(Args, common: CommonArgs);
 
-/// What a program did.
+/// Result of a program.
 struct Ended {
     status: u8,
     out: String,
@@ -48,7 +48,7 @@ fn never(_: &Args) -> Result<Report, Failure> {
     panic!("the work begins in spite of a wrong command line")
 }
 
-/// A run's message is one line that holds all of `parts`.
+/// A run's message is one line that contains all of `parts`.
 fn assert_refused(ended: &Ended, parts: &[&str]) {
     assert_eq!((ended.status, ended.out.as_str()), (2, ""), "{}", ended.err);
     assert_eq!(ended.err.lines().count(), 1, "{}", ended.err);
@@ -187,7 +187,7 @@ fn json_is_one_object_with_all_fields() {
     assert_eq!(object, expected);
 }
 
-/// Only what differs from run to run stands apart, and only when asked for.
+/// Values that differ from run to run are separate, and printed only on request.
 #[test]
 fn times_are_told_on_request() {
     let timed = |_: &Args| Ok(a_report(Outcome::verdict("reached")).timing("images_per_s", 12.5));
@@ -335,7 +335,7 @@ fn no_field_can_be_given_twice() {
     let _ = Report::new(Outcome::verdict("done")).field("pose", units::from_mm(1.0));
 }
 
-/// An output that fails as a full disk or a closed pipe does.
+/// An output that fails like a full disk or a closed pipe.
 struct Broken(std::io::ErrorKind);
 
 impl std::io::Write for Broken {

@@ -9,18 +9,18 @@ use roverlab::geometry::{Point, Pose, direction};
 use roverlab::race::{Cone, ConeColour, ConeTrack, write_eufs, write_fssim};
 use serde_json::Value;
 
-/// Runs the race. Returns its status and its report, and what it said on standard error.
+/// Runs the race. Returns status, report, and standard error.
 fn race(options: &[&str]) -> Ended {
     run("cone_race", options)
 }
 
-/// What the race said on standard error, with its status.
+/// Status and standard error of the race.
 fn race_told(options: &[&str]) -> (u8, String) {
     let (status, _, err) = race(options);
     (status, err)
 }
 
-/// Runs `cone_drive`. Returns its status and what it said on standard error.
+/// Runs `cone_drive`. Returns status and standard error.
 fn drive(options: &[&str]) -> (u8, String) {
     let (status, _, err) = run("cone_drive", options);
     (status, err)
@@ -39,7 +39,7 @@ fn files_of_cones_are_raced_on() {
         );
         let times: Vec<f64> =
             report["lap_times_s"].as_array().unwrap().iter().map(|time| time.as_f64().unwrap()).collect();
-        // The last lap is on the racing line, and the first one counts as well.
+        // The last lap is on the racing line, and the first one is timed too.
         assert!(report["laps"] == 3 && times.len() == 3 && times[times.len() - 1] < times[0], "{report}");
         assert!(report["racing_line_rms_m"].as_f64().unwrap() < 2.0, "{report}");
     }
@@ -154,9 +154,9 @@ fn flying_laps_are_near_the_optimum() {
     let (_, report, err) = race(&["--seed", "3", "--laps", "4"]);
     assert_eq!(err, "", "{report}");
     let ratios = report["lap_over_optimum"].as_array().unwrap();
-    // All but the lap of the map and the one that begins slowly.
+    // All laps but the mapping lap and the one with a slow start.
     assert!(ratios.len() == 2 && report["cones_hit"] == 0 && report["laps"] == 4, "{report}");
-    // None is faster than a car without yaw and lags could be.
+    // No lap is faster than possible for a car without yaw inertia and lags.
     assert!(ratios.iter().all(|ratio| (1.0..1.08).contains(&ratio.as_f64().unwrap())), "{report}");
 }
 
@@ -185,8 +185,8 @@ fn a_line_is_one_of_the_track() {
 
 #[test]
 fn two_cars_do_not_touch() {
-    // In the second one, they touched when the second car was driven by the book's program; in the others, when its side looked
-    // like cones.
+    // In the second one, the cars touched when the second car was driven by the book's program; in the
+    // others, when its side looked like cones.
     for seed in ["1", "14", "15", "24", "50"] {
         let (_, report, err) = race(&["--seed", seed, "--laps", "2", "--other"]);
         assert_eq!(err, "", "{report}");
@@ -243,7 +243,7 @@ fn strip() -> ConeTrack {
     ConeTrack { cones, start: Some(Pose::new(-2.45, 0.0, 0.0)), ..ConeTrack::default() }
 }
 
-/// The skidpad of the rules.
+/// The skidpad by the rules.
 fn skidpad() -> ConeTrack {
     let mut cones = Vec::new();
     for (side, inner, outer) in
@@ -262,7 +262,7 @@ fn skidpad() -> ConeTrack {
     ConeTrack { cones, start: Some(Pose::new(-17.15, 0.0, 0.0)), ..ConeTrack::default() }
 }
 
-/// A folder of its own with the files of both events.
+/// A temporary folder with the files of both events.
 pub(super) fn events(test: &str) -> (PathBuf, [String; 2]) {
     let folder = std::env::temp_dir().join(format!("roverlab-{test}-{}", std::process::id()));
     fs::create_dir_all(&folder).unwrap();

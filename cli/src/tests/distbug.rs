@@ -10,7 +10,7 @@ use roverlab::world::formats::robi;
 use roverlab::world::{DriveSpec, LidarSpec, RobotSpec};
 use serde_json::{Value, json};
 
-/// What the command did.
+/// Result of the command.
 struct Ended {
     status: u8,
     out: String,
@@ -25,7 +25,7 @@ impl Ended {
     }
 }
 
-/// Runs the command with `--json` and some options.
+/// Runs the command with `--json` and options.
 fn run(options: &[&str]) -> Ended {
     let (status, out, err) = said("distbug", &[&["--json"], options].concat());
     Ended { status, out, err }
@@ -49,7 +49,7 @@ fn count(report: &Value, name: &str) -> usize {
     report[name].as_array().unwrap_or_else(|| panic!("{name} in {report}")).len()
 }
 
-/// A run that came to the goal, untouched and within some millimetres.
+/// A run that reached the goal, without contact and to within a tolerance.
 fn assert_arrived(ended: &Ended, tolerance: f64) -> Value {
     let report = ended.json();
     assert_eq!((ended.status, ended.err.as_str()), (0, ""), "{report}");
@@ -63,7 +63,7 @@ fn assert_arrived(ended: &Ended, tolerance: f64) -> Value {
     report
 }
 
-/// A refusal: status 2, nothing on standard output, and one line that holds all of `parts`.
+/// A refusal: status 2, nothing on standard output, and one line that contains all of `parts`.
 fn assert_refused(options: &[&str], parts: &[&str]) {
     let ended = run(options);
     assert_eq!((ended.status, ended.out.as_str()), (2, ""), "{options:?}: {}", ended.err);
@@ -77,7 +77,7 @@ fn assert_refused(options: &[&str], parts: &[&str]) {
 fn the_commands_own_world_is_crossed_untouched() {
     let report = assert_arrived(&run(&[]), 250.0);
     assert!(count(&report, "hit_points") >= 3, "{report}");
-    // Longer than the straight line from (500, 500) to (3850, 3850), by the detours around three hollows.
+    // Longer than the straight line from (500, 500) to (3850, 3850), because of detours around three hollows.
     assert!(number(&report, "path_length_mm") > 6000.0, "{report}");
     assert_eq!(report["picture"], Value::Null);
 }
@@ -209,7 +209,7 @@ fn places_that_make_no_sense_are_refused() {
         &["--start: found a start at 1720, 1150 mm", "in a wall", "60 mm radius"],
     );
     assert_refused(&at("30,2000,0"), &["in a wall"]);
-    // The robot is round, 60 mm around its middle: less than a millimetre from the wall, and it touches it.
+    // The robot is round with a radius of 60 mm: less than a millimetre from the wall counts as contact.
     assert_refused(&at("60.8,2000,0"), &["in a wall"]);
     assert_refused(&at("-500,2000,0"), &["outside of the world", "from 0, 0 to 4000, 4000 mm"]);
     assert_refused(&["--world", &data("field.sim"), "--start", "2300,2250,0"], &["another robot"]);
@@ -267,7 +267,7 @@ fn robots_that_cannot_do_it_are_refused() {
         &["car.robi: found", "a car", "expected one that turns on the spot"],
     );
 
-    // No file can say so, but a scene can: a lidar that looks ahead only.
+    // No file can specify this, but a scene can: a lidar that only looks ahead.
     let lidar = LidarSpec { field_of_view: 3.0, ..LidarSpec::default() };
     let mut scene = distbug::scene();
     scene.robots[0].spec = RobotSpec { lidar: Some(lidar), ..s4 }.into();
@@ -320,7 +320,7 @@ fn what_happens_is_told_in_order() {
     assert_eq!(told, drive.events);
     let is_hit = |event: &distbug::Event| matches!(event.happening, distbug::Happening::Hit { .. });
     assert!(told.iter().enumerate().all(|(i, event)| is_hit(event) == (i % 2 == 0)), "{told:?}");
-    // The robot knows where it is: the points lie on its true path, give or take its error.
+    // The robot knows its pose: the points lie on its true path, to within its error.
     for point in drive.hit_points().iter().chain(&drive.leave_points()) {
         assert!(drive.trail.iter().any(|(_, pose)| pose.distance_to(*point) < 0.1), "{point}");
     }

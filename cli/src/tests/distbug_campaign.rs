@@ -1,4 +1,4 @@
-//! DistBug on generated courses, in small: `distbug --campaign` as a whole.
+//! DistBug on a few generated courses: `distbug --campaign` as a whole.
 
 use std::fs;
 
@@ -15,7 +15,7 @@ fn run(options: &[&str]) -> (u8, String, String) {
     said("distbug", &[&["--campaign"], options].concat())
 }
 
-/// Changes whenever the courses, the simulator or DistBug do: read the difference before accepting it.
+/// Changes with the courses, the simulator or DistBug: inspect the difference before accepting it.
 #[test]
 fn twelve_courses() {
     let args = args(&["--worlds", "12", "--levels", "0,1"]);
@@ -69,7 +69,7 @@ fn wrong_options_are_refused() {
     }
 }
 
-/// What a campaign does not heed is refused, and what only a campaign heeds is refused without one.
+/// Options unsupported by a campaign are rejected, and so are a campaign's options without one.
 #[test]
 fn options_without_a_meaning_are_refused() {
     for options in [["--campaign", "--noise=0"], ["--campaign", "--time-limit=9"], ["--json", "--levels=0"]] {

@@ -26,7 +26,7 @@ fn every_method_arrives_without_noise() {
             }
         }
     }
-    // A goal within the lookahead; and one whose last turn has both wheels end between two encoder ticks.
+    // A goal within the lookahead; and one whose last turn ends with both wheels between two encoder ticks.
     for (method, goal) in [("spline", "-9.4,-48.5,102.1"), ("arc", "-490.7,-89.2,-151.2")] {
         let place = ["--start", "0,0,0", "--goal", goal, "--noise", "0"];
         let ended = a_to_b(&[&place[..], &["--method", method, "--follower", "pure-pursuit"]].concat());

@@ -78,14 +78,14 @@ fn only_a_program_that_is_told_so_works_for_another() {
     assert!(starman::work_for_another(&["roverlab".into(), "starman".into()]).is_none());
 }
 
-/// An evolution that keeps what it has come to.
+/// An evolution that saves checkpoints.
 fn resumable(folder: &Path) -> Value {
     let checkpoint = folder.join("run.json");
     let options = ["--leading", "2", "--threads", "1"];
     evolved(folder, &[&options[..], &["--checkpoint", checkpoint.to_str().unwrap()]].concat())
 }
 
-/// A checkpoint that an earlier commit kept after two of four generations.
+/// A checkpoint of an earlier commit, after two of four generations.
 #[test]
 fn a_checkpoint_of_before_goes_on() {
     let folder = folder("before");

@@ -1,5 +1,5 @@
-//! The planners on grids through the command `grid-benchmark`, on small maps of the project, and on published
-//! maps where the environment variable `ROVERLAB_DATA` names the folder that holds `movingai/`.
+//! The planners of the command `grid-benchmark` on small maps of the project, and on published maps where the
+//! environment variable `ROVERLAB_DATA` names the folder that contains `movingai/`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -34,7 +34,7 @@ fn own_maps_are_answered_as_their_scenarios_say() {
     }
 }
 
-/// Ways in any direction are never longer than octile ones, and those through a quadtree hardly are.
+/// Any-angle paths are never longer than octile ones, and quadtree paths hardly are.
 #[test]
 fn other_planners_find_short_ways() {
     for (algorithm, most) in [("any_angle", 1.0), ("quadtree", 1.02)] {
@@ -106,7 +106,7 @@ fn what_is_wrong_with_files_is_named() {
     assert!(status == 2 && err.contains("--scen"), "{err}");
 }
 
-/// Ways lead within water and within land, not from the one to the other; other queries are counted and left out.
+/// Paths lead within water and within land, not from one to the other; other queries are counted and skipped.
 #[test]
 fn water_is_a_map_of_its_own_and_blocked_ends_are_skipped() {
     let folder = folder();
@@ -131,7 +131,7 @@ fn water_is_a_map_of_its_own_and_blocked_ends_are_skipped() {
     }
 }
 
-/// The published Warcraft III maps, with the queries whose lengths are of other maps than those that are published: one
+/// The published Warcraft III maps, with the queries whose published lengths belong to other versions: one
 /// map has gained blocked cells, another one water.
 #[test]
 #[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
@@ -155,8 +155,8 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// Some queries of every published scenario file: as long as published by all octile planners, at most as long in any
-/// direction, and little longer than that through a quadtree.
+/// Some queries of every published scenario file: octile planners reproduce the published lengths, any-angle
+/// paths are at most as long, and quadtree paths slightly longer than those.
 #[test]
 #[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
 fn published_lengths_are_met() {

@@ -1,9 +1,9 @@
-//! Options that a run does not heed: none is ignored in silence.
+//! Options unsupported by a run: none is ignored silently.
 
 use super::support::{DATA, said};
 use crate::commands::COMMANDS;
 
-/// A wrong name in a table would refuse nothing.
+/// A misspelt name in a table would reject nothing.
 #[test]
 fn tables_name_options_of_their_commands() {
     for command in COMMANDS {

@@ -23,7 +23,7 @@ fn a_scan_shows_walls_corners_and_cans() {
         let (status, report, err) = lidar_scan(&["--seed", seed, "--lcd", lcd, "--picture", svg]);
         assert_eq!((status, report["outcome"].as_str(), err.as_str()), (0, Some("scanned"), ""), "{report}");
         assert_eq!(report["objects"].as_array().unwrap().len(), 2, "{report}");
-        // Of the six corners, one is hidden, and one shows one wall only.
+        // Of the six corners, one is hidden, and one shows only one wall.
         assert_eq!(report["corners"].as_array().unwrap().len(), 4, "{report}");
         assert!(
             number(&report, "corner_error_mm") < 25.0 && number(&report, "object_error_mm") < 15.0,
@@ -61,7 +61,7 @@ fn what_looks_alike_is_told_as_such() {
     assert_eq!((status, report["outcome"].as_str()), (0, Some("several_hypotheses")), "{report}");
     assert_eq!(number(&report, "hypotheses"), 2.0);
     let places = report["places"].as_array().unwrap();
-    // They are each other's reflection in the middle of the room.
+    // They are point reflections of each other in the middle of the room.
     assert!((number(&places[0], "x_mm") + number(&places[1], "x_mm") - 3000.0).abs() < 20.0, "{report}");
     assert!((number(&places[0], "probability") - 0.5).abs() < 0.2, "{report}");
 }

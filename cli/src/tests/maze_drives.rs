@@ -1,4 +1,4 @@
-//! The commands `maze-left`, `maze-lidar` and `maze-explore` as a whole.
+//! The commands `maze-left`, `maze-lidar` and `maze-explore` as wholes.
 
 use super::support::{published, run};
 use serde_json::Value;
@@ -13,7 +13,7 @@ fn the_left_hand_finds_the_goal_when_controlled() {
     }
     let (status, report, _) = run("maze_left", &["--drive", "open", "--noise", "0"]);
     assert_eq!((status, &report["outcome"]), (0, &"goal".into()), "{report}");
-    // As in the book, errors of the drive lead into a wall.
+    // As in the book, drive errors lead into a wall.
     let collided = ["1", "2", "3", "4", "5", "6", "7", "8"].map(|seed| {
         let (status, report, _) = run("maze_left", &["--drive", "open", "--noise", "5", "--seed", seed]);
         status == 1 && report["outcome"] == "collided"

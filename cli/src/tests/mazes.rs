@@ -1,8 +1,7 @@
 //! The command `micromouse` as a whole, and published mazes with known answers.
 //!
-//! The published mazes are no part of the project: the environment variable `ROVERLAB_DATA` names the folder
-//! that holds
-//! `micromouse/`.
+//! The published mazes are not part of the project: the environment variable `ROVERLAB_DATA` names the folder
+//! that contains `micromouse/`.
 
 use std::fs;
 
@@ -74,7 +73,7 @@ fn what_was_explored_is_told_even_if_the_fast_run_fails() {
     assert_eq!(report["fast_run_s"], Value::Null);
 }
 
-/// Where odometry is far off and a corridor long, a robot must not take a wall for that of the next cell.
+/// With large odometry errors in a long corridor, a robot must not mistake a wall for that of the next cell.
 #[test]
 #[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
 fn long_corridors_are_explored_right_with_odometry_that_is_far_off() {
@@ -196,7 +195,7 @@ fn a_file_that_is_missing_is_named() {
     );
 }
 
-/// What merely shows a maze, and prose, is no maze.
+/// A picture of a maze, or prose, is not a maze.
 #[test]
 #[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
 fn prose_about_mazes_is_no_maze() {
@@ -251,7 +250,7 @@ fn published_mazes_have_the_known_answers() {
     assert_eq!(MazeFormat::Maze as usize, 1);
 }
 
-/// The fields of a line of a table, of which some are in quotes.
+/// The fields of a table line, some of them quoted.
 fn fields(line: &str) -> Vec<String> {
     let mut fields = vec![String::new()];
     let mut quoted = false;

@@ -9,6 +9,7 @@ mod driving;
 mod evolution;
 mod grids;
 mod heed;
+mod hills;
 mod lane_keeping;
 mod lidar;
 mod maze_drives;

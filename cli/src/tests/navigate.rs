@@ -8,7 +8,7 @@ use crate::navigate;
 use clap::Parser;
 use serde_json::Value;
 
-/// Runs the command. Returns its status and its report, and what it said on standard error.
+/// Runs the command. Returns status, report, and standard error.
 fn run(options: &[&str]) -> Ended {
     support::run("navigate", options)
 }
@@ -35,7 +35,7 @@ fn what_the_robot_was_not_told_of_changes_its_plan() {
         replans += ended.1["replans"].as_u64().unwrap();
     }
     assert!(replans > 0);
-    // Told of everything, it plans once.
+    // With a complete map, it plans once.
     let ended = run(&["--unmapped", "0", "--noise", "0"]);
     assert_reached(&ended);
     assert_eq!((&ended.1["replans"], &ended.1["recoveries"]), (&0.into(), &0.into()), "{}", ended.1);
@@ -77,7 +77,7 @@ fn a_grid_map_is_a_floor() {
     // Column 2, row 2 of the map, and its upper right cell.
     let ended = run(&["--world", &world, "--start", "1250,1750,0", "--goal", "4250,2750"]);
     assert_reached(&ended);
-    // The inside of a blocked cell is solid, though the world's walls only go round it.
+    // The inside of a blocked cell is solid, though the world's walls only surround it.
     let (status, _, err) = run(&["--world", &world, "--start", "750,2250,0", "--goal", "4250,2750"]);
     assert!(status == 2 && err.contains("--start: found a start at 750, 2250 mm, in a wall"), "{err}");
     let (status, report, _) = run(&["--world", &world, "--start", "1250,1750,0", "--goal", "750,2250"]);
@@ -106,7 +106,7 @@ fn what_makes_no_sense_is_refused() {
     }
 }
 
-/// A wall with some digits too many is left out of maps and told of, and the rest is as without it.
+/// A wall with a mistyped coordinate is omitted from maps with a warning, and changes nothing else.
 #[test]
 fn a_stray_wall_changes_nothing() {
     let file = temporary("stray.wld");

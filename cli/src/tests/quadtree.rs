@@ -16,8 +16,8 @@ fn report(options: &[&str]) -> Value {
     serde_json::from_str(&out).unwrap()
 }
 
-/// A picture of 8 x 8 pixels whose lower right quarter is black but for its last pixel. Each test writes a file of its
-/// own, as tests run at the same time.
+/// A picture of 8 x 8 pixels whose lower right quarter is black except for its last pixel. Each test writes
+/// its own file, as tests run concurrently.
 fn picture(name: &str) -> String {
     let file = temporary(name);
     let black = |x: usize, y: usize| x >= 4 && y >= 4 && (x, y) != (7, 7);

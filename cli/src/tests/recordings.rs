@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 
 use super::support::{DATA, Ended, run, temporary, text};
 use crate::commands::COMMANDS;
-use roverlab::io::log::{Header, LogWriter};
+use roverlab::io::log::{Header, Log, LogFile, LogWriter};
 use roverlab::world::{LidarSpec, RobotSpec, formats};
 
 fn file(name: &str) -> PathBuf {
     temporary(name)
 }
 
-/// Records a run twice and replays it: all recordings and all reports are the same. Returns the recording.
+/// Records a run twice and replays it: all recordings and reports are equal. Returns the recording.
 fn assert_replays(name: &str, options: &[&str]) -> PathBuf {
     let [first, second, third] = [1, 2, 3].map(|n| file(&format!("{name}-{}-{n}.mcap", options.concat())));
     let plain = run(name, options);
@@ -90,12 +90,12 @@ fn short(program: &str) -> &'static [&'static str] {
     }
 }
 
-/// Records a short run of a command twice, which gives the same, and checks a recording with `replay check`.
+/// Records a short run of a command twice with equal results, and checks a recording with `replay check`.
 fn assert_checks(name: &str, options: &[&str]) {
     let words = options.concat().replace('/', "-");
     let logs = [1, 2].map(|n| file(&format!("check-{name}{words}-{n}.mcap")));
     for log in &logs {
-        // An evolution is as long as its generations.
+        // The length of an evolution is given by its generations.
         let limit = if ["genetic", "starman"].contains(&name) { &[][..] } else { &["--time-limit", "6"] };
         let (_, _, err) = run(name, &[options, limit, &["--record", text(log)]].concat());
         assert!(log.is_file(), "{name}: {err}");
@@ -112,7 +112,7 @@ fn assert_checks(name: &str, options: &[&str]) {
 #[test]
 fn every_program_checks() {
     for command in COMMANDS.iter().filter(|command| command.drives()) {
-        // Nothing is noisy where Starman walks.
+        // Starman's world has no noise.
         let option = if command.name == "starman" { "--seed" } else { "--noise" };
         for value in ["0", "1", "2"] {
             assert_checks(command.name, &[short(command.name), &[option, value]].concat());
@@ -147,7 +147,7 @@ fn several_runs_are_no_recording() {
     }
 }
 
-/// A maze belongs to its recording.
+/// A maze is stored in its recording.
 #[test]
 fn a_recorded_maze_is_replayed() {
     let (maze, log) = (file("some.txt"), file("some-maze.mcap"));
@@ -222,7 +222,7 @@ fn files_that_cannot_be_replayed_are_named() {
     let out = file("saved.mcap");
     let (status, report, _) = manage(&["recover", name, out.to_str().unwrap()]);
     assert!(status == 0 && report["chunks"].as_u64() > Some(1), "{report}");
-    // What is saved replays as far as it goes.
+    // The recovered part replays as far as it goes.
     let (status, report, _) = manage(&["check", out.to_str().unwrap()]);
     assert_eq!((status, report["outcome"].as_str()), (1, Some("different")));
     assert!(report["difference"]["found"].as_str().unwrap().contains("the recording has ended"), "{report}");
@@ -257,22 +257,67 @@ fn a_recording_has_no_files_written() {
         assert_eq!(manage(&["check", name]).0, 2);
     }
     assert!(!picture.exists());
-    // Nor are files read that it does not hold.
+    // Files outside the recording are not read either.
     let header = Header::new("a_to_b", ["--world=world.wld"]);
     fs::write(&log, LogWriter::new(Vec::new(), &header).unwrap().finish().unwrap()).unwrap();
     let (status, _, err) = run("a_to_b", &["--replay", name]);
     assert!(status == 2 && err.contains("no such file in the recording"), "{err}");
 }
 
-/// Small recordings that were made once, perhaps on another machine. After a change that is meant to change
-/// runs, the first one is made anew by `REGENERATE=1 cargo test -p roverlab-cli recordings`.
+#[cfg(unix)]
+#[test]
+fn devices_are_no_recordings() {
+    for command in
+        [&["info", "/dev/zero"][..], &["check", "/dev/zero"], &["recover", "/dev/zero", "/dev/null"]]
+    {
+        let (status, _, err) = manage(command);
+        assert!(status == 2 && err.contains("device"), "{command:?}: {err}");
+    }
+    let (status, _, err) = run("a_to_b", &["--replay", "/dev/zero"]);
+    assert!(status == 2 && err.contains("device"), "{err}");
+}
+
+/// A robot has its 3D model, a recording has it too, and a robot whose model is missing drives without.
+#[test]
+fn the_model_of_a_robot_is_recorded() {
+    let robot = Path::new(DATA).join("formats/cart.robi");
+    let log = assert_replays("a_to_b", &["--robot", text(&robot), "--time-limit", "1"]);
+    let log = Log::read(fs::read(log).unwrap()).unwrap();
+    assert!(log.header().attachment("robot.robi 001 cart.obj").is_some());
+    let bare = file("bare.robi");
+    fs::copy(robot, &bare).unwrap();
+    let (status, _, err) = run("a_to_b", &["--robot", text(&bare)]);
+    assert!(status == 0 && err.contains("bare.robi:3:") && err.contains("cart.obj"), "{status} {err}");
+}
+
+#[test]
+fn no_other_file_is_recorded_over() {
+    let letter = file("letter.mcap");
+    let options = ["--time-limit", "1", "--record", text(&letter)];
+    fs::write(&letter, "Dear all").unwrap();
+    let (status, _, err) = run("a_to_b", &options);
+    assert!(status == 2 && err.contains("no recording") && err.contains("--force"), "{err}");
+    assert_eq!(fs::read(&letter).unwrap(), b"Dear all");
+    assert_eq!(run("a_to_b", &[&options[..], &["--force", "--fsync"]].concat()).2, "");
+    let first = fs::read(&letter).unwrap();
+    let writer = LogFile::create(&letter).unwrap();
+    let (status, _, err) = run("a_to_b", &options);
+    assert!(status == 2 && err.contains("somebody who records"), "{err}");
+    drop(writer);
+    assert!(run("a_to_b", &options).2.is_empty() && fs::read(&letter).unwrap() == first);
+    let (status, _, err) = run("a_to_b", &["--force"]);
+    assert!(status == 2 && err.contains("--record"), "{err}");
+}
+
+/// Small stored recordings, perhaps from another machine. After an intended change of runs, the first one is
+/// regenerated by `REGENERATE=1 cargo test -p roverlab-cli recordings`.
 #[test]
 fn recordings_of_before_check() {
     let data = Path::new(DATA).join("logs");
     let log = data.join("distbug.mcap");
     let name = log.to_str().unwrap();
     if std::env::var_os("REGENERATE").is_some() {
-        // Few beams, so that the file is small.
+        // Few beams keep the file small.
         let lidar = RobotSpec::s4().lidar.map(|lidar| LidarSpec { points: 60, ..lidar });
         let robot = file("coarse.robi");
         fs::write(&robot, formats::robi::print(&RobotSpec { lidar, ..RobotSpec::s4() })).unwrap();
@@ -282,7 +327,7 @@ fn recordings_of_before_check() {
     }
     let (status, report, err) = manage(&["check", name]);
     assert_eq!((status, report["outcome"].as_str()), (0, Some("same")), "{report} {err}");
-    // One by an earlier commit, whose program asked for more and in another order, can be read all the same.
+    // A recording by an earlier commit, whose program made more calls in another order, can still be read.
     let (old, table) = (data.join("ackermann.mcap"), file("ackermann.csv"));
     let (status, report, err) = manage(&["export", text(&old), "--csv", text(&table)]);
     assert_eq!((status, err.as_str()), (0, ""), "{report}");

@@ -3,19 +3,20 @@
 use super::support::{Ended, run};
 use serde_json::Value;
 
-/// What goes wrong.
+/// An injected fault.
 struct Wrong {
     fault: &'static str,
-    /// What it is seen as: one of these.
+    /// Possible causes reported for it.
     causes: &'static [&'static str],
-    /// Seconds until it can be noticed, for a speed of the wheels in m/s, as the documentation of `Supervised` has it.
+    /// Time until it can be noticed (s), for a wheel speed (m/s), as documented for `Supervised`.
     noticed: fn(f64) -> f64,
 }
 
-/// Seconds of a control period.
+/// Control period (s).
 const PERIOD: f64 = 0.02;
 
-/// Odometry stays for four looks before it is odd, and until 10 mm are missing, of which a part of the last look's.
+/// Frozen odometry is noticed after four looks, and once 10 mm are missing, including part of the last
+/// look's.
 fn frozen(speed: f64) -> f64 {
     f64::max(4.0 * PERIOD, 0.01 / speed.max(0.01) + PERIOD)
 }
@@ -25,10 +26,10 @@ const FAULTS: [Wrong; 8] = [
     Wrong { fault: "lost", causes: &["sensor"], noticed: |_| 0.0 },
     Wrong { fault: "nan", causes: &["sensor"], noticed: |_| 0.0 },
     Wrong { fault: "jump=400,200,40", causes: &["sensor"], noticed: |_| 0.0 },
-    // Late readings look like those that stay, unless they jump.
+    // Late readings look like frozen ones, unless they jump.
     Wrong { fault: "late=1", causes: &["sensor"], noticed: frozen },
     Wrong { fault: "link", causes: &["link"], noticed: |_| 0.0 },
-    // It is over then; meanwhile the robot's own watchdog has stopped it.
+    // The fault is over by then; the robot's own watchdog has stopped it meanwhile.
     Wrong { fault: "hang=2", causes: &["watchdog", "clock"], noticed: |_| 2.0 },
     Wrong { fault: "clock", causes: &["clock"], noticed: |_| PERIOD },
 ];
@@ -37,8 +38,7 @@ const OVAL: [&str; 2] = ["--track", "../tests/data/cones/oval.csv"];
 
 type Drive = fn(&[&str]) -> Ended;
 
-/// The commands in which a robot drives that is supervised, and seconds into their runs at which something
-/// goes wrong.
+/// The commands with a supervised robot, and times of faults in their runs (s).
 const PROGRAMS: [(&str, [f64; 2], Drive); 18] = [
     ("a_to_b", [2.0, 3.1], |options| run("a_to_b", options)),
     ("ackermann", [2.0, 3.1], |options| run("ackermann", options)),
@@ -47,7 +47,7 @@ const PROGRAMS: [(&str, [f64; 2], Drive); 18] = [
     ("cone_race", [2.0, 3.1], |options| run("cone_race", &[&OVAL, options].concat())),
     ("coverage", [2.0, 3.1], |options| run("coverage", options)),
     ("distbug", [2.0, 3.1], |options| run("distbug", options)),
-    // It has ended before the third second.
+    // It ends before the third second.
     ("localise", [1.0, 2.0], |options| run("localise", options)),
     ("maze_explore", [2.0, 3.1], |options| run("maze_explore", options)),
     ("maze_left", [2.0, 3.1], |options| run("maze_left", options)),
@@ -61,8 +61,8 @@ const PROGRAMS: [(&str, [f64; 2], Drive); 18] = [
     ("wall_following", [2.0, 3.1], |options| run("wall_following", options)),
 ];
 
-/// Whether a stop is not what it has to be: seen, for one of some causes, one control period after it could be noticed, and within
-/// its bounds from where it began and from where the fault did.
+/// Whether a stop violates the requirements: a correct cause, a reaction one control period after the fault
+/// can be noticed, and distances within the bounds, both from the start of the stop and from the fault.
 fn wrong(stop: &Value, fault: &Wrong) -> bool {
     let number = |field: &str| stop[field].as_f64().unwrap_or(f64::NAN);
     let seen = stop["causes"].as_array().is_some_and(|seen| {
@@ -72,19 +72,19 @@ fn wrong(stop: &Value, fault: &Wrong) -> bool {
     let noticed = (fault.noticed)(0.001 * number("rolling_mm_s"));
     let prompt = number("time_s") - number("fault_s") <= noticed + PERIOD + 1e-6;
     let within = number("stop_mm") <= number("bound_mm") + 1.0;
-    // The robot goes on as it was until the fault is noticed, and answered; its way is measured from the look before the fault.
-    // While a call hangs, the robot has stopped by itself, from the look before as well.
+    // The robot continues until the fault is noticed and answered; its distance is measured from the look
+    // before the fault. During a hanging call the robot stops by itself, also from the look before.
     let unnoticed = if fault.fault.starts_with("hang") { 0.0 } else { noticed + PERIOD };
     let in_all = number("since_fault_mm") <= fastest * (unnoticed + PERIOD) + number("bound_mm") + 1.0;
     !(stop["state"] == "SafeStop" && seen && stop["stood"] == true && prompt && within && in_all)
 }
 
-/// What is wrong about the stops of a program after every fault at a time.
+/// Violations by the stops of a program after every fault at a time.
 fn failures(name: &str, time: f64, drive: Drive) -> Vec<String> {
     let limit = (time + 3.0).to_string();
     let mut failures = Vec::new();
     for fault in &FAULTS {
-        // It stands then: odometry that sticks says what is so.
+        // It stands at that time, so stuck odometry is correct.
         if name == "motion" && fault.fault == "stuck" {
             continue;
         }
@@ -97,7 +97,7 @@ fn failures(name: &str, time: f64, drive: Drive) -> Vec<String> {
     failures
 }
 
-/// Whatever goes wrong, and whatever the program does then, the robot stands within the distance that is proved.
+/// Whatever fails, and whatever the program does then, the robot stops within the proved distance.
 #[test]
 fn every_robot_stands_after_every_fault() {
     let mut found = Vec::new();
@@ -109,7 +109,7 @@ fn every_robot_stands_after_every_fault() {
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
-/// As fast as it gets, on the racing line of its second lap.
+/// At maximum speed, on the racing line of its second lap.
 #[test]
 fn a_car_that_races_stands_after_every_fault() {
     let found = failures("cone_race", 29.0, |options| {
@@ -118,7 +118,7 @@ fn a_car_that_races_stands_after_every_fault() {
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
-/// As fast as it gets, through a maze that it has explored.
+/// At maximum speed, through an explored maze.
 #[test]
 fn a_mouse_that_races_stands_after_every_fault() {
     let (_, report, err) = run("micromouse", &["--supervised"]);
@@ -129,20 +129,21 @@ fn a_mouse_that_races_stands_after_every_fault() {
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
-/// No program is silent while it drives, or has sensors that look as if they were at fault.
+/// No program is silent while it drives, or has sensors that seem faulty.
 #[test]
 fn without_a_fault_nothing_stops_any_program() {
     for (name, _, drive) in PROGRAMS {
         let (_, report, err) = drive(&["--supervised", "--time-limit", "20"]);
         for stop in report["safety"].as_array().unwrap() {
-            // When its world has ended, nobody answers.
+            // Once its world has ended, nobody answers.
             let ended = stop["time_s"].as_f64().is_some_and(|time| time >= 20.0);
             assert!(stop["state"].is_null() || ended, "{name}: {stop} {err}");
         }
     }
 }
 
-/// How long a robot is waited for goes by the time of its world: a fast car that brakes alone takes some, in waits that fail.
+/// The wait for a robot is measured in its world's time: a fast car that brakes by itself takes some, during
+/// failing waits.
 #[test]
 fn a_fast_car_without_a_link_is_seen_to_stand() {
     let (folder, files) = super::cones::events("supervised");
@@ -157,18 +158,17 @@ fn a_fast_car_without_a_link_is_seen_to_stand() {
     std::fs::remove_dir_all(folder).unwrap();
 }
 
-/// Nobody watches the robots of these commands, so they say so: a safety system lets time pass for its robot
-/// while it waits, and here several robots share one thread, or the runs are many and nobody asks how each
-/// one stopped.
+/// These commands have no supervised robots and say so: a safety system lets time pass for its robot, but
+/// here several robots share one thread, or the runs are too many for anyone to ask how each one stopped.
 #[test]
 fn commands_without_a_supervised_robot_say_so() {
     let programs: [(&str, Drive); 4] = [
-        // Many robots, each in a world of its own.
+        // Many robots, each in its own world.
         ("bug_compare", |options| run("bug_compare", options)),
-        // Stepped as a fleet, all in one thread.
+        // Stepped as a fleet in one thread.
         ("follow_me", |options| run("follow_me", options)),
         ("random_drive", |options| run("random_drive", &[&["--robots", "3"], options].concat())),
-        // Many runs, on all cores.
+        // Many runs on all cores.
         ("a_to_b", |options| run("a_to_b", &[&["--campaign", "--runs", "1"], options].concat())),
     ];
     for (name, drive) in programs {
@@ -184,8 +184,8 @@ fn without_a_fault_nothing_stops_them() {
     assert_eq!(report["safety"][0]["state"], Value::Null, "{report}");
 }
 
-/// Milliseconds after which an event has to be answered: a period after the heartbeat was missing for 0.5 s, or the program for 0.4 s,
-/// which hangs in its next step of 50 ms; or a period.
+/// Time within which an event must be answered (ms): a period after the heartbeat was missing for 0.5 s, or
+/// the program for 0.4 s from its next step of 50 ms; or a period.
 fn allowed(event: &Value) -> f64 {
     match event.as_str() {
         Some("radio") => 520.0,
@@ -194,7 +194,7 @@ fn allowed(event: &Value) -> f64 {
     }
 }
 
-/// All kinds of stops, one after the other, and each time it is armed and started again.
+/// All kinds of stops in turn, with rearming and restarting in between.
 #[test]
 fn a_car_is_stopped_and_set_going_again() {
     for noise in ["0", "1"] {
@@ -218,7 +218,7 @@ fn a_car_is_stopped_and_set_going_again() {
     }
 }
 
-/// Who is out of reach or hangs stops by itself, and the command tells how far it went.
+/// A car that is out of reach or hangs stops by itself, and the command reports its distance.
 #[test]
 fn a_car_that_nobody_talks_to_stops() {
     for (fault, causes) in [("link@3", &["link"][..]), ("hang=20@3", &["watchdog", "clock"])] {
@@ -235,7 +235,7 @@ fn a_car_that_nobody_talks_to_stops() {
     }
 }
 
-/// Time passes for both when the first one waits.
+/// When the first one waits, time passes for both.
 #[test]
 fn both_cars_of_a_race_are_supervised() {
     let (status, report, err) =
@@ -247,7 +247,7 @@ fn both_cars_of_a_race_are_supervised() {
     assert_eq!(report["safety"].as_array().unwrap().len(), 2);
 }
 
-/// What the speed is measured wrong by, a stop goes further, and its bound says so.
+/// A speed measurement error lengthens a stop, and its bound accounts for it.
 #[test]
 fn stops_are_within_their_bounds_whatever_the_noise() {
     for noise in ["3", "5"] {
@@ -257,7 +257,7 @@ fn stops_are_within_their_bounds_whatever_the_noise() {
     }
 }
 
-/// The driver gets the car, and no stop is told that was none.
+/// The driver gets control, and nothing else is reported as a stop.
 #[test]
 fn the_driver_is_answered() {
     let (status, report, err) = run("safety", &["--event", "wheel", "--event", "pedal"]);
@@ -274,7 +274,8 @@ fn the_driver_is_answered() {
     }
 }
 
-/// Nobody vouches for a sensor that is still late, so the car goes on standing; for one that was late, somebody does.
+/// Nobody confirms a sensor that is still late, so the car keeps standing; a sensor that was late is
+/// confirmed.
 #[test]
 fn a_sensor_that_stays_late_keeps_the_car_standing() {
     for (fault, seed) in
@@ -282,7 +283,7 @@ fn a_sensor_that_stays_late_keeps_the_car_standing() {
     {
         let options = ["--fault", fault, "--event", "button", "--time-limit", "20", "--seed", seed];
         let (_, report, _) = run("safety", &options);
-        // It brakes without news of the lane, so a cone may stand on its way: what is promised is how long that is.
+        // It brakes without knowing the lane, so a cone may be in its way: only the distance is guaranteed.
         assert_ne!(report["outcome"], "stood", "{report}");
         let stop = &report["stops"][0];
         let [driven, bound] = ["distance_m", "bound_m"].map(|field| stop[field].as_f64().unwrap());

@@ -7,7 +7,7 @@ use crate::edges;
 use clap::ValueEnum;
 use image::RgbImage;
 
-/// An image of coloured squares with noise.
+/// An image of noisy coloured squares.
 fn squares(name: &str) -> PathBuf {
     let file = temporary(name);
     let image = RgbImage::from_fn(96, 64, |x, y| {
@@ -125,7 +125,7 @@ fn deep_images_keep_their_upper_bytes() {
     let options = ["--input", text(&input), "--kernel", "gray_to_rgb", "--output", text(&output)];
     assert_outcome(&run("edges", &options), "filtered");
     let shallow = image::open(&output).unwrap().into_rgb8();
-    // RoBIOS's gray of three equal channels loses up to a level.
+    // RoBIOS's gray of three equal channels is up to one level lower.
     let near = |x: u32, pixel: &image::Rgb<u8>| x.abs_diff(u32::from(pixel.0[0])) <= 1;
     assert!(shallow.enumerate_pixels().all(|(x, _, pixel)| near(x, pixel)));
     let row = |y: u32| (0..256).map(|x| *shallow.get_pixel(x, y)).collect::<Vec<_>>();

@@ -1,4 +1,4 @@
-//! What the tests of whole commands share.
+//! Shared parts of the tests of whole commands.
 
 use std::ffi::OsString;
 use std::fs;
@@ -8,19 +8,19 @@ use serde_json::Value;
 
 use crate::commands::dispatch;
 
-/// Small files that the project made itself.
+/// Small files of the project.
 pub(crate) const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data");
 
-/// A folder of the published data, which are no part of the project.
+/// A folder of the published data, which are not part of the project.
 pub(crate) fn published(folder: &str) -> PathBuf {
     let data = std::env::var_os("ROVERLAB_DATA").expect("ROVERLAB_DATA names the folder of published data");
     Path::new(&data).join(folder)
 }
 
-/// A command's exit status, its report, and what it said on standard error.
+/// A command's exit status, report, and standard error.
 pub(crate) type Ended = (u8, Value, String);
 
-/// Runs a command. Returns its exit status, and what it said on standard output and on standard error.
+/// Runs a command. Returns exit status, standard output, and standard error.
 pub(crate) fn said(command: &str, options: &[&str]) -> (u8, String, String) {
     let words = ["roverlab", command].iter().chain(options).map(OsString::from).collect();
     let (mut out, mut err) = (Vec::new(), Vec::new());
@@ -35,17 +35,17 @@ pub(crate) fn run(command: &str, options: &[&str]) -> Ended {
     (status, serde_json::from_str(&out).unwrap_or(Value::Null), err)
 }
 
-/// A number of a report.
+/// A number in a report.
 pub(crate) fn number(report: &Value, name: &str) -> f64 {
     report[name].as_f64().unwrap_or_else(|| panic!("{name} in {report}"))
 }
 
-/// The command ended well, with an outcome.
+/// The command succeeded with an outcome.
 pub(crate) fn assert_outcome((status, report, err): &Ended, outcome: &str) {
     assert_eq!((*status, report["outcome"].as_str()), (0, Some(outcome)), "{report} {err}");
 }
 
-/// The folder of files that tests write, beside the folder of the test program.
+/// Folder for files of tests, beside that of the test program.
 pub(crate) fn folder() -> PathBuf {
     let program = std::env::current_exe().unwrap();
     let folder = program.ancestors().nth(2).unwrap().join("tmp");
@@ -53,12 +53,12 @@ pub(crate) fn folder() -> PathBuf {
     folder
 }
 
-/// A file of a test's own.
+/// Path of a test's own file.
 pub(crate) fn temporary(name: &str) -> PathBuf {
     folder().join(name)
 }
 
-/// A path as a word of a command line.
+/// A path as a command-line argument.
 pub(crate) fn text(path: &Path) -> &str {
     path.to_str().unwrap()
 }

@@ -127,7 +127,7 @@ fn the_table_of_a_campaign() {
     assert!(text.lines().count() >= rows.len() + 2);
 }
 
-/// A leader that finds no way on leads nobody.
+/// A leader without a free way leads nobody.
 #[test]
 fn a_leader_without_room_is_blocked() {
     let world = temporary("box.wld");

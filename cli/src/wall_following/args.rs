@@ -2,41 +2,41 @@ use roverlab::drive::WallSide;
 
 use crate::common::{CommonArgs, OF_ONE_RUN};
 
-/// The command line of `wall-following`.
+/// Command line of `wall-following`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     about = "Drives a robot along the walls of a room, and measures how well it keeps its distance",
     after_help = "\
-Without --world, the room is drawn with the seed: corners of 60 to 300 degrees, curves, doors. The run ends when the robot
-has been all the way round as often as --laps says.
+Without --world, the room is random, by the seed: corners of 60 to 300 degrees, curves, doors. The run ends after --laps
+laps.
 
-Errors are those of the true distance from the robot's middle to the nearest wall on the side where it follows walls, once
-it has driven 300 mm along one. Away from corners means: farther from a corner than the robot's path round it plus 150 mm.
+Errors are those of the true distance from the robot's centre to the nearest wall on the followed side, once it has
+driven 300 mm along a wall. Away from corners means farther from a corner than the robot's path round it plus 150 mm.
 
-With --campaign, many rooms instead of one, by the book's controller as well, and a table.
+With --campaign, many rooms instead of one, also with the book's controller, and a table.
 
 JSON fields:
   controller                  psd, pid, lidar or book
   side                        left or right; null if no wall was found
-  laps                        how often the robot has been round
-  rms_error_mm, max_error_mm  away from corners; null if nothing was measured
-  rms_error_everywhere_mm     corners included
+  laps                        number of complete laps
+  rms_error_mm, max_error_mm  away from corners; null without measurements
+  rms_error_everywhere_mm     including corners
   lap_length_mm               true length of the first lap
   time_limit_s, picture
   rows                        with --campaign only: the table
 Outcomes: followed, blocked, timed_out, collided, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
-    /// What drives the robot.
+    /// Controller of the robot.
     #[arg(long, value_enum, default_value = "psd")]
     pub(crate) controller: Controller,
 
-    /// On which side of the robot the wall is to be; auto: wherever it has to turn less. The book's program knows the left
-    /// alone.
+    /// Side of the robot on which to keep the wall; auto: the one that takes less turning. The book's program
+    /// only supports the left.
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) side: Side,
 
-    /// Between the wall and the robot's middle.
+    /// Distance of the robot's centre from the wall, in millimetres.
     #[arg(long, value_name = "MM", default_value_t = 200.0, value_parser = parse_distance, allow_hyphen_values = true)]
     pub(crate) distance: f64,
 
@@ -44,7 +44,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "MM", default_value_t = 200.0, value_parser = parse_speed, allow_hyphen_values = true)]
     pub(crate) speed: f64,
 
-    /// How often to go round.
+    /// Number of laps.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..), allow_hyphen_values = true)]
     pub(crate) laps: u32,
 
@@ -52,7 +52,7 @@ pub(crate) struct Args {
     #[arg(long)]
     pub(crate) campaign: bool,
 
-    /// Rooms in a campaign.
+    /// Number of rooms in a campaign.
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) rooms: u64,
 
@@ -65,10 +65,10 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("!campaign", &["rooms"]),
 ]);
 
-/// A controller by its name on the command line.
+/// Controller by its name on the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Controller {
-    /// Three distance sensors, and lines and curves through what they saw.
+    /// Three distance sensors, with lines and curves fitted to their points.
     Psd,
     /// A PID controller on the range to one side.
     Pid,
@@ -91,14 +91,14 @@ impl Controller {
     }
 }
 
-/// A side by its name on the command line.
+/// Side by its name on the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Side {
-    /// The wall is to the left.
+    /// Wall on the left.
     Left,
-    /// The wall is to the right.
+    /// Wall on the right.
     Right,
-    /// Where the robot has to turn less.
+    /// The side that takes less turning.
     Auto,
 }
 

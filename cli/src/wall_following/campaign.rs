@@ -9,27 +9,27 @@ use super::{Args, Controller, Errors};
 use crate::common::{Failure, Outcome, Progress, Report, millimetres};
 use crate::driving::Conditions;
 
-/// What came of many rooms by one controller.
+/// Results of many rooms for one controller.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Row {
     pub(crate) controller: Controller,
     pub(crate) rooms: u64,
-    /// Rooms in which the robot has been all the way round.
+    /// Number of rooms in which the robot went all the way round.
     pub(crate) followed: u64,
     pub(crate) contacts: u64,
-    /// Rooms with contacts.
+    /// Number of rooms with contacts.
     pub(crate) touched: u64,
     pub(crate) away_from_corners: Errors,
     pub(crate) everywhere: Errors,
     pub(crate) sim_time: f64,
-    /// Seeds of rooms in which something was amiss: the first ones.
+    /// Seeds of the first rooms with a problem.
     pub(crate) amiss: Vec<u64>,
 }
 
-/// The largest good errors away from corners, in millimetres.
+/// Maximum acceptable errors away from corners (mm).
 const RMS: f64 = 10.0;
 const WORST: f64 = 40.0;
-/// How many seeds are listed.
+/// Maximum number of listed seeds.
 const LISTED: usize = 10;
 
 impl Row {
@@ -42,7 +42,7 @@ impl Row {
     }
 }
 
-/// The campaign's work. The controller of the options is judged; the others stand beside it.
+/// Runs the campaign. The controller of the options is judged; the others are listed for comparison.
 pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
     let rows = rows(args)?;
     let good = rows.iter().any(|row| row.controller == args.controller && row.is_good());
@@ -52,7 +52,7 @@ pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
         .table("rows", json(&rows)))
 }
 
-/// A row for the controller that is asked for, and one for each other.
+/// A row for the requested controller, and one for each other.
 pub(crate) fn rows(args: &Args) -> Result<Vec<Row>, Failure> {
     let others = Controller::ALL.into_iter().filter(|&other| other != args.controller);
     let mut progress = Progress::start();
@@ -100,7 +100,7 @@ fn add_room(row: &mut Row, args: &Args, seed: u64) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The table. Holds nothing that differs between machines.
+/// The table, without anything that differs between machines.
 pub(crate) fn text(rows: &[Row]) -> String {
     let mut text = String::from(
         "controller  rooms  all round  touched  contacts  rms mm  worst mm  rms everywhere  good\n",

@@ -3,22 +3,22 @@ use std::f64::consts::{FRAC_PI_3, PI};
 use roverlab::geometry::{Point, Vector, math};
 use roverlab::world::World;
 
-/// A place where walls meet at an angle, or where one ends.
+/// A corner between walls, or the end of one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Corner {
     pub(crate) place: Point,
-    /// Metres from it that count as near.
+    /// Distance from it that counts as near (m).
     pub(crate) reach: f64,
 }
 
-/// Ends of walls this near to each other, in metres, are joined.
+/// Distance below which ends of walls are joined (m).
 const JOINED: f64 = 0.02;
-/// Joined walls that turn by less than this, in radians, make no corner.
+/// Angle below which joined walls make no corner (rad).
 const STRAIGHT: f64 = 0.25;
-/// Metres behind a corner in which the robot finds back to its distance.
+/// Distance behind a corner in which the robot returns to its distance (m).
 const MARGIN: f64 = 0.15;
 
-/// The corners of a world for a robot that keeps a distance.
+/// Corners of a world for a robot that keeps a distance (m).
 pub(crate) fn corners(world: &World, distance: f64) -> Vec<Corner> {
     let ends: Vec<(Point, Vector)> = world
         .walls
@@ -43,7 +43,7 @@ fn corner(ends: &[(Point, Vector)], index: usize, distance: f64) -> Option<Corne
         return None;
     }
     let sharpest = angles.into_iter().fold(PI, f64::min).max(FRAC_PI_3);
-    // A free end is as sharp as any.
+    // A free end counts as a sharp corner.
     let sharpest = if sharpest > PI - 1e-9 { FRAC_PI_3 } else { sharpest };
     Some(Corner { place, reach: distance / math::sin(0.5 * sharpest) + MARGIN })
 }

@@ -10,31 +10,31 @@ use roverlab::io::{self, Clock, DistanceSensors, Drive, Lidar, Odometry, StallDe
 
 use super::Controller;
 
-/// What the robot is told.
+/// Driving options.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Options {
     pub(crate) controller: Controller,
     pub(crate) side: Option<WallSide>,
-    /// Metres and metres per second.
+    /// Distance (m) and speed (m/s).
     pub(crate) distance: f64,
     pub(crate) speed: f64,
-    /// The robot's radius, and what its ranges err by.
+    /// The robot's radius, and the error of its ranges (m).
     pub(crate) radius: f64,
     pub(crate) range_error: f64,
     pub(crate) sensors: WallSensors,
-    /// Simulated seconds.
+    /// Time limit (s).
     pub(crate) time_limit: f64,
 }
 
-/// What the robot says at the end.
+/// The robot's result.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Walk {
     pub(crate) outcome: WallOutcome,
-    /// Where the wall was.
+    /// Side of the wall.
     pub(crate) side: Option<WallSide>,
 }
 
-/// Whether the robot takes itself to be beside a wall, and on which side walls are to be.
+/// Whether the robot reports being beside a wall, and the side of walls.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Beside {
     pub(crate) wall: bool,

@@ -10,7 +10,7 @@ use super::{Args, Watch, campaign, picture};
 use crate::common::{Failure, Outcome, Report, millimetres, rounded};
 use crate::driving::{Conditions, Run, paced};
 
-/// The work of the command.
+/// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     if args.campaign {
         return campaign(args);
@@ -32,7 +32,7 @@ pub(super) fn scene(seed: u64) -> Scene {
     Scene::with_robot(room.world, RobotSpec::s4(), room.start)
 }
 
-/// Time for all walls at half the speed, for each lap and for the search.
+/// Time for all walls at half the speed, for each lap and for the search (s).
 pub(super) fn time_limit(args: &Args, scene: &Scene) -> f64 {
     let walls: f64 = scene.world.walls.iter().map(|wall| wall.line.length() + 0.1).sum();
     let speed = units::from_mm(args.speed);

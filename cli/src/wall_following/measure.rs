@@ -9,12 +9,12 @@ use roverlab::world::space::{Scanner, Solid, Space};
 use super::corners::{Corner, corners};
 use super::drive::Beside;
 
-/// The errors of many distances.
+/// Errors of many distances.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Errors {
     sum_of_squares: f64,
     count: u64,
-    /// The largest, in metres.
+    /// Largest error (m).
     pub(crate) worst: f64,
 }
 
@@ -31,17 +31,17 @@ impl Errors {
         self.worst = self.worst.max(other.worst);
     }
 
-    /// The root of their mean square in metres; `None` without any.
+    /// Root mean square error (m); `None` without any.
     pub(crate) fn rms(&self) -> Option<f64> {
         (self.count > 0).then(|| (self.sum_of_squares / self.count as f64).sqrt())
     }
 }
 
-/// Watches a robot on its way round.
+/// Observes a robot on its way round.
 #[derive(Debug)]
 pub(crate) struct Watch {
     space: Space,
-    /// Looks to the left, where distances are measured, or to the right.
+    /// Scans towards the left, or the right, where distances are measured.
     scanner: Scanner,
     ranges: Vec<f64>,
     side: Option<WallSide>,
@@ -50,30 +50,30 @@ pub(crate) struct Watch {
     wanted: u32,
     last: Pose,
     driven: f64,
-    /// Where the wall was found, and how far the robot had driven by then.
+    /// Pose where the wall was found, and distance driven by then (m).
     begin: Option<(Pose, f64)>,
-    /// Whether the robot has left the place where the lap began, and how far it has turned since.
+    /// Whether the robot has left the start of the lap, and how far it has turned since (rad).
     away: bool,
     turned: f64,
     pub(crate) laps: u32,
     pub(crate) lap_length: Option<f64>,
     pub(crate) away_from_corners: Errors,
     pub(crate) everywhere: Errors,
-    /// Where the error was largest.
+    /// Position of the largest error.
     pub(crate) worst_place: Option<Pose>,
 }
 
-/// Radians to either side of the robot's left or right in which the wall is looked for, and how closely: the shortest of the
-/// beams is at most 0.02 % longer than the distance.
+/// Half width of the search sector on the robot's left or right, and its angular step (rad): the shortest
+/// beam is at most 0.02 % longer than the distance.
 const HALF: f64 = 80.0 * STEP;
 const STEP: f64 = PI / 180.0;
 const BEAMS: usize = 161;
-/// Distances beyond so many of those that are wanted count as that.
+/// Limit of measured distances, as a multiple of the wished one.
 const FARTHEST: f64 = 4.0;
-/// Metres behind the place where the wall was found from which errors count.
+/// Distance driven after finding the wall from which errors count (m).
 const SETTLING: f64 = 0.3;
-/// A lap ends within so many metres of its begin, with a heading like then, once the robot has been farther away and has turned
-/// round.
+/// Maximum distance (m) and heading difference (rad) from the start of a lap at its end, once the robot has
+/// been farther away and has turned round.
 const LAP: (f64, f64) = (0.2, 0.8);
 
 impl Watch {
@@ -111,7 +111,7 @@ impl Watch {
         }
     }
 
-    /// Takes in where the robot is. Breaks after the last lap.
+    /// Records the robot's pose. Breaks after the last lap.
     pub(crate) fn see(&mut self, pose: Pose, beside: Beside) -> ControlFlow<()> {
         let beside_wall = beside.wall;
         self.side = beside.side.or(self.side);
@@ -126,7 +126,7 @@ impl Watch {
         };
         let way = self.driven - since;
         if way < SETTLING {
-            // The lap begins where the robot has been beside the wall for a while.
+            // The lap begins once the robot has been beside the wall for a while.
             self.begin = beside_wall.then_some((pose, since));
             (self.away, self.turned) = (false, 0.0);
             return ControlFlow::Continue(());

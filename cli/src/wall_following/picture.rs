@@ -7,7 +7,7 @@ use super::drive::Walk;
 use super::{Args, Watch};
 use crate::driving::{Conditions, Run, pale};
 
-/// A picture of a run: the room, where the robot was, and where its error was largest.
+/// Picture of a run: the room, the robot's path, and the position of its largest error.
 pub(crate) fn of(
     args: &Args,
     scene: &Scene,

@@ -12,7 +12,7 @@ use super::real_time::nap;
 use super::runtime::{enter, enter_quietly};
 use super::threads::{Inside, alone, calls};
 #[cfg(target_os = "linux")]
-use super::turns::{Turn, is_there, own_number};
+use super::turns::{Turn, all_sleep, is_there, own_number};
 use crate::keys::Waiting;
 use crate::robios::Robios;
 
@@ -47,6 +47,15 @@ fn asleep() -> Vec<u32> {
     at_ends(|ends| ends.values().map(|&(_, thread)| thread).collect())
 }
 
+/// Whether all of the program's threads are asleep at a time, and each until later.
+fn all_are_asleep(now: f64) -> bool {
+    let (threads, earliest) = at_ends(|ends| {
+        let earliest = ends.values().map(|&(end, _)| end).fold(f64::INFINITY, f64::min);
+        (ends.values().map(|&(_, thread)| thread).collect::<Vec<_>>(), earliest)
+    });
+    earliest > now && all_sleep(&threads)
+}
+
 /// A sleeping thread.
 struct Sleeper {
     number: u64,
@@ -66,13 +75,19 @@ impl Sleeper {
         Self { number, waits: 0 }
     }
 
-    /// Lets a tick pass, but at most until the next thread wakes up, and nothing before due threads have done
-    /// so.
-    fn pass(&mut self) -> Option<()> {
+    /// Lets time pass until the next thread wakes up, and nothing before due threads have done so: a tick at most,
+    /// unless all threads were asleep at the present time, so that none can act before.
+    fn pass(&mut self, all_asleep_at: Option<f64>) -> Option<()> {
         let earliest = at_ends(|ends| ends.values().map(|&(end, _)| end).fold(f64::INFINITY, f64::min));
         let passed = enter_quietly(|robios| {
-            let rest = earliest - robios.now();
-            if rest > 0.0 { robios.pass(rest.min(TICK)).map(|()| true) } else { Ok(false) }
+            let now = robios.now();
+            let most = match robios.timers.next() {
+                _ if all_asleep_at != Some(now) => TICK,
+                Some(due) => (due - now).max(TICK),
+                None => f64::INFINITY,
+            };
+            let rest = earliest - now;
+            if rest > 0.0 { robios.pass(rest.min(most)).map(|()| true) } else { Ok(false) }
         })?;
         self.waits = if passed { 0 } else { self.waits + 1 };
         self.forget_others();
@@ -110,21 +125,22 @@ impl Drop for Sleeper {
 
 /// Lets the program wait until a time since the start (s). Timer functions are called in between.
 ///
-/// A program with one thread skips the time. With several threads, a sleeping one advances the world by a
-/// tick whenever the others have had and not used the opportunity to act.
+/// A program with one thread skips the time, and so does one whose threads all sleep. Otherwise a sleeping one advances
+/// the world by a tick whenever the others have had and not used the opportunity to act.
 fn sleep_until(end: f64) -> Option<()> {
     let (mut sleeper, mut turn) = (Sleeper::new(end), Turn::default());
     let mut waking: Option<Turn> = None;
     loop {
         let (alone, before) = (alone(), calls());
-        let rest = enter_quietly(|robios| {
+        let now = enter_quietly(|robios| {
             let now = robios.now();
             if now < end && alone {
                 let next = robios.timers.next().map_or(end, |due| due.min(end));
                 robios.pass(next - now)?;
             }
-            Ok(end - robios.now())
+            Ok(robios.now())
         })?;
+        let rest = end - now;
         if alone && rest > 0.0 {
             continue;
         }
@@ -138,9 +154,11 @@ fn sleep_until(end: f64) -> Option<()> {
         nap(GRACE);
         if calls() != before || !nobody_starts() {
             turn = Turn::default();
+        } else if all_are_asleep(now) {
+            sleeper.pass(Some(now))?;
         } else if turn.is_over(&asleep()) {
             turn = Turn::default();
-            sleeper.pass()?;
+            sleeper.pass(None)?;
         }
     }
 }
@@ -164,6 +182,11 @@ struct Turn;
 #[cfg(not(target_os = "linux"))]
 fn own_number() -> u32 {
     0
+}
+
+#[cfg(not(target_os = "linux"))]
+fn all_sleep(_: &[u32]) -> bool {
+    false
 }
 
 #[cfg(not(target_os = "linux"))]

@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::Read;
+use std::sync::{Mutex, PoisonError};
 
 /// Activity of the other threads since the first look.
 #[derive(Debug, Default)]
@@ -65,6 +66,22 @@ impl Turn {
             _ => true,
         }
     }
+}
+
+/// Numbers of the library's own threads.
+static OURS: Mutex<Vec<u32>> = Mutex::new(Vec::new());
+
+/// Records that this thread is the library's.
+pub(super) fn note_ours() {
+    OURS.lock().unwrap_or_else(PoisonError::into_inner).push(own_number());
+}
+
+/// Whether every other thread of the program is among those that sleep by its clock, or has ended: then none
+/// can act before one of them wakes up.
+pub(super) fn all_sleep(asleep: &[u32]) -> bool {
+    let ours = OURS.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    let sleeps = |thread: &u32| asleep.contains(thread) || ours.contains(thread);
+    others().iter().all(|thread| sleeps(thread) || state(*thread) == Some('Z'))
 }
 
 /// Whether all threads of a program with a child process have been waiting since an earlier look: most likely

@@ -8,7 +8,7 @@ use std::time::Duration;
 use super::real_time::{nap, real_seconds};
 use super::threads::{calls, set_ours};
 #[cfg(target_os = "linux")]
-use super::turns::{Stillness, have_all_ended};
+use super::turns::{Stillness, have_all_ended, note_ours};
 
 /// Result of letting time pass without a call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -67,6 +67,7 @@ fn step(doublings: u32) -> f64 {
 /// slowly. While the program waits for another process, time passes like real time.
 fn watch(pass: Pass, is_shared: bool) {
     set_ours(true);
+    note_ours();
     let (mut before, mut idle) = (calls(), 0_u32);
     let (mut stillness, mut last) = (Stillness::default(), real_seconds());
     // Number of looks, and time, for which the program has been waiting.
@@ -112,6 +113,9 @@ impl Stillness {
         false
     }
 }
+
+#[cfg(not(target_os = "linux"))]
+fn note_ours() {}
 
 #[cfg(not(target_os = "linux"))]
 fn have_all_ended() -> bool {

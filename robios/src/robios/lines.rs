@@ -87,6 +87,10 @@ impl Robios {
 
     /// `ANALOGRead`: the inertial unit on its channels, the supply voltage on channel 0, silence elsewhere.
     pub fn analog_read(&mut self, channel: i32) -> Result<i32> {
+        if channel != 0 && channel == i32::from(self.identity.depth_channel) {
+            let Reply::Number(depth) = self.ask(&Request::Depth)? else { return Err(super::foreign()) };
+            return Ok(units::to_mm(depth).round() as i32);
+        }
         let unit = self.identity.inertial;
         let tenths_of_degrees = |radians| 10.0 * units::to_deg(radians);
         let groups: [(_, _, fn(f64) -> f64); 3] = [

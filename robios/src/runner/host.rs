@@ -1,6 +1,4 @@
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::BufWriter;
 use std::path::Path;
 use std::sync::mpsc;
 use std::thread;
@@ -13,7 +11,7 @@ use eyesim::process;
 use eyesim::report::{Report, Stance};
 use eyesim::wire::{Answer, LONGEST_REQUEST, Question};
 use roverlab::geometry::Pose;
-use roverlab::io::log::{Header, LogWriter};
+use roverlab::io::log::{Header, LogFile, LogWriter};
 use roverlab::io::sim::{SimOptions, Simulation, TICK, Truth as World};
 use roverlab::io::{self, Clock, ErrorKind, RobotIo};
 use roverlab::world::Scene;
@@ -60,7 +58,7 @@ pub(crate) fn run_together(
     let terms = Terms { exact: terms.exact && options.record.is_none(), ..terms };
     let simulation = Simulation::new(scene, sim_options).map_err(|error| error.to_string())?;
     // All programs get their robots before the first one drives, so that the world waits for all of them.
-    let log = options.record.as_deref().map(|file| recording(file, plan, scene)).transpose()?;
+    let log = options.record.as_deref().map(|file| recording(file, options, plan, scene)).transpose()?;
     let seats = programs.iter().map(|program| {
         let (robot, index) = (simulation.robot(program.robot)?, program.robot);
         let robot: Box<dyn RobotIo + Send> = match &log {
@@ -93,7 +91,7 @@ pub(crate) fn run_together(
     drive_on(&simulation, scene, &stopwatch, options.real_limit);
     // A thread that is still answering holds a reference, so nothing more is written.
     let finished = served.iter().all(Option::is_some);
-    if let Some(Err(error)) = log.filter(|_| finished).map(LogWriter::finish) {
+    if let Some(Err(error)) = log.filter(|_| finished).map(|log| log.finish().and_then(LogFile::complete)) {
         return Err(format!("--record: the recording is incomplete: {error}"));
     }
     let world = simulation.truth();
@@ -154,13 +152,24 @@ fn program_time(last_question: f64, reported: f64) -> f64 {
 }
 
 /// Starts a recording.
-fn recording(file: &Path, plan: &Plan, scene: &Scene) -> Result<LogWriter<BufWriter<File>>, String> {
+fn recording(
+    file: &Path,
+    options: &Options,
+    plan: &Plan,
+    scene: &Scene,
+) -> Result<LogWriter<LogFile>, String> {
     let begin = || {
         let header = Header { seed: Some(plan.seed), ..Header::new("robios", Vec::<String>::new()) };
-        LogWriter::new(BufWriter::new(File::create(file)?), &header)
+        let sink = if options.force { LogFile::replace(file) } else { LogFile::create(file) }?;
+        LogWriter::new(if options.fsync { sink.synced() } else { sink }, &header)
     };
     let log = begin().map_err(|error: std::io::Error| {
-        format!("--record {}: {error}; expected a file that can be written", file.display())
+        let expected = match error.kind() {
+            std::io::ErrorKind::AlreadyExists => ", or --force",
+            std::io::ErrorKind::ResourceBusy => "",
+            _ => "; expected a file that can be written",
+        };
+        format!("--record {}: {error}{expected}", file.display())
     })?;
     log.show(scene);
     Ok(log)

@@ -8,8 +8,8 @@ use roverlab::picture::FileType;
 
 /// Runs programs written for RoBIOS and EyeSim in simulated worlds, without a display and in virtual time.
 ///
-/// A script starts the program that it names for each robot; all of them share one world. A program alone drives the
-/// first robot of the world, or an S4.
+/// A script starts the program of each robot; all robots share one world. A single program drives the first
+/// robot of the world, or an S4.
 #[derive(Debug, clap::Parser)]
 #[command(
     name = "robios",
@@ -23,60 +23,68 @@ pub(crate) struct Options {
     #[arg(long, value_name = "FILE")]
     pub(crate) world: Option<PathBuf>,
 
-    /// The robot: S4, LabBot, Omni, Car, or a description, .robi [default: the world's, or an S4].
+    /// Robot: S4, LabBot, Omni, Car, or a description, .robi [default: the world's, or an S4].
     #[arg(long, value_name = "ROBOT")]
     pub(crate) robot: Option<String>,
 
-    /// Where the robot starts, in millimetres and degrees.
+    /// Start pose of the robot, in millimetres and degrees.
     #[arg(long, value_name = "X,Y,DEG", value_parser = parse_pose, allow_hyphen_values = true)]
     pub(crate) start: Option<Pose>,
 
-    /// Seed of every random stream.
+    /// Seed of all random streams.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
 
-    /// Noise: 0 ideal, as in EyeSim at first; 1 as on the real robot; up to 5.
+    /// Noise: 0 ideal, EyeSim's default; 1 as on the real robot; up to 5.
     #[arg(long, value_name = "F", default_value = "0", value_parser = parse_noise)]
     pub(crate) noise: f64,
 
-    /// Simulated seconds after which a program is ended.
+    /// Time limit of a program, in simulated seconds.
     #[arg(long, value_name = "S", default_value = "120", value_parser = parse_seconds)]
     pub(crate) time_limit: f64,
 
-    /// What calls take of a program's time: as on EyeSim, where a frame serves one request of each robot
-    /// (eyesim); a tenth of a millisecond each (free); or as a file says, a line for each call that differs
-    /// from EyeSim: `PSDGet query 2`.
+    /// Duration of calls: as in EyeSim, where a frame serves one request per robot (eyesim); 0.1 ms each
+    /// (free); or from a file, with a line for each call that differs from EyeSim: `PSDGet query 2`.
     #[arg(long, value_name = "eyesim|free|FILE", default_value = "eyesim")]
     pub(crate) call_costs: String,
 
-    /// Frames that EyeSim renders in a second.
+    /// Frame rate of EyeSim's rendering.
     #[arg(long, value_name = "HZ", default_value_t = FRAME_RATE, value_parser = parse_rate)]
     pub(crate) frame_rate: f64,
 
-    /// Simulated seconds for each second that a program computes. Above 0, runs are not reproducible.
+    /// Simulated seconds per second of a program's CPU time. Above 0, runs are not reproducible.
     #[arg(long, value_name = "FACTOR", default_value_t = 0.0, value_parser = parse_factor)]
     pub(crate) cpu_time: f64,
 
-    /// Real seconds after which a program is ended, and the run with it.
+    /// Time limit of a program and its run, in real seconds.
     #[arg(long, value_name = "S", default_value = "60", value_parser = parse_seconds)]
     pub(crate) real_limit: f64,
 
-    /// Real seconds without a call after which others no longer wait for a program: its time passes without it.
+    /// Real seconds without a call after which the others stop waiting for a program; its time then passes
+    /// without it.
     #[arg(long, value_name = "S", default_value = "5", value_parser = parse_seconds)]
     pub(crate) hang_limit: f64,
 
-    /// The keys: AUTO; NONE; presses such as `KEY1@2s,KEY4@60s,TOUCH:120:80@3s,IRTV_OK@4s`; or TERMINAL: the digits 1 to
-    /// 4 and Enter press the first robot's soft keys, and a simulated second takes a second.
+    /// Keys: AUTO; NONE; presses such as `KEY1@2s,KEY4@60s,TOUCH:120:80@3s,IRTV_OK@4s`; or TERMINAL: the digits
+    /// 1 to 4 and Enter press the first robot's soft keys, in real time.
     #[arg(long, value_name = "PLAN", default_value = "AUTO", value_parser = parse_keys)]
     pub(crate) keys: String,
 
-    /// Draw the robots' paths into a .svg or .png file.
+    /// Draw the robots' paths to a .svg or .png file.
     #[arg(long, value_name = "FILE", value_parser = parse_picture)]
     pub(crate) picture: Option<PathBuf>,
 
     /// Record the robots' calls and answers.
     #[arg(long, value_name = "FILE.mcap")]
     pub(crate) record: Option<PathBuf>,
+
+    /// Record in the place of a file that is no recording too.
+    #[arg(long, requires = "record")]
+    pub(crate) force: bool,
+
+    /// Wait until each second of a recording is on the disk.
+    #[arg(long, requires = "record")]
+    pub(crate) fsync: bool,
 
     /// Save the display of the last robot that has one as a .png file.
     #[arg(long, value_name = "FILE.png")]
@@ -86,12 +94,12 @@ pub(crate) struct Options {
     #[arg(long)]
     pub(crate) json: bool,
 
-    /// Report how long it took too, which differs from run to run.
+    /// Also report the run time, which varies between runs.
     #[arg(long)]
     pub(crate) timing: bool,
 
-    /// A script (.sim); or a program: an executable, Python (.py), C (.c) or C++ (.cpp, .cc). Or: install FOLDER, to
-    /// copy library, headers and scripts there.
+    /// A script (.sim), or a program: an executable, Python (.py), C (.c) or C++ (.cpp, .cc). Or install FOLDER,
+    /// to copy the library, headers and scripts to a folder.
     #[arg(value_name = "PROGRAM", required = true)]
     pub(crate) program: PathBuf,
 

@@ -1,4 +1,4 @@
-//! How programs end: with last calls, by limits, by faults, and with somebody whom they leave behind.
+//! Ends of programs: final calls, limits, faults, and processes left behind.
 
 use std::process::Command;
 
@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::{Folder, compiler, programs, python, report};
 
-/// Runs a program with this text, and returns what is told of it.
+/// Runs a program with this text, and returns its report.
 fn told(name: &str, text: &str, options: &[&str]) -> Value {
     let folder = Folder::new(&format!("endings-{name}"));
     let file = folder.write(name, text);

@@ -1,4 +1,4 @@
-//! Which library a program gets.
+//! Selection of a program's library.
 
 use std::fs::{self, File};
 use std::process::Command;
@@ -10,7 +10,8 @@ use super::{Folder, compiled, compiler, library};
 
 const PRINT: &str = "#include \"eyebot.h\"\nint main() { return LCDPrintf(\"here\"); }\n";
 
-/// `cargo test` puts its library into `deps`, and leaves alone what an earlier `cargo build` has put beside the runner.
+/// `cargo test` puts its library into `deps`, and leaves alone the one of an earlier `cargo build` beside the
+/// runner.
 #[test]
 fn a_library_that_an_earlier_build_has_left_is_not_taken() {
     if !compiler() {

@@ -1,5 +1,5 @@
-//! Limits that hold, and programs that do what they should not: close what is not theirs, leave their first
-//! thread, fork, end their parent, wait for each other.
+//! Enforced limits, and misbehaving programs: they close foreign files, leave their first thread, fork, end
+//! their parent, wait for each other.
 
 use std::time::Instant;
 
@@ -10,8 +10,7 @@ use super::{Folder, compiler, report};
 const BUSY: &str = "#include \"eyebot.h\"\nint main() { for (;;) PSDGet(1); }\n";
 const HANG: &str = "#include \"eyebot.h\"\nint main() { LCDPrintf(\"on\"); for (;;) ; }\n";
 
-/// Runs a program alone, and then beside another one that does nothing, and returns what is told of it each
-/// time.
+/// Runs a program alone, and then beside an idle one, and returns both reports.
 fn alone_and_beside(name: &str, text: &str, options: &[&str]) -> [Value; 2] {
     let folder = Folder::new(&format!("limits-{name}"));
     let file = folder.write(&format!("{name}.c"), text);
@@ -34,7 +33,8 @@ fn the_real_limit_ends_shared_runs() {
     folder.write("busy.c", BUSY);
     folder.write("hang.c", HANG);
     folder.write("brief.c", "#include \"eyebot.h\"\nint main() { return OSWait(100); }\n");
-    // Programs start a little after their run, whose limit is theirs; with one that ends before, it is looked at exactly.
+    // Programs start slightly after their run, whose limit is theirs; a program that ends before makes the
+    // check exact.
     for names in [&["busy", "busy", "brief"][..], &["busy", "hang"], &["hang"; 2]] {
         let line = |(number, name): (usize, &&str)| format!("S4 500 {} 0 {name}.x\n", 300 * (number + 1));
         let script = folder.write("all.sim", &names.iter().enumerate().map(line).collect::<String>());
@@ -83,7 +83,7 @@ fn time_passes_while_a_program_waits_for_a_process() {
     if !compiler() || !cfg!(target_os = "linux") {
         return;
     }
-    // The child sleeps by the real clock, and has no robot.
+    // The child sleeps in real time, and has no robot.
     let text = "#include \"eyebot.h\"\n#include <sys/wait.h>\nint main() { VWSetSpeed(100, 0);\n\
                 if (fork() == 0) { int failed = VWSetSpeed(300, 0); sleep(2); _exit(failed); }\n\
                 wait(NULL); VWSetSpeed(0, 0); OSWait(500); return 0; }\n";

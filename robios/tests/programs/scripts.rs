@@ -1,10 +1,10 @@
-//! Scripts as people have written them: with things that are missing, wrong, or named otherwise.
+//! Scripts in the wild: with missing, wrong or differently named parts.
 
 use serde_json::Value;
 
 use super::{Folder, compiler, python, report};
 
-/// A program that tells who and where it is.
+/// A program that reports its identity and position.
 const WHO: &str =
     "from eye import *\nx, y, z, phi = SIMGetRobot(0)\nLCDPrintf('%d at %d %d', OSMachineID(), x, y)\n";
 
@@ -44,7 +44,7 @@ fn what_programs_move_does_not_hang_on_who_is_faster() {
         return;
     }
     let folder = Folder::new("moves");
-    // Both move the can in the same tick, and both see the wish of the robot that was placed last.
+    // Both move the can in the same tick, and both see the result of the robot placed last.
     let text = "from eye import *\nif DELAY == OSMachineID():\n    sum(range(10000000))\n\
                 SIMSetObject(3, 500 + OSMachineID(), 1500, 0, 0)\nLCDPrintf('%d', SIMGetObject(3)[0].value)\n";
     for delayed in ["1", "2"] {

@@ -1,4 +1,4 @@
-//! What cameras and lidars see of the files that a script names, wherever these lie, and without them.
+//! What cameras and lidars see of the files named in a script, wherever these are, and without them.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::{Folder, python, report};
 
-/// Takes an image, and tells the mean colour of its lowest rows and how many of its pixels are red.
+/// Takes an image, and reports the mean colour of its lowest rows and the number of red pixels.
 const LOOK: &str = "from eye import *\nCAMInit(QQVGA)\nimage = CAMGet()\nbottom = image[-160 * 3 * 10:]\n\
                     mean = [sum(bottom[i::3]) // 1600 for i in range(3)]\n\
                     red = sum(r > 90 and g < 60 and b < 60 for r, g, b in zip(image[0::3], image[1::3], image[2::3]))\n\
@@ -27,7 +27,7 @@ fn warnings(report: &Value) -> Vec<&str> {
     list.into_iter().flatten().map(|warning| warning.as_str().unwrap()).collect()
 }
 
-/// Writes an image of one colour in a folder below.
+/// Writes an image of one colour in a subfolder.
 fn paint(folder: &Folder, file: &str, colour: [u8; 3]) {
     std::fs::create_dir_all(folder.0.join(file).parent().unwrap()).unwrap();
     RgbImage::from_pixel(32, 32, Rgb(colour)).save(folder.0.join(file)).unwrap();
@@ -134,7 +134,7 @@ fn a_sign_of_a_file_shows_its_picture() {
     let folder = Folder::new("sign");
     paint(&folder, "object/Sign/red.png", [230, 10, 10]);
     write(&folder, "object/Sign/sign.mtl", "newmtl face\nKd 1 1 1\nmap_Kd red.png\n");
-    // A plate of 4 by 4 m that looks back, 8 m up, before it is scaled to 160 mm.
+    // A plate of 4 by 4 m that faces back, 8 m up, before scaling to 160 mm.
     let obj = "mtllib sign.mtl\nv -2 8 0\nv 2 8 0\nv 2 12 0\nv -2 12 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
                usemtl face\nf 1/1 2/2 3/3 4/4\n";
     write(&folder, "object/Sign/Sign.obj", obj);
@@ -154,7 +154,7 @@ fn a_sign_of_a_file_shows_its_picture() {
     assert!(warnings(&seen).is_empty(), "{seen}");
     assert!(numbers(&seen)[3] > 100, "{seen}");
     assert_eq!(numbers(&run(&script("Halt 300 1000 0")))[3], 0, "behind the robot");
-    // Those that are built in need no file.
+    // Built-in objects need no file.
     let stop = run(&script("StopSign 1500 1000 0"));
     assert!(numbers(&stop)[3] > 100, "{stop}");
 }
@@ -179,7 +179,7 @@ fn cones_stand_where_a_script_puts_them_by_name() {
     let all = run(&script);
     let [objects, cones, nearest] = numbers(&all)[..] else { panic!("{all}") };
     assert_eq!((objects, cones), (3, 3), "{all}");
-    // The lidar is 2.25 m before the car's middle.
+    // The lidar is 2.25 m in front of the car's middle.
     assert!((2500..3100).contains(&nearest), "{all}");
     assert_eq!(warnings(&all).len(), 3, "what is built in takes the place of three files: {all}");
 }
@@ -208,7 +208,7 @@ fn who_polls_the_camera_gets_thirty_images_a_second() {
         return;
     }
     let folder = Folder::new("polled");
-    // Everything but the image is free, so it is asked for as often as calls allow.
+    // Everything but the image is free, so it is polled as often as calls allow.
     folder.write(
         "poll.py",
         "from eye import *\nVWSetSpeed(0, 50)\nCAMInit(QQVGA)\nimages = []\n\
@@ -220,7 +220,7 @@ fn who_polls_the_camera_gets_thirty_images_a_second() {
     assert!((50..=61).contains(&numbers(&all)[0]), "{all}");
 }
 
-/// The chain of section 5.3: the followers' tilted lidars look over one another and see the leader's handle.
+/// The chain of section 5.3: the followers' tilted lidars look over each other and see the leader's handle.
 #[test]
 fn a_chain_follows_the_leaders_handle() {
     if !python() {

@@ -1,4 +1,4 @@
-//! What calls take, what a run reports beyond its outcome, and that it is the same each time.
+//! Duration of calls, further fields of a report, and reproducibility.
 
 use std::process::Command;
 
@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::{Folder, compiled, compiler, programs, report, robios};
 
-/// A program that counts what it can do in two seconds.
+/// A program that counts its loops in two seconds.
 const COUNT: &str = "#include \"eyebot.h\"\nint main() { int n = 0; while (OSGetCount() < 2000) { CALLS; n++; }\n\
                      LCDPrintf(\"%d\", n); return 0; }\n";
 
@@ -51,8 +51,8 @@ fn an_order_reaches_the_robot_with_its_frame() {
         return;
     }
     let folder = Folder::new("time-orders");
-    // One motor is set a frame after the other, so a robot that is told to go straight turns a little; and a
-    // program that ends at once has still given its orders.
+    // One motor is set a frame after the other, so a robot meant to go straight turns a little; and a program
+    // that ends at once has still given its commands.
     let file = folder.write(
         "motors.c",
         "#include \"eyebot.h\"\nint main() { int x, y, phi; MOTORDrive(1, 50); MOTORDrive(2, 50); OSWait(1000);\n\
@@ -122,7 +122,7 @@ fn what_is_wrong_with_a_program_is_said_and_not_what_is_odd() {
         return;
     }
     let folder = Folder::new("time-errors");
-    // Compiles with the headers that older ones brought along, but for one mistake.
+    // Compiles with the headers included by older versions, except for one mistake.
     let odd = "#include \"eyebot.h\"\nint a = INT_MAX, b = INT_MIN, c = UCHAR_MAX;\nint main() { MISTAKE return 0; }\n";
     let wrong = folder.write("wrong.c", &odd.replace("MISTAKE", "mistake();; return undeclared;"));
     let told = report(&[wrong.to_str().unwrap()]);
@@ -183,7 +183,7 @@ fn starman_walks_by_its_servos() {
     );
 }
 
-/// OpenCV is where `pkg-config` says: here, a library of one function.
+/// OpenCV is found through `pkg-config`: here, a library of one function.
 #[test]
 fn opencv_is_found() {
     if !compiler() || !Command::new("pkg-config").arg("--version").output().is_ok_and(|o| o.status.success())
@@ -219,14 +219,14 @@ fn opencv_is_found() {
     assert_eq!(told["lcd_text"], "42", "{told}");
 }
 
-/// Threads that print in turn, with a lock, as the book's do.
+/// Threads that print in turn with a lock, like the book's.
 const TURNS: &str = "#include \"eyebot.h\"\nstatic pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;\n\
     static void *print(void *number) { int id = (int)(intptr_t)number, i; for (i = 0; i < 10; i++) {\n\
     pthread_mutex_lock(&lock); LCDPrintf(\"%d.%d \", id, i); pthread_mutex_unlock(&lock); sleep(id); } return NULL; }\n\
     int main() { pthread_t threads[3]; intptr_t i; for (i = 1; i < 4; i++)\n\
     pthread_create(&threads[i - 1], NULL, print, (void *)i); KEYWait(KEY4); pthread_exit(NULL); }\n";
 
-/// Of programs with threads, those whose threads sleep or wait for each other.
+/// For programs whose threads sleep or wait for each other.
 #[test]
 fn fifty_runs_under_load_are_the_same_each_time() {
     if !compiler() {

@@ -13,16 +13,13 @@ pub(super) struct ScanMemory {
 
 /// Metres across a cell.
 const CELL: f64 = 0.03;
-/// Metres from the robot to the farthest point that is kept.
-const FARTHEST: f64 = 2.5;
 /// Seconds for which a point is kept.
 const MEMORY: f64 = 60.0;
 
 impl ScanMemory {
     /// Adds a scan without the exempt points, and forgets old and exempt ones.
     pub(super) fn see(&mut self, scan: &LidarScan, pose: Pose, time: f64, exempt: Exempt) {
-        let near = scan.points().filter(|point| point.coords.norm() < FARTHEST);
-        for point in near.map(|point| pose.to_world(point)) {
+        for point in scan.points().map(|point| pose.to_world(point)) {
             let cell = [point.x, point.y].map(|along| (along / CELL).floor() as i32);
             self.cells.insert(cell.into(), (point, time));
         }

@@ -1,5 +1,6 @@
 use std::ops::ControlFlow;
 
+use super::super::way::{ALIGNED, TURN_GAIN};
 use crate::geometry::{Point, Pose, Twist, angle_difference, math};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
 use crate::io::{Error, Odometry, Result};
@@ -53,10 +54,6 @@ pub struct Tour {
     turning: bool,
 }
 
-/// Legs shorter than this, in metres, are left out.
-const LEAST_LEG: f64 = 0.008;
-/// The heading error in radians at which a turn on the spot ends.
-const ALIGNED: f64 = 0.03;
 /// The heading error in radians at which a turn on the spot is needed again.
 const ASTRAY: f64 = 0.5;
 
@@ -74,9 +71,7 @@ impl Tour {
             if !(point.x.is_finite() && point.y.is_finite()) {
                 return Err(Error::invalid_input("corner", format!("{point:?}"), "finite numbers"));
             }
-            if corners.last().is_none_or(|last| (point - last).norm() > LEAST_LEG) {
-                corners.push(point);
-            }
+            corners.push(point);
         }
         Ok(Self { parameters, corners, next: 1, turning: true })
     }
@@ -105,7 +100,7 @@ impl Tour {
             }
             let error = angle_difference(heading, pose.heading);
             if self.turning && error.abs() > ALIGNED {
-                return Some(Twist::new(0.0, (3.5 * error).clamp(-turn_rate, turn_rate)));
+                return Some(Twist::new(0.0, (TURN_GAIN * error).clamp(-turn_rate, turn_rate)));
             }
             self.turning = error.abs() > ASTRAY;
             let linear = speed.min(rest / (2.0 * lag)).max(0.01);

@@ -98,6 +98,7 @@ impl FreeDrive {
             }
             DriveSpec::Tracked { length, track, .. } => (length, track),
             DriveSpec::Differential { track, .. } => (0.0, track),
+            DriveSpec::Craft(_) => (0.0, 0.0),
         };
         let half = 0.5 * track;
         let wheels = [(0.0, half), (0.0, -half), (length, half), (length, -half)];

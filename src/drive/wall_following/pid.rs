@@ -74,8 +74,6 @@ pub struct PidWallFollower {
 
 /// A wall that is farther away than this many distances has ended.
 const GONE: f64 = 1.6;
-/// The free way ahead, in terms of the range to the wall, at which a turn ends.
-const FREE: f64 = 2.0;
 /// The seconds by which wheels follow their commands.
 const LAG: f64 = 0.2;
 
@@ -105,7 +103,7 @@ impl PidWallFollower {
         };
         let beside = range + mount.y.abs();
         let ahead = self.front.add(observation.front) + sensors.front.x;
-        self.turning = if self.turning { ahead < FREE * beside } else { ahead < distance + LAG * speed };
+        self.turning = if self.turning { ahead < GONE * beside } else { ahead < distance + LAG * speed };
         if self.turning {
             self.met = true;
             self.pid.reset();

@@ -1,9 +1,10 @@
 use std::collections::VecDeque;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+use super::super::way::{ALIGNED, TURN_GAIN};
 use super::memory::{Median, Memory, hit};
 use super::parameters::mirror;
-use super::tracker::{Reading, WallTracker};
+use super::tracker::{ONE_SURFACE, Reading, WallTracker};
 use super::{WallFollowerParameters, WallObservation, WallSensors, WallSide};
 use crate::geometry::{FittedLine, Point, Pose, Twist, angle_difference, math, normalize_angle};
 use crate::io::Result;
@@ -95,10 +96,8 @@ enum State {
 
 /// The share of the speed with which a robot searches.
 const SEARCH_SPEED: f64 = 0.6;
-/// Radians by which it sways meanwhile, so that one ray ahead covers its whole width.
+/// Radians by which it sways meanwhile, once a second, so that one ray ahead covers its whole width.
 const SWAY: f64 = 0.42;
-/// Seconds of a sway.
-const SWAY_TIME: f64 = 1.0;
 /// How many observations of the approach to a wall are remembered.
 const APPROACH: usize = 50;
 /// The angle, in radians, beyond which a wall runs across the robot's way.
@@ -109,24 +108,12 @@ const RENEWAL_POINTS: usize = 12;
 const STRAYS: u32 = 4;
 /// Points that the line of a new wall is laid through.
 const NEW_WALL_POINTS: usize = 20;
-/// Metres that these points have to reach.
-const NEW_WALL_LENGTH: f64 = 0.03;
-/// A new wall whose line passes the corner at less than this, in metres, begins there.
-const AT_CORNER: f64 = 0.05;
 /// How many points the corner counts as for the line of a wall that begins there.
 const CORNER_WEIGHT: usize = 8;
 /// The angle to a new wall, in radians, at which it is followed.
 const NEW_WALL_ANGLE: f64 = 0.3;
 /// Metres around the nearest point that was swept over in which points belong to the same wall.
 const SAME_WALL: f64 = 0.13;
-/// A wall on the other side that is nearer than this part of the distance is in the way.
-const CROWDED: f64 = 0.6;
-/// Points in a row within so many metres are taken for one surface.
-const ONE_SURFACE: f64 = 0.06;
-/// The heading error, in radians, at which a turn ends.
-const ALIGNED: f64 = 0.08;
-/// Turning proportionally to the rest of the angle, in 1/s.
-const TURN_GAIN: f64 = 2.5;
 
 impl WallFollower {
     /// Creates a follower that knows no wall yet. Fails for parameters out of range.
@@ -213,12 +200,7 @@ impl WallFollower {
             State::Searching { heading, since } => self.search(seen, ahead, heading, since),
             State::Turning { since, target } => self.turn(seen, before, since, target),
             State::Following(tracker) => self.follow(tracker, &motion, &pose, ahead, aside),
-            State::Rounding { corner, along, since } => {
-                // Between two walls the opposite one may block the robot like a wall ahead.
-                let other = seen.right + self.sensors.right.y.abs();
-                let ahead = if other < CROWDED * self.parameters.distance { 0.0 } else { ahead };
-                self.round(&pose, ahead, aside, corner, along, since)
-            }
+            State::Rounding { corner, along, since } => self.round(&pose, ahead, aside, corner, along, since),
         }
     }
 
@@ -236,9 +218,8 @@ impl WallFollower {
         if ahead < distance + lag * slow || left.min(right) < 0.9 * distance {
             return self.meet(left, right, ahead);
         }
-        let wish = SWAY * math::sin(TAU * (self.driven - since) / (SWAY_TIME * slow));
-        let rate =
-            SWAY * TAU / SWAY_TIME * math::cos(TAU * (self.driven - since + lag * slow) / (SWAY_TIME * slow));
+        let wish = SWAY * math::sin(TAU * (self.driven - since) / slow);
+        let rate = SWAY * TAU * math::cos(TAU * (self.driven - since + lag * slow) / slow);
         let error = angle_difference(heading + wish, pose.heading);
         Twist::new(slow, rate + 2.0 * error)
     }
@@ -483,8 +464,8 @@ impl WallFollower {
     fn new_wall(&self, pose: &Pose, corner: Point) -> Option<FittedLine> {
         let WallFollowerParameters { distance, range_error, .. } = self.parameters;
         let line = self.beside.last_line(NEW_WALL_POINTS, &[], pose)?;
-        // If the wall begins at the corner, the corner improves its line.
-        let at_corner = line.distance_to(pose.to_local(corner)).abs() < AT_CORNER;
+        // A wall that begins at the corner is known better with it.
+        let at_corner = line.distance_to(pose.to_local(corner)).abs() < ONE_SURFACE;
         let line = if at_corner {
             self.beside.last_line(NEW_WALL_POINTS, &[corner; CORNER_WEIGHT], pose)?
         } else {
@@ -493,7 +474,6 @@ impl WallFollower {
         let gap = -line.distance_to(Point::origin());
         let good = line.direction.x > 0.0
             && line.rms < 2.0 * range_error.max(0.002)
-            && line.length > NEW_WALL_LENGTH
             && line.angle().abs() < NEW_WALL_ANGLE
             && (gap - distance).abs() < 0.5 * distance;
         good.then_some(line)

@@ -1,5 +1,6 @@
 use std::ops::ControlFlow;
 
+use super::super::follower::PATIENCE;
 use super::{WallFollower, WallObservation, WallPhase, WallSide};
 use crate::geometry::{Point, Pose, Twist};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
@@ -143,8 +144,6 @@ impl<C: FollowsWalls> Behaviour for AlongWall<C> {
     }
 
     fn step(&mut self, time: f64, now: &Self::Observation) -> Decision<Self> {
-        /// Seconds for which wheels may be held before that counts.
-        const PATIENCE: f64 = 2.0;
         let last = self.last.replace(time);
         if !now.stalled || last.is_none() {
             self.free = time;

@@ -1,6 +1,7 @@
 use nalgebra::{Matrix3, RowVector3, Vector3};
 
 use crate::geometry::{FittedLine, Point, Pose, math};
+use crate::kinematics::OUTLIER;
 
 /// A wall on the left as a parabola in the robot's frame, `y = a + b x + c x² / 2`, estimated by a Kalman
 /// filter: odometry predicts it, points of the side sensor correct it.
@@ -25,15 +26,12 @@ pub(super) enum Reading {
 
 /// The variance that a metre of wall adds to its distance, slope and curvature.
 const WANDER: [f64; 3] = [2e-5, 8e-3, 120.0];
-/// The spread, in 1/m, of the curvature of a wall of which nothing is known.
-const CURVATURE: f64 = 2.0;
-/// The tightest curvature that is believed, in 1/m.
+/// The tightest curvature that is believed, in 1/m, and the spread of that of a wall of which nothing is known.
 const TIGHTEST: f64 = 3.0;
 
-/// A reading that is off by more than this, in metres, may not be of the wall.
-const GATE: f64 = 0.045;
-/// Standard deviations by which such a reading has to be off as well.
-const SIGMAS: f64 = 4.0;
+/// Points within so many metres of each other are taken for one surface; a reading that is off by more may not be of the
+/// wall, and a new wall whose line passes the corner at less begins there.
+pub(super) const ONE_SURFACE: f64 = 0.05;
 /// Innovations that add up to more than this show a bend, ...
 const BEND: f64 = 1.1;
 /// ... for which slope and curvature become uncertain by so much.
@@ -50,18 +48,18 @@ impl WallTracker {
         let error = range_error.max(line.rms).max(1e-4);
         let of_slope = 3.5 * error / (line.length.max(0.02) * count.sqrt());
         let of_distance = error / count.sqrt() + of_slope * line.middle.x.abs();
-        Self::with_spread(distance, slope, [of_distance, of_slope.min(0.5), CURVATURE])
+        Self::with_spread(distance, slope, [of_distance, of_slope.min(0.5), TIGHTEST])
     }
 
     /// A wall roughly along a line, with its points still to be added.
     pub(super) fn like_line(line: &FittedLine) -> Self {
         let slope = line.direction.y / line.direction.x.max(0.1);
-        Self::with_spread(line.middle.y - slope * line.middle.x, slope, [0.05, 0.3, CURVATURE])
+        Self::with_spread(line.middle.y - slope * line.middle.x, slope, [0.05, 0.3, TIGHTEST])
     }
 
     /// A wall at a distance (m), assumed parallel to the robot.
     pub(super) fn beside(distance: f64, range_error: f64) -> Self {
-        Self::with_spread(distance, 0.0, [range_error.max(1e-3), 0.3, CURVATURE])
+        Self::with_spread(distance, 0.0, [range_error.max(1e-3), 0.3, TIGHTEST])
     }
 
     fn with_spread(distance: f64, slope: f64, spread: [f64; 3]) -> Self {
@@ -90,7 +88,7 @@ impl WallTracker {
         let innovation = point.y - (measured * self.state)[0];
         let noise = range_error.max(1e-3);
         let spread = (measured * self.covariance * measured.transpose())[0] + noise * noise;
-        let gate = GATE.max(SIGMAS * noise).max(SIGMAS * spread.sqrt());
+        let gate = ONE_SURFACE.max(OUTLIER * noise).max(OUTLIER * spread.sqrt());
         if innovation > gate {
             return Reading::Beyond;
         }

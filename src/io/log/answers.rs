@@ -10,9 +10,9 @@ use super::values::{self, Put, Values};
 use super::wire;
 use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::{
-    Attitude, Camera, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font,
-    Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio,
-    RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, DepthSensor, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders,
+    Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel,
+    Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
@@ -71,6 +71,7 @@ macro_rules! answering {
         signatures! { Servos => answered!($robot) }
         signatures! { Encoders => answered!($robot) }
         signatures! { Inertial => answered!($robot) }
+        signatures! { DepthSensor => answered!($robot) }
     )* };
 }
 

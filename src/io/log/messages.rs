@@ -4,7 +4,7 @@ use image::RgbImage;
 
 use super::stamp::Nanoseconds;
 use super::wire::Fields;
-use crate::geometry::Pose;
+use crate::geometry::{Pose, Pose3};
 use crate::io::LidarScan;
 
 /// Time and frames of a robot's messages.
@@ -57,6 +57,22 @@ pub(super) fn transform(out: &mut Fields<'_>, time: Nanoseconds, parent: &str, c
     out.text(3, child);
     out.vector(4, pose.x, pose.y, 0.0);
     out.heading(5, pose.heading);
+}
+
+/// A `foxglove.FrameTransform` with elevation, roll and pitch.
+pub(super) fn transform_in_space(
+    out: &mut Fields<'_>,
+    time: Nanoseconds,
+    parent: &str,
+    child: &str,
+    pose: &Pose3,
+) {
+    let (place, turned) = (pose.position, pose.attitude.coords);
+    out.time(1, time);
+    out.text(2, parent);
+    out.text(3, child);
+    out.vector(4, place.x, place.y, place.z);
+    out.quaternion(5, [turned.x, turned.y, turned.z, turned.w]);
 }
 
 /// A `foxglove.Pose` at a height (m).

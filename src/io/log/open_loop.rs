@@ -92,7 +92,7 @@ pub struct OpenLoopReport {
 const CALL: u64 = 100_000;
 
 /// Calls that are queries; all others are commands.
-const QUESTIONS: [&str; 21] = [
+const QUESTIONS: [&str; 22] = [
     "speed",
     "pose",
     "remaining",
@@ -111,6 +111,7 @@ const QUESTIONS: [&str; 21] = [
     "attitude",
     "turn_rates",
     "acceleration",
+    "depth",
     "resolution",
     "image_into",
     "wait_done",

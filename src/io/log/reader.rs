@@ -1,10 +1,11 @@
 use std::borrow::Cow;
+use std::io;
 
 use mcap::McapError;
 use mcap::records::{MessageHeader, Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
-use super::LogError;
+use super::{LogError, lengths};
 
 /// Bytes at the beginning and the end of MCAP files.
 const MAGIC: &[u8] = mcap::MAGIC;
@@ -14,6 +15,8 @@ const FRAME: usize = 9;
 const FOOTER: usize = 8 + 8 + CRC;
 /// Size of a checksum (bytes).
 const CRC: usize = 4;
+/// Bytes of a chunk beside the name of its compression and what is packed.
+const CHUNK_FIELDS: usize = 3 * 8 + 4 + 4 + 8;
 
 /// A record in a file: kind, position and content.
 #[derive(Debug, Clone, Copy)]
@@ -30,24 +33,12 @@ impl<'a> Framed<'a> {
     }
 
     pub(super) fn parse(&self) -> Result<Record<'a>, LogError> {
-        if self.opcode == op::ATTACHMENT && !attachment_fits(self.body) {
-            return Err(LogError::damaged(format!("an attachment at byte {} is too short", self.start)));
+        if !lengths::fit(self.opcode, self.body) {
+            return Err(LogError::damaged(format!("the record at byte {} is too short", self.start)));
         }
         mcap::parse_record(self.opcode, self.body)
             .map_err(|error| LogError::damaged(format!("{error} at byte {}", self.start)))
     }
-}
-
-/// Whether an attachment's fields end before its last four bytes, as the parser assumes.
-fn attachment_fits(body: &[u8]) -> bool {
-    let length = |at: usize, size: usize| {
-        let bytes = body.get(at..at.checked_add(size)?)?;
-        let value = bytes.iter().rev().fold(0, |value: u64, &byte| value << 8 | u64::from(byte));
-        usize::try_from(value).ok()
-    };
-    let after = |at: usize| length(at, 4).and_then(|name| at.checked_add(4)?.checked_add(name));
-    let data = after(16).and_then(after);
-    data.and_then(|at| at.checked_add(8 + 4)).is_some_and(|end| end <= body.len())
 }
 
 /// The records in some bytes from a position on; `None` for a truncated one.
@@ -180,50 +171,77 @@ pub(super) fn has_checksum(chunk: &Framed<'_>) -> bool {
     chunk.body.get(24..28).is_some_and(|crc| crc != [0; 4])
 }
 
-/// The uncompressed content of a chunk. Fails if it is corrupted.
-pub(super) fn contents<'a>(record: &Framed<'a>) -> Result<Cow<'a, [u8]>, LogError> {
-    let mut fixed = record.body.iter().as_slice();
-    let mut number = |size: usize| -> Option<u64> {
-        let (head, rest) = fixed.split_at_checked(size)?;
-        fixed = rest;
-        Some(head.iter().rev().fold(0, |value, &byte| value << 8 | u64::from(byte)))
+/// An upper limit of the uncompressed size of all chunks together.
+///
+/// A file of a few kilobytes may hold gigabytes of zeros.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Budget {
+    left: u64,
+}
+
+impl Budget {
+    /// The limit for a file.
+    pub(super) fn of(file: &[u8]) -> Self {
+        /// Bytes per byte of the file: more than a chunk of a recording can be compressed, with its index.
+        const PER_BYTE: u64 = 1 << 12;
+        /// Bytes for a very short file.
+        const LEAST: u64 = 1 << 26;
+        Self { left: LEAST.saturating_add(PER_BYTE.saturating_mul(file.len() as u64)) }
+    }
+
+    /// Fails if less than some bytes is left.
+    pub(super) fn allows(self, size: u64) -> Result<(), LogError> {
+        if size <= self.left {
+            return Ok(());
+        }
+        let most = self.left;
+        Err(LogError::damaged(format!(
+            "{size} uncompressed bytes; expected at most {most} for a file of this length"
+        )))
+    }
+
+    fn spend(&mut self, size: u64) -> Result<(), LogError> {
+        self.allows(size)?;
+        self.left -= size;
+        Ok(())
+    }
+}
+
+/// The uncompressed content of a chunk. Fails if it is corrupted, or larger than the budget.
+pub(super) fn contents<'a>(record: &Framed<'a>, budget: &mut Budget) -> Result<Cow<'a, [u8]>, LogError> {
+    let Record::Chunk { header, data } = record.parse()? else {
+        return Err(LogError::damaged(format!("no chunk at byte {}", record.start)));
     };
-    let short = || LogError::damaged(format!("the chunk at byte {} is too short", record.start));
-    let (_, _, size, crc, name) = (number(8), number(8), number(8), number(4), number(4).ok_or_else(short)?);
-    let (name, rest) = fixed.split_at_checked(name as usize).ok_or_else(short)?;
-    let (length, data) = rest.split_at_checked(8).ok_or_else(short)?;
-    let length = u64::from_le_bytes(length.try_into().map_err(|_| short())?);
-    let size = size.ok_or_else(short)?;
     let another = || LogError::damaged(format!("the chunk at byte {} has another length", record.start));
-    if length != data.len() as u64 {
+    if CHUNK_FIELDS + header.compression.len() + data.len() != record.body.len() {
         return Err(another());
     }
-    let data = match name {
-        [] => Cow::Borrowed(data),
-        name => Cow::Owned(unpacked(record, &String::from_utf8_lossy(name), size)?),
+    let data = match header.compression.as_str() {
+        "" => data,
+        name => {
+            budget.spend(header.uncompressed_size)?;
+            Cow::Owned(unpacked(record, name, header.uncompressed_size)?)
+        }
     };
-    if size != data.len() as u64 {
+    if header.uncompressed_size != data.len() as u64 {
         return Err(another());
     }
-    check(&format!("chunk at byte {}", record.start), crc.unwrap_or(0) as u32, &data)?;
+    check(&format!("chunk at byte {}", record.start), header.uncompressed_crc, &data)?;
     Ok(data)
 }
 
-/// Decompresses a chunk.
+/// Decompresses a chunk with a content of so many bytes.
 fn unpacked(chunk: &Framed<'_>, name: &str, size: u64) -> Result<Vec<u8>, LogError> {
-    /// Upper limit of a chunk's size (bytes).
-    const LARGEST: usize = 1 << 30;
     let damaged = |error: &dyn std::fmt::Display| {
         LogError::damaged(format!("{error} in the chunk at byte {}", chunk.start))
     };
-    if size > LARGEST as u64 {
-        return Err(damaged(&format_args!("{size} bytes")));
-    }
+    let mut plain = room(size)?;
     let options = LinearReaderOptions::default().with_skip_start_magic(true).with_skip_end_magic(true);
-    let mut reader = LinearReader::new_with_options(options.with_record_length_limit(LARGEST));
+    let longest = plain.capacity().max(chunk.body.len());
+    let mut reader = LinearReader::new_with_options(options.with_record_length_limit(longest));
     let length = (chunk.body.len() as u64).to_le_bytes();
     let packed = [&[chunk.opcode][..], &length, chunk.body].concat();
-    let (mut rest, mut plain) = (packed.as_slice(), Vec::new());
+    let mut rest = packed.as_slice();
     while let Some(event) = reader.next_event() {
         match event {
             Ok(LinearReadEvent::ReadRequest(wanted)) => {
@@ -233,6 +251,9 @@ fn unpacked(chunk: &Framed<'_>, name: &str, size: u64) -> Result<Vec<u8>, LogErr
                 rest = behind;
             }
             Ok(LinearReadEvent::Record { data, opcode }) => {
+                if plain.len() + FRAME + data.len() > size as usize {
+                    return Err(damaged(&"more than its length says"));
+                }
                 plain.push(opcode);
                 plain.extend_from_slice(&(data.len() as u64).to_le_bytes());
                 plain.extend_from_slice(data);
@@ -246,8 +267,16 @@ fn unpacked(chunk: &Framed<'_>, name: &str, size: u64) -> Result<Vec<u8>, LogErr
     Ok(plain)
 }
 
+/// An empty list with a capacity in bytes. Fails if there is not enough memory.
+pub(super) fn room(size: u64) -> Result<Vec<u8>, LogError> {
+    let mut list = Vec::new();
+    let size = usize::try_from(size).unwrap_or(usize::MAX);
+    list.try_reserve_exact(size).map_err(|error| io::Error::new(io::ErrorKind::OutOfMemory, error))?;
+    Ok(list)
+}
+
 /// The records in a chunk: its messages and their declarations.
-pub(super) fn inner(contents: &[u8]) -> Result<Vec<Framed<'_>>, LogError> {
+pub(super) fn inner(contents: &[u8]) -> impl Iterator<Item = Result<Framed<'_>, LogError>> {
     let cut_off = || LogError::damaged("a record is longer than the chunk that holds it");
-    records(contents, 0).map(|record| record.ok_or_else(cut_off)).collect()
+    records(contents, 0).map(move |record| record.ok_or_else(cut_off))
 }

@@ -8,7 +8,7 @@ use mcap::records::{Record, op};
 
 use super::header::LIBRARY;
 use super::header::{METADATA, Written};
-use super::reader::{self, Framed};
+use super::reader::{self, Budget, Framed};
 use super::stamp::Nanoseconds;
 use super::stamp::seconds;
 use super::topics::WORLD;
@@ -166,27 +166,48 @@ impl Contents {
         if let Some(message) = records.iter().find(|record| record.opcode == op::MESSAGE) {
             return Err(LogError::damaged(format!("a message outside of chunks at byte {}", message.start)));
         }
-        let chunks = records.iter().filter(|record| record.opcode == op::CHUNK);
-        let chunks = chunks.map(reader::contents).collect::<Result<Vec<_>, _>>()?;
-        reading.facts.chunks = chunks.len();
-        let packed = chunks.iter().any(|contents| matches!(contents, Cow::Owned(_)));
-        let unpacked = packed.then(|| chunks.concat());
-        let parts: Vec<&[u8]> = match &unpacked {
-            Some(all) => vec![all.as_slice()],
-            None => chunks.iter().map(AsRef::as_ref).collect(),
-        };
+        let chunks = || records.iter().filter(|record| record.opcode == op::CHUNK);
+        reading.facts.chunks = chunks().count();
+        let unpacked = unpacked(bytes, chunks())?;
         if let Some(all) = &unpacked {
             reading.start = all.as_ptr().addr();
-        }
-        for part in parts {
-            for inner in reader::inner(part)? {
-                reading.add(&inner)?;
+            reading.add_all(all)?;
+        } else {
+            let mut budget = Budget::of(bytes);
+            for chunk in chunks() {
+                let Cow::Borrowed(contents) = reader::contents(chunk, &mut budget)? else { continue };
+                reading.add_all(contents)?;
             }
         }
         let topics = std::mem::take(&mut reading.messages).into_iter();
         reading.facts.topics = topics.map(|(id, count)| (reading.topic(id), count)).collect();
         Ok((header, reading.tracks, reading.facts, unpacked))
     }
+}
+
+/// The content of all chunks, one after the other, if some of them are compressed.
+fn unpacked<'a>(
+    bytes: &[u8],
+    chunks: impl Iterator<Item = &'a Framed<'a>> + Clone,
+) -> Result<Option<Vec<u8>>, LogError> {
+    let mut size = 0_u64;
+    let mut packed = false;
+    for chunk in chunks.clone() {
+        if let Record::Chunk { header, .. } = chunk.parse()? {
+            packed |= !header.compression.is_empty();
+            size = size.saturating_add(header.uncompressed_size);
+        }
+    }
+    if !packed {
+        return Ok(None);
+    }
+    let mut budget = Budget::of(bytes);
+    budget.allows(size)?;
+    let mut all = reader::room(size)?;
+    for chunk in chunks {
+        all.extend_from_slice(&reader::contents(chunk, &mut budget)?);
+    }
+    Ok(Some(all))
 }
 
 /// State while reading a file.
@@ -206,6 +227,11 @@ struct Reading {
 }
 
 impl Reading {
+    /// Adds the content of chunks.
+    fn add_all(&mut self, contents: &[u8]) -> Result<(), LogError> {
+        reader::inner(contents).try_for_each(|inner| self.add(&inner?))
+    }
+
     fn add(&mut self, record: &Framed<'_>) -> Result<(), LogError> {
         if record.opcode == op::MESSAGE {
             return self.add_message(record);

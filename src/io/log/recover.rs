@@ -4,7 +4,7 @@ use mcap::{McapError, Writer};
 
 use super::header::LIBRARY;
 use super::header::METADATA;
-use super::reader::{self, Framed};
+use super::reader::{self, Budget, Framed};
 use super::writer::write_options;
 use super::{Compression, Header, LogError};
 
@@ -55,8 +55,9 @@ pub fn recover(bytes: &[u8]) -> Result<Recovery, LogError> {
     let mut at = mcap::MAGIC.len();
     let mut patience = PATIENCE * bytes.len();
     while at < bytes.len() {
-        let Some(record) = reader::record_at(bytes, at).filter(is_sound) else {
-            let next = next_guarded(bytes, at + 1, &mut patience);
+        let Some(record) = reader::record_at(bytes, at).filter(|record| is_sound(record, saving.budget))
+        else {
+            let next = next_guarded(bytes, at + 1, &mut patience, saving.budget);
             saving.lost += next - at;
             at = next;
             continue;
@@ -82,7 +83,9 @@ fn begin(bytes: &[u8]) -> Result<Saving<'_>, LogError> {
         _ if bytes.len() == first => return Err(LogError::Truncated { at: bytes.len() as u64 }),
         _ => (String::new(), LIBRARY.to_owned()),
     };
-    Saving::new(&profile, &library, compression(bytes, first), reader::declarations(bytes))
+    let mut saving = Saving::new(&profile, &library, compression(bytes, first), Budget::of(bytes))?;
+    saving.declarations = reader::declarations(bytes);
+    Ok(saving)
 }
 
 /// Compression of the first chunk from a position on.
@@ -98,14 +101,14 @@ fn compression(bytes: &[u8], start: usize) -> Compression {
 
 /// Whether a record and all its content can be parsed, and its length matches the content: a wrong length
 /// would swallow the following records.
-fn is_sound(record: &Framed<'_>) -> bool {
+fn is_sound(record: &Framed<'_>, budget: Budget) -> bool {
     // Kinds added by future formats or other programs.
     if record.opcode >= 0x80 {
         return true;
     }
     let Ok(parsed) = record.parse() else { return false };
     let length = match &parsed {
-        Record::Chunk { .. } => return is_sound_chunk(record),
+        Record::Chunk { .. } => return is_sound_chunk(record, budget),
         Record::Header(header) => 4 + header.profile.len() + 4 + header.library.len(),
         Record::Metadata(metadata) => {
             if metadata.name == METADATA && Header::read(&metadata.metadata).is_none() {
@@ -124,9 +127,9 @@ fn is_sound(record: &Framed<'_>) -> bool {
     length == record.body.len()
 }
 
-fn is_sound_chunk(record: &Framed<'_>) -> bool {
-    let Ok(contents) = reader::contents(record) else { return false };
-    reader::inner(&contents).is_ok_and(|inner| inner.iter().all(|record| record.parse().is_ok()))
+fn is_sound_chunk(record: &Framed<'_>, mut budget: Budget) -> bool {
+    let Ok(contents) = reader::contents(record, &mut budget) else { return false };
+    reader::inner(&contents).all(|record| record.is_ok_and(|record| record.parse().is_ok()))
 }
 
 /// Maximum number of passes over the bytes of a file: in a malicious file, every position seems to start a
@@ -135,12 +138,12 @@ const PATIENCE: usize = 100;
 
 /// Position of the next record with a valid checksum; the end of the file if there is none or the limit on
 /// passes is exceeded.
-fn next_guarded(bytes: &[u8], start: usize, patience: &mut usize) -> usize {
+fn next_guarded(bytes: &[u8], start: usize, patience: &mut usize, budget: Budget) -> usize {
     for at in start..bytes.len() {
         let Some(record) = reader::record_at(bytes, at).filter(is_guarded) else { continue };
         let Some(rest) = patience.checked_sub(record.body.len()) else { break };
         *patience = rest;
-        if is_sound(&record) {
+        if is_sound(&record, budget) {
             return at;
         }
     }
@@ -164,22 +167,19 @@ struct Saving<'a> {
     file: Writer<NoSeek<Vec<u8>>>,
     /// Schemas and channels from the file's summary, for messages whose own declaration is lost.
     declarations: Vec<Framed<'a>>,
+    /// The limit for further chunks.
+    budget: Budget,
     chunks: usize,
     messages: u64,
     header: bool,
     lost: usize,
 }
 
-impl<'a> Saving<'a> {
-    fn new(
-        profile: &str,
-        library: &str,
-        compression: Compression,
-        declarations: Vec<Framed<'a>>,
-    ) -> Result<Self, LogError> {
+impl Saving<'_> {
+    fn new(profile: &str, library: &str, compression: Compression, budget: Budget) -> Result<Self, LogError> {
         let options = write_options(compression)?.profile(profile).library(library);
         let file = options.create(NoSeek::new(Vec::new())).map_err(|error| damaged(&error))?;
-        Ok(Self { file, declarations, chunks: 0, messages: 0, header: false, lost: 0 })
+        Ok(Self { file, declarations: Vec::new(), budget, chunks: 0, messages: 0, header: false, lost: 0 })
     }
 
     fn add(&mut self, record: &Framed<'_>) -> Result<(), LogError> {
@@ -196,9 +196,9 @@ impl<'a> Saving<'a> {
                 data,
             }),
             Record::Chunk { .. } => {
-                let contents = reader::contents(record)?;
+                let contents = reader::contents(record, &mut self.budget)?;
                 let lost_before = self.lost;
-                reader::inner(&contents)?.iter().try_for_each(|inner| self.add_inner(inner))?;
+                reader::inner(&contents).try_for_each(|inner| self.add_inner(&inner?))?;
                 self.chunks += usize::from(self.lost == lost_before);
                 self.file.flush()
             }

@@ -10,14 +10,14 @@ use std::ops::ControlFlow;
 use image::{Rgb, RgbImage};
 
 use super::*;
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Aabb, Point, Pose, Twist};
 use crate::io::sim::{Fleet, SimOptions, Simulation};
 use crate::io::wrappers::{Fault, Faulty};
 use crate::io::{
-    Camera, Clock, Display, DistanceSensors, Drive, ErrorKind, LidarScan, MockRobot, Odometry, Psd,
-    Resolution, Result, RobotIo,
+    Camera, Clock, Display, DistanceSensors, Drive, ErrorKind, GroundTruth, LidarScan, MockRobot, Odometry,
+    Psd, Resolution, Result, RobotIo,
 };
-use crate::world::{LidarSpec, RobotSpec, Scene, World};
+use crate::world::{HeightField, LidarSpec, RobotSpec, Scene, Terrain, World};
 
 fn header() -> Header {
     Header { seed: Some(7), ..Header::new("test", ["--noise=1", "--seed=7"]) }
@@ -102,6 +102,42 @@ fn recording_leaves_the_run_as_it_is() {
     tour(&mut player.robot(0).unwrap(), 2.5).unwrap();
     assert_eq!(truth.robot(0).unwrap(), simulation.truth().robot(0).unwrap());
     assert_eq!(player.rest(), None);
+}
+
+/// Elevation, roll and pitch: what the inertial unit says, and what is true.
+#[test]
+fn a_recording_on_hills_tells_all_of_the_pose() {
+    let area = Aabb::new(Point::origin(), Point::new(4.0, 4.0));
+    let slope = HeightField::from_fn(41, 41, area, |at| 0.1 * at.x - 0.05 * at.y).unwrap();
+    let world = World { terrain: Some(Terrain::new("made.png", slope)), ..World::empty(4.0, 4.0) };
+    let scene = Scene::with_robot(world, RobotSpec::blizzard(), Pose::new(2.0, 2.0, 0.4));
+    let drive = |robot: &mut dyn RobotIo, truth: &mut dyn GroundTruth| -> Result<Vec<String>> {
+        robot.set_speed(Twist::new(0.2, 0.1))?;
+        (0..5)
+            .map(|_| {
+                robot.wait(0.3)?;
+                let unit = (robot.attitude()?, robot.turn_rates()?, robot.acceleration()?);
+                Ok(format!("{unit:?} {:?}", truth.in_space(0)?.pose))
+            })
+            .collect()
+    };
+    let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 7)).unwrap();
+    let writer = LogWriter::new(Vec::new(), &header()).unwrap();
+    let mut robot = writer.recorder(simulation.robot(0).unwrap(), 0);
+    let mut truth = writer.truth(simulation.truth(), 0);
+    let seen = drive(&mut robot, &mut truth).unwrap();
+    let end = truth.in_space(0).unwrap().pose;
+    assert!(end.position.z > 0.1 && end.tilt() > 0.1, "{end:?}");
+    drop(robot);
+    let log = Log::read(writer.finish().unwrap()).unwrap();
+    assert_eq!(log.topics()["/robot1/transforms"], 6);
+    let player = Player::new(&log);
+    let mut truth = player.truth(0).unwrap();
+    assert_eq!(drive(&mut player.robot(0).unwrap(), &mut truth).unwrap(), seen);
+    // One from before there were hills does not know.
+    let old = Log::read(recorded(0.5)).unwrap();
+    let error = Player::new(&old).truth(0).unwrap().in_space(0).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::Unsupported);
 }
 
 #[test]

@@ -34,3 +34,8 @@ pub(super) fn frame(track: usize) -> String {
 pub(super) fn odometry_frame(track: usize) -> String {
     format!("{}/odometry", frame(track))
 }
+
+/// The name of the frame in which a robot truly is.
+pub(super) fn truth_frame(track: usize) -> String {
+    format!("{}/truth", frame(track))
+}

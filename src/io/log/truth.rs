@@ -2,16 +2,17 @@ use std::collections::BTreeMap;
 use std::io::Write;
 
 use super::call::Call;
+use super::messages::transform_in_space;
 use super::player::Player;
 use super::port::Port;
 use super::position::Position;
 use super::recording::Kind;
 use super::stamp::Nanoseconds;
-use super::topics::TRUTH;
+use super::topics::{TRANSFORMS, TRUTH, WORLD, truth_frame};
 use super::values::{Put, Take, Taking, Values};
 use super::{LogError, LogWriter};
-use crate::geometry::{Point, Pose};
-use crate::io::{Error, ErrorKind, GroundTruth, Result, RobotTruth, TrailPoint};
+use crate::geometry::{Point, Pose, Pose3};
+use crate::io::{Error, ErrorKind, GroundTruth, Result, RobotTruth, TrailPoint, TruthInSpace};
 
 /// Recorded ground truth, made by [`LogWriter::truth`](super::LogWriter::truth).
 #[derive(Debug)]
@@ -57,6 +58,16 @@ impl<T: GroundTruth, W: Write> GroundTruth for RecordedTruth<T, W> {
         self.notes.note("object", &object, &result);
         result
     }
+
+    /// Viewers see the answer as the frame `robotN/truth` in the world's.
+    fn in_space(&mut self, robot: usize) -> Result<TruthInSpace> {
+        let result = self.inner.in_space(robot);
+        self.notes.note("in_space", &robot, &result);
+        if let Ok(truth) = &result {
+            self.notes.show(robot, &truth.pose);
+        }
+        result
+    }
 }
 
 /// Records made beside a robot's calls: queries of the ground truth, and their answers.
@@ -88,6 +99,14 @@ impl<W: Write> Notes<W> {
         self.port.begin(time);
         self.port.argument(argument);
         self.port.end(TRUTH, method, result);
+    }
+
+    /// Writes the true pose of a robot for viewers.
+    fn show(&mut self, robot: usize, pose: &Pose3) {
+        let child = truth_frame(robot);
+        self.port.show(TRANSFORMS, |out, frames| {
+            transform_in_space(out, frames.time, WORLD, &child, pose);
+        });
     }
 
     /// Writes a robot's ground truth, as far as not yet written.
@@ -198,6 +217,7 @@ pub struct ReplayTruth {
     time: Option<f64>,
     poses: BTreeMap<usize, Pose>,
     objects: BTreeMap<usize, Pose>,
+    in_space: BTreeMap<usize, TruthInSpace>,
     robots: BTreeMap<usize, RobotTruth>,
 }
 
@@ -213,8 +233,8 @@ type Question<'a> = (&'a str, Option<usize>);
 
 impl ReplayTruth {
     pub(super) fn new(position: Position) -> Self {
-        let (poses, objects, robots) = Default::default();
-        Self { position, next: 0, time: None, poses, objects, robots }
+        let (poses, objects, in_space, robots) = Default::default();
+        Self { position, next: 0, time: None, poses, objects, in_space, robots }
     }
 
     /// Processes the recorded answers up to the next one to a query, or all before the robot's next call if
@@ -253,6 +273,11 @@ impl ReplayTruth {
             ("object", Some(object)) => {
                 if let Some(pose) = result.take() {
                     self.objects.insert(object, pose);
+                }
+            }
+            ("in_space", Some(robot)) => {
+                if let Some(truth) = result.take() {
+                    self.in_space.insert(robot, truth);
                 }
             }
             ("robot", Some(robot)) => {
@@ -294,5 +319,10 @@ impl GroundTruth for ReplayTruth {
     fn object(&mut self, object: usize) -> Result<Pose> {
         self.catch_up(("object", Some(object)));
         self.objects.get(&object).copied().ok_or_else(|| untold("where the object was"))
+    }
+
+    fn in_space(&mut self, robot: usize) -> Result<TruthInSpace> {
+        self.catch_up(("in_space", Some(robot)));
+        self.in_space.get(&robot).copied().ok_or_else(|| untold("where the robot was in space"))
     }
 }

@@ -1,10 +1,11 @@
 use image::RgbImage;
+use nalgebra::{Quaternion, UnitQuaternion};
 
 use super::wire::{self, Field, Fields, Reading};
-use crate::geometry::{Pose, Twist, Vector3};
+use crate::geometry::{Point3, Pose, Pose3, Twist, Vector3};
 use crate::io::{
-    Attitude, DisplayImage, DisplayOption, Fill, Font, FontFamily, FontStyle, Key, LidarSettings, Psd,
-    RadioMessage, Resolution, Viewport,
+    Attitude, DisplayImage, DisplayOption, Fill, Font, FontFamily, FontStyle, Key, LidarSettings, Mishap,
+    Psd, RadioMessage, Resolution, TruthInSpace, Viewport,
 };
 use crate::world::Colour;
 
@@ -278,6 +279,17 @@ macro_rules! compounds {
     )* };
 }
 
+/// The numbers of mishaps in recordings; 0 is none.
+const MISHAPS: [Mishap; 5] = [Mishap::Tipped, Mishap::Fell, Mishap::Stuck, Mishap::Drowned, Mishap::Broken];
+
+fn mishap_number(mishap: Mishap) -> u8 {
+    MISHAPS.iter().position(|&known| known == mishap).map_or(0, |index| index as u8 + 1)
+}
+
+fn mishap_of(number: u8) -> Option<Option<Mishap>> {
+    if number == 0 { Some(None) } else { MISHAPS.get(usize::from(number) - 1).copied().map(Some) }
+}
+
 compounds! {
     (): v => [], [] => ();
     (i32, i32): v => [v.0, v.1], [a, b] => (a, b);
@@ -285,6 +297,12 @@ compounds! {
     Pose: v => [v.x, v.y, v.heading], [x, y, heading] => Pose::new(x, y, heading);
     Vector3: v => [v.x, v.y, v.z], [x, y, z] => Vector3::new(x, y, z);
     Attitude: v => [v.roll, v.pitch, v.yaw], [roll, pitch, yaw] => Attitude { roll, pitch, yaw };
+    TruthInSpace: v => [v.pose.position.x, v.pose.position.y, v.pose.position.z, v.pose.attitude.i, v.pose.attitude.j, v.pose.attitude.k,
+            v.pose.attitude.w, v.mishap.map_or(0, mishap_number)],
+        [x, y, z, i, j, k, w, mishap] => TruthInSpace {
+            pose: Pose3::new(Point3::new(x, y, z), unit([w, i, j, k])?),
+            mishap: mishap_of(mishap)?,
+        };
     Psd: v => [v.0], [number] => Psd(number);
     Colour: v => [v.red, v.green, v.blue], [red, green, blue] => Colour::new(red, green, blue);
     LidarSettings: v => [v.field_of_view, v.tilt, v.points],
@@ -296,6 +314,12 @@ compounds! {
         [from, data] => RadioMessage { from, data: Bytes::into_vec(data) };
     RgbImage: v => [v.width(), v.height(), v.as_raw().as_slice()],
         [width, height, data] => image(width, height, Bytes::into_vec(data))?;
+}
+
+/// A rotation from its quaternion; `None` if that is none.
+fn unit([w, i, j, k]: [f64; 4]) -> Option<UnitQuaternion<f64>> {
+    let quaternion = Quaternion::new(w, i, j, k);
+    ((quaternion.norm() - 1.0).abs() < 1e-6).then(|| UnitQuaternion::new_unchecked(quaternion))
 }
 
 impl Bytes {
@@ -385,6 +409,10 @@ mod tests {
             survives(&RadioMessage { from, data });
             survives(&Some(Pose::new(x, -x, 0.5 * x)));
             survives(&Vector3::new(x, -x, 0.5 * x));
+            let pose = Pose3::from_angles(Point3::new(x, 1.0, -x), 0.1, x % 1.0, 2.0);
+            for mishap in [None, Some(Mishap::Fell), Some(Mishap::Drowned)] {
+                survives(&TruthInSpace { pose, mishap });
+            }
             survives(&Attitude { roll: x, pitch: -x, yaw: 0.5 * x });
             survives(&LidarSettings { field_of_view: x, tilt: -x, points: from as usize });
         }

@@ -126,11 +126,15 @@ impl Fields<'_> {
     /// A `foxglove.Quaternion` about the vertical axis.
     pub(super) fn heading(&mut self, field: u32, heading: f64) {
         let (sin, cos) = math::sin_cos(0.5 * heading);
+        self.quaternion(field, [0.0, 0.0, sin, cos]);
+    }
+
+    /// A `foxglove.Quaternion`: its three imaginary parts and the real one.
+    pub(super) fn quaternion(&mut self, field: u32, parts: [f64; 4]) {
         self.message(field, |quaternion| {
-            quaternion.double(1, 0.0);
-            quaternion.double(2, 0.0);
-            quaternion.double(3, sin);
-            quaternion.double(4, cos);
+            for (number, part) in (1..).zip(parts) {
+                quaternion.double(number, part);
+            }
         });
     }
 }

@@ -5,9 +5,9 @@ use super::ideal::IdealDrive;
 use super::robot::{MockRobot, take_due, unscripted};
 use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::{
-    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error,
-    ErrorKind, Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors,
-    Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, DepthSensor, Display, DisplayImage, DisplayOption, DistanceSensors, Drive,
+    Encoders, Error, ErrorKind, Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres,
+    Motors, Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::kinematics::Displacement;
 use crate::parameter::require_finite;
@@ -156,6 +156,12 @@ impl Encoders for MockRobot {
     fn reset_encoder(&mut self, motor: u8) -> Result<()> {
         self.command(Call::ResetEncoder(motor));
         Ok(())
+    }
+}
+
+impl DepthSensor for MockRobot {
+    fn depth(&mut self) -> Result<f64> {
+        self.read("depth sensor", |robot| robot.depth.as_mut(), |robot| robot.or_quiet(0.0))
     }
 }
 

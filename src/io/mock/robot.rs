@@ -64,6 +64,7 @@ pub struct MockRobot {
     pub(super) remaining: Option<Script<f64>>,
     pub(super) stalled: Option<Script<bool>>,
     pub(super) encoders: BTreeMap<u8, Script<i64>>,
+    pub(super) depth: Option<Script<f64>>,
     pub(super) attitude: Option<Script<Attitude>>,
     pub(super) turn_rates: Option<Script<Vector3>>,
     pub(super) acceleration: Option<Script<Vector3>>,
@@ -160,6 +161,12 @@ impl MockRobot {
     pub fn with_encoder(mut self, motor: u8, script: impl Into<Script<i64>>) -> Self {
         self.encoders.insert(motor, script.into());
         self
+    }
+
+    /// How deep the pressure sensor says that the robot is, in metres.
+    #[must_use]
+    pub fn with_depth(self, script: impl Into<Script<f64>>) -> Self {
+        Self { depth: Some(script.into()), ..self }
     }
 
     /// How the inertial unit says that the robot is turned.

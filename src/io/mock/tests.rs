@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use super::*;
 use crate::geometry::{Pose, Twist};
 use crate::io::{
-    Camera, Clock, Display, DistanceSensors, Drive, Encoders, Error, ErrorKind, Inertial, Key, Keys, Lidar,
-    LidarScan, Manoeuvres, Odometry, Psd, Radio, RadioMessage, Resolution, StallDetector,
+    Camera, Clock, DepthSensor, Display, DistanceSensors, Drive, Encoders, Error, ErrorKind, Inertial, Key,
+    Keys, Lidar, LidarScan, Manoeuvres, Odometry, Psd, Radio, RadioMessage, Resolution, StallDetector,
 };
 
 #[test]
@@ -22,6 +22,7 @@ fn unscripted_readings_are_errors_that_name_the_sensor() {
         ("rest of the manoeuvre", robot.is_done().unwrap_err()),
         ("stall detector", robot.is_stalled().unwrap_err()),
         ("encoder 2", robot.encoder(2).unwrap_err()),
+        ("depth sensor", robot.depth().unwrap_err()),
         ("attitude", robot.attitude().unwrap_err()),
         ("turn rates", robot.turn_rates().unwrap_err()),
         ("acceleration", robot.acceleration().unwrap_err()),

@@ -10,10 +10,10 @@ use super::numbers::{NOTHING, degrees, metres, millimetres, radians, range, whol
 use super::truth::{RobiosTruth, Told};
 use crate::geometry::{Pose, Twist, Vector3, normalize_angle, units};
 use crate::io::{
-    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error,
-    ErrorKind, Fill, Font, FontFamily, FontStyle, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings,
-    Manoeuvres, Motors, Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector,
-    Viewport,
+    Attitude, Camera, Clock, DepthSensor, Display, DisplayImage, DisplayOption, DistanceSensors, Drive,
+    Encoders, Error, ErrorKind, Fill, Font, FontFamily, FontStyle, Inertial, Key, Keys, Lidar, LidarScan,
+    LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos,
+    StallDetector, Viewport,
 };
 use crate::world::{Colour, InertialSpec};
 
@@ -32,6 +32,7 @@ pub struct RobiosRobot {
     radio_is_on: bool,
     turns: bool,
     inertial: InertialSpec,
+    depth_channel: Option<u8>,
 }
 
 /// Maximum length of a received radio message (bytes).
@@ -92,6 +93,7 @@ impl RobiosRobot {
             radio_is_on: false,
             turns: false,
             inertial: InertialSpec::default(),
+            depth_channel: None,
         })
     }
 
@@ -99,6 +101,12 @@ impl RobiosRobot {
     #[must_use]
     pub fn with_inertial(self, inertial: InertialSpec) -> Self {
         Self { inertial, ..self }
+    }
+
+    /// Gives the robot a pressure sensor, which the library reads on a channel in mm of depth.
+    #[must_use]
+    pub fn with_depth_sensor(self, channel: u8) -> Self {
+        Self { depth_channel: Some(channel), ..self }
     }
 
     /// What three analog channels read.
@@ -506,6 +514,13 @@ impl Encoders for RobiosRobot {
 /// Tenths of degrees.
 fn from_tenths(tenths: f64) -> f64 {
     units::from_deg(tenths / 10.0)
+}
+
+impl DepthSensor for RobiosRobot {
+    fn depth(&mut self) -> Result<f64> {
+        let channel = self.depth_channel.ok_or_else(|| Error::unsupported("depth sensor"))?;
+        Ok(units::from_mm(call!(self, ANALOGRead(channel.into())).into()))
+    }
 }
 
 impl Inertial for RobiosRobot {

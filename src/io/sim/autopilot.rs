@@ -18,26 +18,26 @@ enum Mode<const N: usize> {
 
 #[derive(Debug, Clone)]
 struct Manoeuvre<const N: usize> {
-    /// What the encoders shall measure at the end.
+    /// Encoder targets.
     target: [f64; N],
     /// The fastest wheel's rim speed.
     speed: f64,
-    /// What a metre of the farther wheel's roll is worth in `remaining`: metres, or radians for a turn.
+    /// Value in `remaining` of one metre of the farther wheel's roll: metres, or radians for a turn.
     unit: f64,
-    /// Ticks for which all wheels have been nearly at their targets.
+    /// Number of ticks for which all wheels have been near their targets.
     settling: u32,
 }
 
-/// The part of what the motors can do that a manoeuvre plans to brake with.
+/// Fraction of the motors' deceleration that a manoeuvre plans to brake with.
 const BRAKING: f64 = 0.5;
-/// How fast the last millimetres are closed, per second.
+/// Rate at which the last millimetres are closed (1/s).
 const APPROACH_RATE: f64 = 20.0;
-/// A wheel this many resolutions from its target is nearly there.
+/// Distance from its target (in resolutions) within which a wheel is nearly there.
 const NEARLY: f64 = 4.0;
-/// Ticks after which wheels stay that are nearly at their targets. Two wheels whose targets are both half an encoder tick
-/// away could otherwise hunt for ever, each moved off its target by the other's correction.
+/// Ticks after which wheels near their targets stop. If both targets are half an encoder tick away, each
+/// wheel's correction moves the other off its target, and they could hunt for ever.
 const LONGEST_SETTLING: u32 = TICKS_PER_SECOND as u32;
-/// The rim speed, in m/s, below which a wheel at its target stands.
+/// Rim speed below which a wheel at its target is at rest (m/s).
 const STANDING: f64 = 1e-5;
 
 impl<const N: usize> Autopilot<N> {
@@ -50,7 +50,7 @@ impl<const N: usize> Autopilot<N> {
         self.mode = Mode::Speeds(speeds);
     }
 
-    /// Drives one wheel at a rim speed and leaves the others as they are.
+    /// Drives one wheel at a rim speed and leaves the others unchanged.
     pub(super) fn set_motor(&mut self, wheel: usize, speed: f64) {
         let mut speeds = match self.mode {
             Mode::Speeds(speeds) => speeds,
@@ -60,7 +60,7 @@ impl<const N: usize> Autopilot<N> {
         self.mode = Mode::Speeds(speeds);
     }
 
-    /// The shortest time that a motion takes in which the wheels roll so far.
+    /// Shortest duration of a motion with these wheel rolls.
     pub(super) fn least_seconds(
         wheels: &Wheels<N>,
         rolls: [f64; N],
@@ -70,8 +70,8 @@ impl<const N: usize> Autopilot<N> {
         (whole(motion) / speed).abs().max(farthest(rolls) / wheels.speed_limit())
     }
 
-    /// Starts a motion along one arc in which the wheels roll so far. `speed` is along the arc in m/s, or in rad/s for a
-    /// turn on the spot.
+    /// Starts a motion along one arc with these wheel rolls. `speed` is along the arc in m/s, or in rad/s for
+    /// a turn on the spot.
     pub(super) fn start(&mut self, wheels: &Wheels<N>, rolls: [f64; N], motion: Displacement, speed: f64) {
         let farther = farthest(rolls);
         if farther == 0.0 {
@@ -88,7 +88,7 @@ impl<const N: usize> Autopilot<N> {
         });
     }
 
-    /// The rim speeds to command for the next tick.
+    /// Rim speed commands for the next tick.
     pub(super) fn command(&mut self, wheels: &Wheels<N>) -> [f64; N] {
         match &mut self.mode {
             Mode::Speeds(speeds) => *speeds,
@@ -103,7 +103,7 @@ impl<const N: usize> Autopilot<N> {
         matches!(self.mode, Mode::Speeds(_))
     }
 
-    /// Whether the wheels are asked to turn.
+    /// Whether the wheels are commanded to turn.
     pub(super) fn is_driving(&self) -> bool {
         match self.mode {
             Mode::Speeds(speeds) => speeds != [0.0; N],
@@ -111,7 +111,7 @@ impl<const N: usize> Autopilot<N> {
         }
     }
 
-    /// What is left of the manoeuvre; nothing, once the encoders cannot tell it from its end.
+    /// Remainder of the manoeuvre; zero if the encoders cannot distinguish it from the end.
     pub(super) fn remaining(&self, wheels: &Wheels<N>) -> f64 {
         match &self.mode {
             Mode::Speeds(_) => 0.0,
@@ -130,10 +130,10 @@ impl<const N: usize> Manoeuvre<N> {
         std::array::from_fn(|w| self.target[w] - measured[w])
     }
 
-    /// The rim speeds for the next tick; `None` when all wheels stand at their targets.
+    /// Rim speeds for the next tick; `None` if all wheels are at rest at their targets.
     ///
-    /// The wheel with more to go sets the pace and the others are paced so that all arrive together, which also
-    /// brings a robot that was already moving back onto its arc.
+    /// The wheel with the longest remaining roll sets the pace; the others are slowed so that all arrive
+    /// together. This also brings a robot that was already moving back onto its arc.
     fn command(&mut self, wheels: &Wheels<N>) -> Option<[f64; N]> {
         let rest = self.rest(wheels);
         let farther = farthest(rest);
@@ -151,19 +151,19 @@ impl<const N: usize> Manoeuvre<N> {
     }
 }
 
-/// The command that makes a lagging wheel do as wished: simply the wish while it speeds up, and when it must slow
-/// down, the command that undoes the lag, for a robot that brakes late misses its target.
+/// The command with which a lagging wheel follows the desired speed. While speeding up it is the desired
+/// speed. While slowing down it compensates the lag, because a robot that brakes late misses its target.
 fn follow(wish: f64, speed: f64, decay: f64) -> f64 {
     let slows_down = wish.abs() < speed.abs() || wish * speed < 0.0;
     if slows_down { (wish - speed * decay) / (1.0 - decay) } else { wish }
 }
 
-/// The length of a motion, or the angle of a turn on the spot.
+/// Length of a motion, or angle of a turn on the spot.
 fn whole(motion: Displacement) -> f64 {
     if motion.length == 0.0 { motion.angle } else { motion.length }
 }
 
-/// The largest of some rolls or speeds, whatever its direction.
+/// Largest absolute value of some rolls or speeds.
 fn farthest<const N: usize>(rolls: [f64; N]) -> f64 {
     rolls.into_iter().map(f64::abs).fold(0.0, f64::max)
 }

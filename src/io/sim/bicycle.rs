@@ -1,4 +1,5 @@
 use super::{NoiseModel, TICK};
+use crate::geometry::units::NEGLIGIBLE;
 use crate::geometry::{Twist, math, units};
 use crate::kinematics::{PlanarMotion, PlanarTwist};
 use crate::random::Stream;
@@ -6,20 +7,19 @@ use crate::world::{CarDynamics, MotorSpec};
 
 /// A fast car by the dynamic bicycle model: tyres slip, and their forces stay within the friction circle.
 ///
-/// Its odometry takes the speed from the wheels and the heading from a gyroscope; that the car slides is
-/// beyond it.
+/// Odometry takes the speed from the wheels and the heading from a gyroscope; it cannot measure sideslip.
 #[derive(Debug, Clone)]
 pub(super) struct Bicycle {
     spec: CarDynamics,
     motor: MotorSpec,
     wheelbase: f64,
     speeds: Speeds,
-    /// What the present tick's motion is if nothing is in the way.
+    /// Motion of the present tick without obstacles.
     wish: PlanarMotion,
     senses: Senses,
 }
 
-/// Speeds of the centre of mass along the car and to its left, and the rate of its heading.
+/// Speeds of the centre of mass forwards and to the left, and the yaw rate.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Speeds {
     along: f64,
@@ -27,7 +27,7 @@ struct Speeds {
     yaw_rate: f64,
 }
 
-/// The errors of a tachometer and a rate gyroscope.
+/// Errors of a tachometer and a rate gyroscope.
 #[derive(Debug, Clone)]
 struct Senses {
     scale: f64,
@@ -37,21 +37,16 @@ struct Senses {
     stream: Stream,
 }
 
-/// Steps of the tyres in a tick.
+/// Integration steps of the tyre forces per tick.
 const SUBSTEPS: u32 = 5;
-/// Metres per second below which wheels roll.
-const ROLLS: f64 = 2.0;
 /// The rate in rad/s that a gyroscope reads standing, for noise 1.
 const GYRO_BIAS: f64 = 0.001;
-/// The deviation in rad/s from reading to reading, for noise 1.
+/// Standard deviation of a gyroscope reading at noise 1 (rad/s).
 const GYRO_NOISE: f64 = 0.003;
-/// The speed, in m/s, below which a car that shall stand does.
-const STANDING: f64 = 1e-6;
 
 impl Senses {
     fn new(noise: &NoiseModel, mut stream: Stream) -> Self {
-        // Relative errors of the drive are given for robots with small wheels: what is left of them is a
-        // tyre's.
+        // Noise level relative to the real robot, for the gyroscope.
         let size = noise.wheel_mismatch / NoiseModel::real().wheel_mismatch;
         Self {
             scale: 1.0 + noise.wheel_scale * stream.normal(),
@@ -81,13 +76,13 @@ impl Bicycle {
         Self { spec, motor, wheelbase, speeds: Speeds::default(), wish: PlanarMotion::default(), senses }
     }
 
-    /// Radians per second at which the steering turns.
+    /// Rate at which the steering turns (rad/s).
     pub(super) fn steering_rate(&self) -> f64 {
         self.spec.steering_rate
     }
 
-    /// Lets a speed act that is commanded, while the steering angle turns from one to another, and returns
-    /// how the middle of the rear axle moves in a tick if nothing is in the way.
+    /// Applies a speed command while the steering angle changes from one value to another. Returns the motion
+    /// of the middle of the rear axle in one tick without obstacles.
     pub(super) fn step(&mut self, speed: f64, steering: [f64; 2]) -> PlanarMotion {
         let dt = TICK / f64::from(SUBSTEPS);
         let mut wish = PlanarMotion::default();
@@ -102,8 +97,7 @@ impl Bicycle {
         wish
     }
 
-    /// Goes on with the speeds that the car's true motion in this tick leaves it, and returns what is
-    /// measured of them.
+    /// Takes over the speeds that follow from the car's true motion in this tick; returns their measurement.
     pub(super) fn settle(&mut self, moved: PlanarMotion) -> Twist {
         if moved != self.wish {
             self.collide(moved);
@@ -111,18 +105,18 @@ impl Bicycle {
         if self.speeds == Speeds::default() { Twist::STOP } else { self.senses.measure(&self.speeds) }
     }
 
-    /// The speed along the car, at its wheels.
+    /// Forward speed at the wheels.
     pub(super) fn speed(&self) -> f64 {
         self.speeds.along
     }
 
-    /// Metres per second to the left, at the rear axle.
+    /// Lateral speed at the rear axle, to the left (m/s).
     fn slip(&self) -> f64 {
         self.speeds.across - self.spec.mass_centre * self.speeds.yaw_rate
     }
 
-    /// Nothing bounces: what is left of the motion is left of the speeds. What pushes a car out of a wall
-    /// makes it no faster.
+    /// Collisions are inelastic: speeds shrink like the motion. Being pushed out of a wall does not increase
+    /// them.
     fn collide(&mut self, moved: PlanarMotion) {
         let (length, most) = (moved.length(), self.wish.length());
         let share = if length > most { most / length } else { 1.0 };
@@ -136,29 +130,30 @@ impl Bicycle {
         self.speeds = Speeds { along: forward, across, yaw_rate: angular };
     }
 
-    /// Lets a command act for some seconds, in one step of at most 2 ms or so.
+    /// Applies a command for `dt` seconds, at most about 2 ms, in one step.
     fn substep(&mut self, speed: f64, steering: f64, dt: f64) {
         let before = self.speeds;
         let wish = (speed - before.along) / self.motor.time_constant.max(dt);
-        // Towards standing it brakes, away from it it drives.
+        // It brakes towards standstill and drives away from it.
         let slows = wish * before.along < 0.0;
         let limit = if slows { self.spec.brake } else { self.motor.max_acceleration };
         let push = wish.clamp(-limit, limit).clamp(-self.spec.grip, self.spec.grip);
         let fastest = math::hypot(before.along, self.slip());
-        let share = ((fastest - ROLLS) / (CarDynamics::SLIPS - ROLLS)).clamp(0.0, 1.0);
+        // Slower than half of the speed from which they slip, wheels roll.
+        let share = (2.0 * fastest / CarDynamics::SLIPS - 1.0).clamp(0.0, 1.0);
         if share > 0.0 {
             self.slide(push, steering, dt);
         }
         if share < 1.0 {
             let along = before.along + push * dt;
             // It does not brake beyond standing.
-            let stops = (slows && along * before.along < 0.0) || (speed == 0.0 && along.abs() < STANDING);
+            let stops = (slows && along * before.along < 0.0) || (speed == 0.0 && along.abs() < NEGLIGIBLE);
             self.roll(if stops { 0.0 } else { along }, steering, share);
             self.hold(&before, dt);
         }
     }
 
-    /// The part of the speeds that is not of tyres that slip is of wheels that roll.
+    /// Blends the slipping-tyre speeds with those of rolling wheels.
     fn roll(&mut self, along: f64, steering: f64, share: f64) {
         let yaw_rate = along * math::tan(steering) / self.wheelbase;
         let mix = |slides: f64, rolls: f64| share * slides + (1.0 - share) * rolls;
@@ -169,8 +164,8 @@ impl Bicycle {
         };
     }
 
-    /// Keeps what has changed since before within what the tyres can hold: wheels that roll do not begin to
-    /// at once.
+    /// Limits the change of the speeds since `before` to what the tyres can transmit, also in the transition
+    /// to rolling.
     fn hold(&mut self, before: &Speeds, dt: f64) {
         let turned = |rate: f64, along: f64, across: f64| {
             let (sin, cos) = math::sin_cos(dt * rate);
@@ -180,7 +175,7 @@ impl Bicycle {
         let (along, across) = turned(now.yaw_rate, now.along, now.across);
         let change = (along - before.along, across - before.across);
         let excess = math::hypot(change.0, change.1) / (self.spec.grip * dt);
-        // Rounding is none.
+        // Rounding errors need no correction.
         if excess <= 1.001 {
             return;
         }
@@ -190,19 +185,19 @@ impl Bicycle {
         self.speeds = Speeds { along, across, yaw_rate };
     }
 
-    /// The forces of the tyres act on the speeds.
+    /// Applies the tyre forces to the speeds.
     fn slide(&mut self, push: f64, steering: f64, dt: f64) {
         let (spec, base) = (&self.spec, self.wheelbase);
         let (rear_arm, front_arm) = (spec.mass_centre, base - spec.mass_centre);
         let Speeds { along, across, yaw_rate } = self.speeds;
         let v = along.abs().max(0.5);
-        // Backwards a wheel that is turned leads to the other side.
+        // In reverse, a turned wheel steers to the other side.
         let steered = steering * (along / 0.5).clamp(-1.0, 1.0);
         let slips = [
             math::atan2(across + front_arm * yaw_rate, v) - steered,
             math::atan2(across - rear_arm * yaw_rate, v),
         ];
-        // Without transfer of load, each axle carries what the levers give it, and drives in proportion.
+        // Without load transfer, each axle carries its static share of the weight and drives in proportion.
         let loads = [rear_arm / base, front_arm / base];
         let [front, rear] = [0, 1].map(|axle| {
             let (along, circle) = (push * loads[axle], spec.grip * loads[axle]);
@@ -216,7 +211,7 @@ impl Bicycle {
         let force = (front.0 * cos - front.1 * sin + rear.0, front.0 * sin + front.1 * cos + rear.1);
         let turn = front_arm * (front.0 * sin + front.1 * cos) - rear_arm * rear.1;
         let yaw_rate = yaw_rate + dt * turn / (spec.gyration * spec.gyration);
-        // The frame turns under the velocity.
+        // The frame rotates under the velocity.
         let (sin, cos) = math::sin_cos(dt * yaw_rate);
         let (x, y) = (along + dt * force.0, across + dt * force.1);
         self.speeds = Speeds { along: cos * x + sin * y, across: cos * y - sin * x, yaw_rate };
@@ -224,158 +219,4 @@ impl Bicycle {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::geometry::Pose;
-    use crate::kinematics::advance_planar;
-    use crate::world::{DriveSpec, RobotSpec};
-
-    const DT: f64 = 0.002;
-
-    fn bicycle() -> Bicycle {
-        let spec = RobotSpec::race_car();
-        let DriveSpec::Ackermann { wheelbase, dynamics: Some(dynamics), .. } = spec.drive else {
-            panic!("a racing car has tyres")
-        };
-        Bicycle::new(dynamics, spec.motor, wheelbase, &NoiseModel::ideal(), Stream::new(1))
-    }
-
-    fn settled(speed: f64, steering: f64, seconds: f64) -> Bicycle {
-        let mut car = bicycle();
-        for _ in 0..(seconds / DT) as u32 {
-            car.substep(speed, steering, DT);
-        }
-        car
-    }
-
-    /// The acceleration of the centre of mass between two steps, in the frame of the world.
-    fn acceleration(before: &Speeds, after: &Speeds) -> f64 {
-        let (sin, cos) = math::sin_cos(DT * after.yaw_rate);
-        let (x, y) = (cos * after.along - sin * after.across, sin * after.along + cos * after.across);
-        math::hypot(x - before.along, y - before.across) / DT
-    }
-
-    #[test]
-    fn slow_cars_roll_in_circles() {
-        let car = settled(1.5, 0.3, 5.0);
-        let curvature = car.speeds.yaw_rate / car.speeds.along;
-        assert!((curvature - math::tan(0.3) / car.wheelbase).abs() < 1e-6);
-        assert!(car.slip().abs() < 1e-9);
-    }
-
-    #[test]
-    fn no_force_leaves_the_friction_circle() {
-        for (speed, steering) in
-            [(8.0, 0.1), (12.0, 0.2), (20.0, 0.4), (25.0, 0.05), (-25.0, 0.2), (-6.0, 0.6)]
-        {
-            let mut car = bicycle();
-            for _ in 0..4000 {
-                let before = car.speeds;
-                car.substep(speed, steering, DT);
-                let acceleration = acceleration(&before, &car.speeds);
-                assert!(acceleration < 1.02 * car.spec.grip, "{acceleration} at {before:?}");
-            }
-        }
-    }
-
-    /// However it moves and whatever it is told, sliding sideways and backwards included, and the sliding
-    /// comes to an end.
-    #[test]
-    fn nor_does_any_from_random_driving() {
-        let mut random = Stream::new(11);
-        for _ in 0..300 {
-            let mut car = bicycle();
-            car.speeds = Speeds {
-                along: random.between(-25.0, 25.0),
-                across: random.between(-12.0, 12.0),
-                yaw_rate: random.between(-5.0, 5.0),
-            };
-            for k in 0..3000 {
-                let wish = if k < 1000 { random.between(-30.0, 30.0) } else { 0.0 };
-                let before = car.speeds;
-                car.substep(wish, random.between(-0.6, 0.6), DT);
-                let acceleration = acceleration(&before, &car.speeds);
-                assert!(acceleration < 1.02 * car.spec.grip, "{acceleration} at {before:?}");
-            }
-            assert_eq!(car.speeds, Speeds::default(), "it stands");
-        }
-    }
-
-    /// Whether tyres hold an acceleration across, on bends that are wide for the car.
-    fn balances(spec: &CarDynamics, across: f64) -> bool {
-        let (stiffness, strained) = (spec.stiffness * units::GRAVITY, across / spec.grip);
-        if strained >= 1.0 {
-            return false;
-        }
-        let rear = across / (stiffness * (1.0 - strained * strained).sqrt());
-        // The front axle gives more the more it slips, and less the more it is turned.
-        (0..400).any(|k| {
-            let slip = 1.2 * f64::from(k) / 400.0;
-            let steering = slip - rear;
-            let linear = stiffness * slip / spec.grip;
-            let force = spec.balance * spec.grip * linear / (1.0 + linear * linear).sqrt();
-            steering <= 0.6 && force * math::cos(steering) >= across
-        })
-    }
-
-    #[test]
-    fn no_steering_gives_more_across_than_the_balance() {
-        let spec = CarDynamics::default();
-        let bound =
-            (0..1200).map(|k| 0.01 * f64::from(k)).take_while(|&a| balances(&spec, a)).last().unwrap();
-        for curvature in [0.03, 0.08, 0.15, 0.25] {
-            // Of all circles that the car comes to drive at some speeds, those of about that curvature.
-            let mut best = 0.0_f64;
-            for steering in 1..30 {
-                for speed in 1..20 {
-                    let speed = (0.06 * f64::from(speed) * bound / curvature).sqrt();
-                    let car = settled(speed, 0.02 * f64::from(steering), 6.0);
-                    let Speeds { along, across, yaw_rate } = car.speeds;
-                    let velocity = math::hypot(along, across);
-                    if (yaw_rate / velocity / curvature - 1.0).abs() < 0.03 && along > CarDynamics::SLIPS {
-                        best = best.max(yaw_rate * velocity);
-                    }
-                }
-            }
-            assert!(best < 1.02 * bound && best > 0.85 * bound, "{curvature}: {best} of {bound}");
-        }
-    }
-
-    #[test]
-    fn brakes_bring_it_to_stand_within_the_distance() {
-        let mut car = settled(20.0, 0.0, 6.0);
-        assert!((car.speed() - 20.0).abs() < 0.01);
-        let way: f64 = (0..600).map(|_| car.step(0.0, [0.0; 2]).forward).sum();
-        // v²/2a, and v/gain for the end that it brakes softly.
-        let bound = 20.0 * 20.0 / (2.0 * car.spec.brake) + 20.0 * car.motor.time_constant;
-        assert!(car.speed() == 0.0 && way < bound && way > 15.0, "{way} of {bound}");
-    }
-
-    #[test]
-    fn it_drives_backwards_as_well() {
-        let car = settled(-1.0, 0.2, 3.0);
-        assert!((car.speed() + 1.0).abs() < 1e-6 && car.speeds.yaw_rate < 0.0);
-    }
-
-    #[test]
-    fn ticks_add_up_to_the_circle_of_the_rear_axle() {
-        let mut car = settled(10.0, 0.1, 6.0);
-        let twist = PlanarTwist::new(car.speed(), car.slip(), car.speeds.yaw_rate);
-        let mut pose = Pose::default();
-        for _ in 0..100 {
-            pose = advance_planar(pose, car.step(10.0, [0.1; 2]));
-        }
-        let end = advance_planar(Pose::default(), twist.during(1.0));
-        assert!(pose.distance_to(end.position()) < 1e-6, "{pose:?} {end:?}");
-    }
-
-    #[test]
-    fn a_wall_takes_the_speed_into_it_and_leaves_that_along_it() {
-        let mut car = settled(10.0, 0.0, 6.0);
-        let wish = car.step(10.0, [0.0; 2]);
-        car.settle(PlanarMotion { forward: 0.5 * wish.forward, left: 0.0, angle: 0.0 });
-        assert!((car.speed() - 5.0).abs() < 0.01);
-        car.settle(PlanarMotion { forward: -3.0, left: 0.0, angle: 2.0 });
-        assert!(car.speed().abs() < 10.1 && car.speeds.yaw_rate == 0.0, "out of it, but no faster: {car:?}");
-    }
-}
+mod tests;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use super::SimOptions;
 use super::camera::CameraDevice;
 use super::course::Course;
+use super::depth_gauge::DepthGauge;
 use super::inertial_unit::InertialUnit;
 use super::mechanics::Powertrain;
 use crate::geometry::{Point, Point3, Pose, Pose3, Vector3, direction, math};
@@ -12,18 +13,18 @@ use crate::random::Stream;
 use crate::world::space::{Scanner, SolidId, Span};
 use crate::world::{Footprint, Mount, PsdSpec, RobotPlacement, RobotSpec};
 
-/// One robot in the engine: its mechanics, its devices and what is true about it.
+/// One robot in the engine: its mechanics, devices and ground truth.
 #[derive(Debug)]
 pub(super) struct Body {
     pub(super) spec: Arc<RobotSpec>,
     pub(super) solid: SolidId,
-    /// Where it truly is.
+    /// Its true pose.
     pub(super) course: Course,
     pub(super) span: Span,
     pub(super) outline: Footprint,
-    /// The radius of the circle about its origin that just holds its outline.
+    /// Radius of the smallest enclosing circle of its outline about its origin.
     pub(super) radius: f64,
-    /// How far its outline may move at once without jumping over anything.
+    /// Longest motion of its outline that cannot skip an obstacle.
     pub(super) stride: f64,
     pub(super) drive: Powertrain,
     psds: Box<[PsdDevice]>,
@@ -31,45 +32,46 @@ pub(super) struct Body {
     pub(super) lidar: Option<Box<LidarDevice>>,
     pub(super) camera: Option<Box<CameraDevice>>,
     pub(super) inertial: Option<Box<InertialUnit>>,
+    pub(super) depth: Option<Box<DepthGauge>>,
     pub(super) mailbox: VecDeque<RadioMessage>,
     pub(super) keys: VecDeque<KeyPress>,
-    /// Made when the program first draws: most robots of a fleet never do.
+    /// Created at the first drawing; most robots of a fleet never draw.
     lcd: Option<Box<Lcd>>,
-    /// Calls of the display so far.
+    /// Number of display calls so far.
     drawings: u64,
     pub(super) encoder_offsets: [i64; 4],
     pub(super) touch: Touch,
     pub(super) path_length: f64,
     pub(super) trail: Vec<TrailPoint>,
-    /// How far the robot may move before the next look for walls.
+    /// Distance that the robot may move before the next check for walls.
     pub(super) wall_budget: f64,
-    /// How far it and others may move towards each other before the next look for solids.
+    /// Distance that it and others may approach each other before the next check for solids.
     pub(super) solid_budget: f64,
 }
 
-/// A key press that a script has scheduled.
+/// A scheduled key press.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct KeyPress {
     pub(super) time: f64,
     pub(super) key: Key,
 }
 
-/// What a robot touches, and has touched.
+/// Present and past contacts of a robot.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Touch {
-    /// How often the robot came into contact with something.
+    /// Number of contacts.
     pub(super) contacts: u32,
     /// Whether it is in contact now.
     pub(super) touching: bool,
-    /// Where it first touched each time.
+    /// First point of each contact.
     pub(super) places: Vec<Point>,
-    /// Ticks since its wheels last moved it as they should.
+    /// Ticks since its wheels last moved it as commanded.
     pub(super) held_ticks: u32,
 }
 
-/// Places of contacts that are remembered; the count goes on.
+/// Largest number of recorded contact places; counting continues.
 const MAX_CONTACT_PLACES: usize = 1000;
-/// Ticks for which a robot must be held to count as stalled: half a second.
+/// Ticks of blocked motion that count as a stall: half a second.
 const STALL_TICKS: u32 = 50;
 
 impl Touch {
@@ -80,7 +82,7 @@ impl Touch {
         self.touching = true;
     }
 
-    /// Counts a contact that is over at once.
+    /// Counts a contact that ends at once.
     pub(super) fn count(&mut self, place: Point) {
         self.contacts += 1;
         if self.places.len() < MAX_CONTACT_PLACES {
@@ -88,7 +90,7 @@ impl Touch {
         }
     }
 
-    /// Forgets what the robot touches: it is taken elsewhere.
+    /// Clears the contacts of a robot that is moved elsewhere.
     pub(super) fn leave(&mut self) {
         self.touching = false;
         self.held_ticks = 0;
@@ -99,13 +101,13 @@ impl Touch {
     }
 }
 
-/// A distance sensor of one ray, in the robot's frame.
+/// A distance sensor with a single ray, in the robot's frame.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PsdDevice {
     id: u8,
     pub(super) place: Point3,
     pub(super) direction: Vector3,
-    /// Whether it is parallel to the robot's floor.
+    /// Whether its ray is parallel to the robot's floor.
     pub(super) level: bool,
     pub(super) max_range: f64,
 }
@@ -120,15 +122,15 @@ impl PsdDevice {
     }
 }
 
-/// A lidar with the settings that the program has given it.
+/// A lidar with the program's settings.
 #[derive(Debug)]
 pub(super) struct LidarDevice {
-    /// Where it sits in the robot's frame.
+    /// Its pose in the robot's frame.
     pub(super) mount: Pose,
     /// The same in space, and whether its plane is parallel to the robot's floor.
     pub(super) frame: Pose3,
     pub(super) level: bool,
-    /// Metres above the world's floor.
+    /// Height above the world's floor (m).
     height: f64,
     pub(super) max_range: f64,
     pub(super) settings: LidarSettings,
@@ -189,6 +191,7 @@ impl Body {
                 Box::new(CameraDevice::new(camera, placement.elevation, streams.child("camera", 0)))
             }),
             inertial: InertialUnit::of(spec.inertial, streams),
+            depth: spec.depth_sensor.map(|own| Box::new(DepthGauge::new(own, streams.child("depth", 0)))),
             mailbox: VecDeque::new(),
             keys: VecDeque::new(),
             lcd: None,
@@ -208,12 +211,12 @@ impl Body {
         self.lcd.get_or_insert_with(|| Box::new(Lcd::new()))
     }
 
-    /// What the display shows, and how many calls of it there have been.
+    /// The display's content, and the number of its calls so far.
     pub(super) fn display(&self) -> Option<(u64, &Lcd)> {
         Some((self.drawings, self.lcd.as_deref()?))
     }
 
-    /// Where it truly is.
+    /// Its true pose.
     pub(super) fn pose(&self) -> Pose {
         self.course.pose()
     }
@@ -222,49 +225,58 @@ impl Body {
         self.psds.iter().find(|device| device.id == psd.0).ok_or_else(|| Error::unsupported(psd))
     }
 
-    /// Notes how far the outline moved instead of as far as the wheels wished.
+    /// Records the outline's motion in comparison with that of the wheels.
     pub(super) fn note_motion(&mut self, wished: f64, moved: f64) {
         let held = self.touch.touching && moved < 0.2 * wished && self.drive.get().is_driving();
         self.touch.held_ticks = if held { self.touch.held_ticks.saturating_add(1) } else { 0 };
     }
 
-    /// The motor that a motor's or an encoder's number means.
-    pub(super) fn motor_index(&self, number: u8, device: &str) -> Result<usize> {
-        let motors = self.drive.get().motors();
-        let index = usize::from(number).checked_sub(1).filter(|&index| index < motors);
-        index.ok_or_else(|| Error::unsupported(format!("{device} {number}")))
+    /// The motor that a number means.
+    pub(super) fn motor_index(&self, number: u8) -> Result<usize> {
+        device_index("motor", number, self.drive.get().motors())
     }
 
-    /// An encoder's count since the last reset.
+    fn encoder_index(&self, number: u8) -> Result<usize> {
+        device_index("encoder", number, self.drive.get().encoders())
+    }
+
+    /// Encoder count since the last reset.
     pub(super) fn encoder(&self, motor: u8) -> Result<i64> {
-        let wheel = self.motor_index(motor, "encoder")?;
+        let wheel = self.encoder_index(motor)?;
         Ok(self.drive.get().count(wheel) - self.encoder_offsets[wheel])
     }
 
     pub(super) fn reset_encoder(&mut self, motor: u8) -> Result<()> {
-        let wheel = self.motor_index(motor, "encoder")?;
+        let wheel = self.encoder_index(motor)?;
         self.encoder_offsets[wheel] = self.drive.get().count(wheel);
         Ok(())
     }
 
-    /// Adds a key press, in order of time; of two at one time, the one scheduled first comes first.
+    /// Adds a key press in order of time; simultaneous ones are in order of scheduling.
     pub(super) fn schedule_key(&mut self, time: f64, key: Key) {
         let later = self.keys.iter().position(|press| press.time > time).unwrap_or(self.keys.len());
         self.keys.insert(later, KeyPress { time, key });
     }
 
-    /// The oldest key press that is due.
+    /// The oldest due key press.
     pub(super) fn take_key(&mut self, now: f64) -> Option<Key> {
         let due = self.keys.front().is_some_and(|press| press.time <= now);
         if due { self.keys.pop_front().map(|press| press.key) } else { None }
     }
 }
 
+/// The index of the device that a number from 1 means.
+fn device_index(device: &str, number: u8, count: usize) -> Result<usize> {
+    let index = usize::from(number).checked_sub(1).filter(|&index| index < count);
+    index.ok_or_else(|| Error::unsupported(format!("{device} {number}")))
+}
+
 fn span(placement: &RobotPlacement) -> Span {
     Span { bottom: placement.elevation, top: placement.elevation + placement.spec.height }
 }
 
-/// A quarter of the outline's least width: within it, the way out of a wall is the way it came.
+/// A quarter of the outline's smallest width: within it, a robot leaves a wall on the side on which it
+/// entered.
 fn stride(footprint: &Footprint) -> f64 {
     let width = match footprint {
         Footprint::Disc { radius } => 2.0 * radius,

@@ -4,7 +4,7 @@ use super::course::Course;
 use super::drive_errors::DriveErrors;
 use super::drive_mechanics::Mechanics;
 use super::wheels::{WheelSpec, Wheels};
-use super::{NoiseModel, TICK};
+use super::{NoiseModel, SERVO_RATE, TICK};
 use crate::geometry::{Pose, Twist, units};
 use crate::io::{Error, ErrorKind, Result};
 use crate::kinematics::{Ackermann, CarState, Differential, Displacement, PlanarMotion, PlanarTwist};
@@ -13,27 +13,24 @@ use crate::world::MotorSpec;
 
 /// A car: motor 1 drives the rear axle through a differential gear, servo 1 steers the front wheels.
 ///
-/// Its odometry takes the axle's roll from the motor's encoder and the direction from the steering. Errors
-/// are those of the rear wheels, as on a robot with two wheels. Of a fast car with [dynamics](Bicycle), mass
-/// and tyres decide how it moves, and a gyroscope measures how it turns.
+/// Odometry takes the axle's roll from the motor's encoder and the direction from the steering. Errors are
+/// those of the rear wheels, as on a two-wheeled robot. A fast car with [dynamics](Bicycle) moves by mass and
+/// tyre forces, and a gyroscope measures its rotation.
 #[derive(Debug, Clone)]
 pub(super) struct Car {
     nominal: Ackermann,
     axle: Differential,
     wheels: Wheels<1>,
     autopilot: Autopilot<1>,
-    /// The steering angle, and where the servo is to bring it.
+    /// The steering angle and its target.
     steering: f64,
     wanted: f64,
     odometry: Course,
     errors: DriveErrors<2>,
     bicycle: Option<Bicycle>,
-    /// What a fast car's odometry measures.
+    /// Odometry measurement of a fast car.
     measured: Twist,
 }
-
-/// Degrees per second at which a servo turns the wheels.
-const STEERING_RATE: f64 = 30.0;
 
 impl Car {
     pub(super) fn new(
@@ -59,15 +56,15 @@ impl Car {
         }
     }
 
-    /// The same car with mass and tyres, if it has any.
+    /// The same car with mass and tyres, if there are any.
     pub(super) fn with_dynamics(self, bicycle: Option<Bicycle>) -> Self {
         Self { bicycle, ..self }
     }
 
-    /// Lets motor and servo follow their commands for one tick and returns the robot's true motion, if
-    /// nothing is in the way.
+    /// Lets motor and servo follow their commands for one tick; returns the robot's true motion without
+    /// obstacles.
     pub(super) fn step(&mut self) -> PlanarMotion {
-        // A manoeuvre starts when the wheels point where it needs them.
+        // A manoeuvre starts once the wheels have its steering angle.
         let aims = self.steering != self.wanted && !self.autopilot.is_done();
         let command = if aims { [0.0] } else { self.autopilot.command(&self.wheels) };
         let before = self.steering;
@@ -98,7 +95,7 @@ impl Car {
         self.errors.motion(self.axle.track * self.errors.size(), [rear.left, rear.right])
     }
 
-    /// Takes notice of the car's true motion in this tick.
+    /// Records the car's true motion in this tick.
     pub(super) fn settle(&mut self, moved: PlanarMotion) {
         let Some(bicycle) = &mut self.bicycle else { return };
         self.measured = bicycle.settle(moved);
@@ -108,9 +105,9 @@ impl Car {
         self.odometry.advance(motion);
     }
 
-    /// Turns the front wheels for one tick. Returns their mean angle in it.
+    /// Turns the front wheels for one tick; returns their mean angle.
     fn steer(&mut self) -> f64 {
-        let rate = self.bicycle.as_ref().map_or(units::from_deg(STEERING_RATE), Bicycle::steering_rate);
+        let rate = self.bicycle.as_ref().map_or(units::from_deg(SERVO_RATE), Bicycle::steering_rate);
         let most = rate * TICK;
         let before = self.steering;
         let missing = self.wanted - before;
@@ -131,7 +128,7 @@ impl Mechanics for Car {
 
     fn set_twist(&mut self, twist: Twist) {
         let state = self.nominal.inverse_limited(twist, self.wheels.speed_limit());
-        // A car that is to stand keeps its wheels as they are.
+        // A stop command keeps the steering angle.
         let steering = if twist == Twist::STOP { self.wanted } else { state.steering };
         self.set_state(CarState { steering, ..state });
     }
@@ -174,7 +171,7 @@ impl Mechanics for Car {
         if !(-1.0..=1.0).contains(&position) {
             return Err(Error::invalid_input("servo position", position, "-1 to 1"));
         }
-        // Servos count to the right, angles to the left.
+        // Servo positions count to the right, angles to the left.
         self.wanted = -position * self.nominal.max_steering();
         Ok(())
     }

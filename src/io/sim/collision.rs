@@ -1,7 +1,7 @@
-//! How robots move among walls, objects and each other.
+//! Motion of robots among walls, objects and each other.
 //!
-//! Bodies are rigid and nothing gives way: a robot is pushed out of what its wheels drove it into, which makes it slide
-//! along a slanted wall and stand before a straight one. Robots move one after the other within a tick.
+//! Bodies are rigid: a robot is pushed out of the obstacle into which its wheels drove it. Therefore it
+//! slides along a slanted wall and stops before a perpendicular one. Robots move in sequence within a tick.
 
 use super::body::Body;
 use super::course::Course;
@@ -11,23 +11,21 @@ use crate::kinematics::PlanarMotion;
 use crate::world::Footprint;
 use crate::world::space::Contact;
 
-/// How far a look for obstacles reaches, in metres: a longer one costs more and comes less often.
+/// Distance of a check for obstacles (m). Longer checks are more expensive but less frequent.
 const LOOK_AHEAD: f64 = 0.25;
-/// A robot that touched something and is still this near to it touches it still.
+/// Distance within which an existing contact persists (m).
 const TOUCH_MARGIN: f64 = 5e-4;
-/// Attempts to push a robot out of what it ran into before it stays where it was.
+/// Attempts to push a robot out of an obstacle before it stays in place.
 const PUSH_ATTEMPTS: usize = 4;
 /// The largest depth, in metres, that counts as pushed out.
-const PUSH_TOLERANCE: f64 = 1e-6;
-/// What a push may add to a robot's own motion in a tick.
-const SLACK: f64 = 2.0 * PUSH_TOLERANCE;
+pub(super) const PUSH_TOLERANCE: f64 = 1e-6;
 
 impl Engine {
     /// Moves all robots by their motions of this tick.
     pub(super) fn move_bodies(&mut self, motions: &[PlanarMotion]) {
-        // No robot moves farther than this in this tick.
+        // Upper bound of a robot's motion in this tick.
         let reaches = self.bodies.iter().zip(motions).map(|(body, &motion)| reach(body, motion));
-        let farthest = reaches.fold(0.0, f64::max) + SLACK;
+        let farthest = reaches.fold(0.0, f64::max) + 2.0 * PUSH_TOLERANCE;
         for (index, &motion) in motions.iter().enumerate() {
             self.bodies[index].solid_budget -= farthest;
             if motion == PlanarMotion::default() {
@@ -41,7 +39,7 @@ impl Engine {
         }
     }
 
-    /// Moves a robot, and returns how far it came.
+    /// Moves a robot; returns its actual motion.
     fn move_body(&mut self, index: usize, motion: PlanarMotion) -> PlanarMotion {
         let body = &mut self.bodies[index];
         let reach = reach(body, motion);
@@ -56,7 +54,7 @@ impl Engine {
         motion
     }
 
-    /// A robot without motion may have been touched, and its toucher gone away again.
+    /// A robot at rest may have been touched by another one that has left again.
     fn stand(&mut self, index: usize) {
         let body = &mut self.bodies[index];
         body.touch.held_ticks = 0;
@@ -68,7 +66,7 @@ impl Engine {
         }
     }
 
-    /// Moves a robot that has something near it, in strides that cannot jump over anything.
+    /// Moves a robot near obstacles, in strides that cannot skip any.
     fn move_among_things(&mut self, index: usize, motion: PlanarMotion, reach: f64) -> PlanarMotion {
         let body = &self.bodies[index];
         let start = body.pose();
@@ -110,7 +108,7 @@ impl Engine {
             let body = &mut self.bodies[index];
             body.solid_budget = self.space.solids_clearance(&outline, &wished.pose(), span, LOOK_AHEAD, me);
             nearest = body.wall_budget.min(body.solid_budget);
-            // What was pushed lies at the rim and is no contact; its neighbours are looked at again soon.
+            // Pushed objects lie at the rim and are no contacts; their neighbours are checked again soon.
             body.solid_budget = 0.0;
             if nearest > 0.0 {
                 return true;
@@ -126,15 +124,16 @@ impl Engine {
         true
     }
 
-    /// Frees a robot from what its wish ran into. Usually it ends within `reach` of where it was.
+    /// Moves a robot out of the obstacles at its desired pose. Usually it ends within `reach` of its previous
+    /// position.
     fn free(&mut self, index: usize, before: Course, wished: Course, reach: f64) {
         let pushed = self.pushed_out(index, wished);
         let way = |course: &Course| (course.pose().position() - before.pose().position()).norm();
-        let within_reach = pushed.as_ref().is_some_and(|course| way(course) <= reach + SLACK);
+        let within_reach = pushed.as_ref().is_some_and(|course| way(course) <= reach + 2.0 * PUSH_TOLERANCE);
         let end = match pushed {
             Some(course) if within_reach => course,
-            // One that was put into something gets out of it at once.
-            Some(course) if self.depth_at(index, &before.pose()) > SLACK => {
+            // A robot that was placed in an obstacle leaves it at once.
+            Some(course) if self.depth_at(index, &before.pose()) > 2.0 * PUSH_TOLERANCE => {
                 self.look_around_again();
                 course
             }
@@ -142,13 +141,13 @@ impl Engine {
         };
         let body = &mut self.bodies[index];
         body.course = end;
-        // The looks were taken from the wished pose.
+        // The checks were made from the desired pose.
         let aside = (end.pose().position() - wished.pose().position()).norm() + reach;
         body.wall_budget -= aside;
         body.solid_budget -= aside;
     }
 
-    /// Where a robot comes to be when it is pushed out of all that it ran into; `None` if that does not free it.
+    /// Pose of a robot after it is pushed out of all obstacles; `None` if that fails.
     fn pushed_out(&mut self, index: usize, mut course: Course) -> Option<Course> {
         for _ in 0..PUSH_ATTEMPTS {
             if self.depth_at(index, &course.pose()) <= PUSH_TOLERANCE {
@@ -160,7 +159,7 @@ impl Engine {
         None
     }
 
-    /// How deep a robot at a pose would be in something. Leaves the contacts in `self.contacts`.
+    /// Depth of a robot at a pose in obstacles. Leaves the contacts in `self.contacts`.
     pub(super) fn depth_at(&mut self, index: usize, pose: &Pose) -> f64 {
         let body = &self.bodies[index];
         self.space.contacts(&body.outline, pose, body.span, Some(body.solid), &mut self.contacts);
@@ -173,7 +172,7 @@ impl Engine {
         let body = &mut self.bodies[index];
         let place = pose.position() - normal * body.spec.footprint.bounding_radius();
         body.touch.begin(place);
-        // Objects were added to the space first, then the robots.
+        // Objects precede robots in the space.
         let objects = self.space.solids() - self.bodies.len();
         for contact in &self.contacts {
             let other = contact.with.and_then(|solid| solid.index().checked_sub(objects));
@@ -184,7 +183,8 @@ impl Engine {
         }
     }
 
-    /// Puts a robot somewhere else; on hills it drops from `z` metres above the floor, unless the ground is higher.
+    /// Places a robot at a pose; on hills it drops from `z` metres above the floor, unless the ground is
+    /// higher.
     pub(super) fn place(&mut self, index: usize, pose: Pose, z: f64) {
         let body = &mut self.bodies[index];
         body.course = Course::new(pose);
@@ -192,22 +192,23 @@ impl Engine {
         body.touch.leave();
         self.space.set_pose(body.solid, pose);
         if let Some(hills) = &mut self.hills {
-            hills.place(index, pose, z - hills.level(pose.position()));
+            hills.place(index, pose, z - hills.ground_level(pose.position()));
         }
         self.begin_inertial(index);
         self.look_around_again();
     }
 
-    /// Puts an object that there is somewhere else.
+    /// Places an existing object at a pose.
     pub(super) fn place_object(&mut self, object: usize, pose: Pose) {
+        self.movables[object].velocity = Vector::zeros();
         let movable = self.movables[object];
-        self.put(movable.solid, pose);
+        self.put(&movable, pose);
         // A hand puts it upright.
         self.space.set_top(movable.solid, movable.top);
         self.look_around_again();
     }
 
-    /// Lets every robot look for solids before it moves: one of them has come from afar.
+    /// Makes every robot check for solids before it moves, because one of them may have come from afar.
     fn look_around_again(&mut self) {
         for body in &mut self.bodies {
             body.solid_budget = 0.0;
@@ -215,12 +216,12 @@ impl Engine {
     }
 }
 
-/// No point of the robot's outline moves farther than this.
+/// Upper bound of the motion of any point of the robot's outline.
 fn reach(body: &Body, motion: PlanarMotion) -> f64 {
     motion.length() + spin_radius(body) * motion.angle.abs()
 }
 
-/// The radius within which turning on the spot moves the robot's outline.
+/// Radius within which a turn on the spot moves the robot's outline.
 fn spin_radius(body: &Body) -> f64 {
     match body.spec.footprint {
         Footprint::Disc { .. } => 0.0,
@@ -228,7 +229,7 @@ fn spin_radius(body: &Body) -> f64 {
     }
 }
 
-/// Where a robot stays that cannot be freed: a disc still turns on its spot.
+/// Pose of a robot that cannot be pushed out: in place, but a disc still turns.
 fn stay(footprint: &Footprint, before: Course, wished: Course) -> Course {
     match footprint {
         Footprint::Disc { .. } => {
@@ -240,11 +241,11 @@ fn stay(footprint: &Footprint, before: Course, wished: Course) -> Course {
     }
 }
 
-/// The sum of the pushes that free an outline from its contacts: the deepest push along each direction.
+/// Sum of the pushes that free an outline from its contacts: the deepest push along each direction.
 fn push_out(contacts: &[Contact]) -> Vector {
     let mut push = Vector::zeros();
     for contact in contacts {
-        // What earlier pushes already achieve along this normal need not be pushed again.
+        // Only the part that earlier pushes do not already achieve along this normal.
         let missing = contact.depth - push.dot(&contact.normal);
         if missing > 0.0 {
             push += contact.normal * missing;

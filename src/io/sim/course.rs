@@ -1,21 +1,21 @@
 use crate::geometry::{Point, Pose, Vector, direction, normalize_angle};
 use crate::kinematics::{PlanarMotion, advance_planar};
 
-/// A pose that moves tick by tick, with the unit vector along its heading at hand.
+/// A pose that moves tick by tick, with the unit vector of its heading.
 ///
-/// Turning the vector by a small angle costs a tenth of a sine and a cosine. Its rounding errors stay below 1e-14,
-/// because it is made anew from the heading every so often.
+/// Rotating the vector by a small angle costs a tenth of a sine and cosine. It is recomputed from the heading
+/// regularly, which keeps rounding errors below 1e-14.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Course {
     pose: Pose,
     forward: Vector,
-    /// Small turns since the vector was made from the heading.
+    /// Small turns since the vector was last recomputed.
     turns: u32,
 }
 
-/// Half turns up to this many radians go by their series.
+/// Largest half turn that is computed by series (rad).
 const SMALL: f64 = 0.1;
-/// Small turns until the vector is made anew.
+/// Small turns until the vector is recomputed.
 const RENEWAL: u32 = 64;
 
 impl Course {
@@ -27,13 +27,13 @@ impl Course {
         self.pose
     }
 
-    /// A vector of the pose's own frame as the world sees it.
+    /// A vector of the pose's frame in the world's frame.
     pub(super) fn turned(&self, own: Vector) -> Vector {
         let f = self.forward;
         Vector::new(f.x * own.x - f.y * own.y, f.y * own.x + f.x * own.y)
     }
 
-    /// Moves on along one arc: [`advance_planar`] without its sine and cosine where the turn is small.
+    /// Moves along one arc: [`advance_planar`] without its sine and cosine for small turns.
     pub(super) fn advance(&mut self, motion: PlanarMotion) {
         let half = 0.5 * motion.angle;
         if half.abs() > SMALL || self.turns >= RENEWAL {
@@ -53,23 +53,23 @@ impl Course {
         }
     }
 
-    /// Where a device is, and where it looks, that is mounted at a pose of this one's frame.
+    /// Pose in the world of a device mounted at a pose in this frame.
     pub(super) fn mounted(&self, mount: &Pose) -> Pose {
         let place = self.pose.position() + self.turned(mount.position().coords);
         Pose::new(place.x, place.y, normalize_angle(self.pose.heading + mount.heading))
     }
 
-    /// The same heading at another place.
+    /// Changes the position and keeps the heading.
     pub(super) fn move_to(&mut self, place: Point) {
         self.pose.x = place.x;
         self.pose.y = place.y;
     }
 }
 
-/// `sin(x) / x` and the cosine of a small angle, to the last bit or two.
+/// `sin(x) / x` and cosine of a small angle, accurate to the last bit or two.
 fn small_sinc_cos(x: f64) -> (f64, f64) {
     let s = x * x;
-    // What the series leave out is below 3e-17 for |x| up to 0.1. Products are several times as fast as quotients.
+    // The omitted terms are below 3e-17 for |x| up to 0.1. Products are several times as fast as quotients.
     let sinc = 1.0
         - s * (1.0 / 6.0) * (1.0 - s * (1.0 / 20.0) * (1.0 - s * (1.0 / 42.0) * (1.0 - s * (1.0 / 72.0))));
     let cos = 1.0

@@ -2,21 +2,21 @@ use super::NoiseModel;
 use crate::kinematics::{Differential, Displacement};
 use crate::random::Stream;
 
-/// One robot's deviations from its description, and the stream that its slip comes from.
+/// One robot's deviations from its description, and its random stream for slip.
 #[derive(Debug, Clone)]
 pub(super) struct DriveErrors<const N: usize> {
     wheel: [f64; N],
-    /// The true distances between wheels in terms of the described ones.
+    /// Factor of the true distances between wheels to the described ones.
     size: f64,
     slip: f64,
     command: f64,
-    /// Factors of length and angle for the running command.
+    /// Factors of length and angle for the present command.
     command_factors: [f64; 2],
     stream: Stream,
 }
 
 impl DriveErrors<2> {
-    /// The deviations of a left and a right wheel.
+    /// Deviations of a left and a right wheel.
     pub(super) fn of_two_wheels(noise: &NoiseModel, mut stream: Stream) -> Self {
         let scale = noise.wheel_scale * stream.normal();
         let mismatch = 0.5 * noise.wheel_mismatch * stream.normal();
@@ -24,7 +24,7 @@ impl DriveErrors<2> {
         Self::new(wheel, noise, stream)
     }
 
-    /// What a robot truly does while its two wheels roll so far, as its description sees it.
+    /// True motion of a robot for these wheel rolls, in terms of its description.
     pub(super) fn motion(&mut self, track: f64, rolled: [f64; 2]) -> Displacement {
         let [left, right] = self.ground_travel(rolled);
         let motion = Differential { track }.displacement(left, right);
@@ -34,7 +34,7 @@ impl DriveErrors<2> {
 }
 
 impl DriveErrors<4> {
-    /// The deviations of four wheels that differ each in its own way.
+    /// Independent deviations of four wheels.
     pub(super) fn of_four_wheels(noise: &NoiseModel, mut stream: Stream) -> Self {
         let scale = noise.wheel_scale * stream.normal();
         let wheel = [(); 4].map(|()| 1.0 + scale + 0.5 * noise.wheel_mismatch * stream.normal());
@@ -55,12 +55,12 @@ impl<const N: usize> DriveErrors<N> {
         }
     }
 
-    /// The true distances between wheels in terms of the described ones.
+    /// Factor of the true distances between wheels to the described ones.
     pub(super) fn size(&self) -> f64 {
         self.size
     }
 
-    /// Factors of length and angle for the running command.
+    /// Factors of length and angle for the present command.
     pub(super) fn command_factors(&self) -> [f64; 2] {
         self.command_factors
     }
@@ -74,7 +74,7 @@ impl<const N: usize> DriveErrors<N> {
         }
     }
 
-    /// What wheels that rolled so far move over the ground.
+    /// Travel over the ground of wheels with these rolls.
     pub(super) fn ground_travel(&mut self, rolled: [f64; N]) -> [f64; N] {
         std::array::from_fn(|wheel| {
             let travel = rolled[wheel] * self.wheel[wheel];
@@ -86,7 +86,7 @@ impl<const N: usize> DriveErrors<N> {
     }
 }
 
-/// A factor that the strongest noise could make negative; a wheel or an axle stays one.
+/// Keeps a factor positive that the strongest noise could make negative.
 fn positive(factor: f64) -> f64 {
     factor.max(0.1)
 }

@@ -12,7 +12,7 @@ use crate::world::MotorSpec;
 
 /// Two driven wheels side by side: commands in, true motion and encoder counts out.
 ///
-/// What the robot really moves differs from what its wheels roll by the wheels' true radii, the true track and slip.
+/// The true motion differs from the wheels' roll by the true wheel radii, the true track and slip.
 #[derive(Debug, Clone)]
 pub(super) struct Drivetrain {
     nominal: Differential,
@@ -43,7 +43,7 @@ impl Drivetrain {
         }
     }
 
-    /// Lets the motors follow their commands for one tick and returns the robot's true motion.
+    /// Lets the motors follow their commands for one tick; returns the robot's true motion.
     pub(super) fn step(&mut self) -> Displacement {
         let command = self.autopilot.command(&self.wheels);
         if self.wheels.rest(&command) {
@@ -57,7 +57,7 @@ impl Drivetrain {
         self.errors.motion(self.actual.track, rolled)
     }
 
-    /// How far each wheel rolls in a motion along one arc.
+    /// Roll of each wheel in a motion along one arc.
     fn rolls_for(&self, motion: Displacement) -> [f64; 2] {
         let wheels = self.nominal.inverse(Twist::new(motion.length, motion.angle));
         [wheels.left, wheels.right]
@@ -142,7 +142,7 @@ mod tests {
         )
     }
 
-    /// Runs a manoeuvre to its end; the true pose, and the seconds that it took.
+    /// Runs a manoeuvre to its end; returns the true pose and the duration (s).
     fn run(drive: &mut Drivetrain, motion: Displacement, speed: f64) -> (Pose, f64) {
         drive.start(motion, speed);
         let mut pose = Pose::default();
@@ -167,7 +167,7 @@ mod tests {
             let motion = Displacement { length, angle };
             let (pose, _) = run(&mut s4(ideal), motion, speed);
             let goal = advance(Pose::default(), motion);
-            // An encoder tick is 0.15 mm and a tick of both wheels 0.2 degrees.
+            // An encoder tick is 0.15 mm; one tick of both wheels is 0.2 degrees.
             let (position, heading) = if ideal { (1e-3, 0.1) } else { (4e-3, 0.3) };
             let turned = crate::geometry::angle_difference(pose.heading, goal.heading).abs();
             prop_assert!((pose.position() - goal.position()).norm() < position, "{pose:?} {goal:?}");

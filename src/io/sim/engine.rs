@@ -9,7 +9,7 @@ use super::options::ticks_in;
 use super::terrain::Hills;
 use super::watch::{Onlooking, Watcher};
 use super::{LONGEST, SimOptions, TICKS_PER_SECOND, TrailPoint};
-use crate::geometry::{Pose, Pose3, Twist, Vector3};
+use crate::geometry::{Pose, Pose3, Twist, Vector3, units};
 use crate::io::{
     Attitude, Error, ErrorKind, Key, LidarScan, LidarSettings, Psd, RadioMessage, Resolution, Result,
 };
@@ -19,7 +19,7 @@ use crate::random::Stream;
 use crate::world::space::{Contact, Solid, SolidId, Space};
 use crate::world::{RobotPlacement, Scene, World};
 
-/// A world and its robots at one instant, and how they get to the next.
+/// State of a world and its robots, and its evolution in time.
 #[derive(Debug)]
 pub(super) struct Engine {
     pub(super) space: Space,
@@ -33,19 +33,19 @@ pub(super) struct Engine {
     outbox: Vec<Letter>,
     moves: Vec<Move>,
     studio: Box<Studio>,
-    /// What robots stand on instead of a level floor.
+    /// Hills instead of a level floor.
     pub(super) hills: Option<Box<Hills>>,
     trail_ticks: Option<u64>,
     watcher: Option<Box<dyn Watcher>>,
 }
 
-/// What a robot's program puts somewhere else at the next tick.
+/// A move requested by a robot's program for the next tick.
 #[derive(Debug)]
 struct Move {
     by: usize,
     thing: Thing,
     pose: Pose,
-    /// Metres above the floor from which a robot drops on hills.
+    /// Height above the floor from which a robot drops on hills (m).
     z: f64,
 }
 
@@ -56,7 +56,7 @@ pub(super) enum Thing {
     Object(usize),
 }
 
-/// A radio message under way.
+/// A radio message in transit.
 #[derive(Debug)]
 struct Letter {
     from: u32,
@@ -64,12 +64,10 @@ struct Letter {
     data: Vec<u8>,
 }
 
-/// The longest radio message in bytes.
+/// Longest radio message (bytes).
 const MAX_MESSAGE: usize = 65_536;
-/// Messages that may wait for one robot; the oldest are lost beyond it.
+/// Largest number of messages waiting for a robot; older ones are dropped.
 const MAX_MAILBOX: usize = 10_000;
-/// The fastest speeds, in metres or radians per second, that a command may name.
-const MAX_COMMAND: f64 = 1e9;
 
 impl Ticking for Engine {
     fn time(&self) -> u64 {
@@ -110,42 +108,43 @@ impl Engine {
             outbox: Vec::new(),
             moves: Vec::new(),
             studio,
-            hills: Hills::of(&scene.world, &scene.robots),
+            hills: None,
             trail_ticks,
             watcher: None,
         };
+        engine.hills = Hills::of(&scene.world, &scene.robots, &mut engine.bodies, engine.options.seed)?;
         engine.stand_on_hills();
         (0..engine.bodies.len()).for_each(|index| engine.begin_inertial(index));
         Ok(engine)
     }
 
-    /// Puts everything in a world with hills upon them.
+    /// Puts everything in a world with hills on the ground.
     fn stand_on_hills(&mut self) {
         let Some(hills) = &mut self.hills else { return };
         for movable in &self.movables {
             let place = self.space.solid(movable.solid).pose.position();
-            self.space.set_level(movable.solid, hills.level(place));
+            self.space.set_level(movable.solid, hills.level(place, movable));
         }
         hills.yield_to(&mut self.bodies, &mut self.space);
     }
 
-    /// Puts a solid somewhere else, at its height above the ground there.
-    pub(super) fn put(&mut self, solid: SolidId, pose: Pose) {
-        self.space.set_pose(solid, pose);
+    /// Puts an object somewhere else, at its height above the ground there.
+    pub(super) fn put(&mut self, object: &Movable, pose: Pose) {
+        self.space.set_pose(object.solid, pose);
         if let Some(hills) = &self.hills {
-            self.space.set_level(solid, hills.level(pose.position()));
+            self.space.set_level(object.solid, hills.level(pose.position(), object));
         }
     }
 
-    /// Where a robot is in space.
+    /// Pose of a robot in space.
     pub(super) fn pose_in_space(&self, robot: usize) -> Result<Pose3> {
         let body = self.body(robot)?;
         Ok(pose_in_space(self.hills.as_deref(), robot, body.pose(), body.span.bottom))
     }
 
-    /// Seconds since the start, at the present tick.
+    /// Time since the start, at the present tick (s).
     pub(super) fn time(&self) -> f64 {
-        // The quotient is the nearest number to the time; the product with 0.01 is not always.
+        // The quotient is the number nearest to the time; the product with 0.01 is not always.
         self.tick as f64 / TICKS_PER_SECOND
     }
 
@@ -165,12 +164,12 @@ impl Engine {
         Ok(())
     }
 
-    /// Puts something somewhere else at the next tick.
+    /// Requests a move for the next tick.
     pub(super) fn place_later(&mut self, by: usize, thing: Thing, pose: Pose, z: f64) {
         self.moves.push(Move { by, thing, pose, z });
     }
 
-    /// Makes the moves of this tick, in an order that no scheduling changes.
+    /// Executes the moves of this tick, in an order independent of thread scheduling.
     fn make_moves(&mut self) {
         let mut moves = std::mem::take(&mut self.moves);
         moves.sort_by_key(|wish| wish.by);
@@ -182,13 +181,13 @@ impl Engine {
         }
     }
 
-    /// Lets somebody look on from now on, in place of who did before.
+    /// Sets the watcher from now on, in place of the previous one.
     pub(super) fn watch(&mut self, watcher: Box<dyn Watcher>) {
         self.watcher = Some(watcher);
         self.show();
     }
 
-    /// Shows the world to who looks on.
+    /// Shows the world to the watcher.
     fn show(&mut self) {
         if let Some(mut watcher) = self.watcher.take() {
             watcher.tick(&mut Onlooking::new(self));
@@ -216,7 +215,8 @@ impl Engine {
             moving |= *motion != PlanarMotion::default();
         }
         if let Some(hills) = &mut self.hills {
-            moving = hills.ride(&self.bodies, &mut motions);
+            let time = self.tick as f64 / TICKS_PER_SECOND;
+            moving = hills.ride(&mut self.bodies, &mut motions, time);
         }
         if moving {
             self.move_bodies(&motions);
@@ -226,6 +226,7 @@ impl Engine {
         self.motions = motions;
         if let Some(hills) = &mut self.hills {
             hills.yield_to(&mut self.bodies, &mut self.space);
+            self.slide_things();
         }
         self.feel();
         self.deliver();
@@ -234,7 +235,7 @@ impl Engine {
         self.show();
     }
 
-    /// Begins the inertial unit of a robot anew, which has been put somewhere.
+    /// Restarts the inertial unit of a robot that was placed elsewhere.
     pub(super) fn begin_inertial(&mut self, index: usize) {
         let body = &mut self.bodies[index];
         if let Some(unit) = &mut body.inertial {
@@ -243,7 +244,7 @@ impl Engine {
         }
     }
 
-    /// Lets inertial units feel how their robots have moved in this tick.
+    /// Updates inertial units with the robots' motion in this tick.
     fn feel(&mut self) {
         for (index, body) in self.bodies.iter_mut().enumerate() {
             if let Some(unit) = &mut body.inertial {
@@ -263,7 +264,7 @@ impl Engine {
         }
     }
 
-    /// Puts the letters of this tick into mailboxes, in an order that no scheduling changes.
+    /// Delivers the messages of this tick to the mailboxes, in an order independent of thread scheduling.
     fn deliver(&mut self) {
         if self.outbox.is_empty() {
             return;
@@ -280,8 +281,8 @@ impl Engine {
 
     pub(super) fn set_twist(&mut self, index: usize, twist: Twist) -> Result<()> {
         for (name, speed) in [("linear speed", twist.linear), ("angular speed", twist.angular)] {
-            if speed.is_nan() || speed.abs() > MAX_COMMAND {
-                return Err(Error::invalid_input(name, speed, "a finite number of at most 1e9 either way"));
+            if speed.is_nan() || speed.abs() > units::FARTHEST {
+                return Err(Error::invalid_input(name, speed, "a finite number of at most 1e6 either way"));
             }
         }
         let drive = self.bodies[index].drive.get_mut();
@@ -301,7 +302,7 @@ impl Engine {
             return Err(Error::invalid_input("manoeuvre", found, &format!("at most {LONGEST} s")));
         }
         body.drive.get_mut().begin_command();
-        // Whoever waits for it shall not hear that the one before stalled.
+        // A waiting program must not see the previous manoeuvre's stall.
         body.touch.held_ticks = 0;
         body.drive.get_mut().start(motion, speed);
         Ok(())
@@ -309,7 +310,7 @@ impl Engine {
 
     pub(super) fn set_motor(&mut self, index: usize, motor: u8, fraction: f64) -> Result<()> {
         let body = &mut self.bodies[index];
-        let motor = body.motor_index(motor, "motor")?;
+        let motor = body.motor_index(motor)?;
         if !(-1.0..=1.0).contains(&fraction) {
             return Err(Error::invalid_input("motor speed", fraction, "-1 to 1"));
         }
@@ -322,13 +323,13 @@ impl Engine {
         let body = &mut self.bodies[index];
         let own = body.drive.get().servos();
         match (&mut body.camera, servo.checked_sub(own)) {
-            // The head's two servos come after those of the drive.
+            // The head's two servos follow those of the drive.
             (Some(camera), Some(head @ 1..=2)) => camera.set_servo(head, position, self.tick),
             _ => body.drive.get_mut().set_servo(servo, position),
         }
     }
 
-    /// The camera of a robot that has one.
+    /// Camera of a robot that has one.
     fn camera(&mut self, index: usize) -> Result<&mut CameraDevice> {
         self.bodies[index].camera.as_deref_mut().ok_or_else(|| Error::unsupported("camera"))
     }
@@ -347,11 +348,20 @@ impl Engine {
         let pose = body.pose();
         let Some(camera) = &mut body.camera else { return Err(Error::unsupported("camera")) };
         let moment = Moment { tick: self.tick, light: self.options.light, noise: &self.options.noise };
-        camera.take(&mut self.studio, &self.space, (index, pose), moment, image)?;
+        let around = (&self.space, self.hills.as_deref());
+        camera.take(&mut self.studio, around, (index, pose), moment, image)?;
         if let Some(watcher) = &mut self.watcher {
             watcher.image(index, image);
         }
         Ok(())
+    }
+
+    pub(super) fn depth(&mut self, index: usize) -> Result<f64> {
+        let (time, sigma) = (self.time(), self.options.noise.depth);
+        let body = &mut self.bodies[index];
+        let Some(gauge) = &mut body.depth else { return Err(Error::unsupported("depth sensor")) };
+        let depth = self.hills.as_ref().map_or(0.0, |hills| hills.depth(index, gauge.spec.z, time));
+        Ok(gauge.read(depth, sigma))
     }
 
     fn inertial(&mut self, index: usize) -> Result<&mut InertialUnit> {
@@ -450,7 +460,7 @@ impl Engine {
     }
 }
 
-/// Where a robot is in space: as the hills have it, or level above the floor.
+/// Pose of a robot in space: from the hills, or level above the floor.
 fn pose_in_space(hills: Option<&Hills>, robot: usize, pose: Pose, elevation: f64) -> Pose3 {
     match hills {
         Some(hills) => hills.pose(robot),
@@ -458,7 +468,7 @@ fn pose_in_space(hills: Option<&Hills>, robot: usize, pose: Pose, elevation: f64
     }
 }
 
-/// Fails unless walls and objects are where numbers say.
+/// Fails unless the positions of walls and objects are finite.
 fn check_world(world: &World) -> Result<()> {
     for (index, wall) in world.walls.iter().enumerate() {
         let numbers =
@@ -493,7 +503,7 @@ fn check_placement(placement: &RobotPlacement) -> Result<()> {
     Err(Error::invalid_input("robot pose", found, "finite numbers"))
 }
 
-/// A reading with its noise; no return stays no return.
+/// A reading with noise; a missing return stays one.
 #[inline]
 fn noisy(range: f64, sigma: f64, max_range: f64, stream: &mut Stream) -> f64 {
     if sigma == 0.0 || range.is_infinite() {

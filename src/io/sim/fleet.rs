@@ -13,7 +13,7 @@ use crate::io::{Error, ErrorKind, FleetIo, Key, Result, RobotTruth};
 use crate::parameter::require_positive;
 use crate::world::Scene;
 
-/// Any number of robots whose behaviours are stepped in one thread.
+/// Robots whose behaviours are stepped in one thread.
 ///
 /// ```
 /// use std::ops::ControlFlow;
@@ -43,15 +43,15 @@ pub struct Fleet<'a> {
 
 type Behaviour<'a> = dyn FnMut(&mut FleetRobot<'_>) -> Result<ControlFlow<()>> + 'a;
 
-/// A robot's behaviour and when it is due.
+/// A robot's behaviour and its schedule.
 struct Member<'a> {
     behaviour: Box<Behaviour<'a>>,
     period: u64,
     due: u64,
 }
 
-/// A robot of a [`Fleet`], as its behaviour sees it: a full robot that cannot wait, because the fleet decides when
-/// the behaviour is called again.
+/// A robot of a [`Fleet`], as its behaviour sees it: a full robot that cannot wait, because the fleet
+/// schedules the calls.
 #[derive(Debug)]
 pub struct FleetRobot<'e> {
     engine: &'e mut Engine,
@@ -77,12 +77,12 @@ impl<'a> Fleet<'a> {
         Ok(Self { engine, members })
     }
 
-    /// Lets somebody look on, from now on.
+    /// Adds a watcher from now on.
     pub fn watch(&mut self, watcher: Box<dyn Watcher>) {
         self.engine.watch(watcher);
     }
 
-    /// How many robots there are.
+    /// Number of robots.
     pub fn len(&self) -> usize {
         self.members.len()
     }
@@ -92,7 +92,8 @@ impl<'a> Fleet<'a> {
         self.members.is_empty()
     }
 
-    /// Gives a robot a behaviour, which is called every `period` seconds, rounded to whole ticks, until it breaks.
+    /// Assigns a behaviour to a robot. It is called every `period` seconds, rounded to whole ticks, until it
+    /// breaks.
     pub fn control(
         &mut self,
         robot: usize,
@@ -108,8 +109,8 @@ impl<'a> Fleet<'a> {
         Ok(())
     }
 
-    /// Lets the world run, and steps each behaviour when it is due, for `seconds` or until all behaviours have
-    /// ended. The first error of a behaviour ends the run; the robots stay as they are.
+    /// Runs the world and the due behaviours for `seconds` or until all behaviours have ended. The first
+    /// error of a behaviour ends the run and leaves the robots unchanged.
     pub fn run_for(&mut self, seconds: f64) -> Result<()> {
         check_duration("duration", seconds)?;
         let end = self.engine.tick + ticks_in(seconds.max(0.0));
@@ -139,12 +140,12 @@ impl<'a> Fleet<'a> {
         Ok(())
     }
 
-    /// Schedules a key press on a robot, in seconds since the start. One whose time has passed is due at once.
+    /// Schedules a key press on a robot, in seconds since the start; a past time means at once.
     pub fn press_key(&mut self, robot: usize, time: f64, key: Key) -> Result<()> {
         self.engine.press_key(robot, time, key)
     }
 
-    /// Seconds since the start.
+    /// Time since the start (s).
     pub fn time(&self) -> f64 {
         self.engine.time()
     }
@@ -154,7 +155,7 @@ impl<'a> Fleet<'a> {
         self.engine.bodies.get(robot).map(Body::pose)
     }
 
-    /// All that is true about a robot.
+    /// Complete ground truth of a robot.
     pub fn truth(&self, robot: usize) -> Result<RobotTruth> {
         robot_truth(&self.engine, robot)
     }

@@ -5,7 +5,7 @@ use crate::io::{Attitude, Error, Result};
 use crate::random::Stream;
 use crate::world::InertialSpec;
 
-/// What measures how a robot moves in space.
+/// Measures a robot's motion in space.
 #[derive(Debug)]
 pub(super) struct InertialUnit {
     spec: InertialSpec,
@@ -16,14 +16,14 @@ pub(super) struct InertialUnit {
     errors: [Errors; 3],
 }
 
-/// Seconds in which errors wander by as much as they are off at first.
+/// Time in which the drift of errors reaches the size of the initial error (s).
 const WANDER: f64 = 60.0;
-/// Attitudes know where down is; only the yaw wanders.
+/// Attitude errors do not drift in roll and pitch, which have gravity as a reference; only the yaw drifts.
 const YAW: Vector3 = Vector3::new(0.0, 0.0, 1.0);
 const ALL: Vector3 = Vector3::new(1.0, 1.0, 1.0);
 
 impl InertialUnit {
-    /// The unit of a robot, if it has one.
+    /// The inertial unit of a robot, if it has one.
     pub(super) fn of(spec: InertialSpec, streams: &Stream) -> Option<Box<Self>> {
         let none = spec == InertialSpec::default();
         let errors =
@@ -40,13 +40,13 @@ impl InertialUnit {
         })
     }
 
-    /// Begins anew where something has put the robot.
+    /// Restarts at the pose where the robot was placed.
     pub(super) fn begin(&mut self, pose: Pose3) {
         (self.pose, self.velocity, self.turn_rates) = (pose, Vector3::zeros(), Vector3::zeros());
         self.acceleration = pose.attitude.inverse() * (Vector3::z() * GRAVITY);
     }
 
-    /// Feels how the robot has moved in a tick.
+    /// Updates the measurements with the robot's motion in a tick.
     pub(super) fn feel(&mut self, pose: Pose3) {
         let velocity = (pose.position - self.pose.position) / TICK;
         let pull = (velocity - self.velocity) / TICK + Vector3::z() * GRAVITY;
@@ -77,7 +77,7 @@ impl InertialUnit {
     }
 }
 
-/// The errors of three readings, in standard deviations: a part that was drawn once, and one that wanders.
+/// Errors of three readings in standard deviations: a constant part and a drifting part.
 #[derive(Debug)]
 struct Errors {
     offset: Vector3,
@@ -90,7 +90,7 @@ impl Errors {
         Self { offset: three(&mut stream), since: 0, stream }
     }
 
-    /// Readings with their errors at a tick.
+    /// Readings with errors at a tick.
     fn add(&mut self, true_ones: Vector3, sigma: f64, wander: Vector3, tick: u64) -> Vector3 {
         if sigma == 0.0 {
             return true_ones;

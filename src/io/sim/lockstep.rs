@@ -1,4 +1,4 @@
-//! Programs that share one world in virtual time, however their threads are scheduled.
+//! Programs that share one world in virtual time, independent of thread scheduling.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, ThreadId};
@@ -16,16 +16,16 @@ pub(super) trait Ticking {
     fn tick(&mut self);
 }
 
-/// A world that several programs share in lockstep.
+/// A world shared by several programs in lockstep.
 ///
-/// The world stands at tick `n` until every program that still runs has asked for something at tick `n + 1`
-/// or later; then whoever asked last advances it. What a program reads at a tick therefore depends on ticks
-/// alone, never on how threads are scheduled.
+/// The world stays at tick `n` until every running program has made a request at tick `n + 1` or later; the
+/// last of them advances it. A program's readings at a tick therefore depend on ticks only, never on thread
+/// scheduling.
 #[derive(Debug)]
 pub(super) struct Lockstep<W> {
     state: Mutex<State<W>>,
     advanced: Condvar,
-    /// Nanoseconds in a tick.
+    /// Duration of a tick (ns).
     tick: u64,
 }
 
@@ -35,19 +35,19 @@ pub(super) struct State<W> {
     seats: Vec<Seat>,
 }
 
-/// A program as the clockwork sees it.
+/// State of a program in the lockstep.
 #[derive(Debug, Clone, Default)]
 struct Seat {
     phase: Phase,
-    /// The tick up to which the program lets the world advance.
+    /// Tick up to which the program allows the world to advance.
     tick: u64,
-    /// The thread that used the robot last; none has since it was taken.
+    /// Thread of the last call; `None` before the first one.
     thread: Option<ThreadId>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Phase {
-    /// Nobody drives the robot; the world does not wait for it.
+    /// No program drives the robot; the world does not wait for it.
     #[default]
     Unclaimed,
     Running,
@@ -65,8 +65,8 @@ impl<W: Ticking> State<W> {
         }
     }
 
-    /// A robot that holds the world back and may have been left behind: this thread was the last one to use
-    /// it, or none has used it.
+    /// A robot that blocks the world and may be abandoned: this thread used it last, or no thread has used
+    /// it.
     fn held_back_by(&self, index: usize) -> Option<usize> {
         let me = thread::current().id();
         let tick = self.world.time();
@@ -79,7 +79,7 @@ impl<W: Ticking> State<W> {
     }
 }
 
-/// The real time in which another thread must have begun to use a robot that holds the world back.
+/// Real time within which another thread must start to use a robot that blocks the world.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 fn held_back(index: usize, other: usize) -> Error {
@@ -92,20 +92,20 @@ fn held_back(index: usize, other: usize) -> Error {
 }
 
 impl<W: Ticking> Lockstep<W> {
-    /// A world with ticks of some seconds, for so many programs.
+    /// A world with ticks of `tick` seconds for a number of programs.
     pub(super) fn new(world: W, tick: f64, programs: usize) -> Self {
         let seats = vec![Seat::default(); programs];
         let tick = nanoseconds(tick).max(1);
         Self { state: Mutex::new(State { world, seats }), advanced: Condvar::new(), tick }
     }
 
-    /// The world as it stands.
+    /// The world in its present state.
     pub(super) fn lock(&self) -> MutexGuard<'_, State<W>> {
-        // A panic in a program leaves the world between two calls, which is a consistent state.
+        // A panic in a program can only occur between two calls, so the state is consistent.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Makes a program one that the world waits for. Returns the present tick.
+    /// Registers a program that the world waits for; returns the present tick.
     fn claim(&self, index: usize) -> Result<u64> {
         let mut state = self.lock();
         let programs = state.seats.len();
@@ -121,7 +121,7 @@ impl<W: Ticking> Lockstep<W> {
         Ok(tick)
     }
 
-    /// Waits until the world stands at `tick`, and returns it.
+    /// Waits until the world is at `tick`, and returns it.
     fn reach(&self, index: usize, tick: u64) -> Result<MutexGuard<'_, State<W>>> {
         let mut state = self.lock();
         let alone = state.seats.len() == 1;
@@ -154,7 +154,7 @@ impl<W: Ticking> Lockstep<W> {
         Ok(state)
     }
 
-    /// Notes that a program has ended at `tick`; the world goes on without it.
+    /// Records that a program has ended at `tick`; the world continues without it.
     fn release(&self, index: usize, tick: u64) {
         let mut state = self.lock();
         state.seats[index].phase = Phase::Ended;
@@ -164,18 +164,18 @@ impl<W: Ticking> Lockstep<W> {
     }
 }
 
-/// A program in a world that it may share: its own clock, and its way to the world.
+/// A program in a shared world: its own clock and its access to the world.
 #[derive(Debug)]
 pub(super) struct Program<W: Ticking> {
     shared: Arc<Lockstep<W>>,
     index: usize,
-    /// The program's own clock, in nanoseconds, what a call takes by it, and when its time is over.
+    /// The program's own clock, the duration of a call and the time limit (ns).
     clock: u64,
     call: u64,
     limit: u64,
 }
 
-/// Nanoseconds of a second.
+/// Nanoseconds per second.
 const NANOSECONDS: f64 = 1e9;
 
 fn nanoseconds(seconds: f64) -> u64 {
@@ -183,7 +183,8 @@ fn nanoseconds(seconds: f64) -> u64 {
 }
 
 impl<W: Ticking> Program<W> {
-    /// Takes the place of an index. Each call takes some seconds; after a limit, if there is one, calls fail.
+    /// Claims the robot at an index. Each call takes `call` seconds; after the limit, if there is one, calls
+    /// fail.
     pub(super) fn claim(
         shared: &Arc<Lockstep<W>>,
         index: usize,
@@ -195,10 +196,10 @@ impl<W: Ticking> Program<W> {
         Ok(Self { shared: Arc::clone(shared), index, clock, call, limit })
     }
 
-    /// Asks the world for something at this program's time.
+    /// Makes a request at this program's time.
     pub(super) fn look<T>(&self, ask: impl FnOnce(&mut W, usize) -> Result<T>) -> Result<T> {
         if self.clock >= self.limit {
-            // The world still advances to the limit, so that what is true then can be looked at.
+            // The world still advances to the limit, so that its final state can be examined.
             drop(self.shared.reach(self.index, self.limit / self.shared.tick)?);
             return Err(time_is_over());
         }
@@ -206,7 +207,7 @@ impl<W: Ticking> Program<W> {
         ask(&mut state.world, self.index)
     }
 
-    /// Asks the world for something at this program's time, and charges the call.
+    /// Makes a request at this program's time and charges its duration.
     pub(super) fn call<T>(&mut self, ask: impl FnOnce(&mut W, usize) -> Result<T>) -> Result<T> {
         let over = self.clock >= self.limit;
         let answer = self.look(ask);
@@ -216,20 +217,20 @@ impl<W: Ticking> Program<W> {
         answer
     }
 
-    /// Lets the program's own clock advance by the time of a call.
+    /// Advances the program's clock by the duration of a call.
     #[cfg(feature = "physics")]
     pub(super) fn charge(&mut self) {
         self.clock = self.clock.saturating_add(self.call);
     }
 
-    /// Lets the program's own clock advance. Fails for a time that no program waits.
+    /// Advances the program's clock. Fails for an invalid or excessive duration.
     pub(super) fn pass(&mut self, seconds: f64) -> Result<()> {
         check_duration("waiting time", seconds)?;
         self.clock = self.clock.saturating_add(nanoseconds(seconds.max(0.0)));
         Ok(())
     }
 
-    /// Asks at every tick until there is an answer.
+    /// Repeats a request at every tick until it has an answer.
     pub(super) fn poll<T>(&mut self, mut ask: impl FnMut(&mut W, usize) -> Result<Option<T>>) -> Result<T> {
         loop {
             if let Some(answer) = self.call(&mut ask)? {
@@ -239,12 +240,12 @@ impl<W: Ticking> Program<W> {
         }
     }
 
-    /// The program's own clock, in seconds.
+    /// The program's own clock (s).
     pub(super) fn time(&self) -> f64 {
         self.clock as f64 / NANOSECONDS
     }
 
-    /// The world, whatever the program's own time.
+    /// The world, independent of the program's time.
     #[cfg(feature = "physics")]
     pub(super) fn shared(&self) -> &Lockstep<W> {
         &self.shared
@@ -265,7 +266,7 @@ pub(super) fn no_robot(index: usize, robots: usize) -> Error {
     Error::invalid_input("robot", index, &format!("an index below {robots}, the number of robots"))
 }
 
-/// Fails unless a program may let so many seconds pass at once.
+/// Fails unless the duration of a wait is allowed.
 pub(super) fn check_duration(name: &str, seconds: f64) -> Result<()> {
     if seconds.is_finite() && seconds <= LONGEST {
         return Ok(());
@@ -274,133 +275,4 @@ pub(super) fn check_duration(name: &str, seconds: f64) -> Result<()> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::random::Stream;
-    use proptest::prelude::*;
-
-    /// A world whose state is the history of what programs have told it, tick by tick.
-    #[derive(Debug, Clone, Default)]
-    struct Ledger {
-        time: u64,
-        told: Vec<u64>,
-        history: u64,
-    }
-
-    impl Ticking for Ledger {
-        fn time(&self) -> u64 {
-            self.time
-        }
-
-        fn tick(&mut self) {
-            self.time += 1;
-            let fold = |sum: u64, told: &u64| sum.rotate_left(7).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ told;
-            self.history = self.told.iter().fold(self.history, fold);
-        }
-    }
-
-    /// What a program does: it waits some milliseconds, tells a number and reads the history.
-    type Script = Vec<(u16, u64)>;
-
-    const TICK: f64 = 0.010;
-    const CALL: f64 = 0.0003;
-
-    /// What each program reads, each in a thread of its own that `delays` hold up, started in some order.
-    fn in_threads(scripts: &[Script], backwards: bool, delays: u64) -> Vec<Vec<(u64, u64)>> {
-        let ledger = Ledger { told: vec![0; scripts.len()], ..Ledger::default() };
-        let shared = Arc::new(Lockstep::new(ledger, TICK, scripts.len()));
-        let programs: Vec<_> =
-            (0..scripts.len()).map(|index| Program::claim(&shared, index, CALL, None).unwrap()).collect();
-        thread::scope(|scope| {
-            let mut work: Vec<_> = programs.into_iter().zip(scripts).enumerate().collect();
-            if backwards {
-                work.reverse();
-            }
-            let threads: Vec<_> = work
-                .into_iter()
-                .map(|(index, (mut program, script))| {
-                    let mut random = Stream::new(delays).child("delay", index as u64);
-                    let read = move || {
-                        let act = |&(wait, number): &(u16, u64)| {
-                            for _ in 0..random.below(4) {
-                                thread::yield_now();
-                            }
-                            program.pass(f64::from(wait) / 1000.0).unwrap();
-                            let tell = |world: &mut Ledger, me: usize| {
-                                world.told[me] = number;
-                                Ok((world.time, world.history))
-                            };
-                            program.call(tell).unwrap()
-                        };
-                        script.iter().map(act).collect::<Vec<_>>()
-                    };
-                    (index, scope.spawn(read))
-                })
-                .collect();
-            let mut seen = vec![Vec::new(); scripts.len()];
-            for (index, thread) in threads {
-                seen[index] = thread.join().unwrap();
-            }
-            seen
-        })
-    }
-
-    /// The same in one thread: whatever is due at a tick happens before the next one.
-    fn one_by_one(scripts: &[Script]) -> Vec<Vec<(u64, u64)>> {
-        let mut world = Ledger { told: vec![0; scripts.len()], ..Ledger::default() };
-        let mut calls = Vec::new();
-        for (index, script) in scripts.iter().enumerate() {
-            let mut clock = 0;
-            for &(wait, number) in script {
-                clock += u64::from(wait) * 1_000_000;
-                calls.push((clock / nanoseconds(TICK), index, number));
-                clock += nanoseconds(CALL);
-            }
-        }
-        calls.sort_by_key(|&(tick, index, _)| (tick, index));
-        let mut seen = vec![Vec::new(); scripts.len()];
-        for (tick, index, number) in calls {
-            while world.time < tick {
-                world.tick();
-            }
-            world.told[index] = number;
-            seen[index].push((world.time, world.history));
-        }
-        seen
-    }
-
-    proptest! {
-        #![proptest_config(crate::testing::cases(64))]
-        #[test]
-        fn threads_order_and_load_change_nothing(
-            scripts in prop::collection::vec(prop::collection::vec((0..40_u16, any::<u64>()), 0..30), 1..5),
-            backwards: bool, delays: u64,
-        ) {
-            prop_assert_eq!(in_threads(&scripts, backwards, delays), one_by_one(&scripts));
-        }
-    }
-
-    #[test]
-    fn a_program_that_has_ended_holds_nobody_back() {
-        let scripts = [vec![(5, 1)], vec![(2000, 7), (2000, 9)]];
-        let seen = in_threads(&scripts, false, 1);
-        assert_eq!(seen[1].last().unwrap().0, 400);
-    }
-
-    #[test]
-    fn clocks_of_programs_that_wait_as_long_agree() {
-        let shared = Arc::new(Lockstep::new(Ledger { told: vec![0; 2], ..Ledger::default() }, TICK, 2));
-        let programs = [0, 1].map(|index| Program::claim(&shared, index, CALL, None).unwrap());
-        let times = thread::scope(|scope| {
-            programs
-                .map(|mut program| {
-                    scope.spawn(move || {
-                        program.pass(5.0).unwrap();
-                        program.look(|world, _| Ok(world.time)).unwrap()
-                    })
-                })
-                .map(|thread| thread.join().unwrap())
-        });
-        assert_eq!(times, [500, 500]);
-    }
-}
+mod tests;

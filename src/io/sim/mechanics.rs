@@ -1,30 +1,33 @@
-use super::NoiseModel;
 use super::bicycle::Bicycle;
 use super::car::Car;
 use super::drive_mechanics::Mechanics;
 use super::drivetrain::Drivetrain;
+use super::marine::CraftDrive;
 use super::omni::OmniDrive;
 use super::wheels::WheelSpec;
+use super::{NoiseModel, TICK};
 
 use crate::io::{Error, ErrorKind, Result};
+use crate::kinematics::marine::Craft;
 use crate::kinematics::{Ackermann, Differential, Omni, PlanarMotion, Tracked};
 use crate::random::Stream;
 use crate::world::{DriveSpec, RobotSpec};
 
-/// A robot's drive of any kind. Most robots have two wheels; the larger ones lie elsewhere.
+/// A drive of any kind. Most robots have two wheels; the larger variants are boxed.
 #[derive(Debug, Clone)]
 #[allow(clippy::large_enum_variant, reason = "nearly all robots have this one, and it is stepped most")]
 pub(super) enum Powertrain {
     Differential(Drivetrain),
     Car(Box<Car>),
     Omni(Box<OmniDrive>),
+    Craft(Box<CraftDrive>),
 }
 
-/// The fastest robot, in metres per second.
+/// Highest top speed of a robot (m/s).
 const MAX_TOP_SPEED: f64 = 100.0;
 
 impl Powertrain {
-    /// The drive of a description, with errors drawn for one robot.
+    /// The drive of a description, with random errors for one robot.
     pub(super) fn new(
         spec: &RobotSpec,
         noise: &NoiseModel,
@@ -57,19 +60,25 @@ impl Powertrain {
                 let drive = Omni::mecanum(track, wheelbase).map_err(invalid)?;
                 Self::Omni(Box::new(OmniDrive::new(drive, &wheels, motor, noise, ideal_encoders, stream)))
             }
+            DriveSpec::Craft(ref craft) => {
+                let craft = Craft::new(craft, TICK).map_err(invalid)?;
+                Self::Craft(Box::new(CraftDrive::new(craft, noise, stream)))
+            }
         })
     }
 
-    /// Lets the motors follow their commands for one tick and returns the robot's true motion.
+    /// Lets the motors follow their commands for one tick; returns the robot's true motion.
     pub(super) fn step(&mut self) -> PlanarMotion {
         match self {
             Self::Differential(drive) => drive.step().into(),
             Self::Car(drive) => drive.step(),
             Self::Omni(drive) => drive.step(),
+            // Water moves it, and the hills know how.
+            Self::Craft(_) => PlanarMotion::default(),
         }
     }
 
-    /// Takes notice of the robot's true motion in this tick: walls may have been in the way.
+    /// Records the robot's true motion in this tick, which obstacles may have changed.
     pub(super) fn settle(&mut self, moved: PlanarMotion) {
         if let Self::Car(drive) = self {
             drive.settle(moved);
@@ -81,6 +90,7 @@ impl Powertrain {
             Self::Differential(drive) => drive,
             Self::Car(drive) => drive.as_ref(),
             Self::Omni(drive) => drive.as_ref(),
+            Self::Craft(drive) => drive.as_ref(),
         }
     }
 
@@ -89,12 +99,19 @@ impl Powertrain {
             Self::Differential(drive) => drive,
             Self::Car(drive) => drive.as_mut(),
             Self::Omni(drive) => drive.as_mut(),
+            Self::Craft(drive) => drive.as_mut(),
         }
+    }
+
+    /// The thrusters of a craft.
+    pub(super) fn craft_mut(&mut self) -> Option<&mut CraftDrive> {
+        if let Self::Craft(drive) = self { Some(drive) } else { None }
     }
 }
 
 fn wheel_spec(drive: &DriveSpec) -> WheelSpec {
     match *drive {
+        DriveSpec::Craft(_) => WheelSpec::NONE,
         DriveSpec::Differential { wheel_diameter, max_wheel_speed, ticks_per_turn, .. }
         | DriveSpec::Ackermann { wheel_diameter, max_wheel_speed, ticks_per_turn, .. }
         | DriveSpec::Tracked { wheel_diameter, max_wheel_speed, ticks_per_turn, .. }

@@ -1,9 +1,9 @@
 //! Robots in a simulated world, in virtual time.
 //!
-//! A [`Simulation`] hands out robots that ordinary blocking programs drive, one thread each when there are several.
-//! A [`Fleet`] steps any number of behaviours in one thread. Both run the same engine: wheels with motor lag,
-//! encoders with whole ticks, slip, collisions, ray-cast sensors with noise. The world advances in ticks of 10 ms;
-//! nothing sleeps, and the same seed gives the same run on every platform and under every scheduling.
+//! A [`Simulation`] provides robots for ordinary blocking programs; several robots need one thread each. A
+//! [`Fleet`] steps any number of behaviours in one thread. Both use the same engine, with motor lag, encoders
+//! with whole ticks, slip, collisions, and ray-cast sensors with noise. The world advances in ticks of 10 ms
+//! without real waiting. The same seed gives the same run on every platform and with every thread scheduling.
 //!
 //! ```
 //! use roverlab::geometry::Pose;
@@ -30,6 +30,7 @@ mod camera;
 mod car;
 mod collision;
 mod course;
+mod depth_gauge;
 mod drive_errors;
 mod drive_mechanics;
 mod drivetrain;
@@ -37,6 +38,7 @@ mod engine;
 mod fleet;
 mod inertial_unit;
 mod lockstep;
+mod marine;
 mod mechanics;
 mod movable;
 mod noise;
@@ -46,6 +48,7 @@ mod pushing;
 mod robot;
 mod robot_traits;
 mod simulation;
+mod sliding;
 #[cfg(feature = "physics")]
 pub mod starman;
 mod terrain;
@@ -53,21 +56,23 @@ mod truth;
 mod watch;
 mod wheels;
 
+pub use super::Mishap;
 pub use fleet::{Fleet, FleetRobot};
 pub use noise::NoiseModel;
 pub use options::SimOptions;
 pub use robot::SimRobot;
 pub use simulation::Simulation;
-pub use terrain::Mishap;
 pub use truth::Truth;
 pub use watch::{Onlooking, Watcher};
 
 pub use super::{Lcd, RobotTruth, TrailPoint};
 
-/// Seconds in which the world advances at a time.
+/// Duration of a tick (s).
 pub const TICK: f64 = 0.010;
-/// How many of them make a second; the inverse, which is exact.
+/// Ticks per second; the inverse, which is exact.
 const TICKS_PER_SECOND: f64 = 100.0;
+/// Degrees per second at which a servo turns.
+const SERVO_RATE: f64 = 30.0;
 
-/// The longest time, in seconds, that one call may let pass: twelve days. Beyond it a program waits by mistake.
+/// Longest duration of a single call (s): twelve days. A longer wait is considered an error.
 const LONGEST: f64 = 1e6;

@@ -1,10 +1,11 @@
 use crate::ParameterError;
 use crate::parameter::require;
 
-/// How far a simulated robot is from an ideal one, as standard deviations.
+/// Errors of a simulated robot as standard deviations.
 ///
-/// `NoiseModel::real()` is noise factor 1 of every example and campaign; [`scaled`](NoiseModel::scaled) multiplies
-/// all of it. Drive errors are drawn once for a robot, slip at every step, range errors at every reading.
+/// `NoiseModel::real()` is noise factor 1 of all examples and campaigns; [`scaled`](NoiseModel::scaled)
+/// multiplies all values. Drive errors are drawn once per robot, slip at every step, and range errors at
+/// every reading.
 ///
 /// ```
 /// use roverlab::io::sim::NoiseModel;
@@ -13,35 +14,38 @@ use crate::parameter::require;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NoiseModel {
-    /// Relative error of both wheels' diameters together.
+    /// Relative error common to both wheels' diameters.
     pub wheel_scale: f64,
-    /// Relative difference between the left and the right wheel's diameter.
+    /// Relative difference between the left and right wheels' diameters.
     pub wheel_mismatch: f64,
     /// Relative error of the track.
     pub track: f64,
-    /// Slip of each wheel, in metres after one metre; it grows with the square root of the distance.
+    /// Slip of each wheel, in metres after one metre; proportional to the square root of the distance.
     pub slip: f64,
-    /// Error of each range reading of PSDs and lidar, in metres.
+    /// Error of each range reading of PSDs and lidar (m).
     pub range: f64,
-    /// Relative error of length and angle, drawn anew for every drive command.
+    /// Relative error of length and angle, drawn for every drive command.
     pub command: f64,
-    /// Shot noise of the camera: levels (of 255) on white; it falls with the square root of the brightness.
+    /// Shot noise of the camera in levels (of 255) on white; proportional to the square root of the
+    /// brightness.
     pub shot: f64,
-    /// Relative error of the camera's exposure, which drifts in the course of seconds.
+    /// Relative error of the camera's exposure, which drifts within seconds.
     pub exposure: f64,
-    /// Blur of the camera, in pixels of an image 320 pixels wide; in proportion for others.
+    /// Blur of the camera, in pixels of an image 320 pixels wide; proportional for other widths.
     pub blur: f64,
-    /// Error of the inertial unit's roll, pitch and yaw, in radians: one is drawn once, and one for each reading. The
-    /// yaw's wanders besides, as much in a minute.
+    /// Error of the depth sensor, in metres: one is drawn once, and one for each reading.
+    pub depth: f64,
+    /// Error of the inertial unit's roll, pitch and yaw (rad): a constant one and one for each reading. The
+    /// yaw also drifts, by the same amount per minute.
     pub attitude: f64,
-    /// The same of its turn rates, in radians per second; all three wander.
+    /// The same for its turn rates (rad/s); all three drift.
     pub turn_rate: f64,
-    /// The same of its accelerations, in metres per second squared; all three wander.
+    /// The same for its accelerations (m/s²); all three drift.
     pub acceleration: f64,
 }
 
 impl NoiseModel {
-    /// No sensor or drive error at all. Encoders still count whole ticks.
+    /// No sensor or drive errors. Encoders still count whole ticks.
     pub const fn ideal() -> Self {
         Self {
             wheel_scale: 0.0,
@@ -53,13 +57,14 @@ impl NoiseModel {
             shot: 0.0,
             exposure: 0.0,
             blur: 0.0,
+            depth: 0.0,
             attitude: 0.0,
             turn_rate: 0.0,
             acceleration: 0.0,
         }
     }
 
-    /// As on the real robot.
+    /// Errors of the real robot.
     pub const fn real() -> Self {
         Self {
             wheel_scale: 0.01,
@@ -71,20 +76,22 @@ impl NoiseModel {
             shot: 3.0,
             exposure: 0.03,
             blur: 0.5,
-            // As data sheets of small units state: Xsens MTi 1 (0.5 degrees), InvenSense MPU-6050 (0.05 degrees per
-            // second, and 4 mg in a band of 100 Hz).
+            // The resolution of the Bar30 of 300 m, zeroed at the surface.
+            depth: 0.002,
+            // From data sheets of small units: Xsens MTi 1 (0.5 degrees), InvenSense MPU-6050 (0.05 degrees
+            // per second, and 4 mg in a band of 100 Hz).
             attitude: 0.0087,
             turn_rate: 0.000_87,
             acceleration: 0.04,
         }
     }
 
-    /// The book's simpler picture: every drive command comes out 1 to 2 % wrong, and ranges err by 10 mm.
+    /// The book's simpler model: drive commands are wrong by 1 to 2 %, ranges by 10 mm.
     pub const fn textbook() -> Self {
         Self { range: 0.010, command: 0.015, ..Self::ideal() }
     }
 
-    /// Everything multiplied by a factor.
+    /// All values times a factor.
     #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
         Self {
@@ -97,13 +104,14 @@ impl NoiseModel {
             shot: self.shot * factor,
             exposure: self.exposure * factor,
             blur: self.blur * factor,
+            depth: self.depth * factor,
             attitude: self.attitude * factor,
             turn_rate: self.turn_rate * factor,
             acceleration: self.acceleration * factor,
         }
     }
 
-    /// Fails with the name of the error that is out of range.
+    /// Fails with the name of an error out of range.
     pub(super) fn validate(&self) -> std::result::Result<(), ParameterError> {
         for (name, value, limit) in [
             ("wheel scale error", self.wheel_scale, 1.0),
@@ -115,6 +123,7 @@ impl NoiseModel {
             ("shot noise", self.shot, 255.0),
             ("exposure error", self.exposure, 1.0),
             ("blur", self.blur, 10.0),
+            ("depth error", self.depth, 1000.0),
             ("attitude error", self.attitude, 10.0),
             ("turn rate error", self.turn_rate, 1000.0),
             ("acceleration error", self.acceleration, 1000.0),

@@ -10,7 +10,8 @@ use crate::kinematics::{Displacement, Omni, PlanarMotion, PlanarTwist};
 use crate::random::Stream;
 use crate::world::MotorSpec;
 
-/// Four Mecanum wheels. The v-omega interface drives it as two wheels would; sideways it goes by its motors.
+/// Four Mecanum wheels. The v-omega interface drives them like two wheels; sideways motion needs motor
+/// commands.
 #[derive(Debug, Clone)]
 pub(super) struct OmniDrive {
     nominal: Omni<4>,
@@ -38,7 +39,7 @@ impl OmniDrive {
         }
     }
 
-    /// Lets the motors follow their commands for one tick and returns the robot's true motion.
+    /// Lets the motors follow their commands for one tick; returns the robot's true motion.
     pub(super) fn step(&mut self) -> PlanarMotion {
         let command = self.autopilot.command(&self.wheels);
         if self.wheels.rest(&command) {
@@ -54,7 +55,7 @@ impl OmniDrive {
         PlanarMotion {
             forward: motion.forward * length,
             left: motion.left * length,
-            // Wheels farther apart than described turn the robot less.
+            // A larger wheel distance than described reduces the turn.
             angle: motion.angle * angle / self.errors.size(),
         }
     }

@@ -2,35 +2,36 @@ use super::{NoiseModel, TICK, TICKS_PER_SECOND};
 use crate::ParameterError;
 use crate::parameter::{require, require_not_negative};
 
-/// How a simulation runs.
+/// Options of a simulation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SimOptions {
-    /// The seed of every random stream.
+    /// Seed of all random streams.
     pub seed: u64,
-    /// Drive and sensor errors.
+    /// Errors of drives and sensors.
     pub noise: NoiseModel,
-    /// Whether robots push what is not fixed and weighs no more than they do, instead of standing before it. Pushed
-    /// things slide without turning, stop at once, and are no contacts; against walls and other things they stay.
+    /// Whether robots push movable objects that weigh no more than they do, instead of stopping before them.
+    /// Pushed objects slide without turning, stop at once, and are not contacts; walls and other objects
+    /// block them.
     pub pushing: bool,
-    /// How bright the light is that cameras see by, as a factor; 1 is a well lit room.
+    /// Brightness of the light for cameras, as a factor; 1 is a well-lit room.
     pub light: f64,
     /// Whether encoders measure exactly instead of counting whole ticks.
     pub ideal_encoders: bool,
-    /// Seconds that every call of a robot takes, so that a loop that only reads a sensor still lets time pass.
+    /// Duration of every call of a robot (s), so that time passes in loops that only read sensors.
     pub call_duration: f64,
-    /// Seconds after which every call fails with [`TimedOut`](crate::io::ErrorKind::TimedOut).
+    /// Time after which every call fails with [`TimedOut`](crate::io::ErrorKind::TimedOut) (s).
     pub time_limit: Option<f64>,
-    /// Seconds between the points of each robot's trail; none is kept without it.
+    /// Interval between the points of each robot's trail (s); `None` for no trail.
     pub trail_interval: Option<f64>,
 }
 
-/// The whole number of ticks nearest to a time.
+/// Number of ticks nearest to a time.
 pub(super) fn ticks_in(seconds: f64) -> u64 {
     (seconds * TICKS_PER_SECOND).round() as u64
 }
 
 impl Default for SimOptions {
-    /// Seed 1, noise as on the real robot, 0.1 ms a call, no time limit.
+    /// Seed 1, the real robot's noise, 0.1 ms per call, no time limit.
     fn default() -> Self {
         Self {
             seed: 1,
@@ -51,12 +52,12 @@ impl SimOptions {
         Self { noise: NoiseModel::ideal(), ..Self::default() }
     }
 
-    /// Default options with the real robot's noise times a factor, and a seed.
+    /// Default options with a seed and the real robot's noise times a factor.
     pub fn with_noise(factor: f64, seed: u64) -> Self {
         Self { seed, noise: NoiseModel::real().scaled(factor), ..Self::default() }
     }
 
-    /// Fails with the name of the option that is out of range.
+    /// Fails with the name of an option out of range.
     pub(super) fn validate(&self) -> Result<(), ParameterError> {
         self.noise.validate()?;
         require("light", self.light, (0.0..=100.0).contains(&self.light), "0 to 100")?;

@@ -1,17 +1,17 @@
-//! Things that robots push or knock over.
+//! Pushing and knocking over objects.
 
+use super::collision::PUSH_TOLERANCE;
 use super::engine::Engine;
 use super::movable::Movable;
 use crate::geometry::{Pose, Vector};
 use crate::world::space::{Contact, SolidId};
 
-/// What a push goes beyond the rim of the robot, in metres: nothing lies within another thing after it.
-const CLEAR: f64 = 1e-6;
 /// The deepest that a thing may come to lie in another one by a push.
 const TOLERANCE: f64 = 1e-5;
 
 impl Engine {
-    /// Pushes what a robot at a pose would be in, as far as it can be pushed. Returns whether anything moved.
+    /// Pushes the objects that a robot at a pose would overlap, as far as possible. Returns whether anything
+    /// moved.
     pub(super) fn push(&mut self, index: usize, pose: &Pose) -> bool {
         self.depth_at(index, pose);
         let strength = self.bodies[index].spec.mass;
@@ -21,15 +21,15 @@ impl Engine {
             let Some(solid) = contact.with else { continue };
             let light = self.movable(solid).is_some_and(|movable| movable.mass <= strength);
             if light {
-                moved |= self.shift(solid, -contact.normal * (contact.depth + CLEAR), index);
+                moved |= self.shift(solid, -contact.normal * (contact.depth + PUSH_TOLERANCE), index);
             }
         }
         self.contacts = contacts;
         moved
     }
 
-    /// Knocks over what a robot at a pose would be in and what falls. Each is a contact. Returns whether
-    /// anything fell.
+    /// Knocks over the falling objects that a robot at a pose would overlap; each is a contact. Returns
+    /// whether anything fell.
     pub(super) fn topple(&mut self, index: usize, pose: &Pose) -> bool {
         self.depth_at(index, pose);
         let strength = self.bodies[index].spec.mass;
@@ -47,12 +47,12 @@ impl Engine {
         fell
     }
 
-    /// The object that a solid is; robots are none.
+    /// The object of a solid; `None` for robots.
     fn movable(&self, solid: SolidId) -> Option<&Movable> {
         self.movables.get(solid.index())
     }
 
-    /// Moves a thing unless that takes it into a wall, another thing, or a robot other than the one that pushes.
+    /// Moves an object, unless it would hit a wall, another object or a robot other than the pusher.
     fn shift(&mut self, solid: SolidId, way: Vector, pusher: usize) -> bool {
         let thing = *self.space.solid(solid);
         let place = thing.pose.position() + way;
@@ -62,7 +62,9 @@ impl Engine {
         let me = self.bodies[pusher].solid;
         let blocked = contacts.iter().any(|contact| contact.with != Some(me) && contact.depth > TOLERANCE);
         if !blocked {
-            self.put(solid, there);
+            if let Some(&object) = self.movable(solid) {
+                self.put(&object, there);
+            }
             // It may have come near to robots that did not look for it.
             for body in &mut self.bodies {
                 body.solid_budget = body.solid_budget.min(0.0);

@@ -6,7 +6,7 @@ use crate::io::Result;
 
 /// A simulated robot for a blocking program: every capability of a full robot, in virtual time.
 ///
-/// A call returns the state of the robot's present tick and takes a little of the robot's own time
+/// A call returns the state at the robot's present tick and takes a little of the robot's own time
 /// ([`SimOptions::call_duration`](super::SimOptions::call_duration)).
 #[derive(Debug)]
 pub struct SimRobot {
@@ -22,12 +22,12 @@ impl SimRobot {
         Ok(Self { program: Program::claim(shared, index, call, limit)? })
     }
 
-    /// Asks the engine for something at this robot's time, and charges the call.
+    /// Makes a request at this robot's time and charges its duration.
     pub(super) fn call<T>(&mut self, ask: impl FnOnce(&mut Engine, usize) -> Result<T>) -> Result<T> {
         self.program.call(ask)
     }
 
-    /// The robot's own clock, in seconds.
+    /// The robot's own clock (s).
     pub(super) fn own_time(&self) -> f64 {
         self.program.time()
     }
@@ -42,7 +42,7 @@ impl SimRobot {
         self.call(|_, _| Ok(()))
     }
 
-    /// Asks at every tick until there is an answer.
+    /// Repeats a request at every tick until it has an answer.
     pub(super) fn poll<T>(&mut self, ask: impl FnMut(&mut Engine, usize) -> Result<Option<T>>) -> Result<T> {
         self.program.poll(ask)
     }

@@ -1,12 +1,12 @@
-//! The capabilities of a simulated robot, written once for blocking robots and for members of a fleet.
+//! Capabilities of a simulated robot, shared by blocking robots and members of a fleet.
 
 use super::engine::Engine;
 use super::{FleetRobot, SimRobot};
 use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::{
-    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error,
-    ErrorKind, Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors,
-    Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, DepthSensor, Display, DisplayImage, DisplayOption, DistanceSensors, Drive,
+    Encoders, Error, ErrorKind, Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres,
+    Motors, Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::kinematics::Displacement;
 use crate::world::Colour;
@@ -19,7 +19,7 @@ fn arrival(engine: &mut Engine, index: usize) -> Result<Option<()>> {
     Ok((body.drive.get().is_done() || body.touch.is_stalled()).then_some(()))
 }
 
-/// Answers with the next key press, and fails when none can come.
+/// Answers with the next key press; fails if none is scheduled.
 fn next_key(engine: &mut Engine, index: usize) -> Result<Option<Key>> {
     let now = engine.time();
     let body = &mut engine.bodies[index];
@@ -276,6 +276,12 @@ macro_rules! robot_through_engine {
 
             fn reset_encoder(&mut self, motor: u8) -> Result<()> {
                 self.call(|engine, i| engine.bodies[i].reset_encoder(motor))
+            }
+        }
+
+        impl DepthSensor for $robot {
+            fn depth(&mut self) -> Result<f64> {
+                self.call(|engine, i| engine.depth(i))
             }
         }
 

@@ -2,12 +2,11 @@ use std::sync::Arc;
 
 use super::engine::{Engine, Thing};
 use super::lockstep::Lockstep;
-use super::terrain::Mishap;
 use crate::geometry::{Pose, Pose3};
-use crate::io::{Error, GroundTruth, Result, RobotTruth};
+use crate::io::{Error, GroundTruth, Mishap, Result, RobotTruth, TruthInSpace};
 use crate::parameter::require_finite;
 
-/// What is true in a simulated world. No robot reaches it; verdicts, pictures and tests do.
+/// Ground truth of a simulated world. Robots have no access to it; it is for verdicts, pictures and tests.
 #[derive(Debug, Clone)]
 pub struct Truth {
     shared: Arc<Lockstep<Engine>>,
@@ -18,7 +17,7 @@ impl Truth {
         Self { shared }
     }
 
-    /// Seconds since the start of the world.
+    /// Time since the start of the world (s).
     pub fn time(&self) -> f64 {
         self.shared.lock().world.time()
     }
@@ -28,24 +27,24 @@ impl Truth {
         Ok(self.shared.lock().world.body(robot)?.pose())
     }
 
-    /// A robot's pose in space: on hills with its elevation, roll and pitch, elsewhere level.
+    /// A robot's pose in space: on hills with elevation, roll and pitch, otherwise level.
     pub fn pose_in_space(&self, robot: usize) -> Result<Pose3> {
         self.shared.lock().world.pose_in_space(robot)
     }
 
-    /// What has become of a robot on hills that drives no more, or in vain.
+    /// Why a robot on hills no longer drives, or drives without effect.
     pub fn mishap(&self, robot: usize) -> Result<Option<Mishap>> {
         let state = self.shared.lock();
         state.world.body(robot)?;
         Ok(state.world.hills.as_ref().and_then(|hills| hills.mishap(robot)))
     }
 
-    /// All that is true about a robot.
+    /// Complete ground truth of a robot.
     pub fn robot(&self, robot: usize) -> Result<RobotTruth> {
         robot_truth(&self.shared.lock().world, robot)
     }
 
-    /// An object's pose in the world, by its index in the scene: robots may have pushed it.
+    /// An object's pose in the world, by its index in the scene; robots may have pushed it.
     pub fn object(&self, object: usize) -> Result<Pose> {
         let state = self.shared.lock();
         let engine = &state.world;
@@ -57,7 +56,8 @@ impl Truth {
         })
     }
 
-    /// Metres from the floor to an object's foot, by its index in the scene: on hills, that is on the ground.
+    /// Height of an object's foot above the floor, by its index in the scene (m); on hills, its foot is on
+    /// the ground.
     pub fn object_elevation(&self, object: usize) -> Result<f64> {
         self.object(object)?;
         let state = self.shared.lock();
@@ -73,10 +73,11 @@ impl Truth {
         Ok(solid.top <= solid.bottom)
     }
 
-    /// Puts a robot somewhere else at the beginning of the next tick, on behalf of the program of the robot `by`.
+    /// Places a robot at a pose at the beginning of the next tick, on behalf of the program of the robot
+    /// `by`.
     ///
-    /// What programs in lockstep move in this way depends on ticks alone, never on which of them was faster: in one tick,
-    /// the robots' wishes are fulfilled in the order of their indices.
+    /// The effect of programs in lockstep depends on ticks only, never on their speed: within one tick,
+    /// requests are executed in the order of the robots' indices.
     pub fn move_robot(&self, by: usize, robot: usize, pose: Pose) -> Result<()> {
         let mut state = self.shared.lock();
         state.world.body(robot)?;
@@ -85,8 +86,8 @@ impl Truth {
         Ok(())
     }
 
-    /// As [`move_robot`](Truth::move_robot), to `z` metres above the floor, from where the robot drops on hills. Where the
-    /// ground is higher, and on a level floor, `z` means nothing.
+    /// Like [`move_robot`](Truth::move_robot), to `z` metres above the floor, from where the robot drops on
+    /// hills. Where the ground is higher, and on a level floor, `z` has no effect.
     pub fn drop_robot(&self, by: usize, robot: usize, pose: Pose, z: f64) -> Result<()> {
         let mut state = self.shared.lock();
         state.world.body(robot)?;
@@ -96,7 +97,7 @@ impl Truth {
         Ok(())
     }
 
-    /// As [`move_robot`](Truth::move_robot), for an object.
+    /// Like [`move_robot`](Truth::move_robot), for an object.
     pub fn move_object(&self, by: usize, object: usize, pose: Pose) -> Result<()> {
         self.object(object)?;
         require_finite_pose(pose)?;
@@ -104,7 +105,7 @@ impl Truth {
         Ok(())
     }
 
-    /// Puts a robot somewhere else, as a hand would. Its odometry does not notice.
+    /// Places a robot at a pose, as if by hand, without a change of its odometry.
     pub fn set_pose(&self, robot: usize, pose: Pose) -> Result<()> {
         let mut state = self.shared.lock();
         state.world.body(robot)?;
@@ -113,7 +114,7 @@ impl Truth {
         Ok(())
     }
 
-    /// Puts an object somewhere else, as a hand would, by its index in the scene.
+    /// Places an object at a pose, as if by hand, by its index in the scene.
     pub fn set_object(&self, object: usize, pose: Pose) -> Result<()> {
         self.object(object)?;
         require_finite_pose(pose)?;
@@ -156,5 +157,9 @@ impl GroundTruth for Truth {
 
     fn object(&mut self, object: usize) -> Result<Pose> {
         Truth::object(self, object)
+    }
+
+    fn in_space(&mut self, robot: usize) -> Result<TruthInSpace> {
+        Ok(TruthInSpace { pose: self.pose_in_space(robot)?, mishap: self.mishap(robot)? })
     }
 }

@@ -7,10 +7,10 @@ use super::engine::Engine;
 use crate::geometry::{Point, Pose};
 use crate::io::{Key, Lcd, LidarScan, Psd, Result};
 
-/// Looks on while a world runs, at every tick: a window that shows it, say. It also sees what the robots' sensors
-/// answer, and may change the world as a hand would: what it changes at which tick is part of the run.
+/// Observes a running world at every tick, for example a window that shows it. It also receives the robots'
+/// sensor readings, and may change the world as if by hand; such changes at their ticks are part of the run.
 ///
-/// A simulation that is watched makes the same run as one that is not.
+/// Watching alone does not change a simulation's run.
 ///
 /// ```
 /// use roverlab::geometry::Pose;
@@ -18,7 +18,7 @@ use crate::io::{Key, Lcd, LidarScan, Psd, Result};
 /// use roverlab::io::sim::{Onlooking, SimOptions, Simulation, Watcher};
 /// use roverlab::world::{RobotSpec, Scene, World};
 ///
-/// /// Carries the robot away after a second.
+/// /// Moves the robot away after one second.
 /// #[derive(Debug)]
 /// struct Hand;
 ///
@@ -40,20 +40,21 @@ use crate::io::{Key, Lcd, LidarScan, Psd, Result};
 /// # }
 /// ```
 pub trait Watcher: Debug + Send {
-    /// The world at a tick, before anything moves; first at the tick at which it begins to watch.
+    /// The world at a tick, before anything moves; first at the tick at which watching begins.
     fn tick(&mut self, world: &mut Onlooking<'_>);
 
-    /// A robot has been told a distance in metres; infinity without a return.
+    /// A robot's distance reading (m); infinity without a return.
     fn distance(&mut self, _robot: usize, _sensor: Psd, _range: f64) {}
 
-    /// A robot has been given a scan.
+    /// A robot's scan.
     fn scan(&mut self, _robot: usize, _scan: &LidarScan) {}
 
-    /// A robot has been given an image.
+    /// A robot's image.
     fn image(&mut self, _robot: usize, _image: &RgbImage) {}
 }
 
-/// A simulated world, as a [`Watcher`] sees it and may change it. Robots and objects go by their indices in the scene.
+/// A simulated world, as a [`Watcher`] sees it and may change it. Robots and objects are identified by their
+/// indices in the scene.
 #[derive(Debug)]
 pub struct Onlooking<'e> {
     engine: &'e mut Engine,
@@ -64,17 +65,17 @@ impl<'e> Onlooking<'e> {
         Self { engine }
     }
 
-    /// Seconds since the start.
+    /// Time since the start (s).
     pub fn time(&self) -> f64 {
         self.engine.time()
     }
 
-    /// How many robots there are.
+    /// Number of robots.
     pub fn robots(&self) -> usize {
         self.engine.bodies.len()
     }
 
-    /// How many objects there are.
+    /// Number of objects.
     pub fn objects(&self) -> usize {
         self.engine.movables.len()
     }
@@ -84,23 +85,23 @@ impl<'e> Onlooking<'e> {
         self.engine.bodies.get(robot).map(Body::pose)
     }
 
-    /// Where a robot's odometry takes it to be, in odometry's own frame.
+    /// A robot's odometry pose, in the frame of the odometry.
     pub fn odometry(&self, robot: usize) -> Option<Pose> {
         self.engine.bodies.get(robot).map(|body| body.drive.get().odometry())
     }
 
-    /// How often a robot came into contact with something, and where, for the first thousand times.
+    /// A robot's number of contacts, and the places of the first thousand.
     pub fn contacts(&self, robot: usize) -> Option<(u32, &[Point])> {
         self.engine.bodies.get(robot).map(|body| (body.touch.contacts, body.touch.places.as_slice()))
     }
 
-    /// What a robot has drawn, and how many calls of its display there have been: as long as this number is the same, so is
-    /// the display. `None` before the first one.
+    /// A robot's display, and the number of its display calls; the display is unchanged while this number is.
+    /// `None` before the first call.
     pub fn display(&self, robot: usize) -> Option<(u64, &Lcd)> {
         self.engine.bodies.get(robot)?.display()
     }
 
-    /// Where an object is; robots may have pushed it.
+    /// An object's pose; robots may have pushed it.
     pub fn object(&self, object: usize) -> Option<Pose> {
         let movable = self.engine.movables.get(object)?;
         Some(self.engine.space.solid(movable.solid).pose)
@@ -114,7 +115,8 @@ impl<'e> Onlooking<'e> {
         })
     }
 
-    /// Puts a robot somewhere else. Its odometry does not notice. Fails without such a robot, or if the pose is none.
+    /// Places a robot at a pose without a change of its odometry. Fails without such a robot or for an
+    /// invalid pose.
     pub fn place_robot(&mut self, robot: usize, pose: Pose) -> Result<()> {
         self.engine.body(robot)?;
         super::truth::require_finite_pose(pose)?;
@@ -122,7 +124,7 @@ impl<'e> Onlooking<'e> {
         Ok(())
     }
 
-    /// Puts an object somewhere else. Fails without such an object, or if the pose is none.
+    /// Places an object at a pose. Fails without such an object or for an invalid pose.
     pub fn place_object(&mut self, object: usize, pose: Pose) -> Result<()> {
         self.engine.check_object(object)?;
         super::truth::require_finite_pose(pose)?;

@@ -2,27 +2,28 @@ use super::TICK;
 use crate::geometry::math;
 use crate::world::MotorSpec;
 
-/// Wheels on their motors: rim speeds commanded in, rolling and encoder counts out.
+/// Wheels with their motors: rim speed commands in, roll and encoder counts out.
 ///
-/// A wheel's *roll* is what its shaft turned, times the nominal radius: the encoder's truth.
+/// A wheel's *roll* is the rotation of its shaft times the nominal radius, which is what its encoder
+/// measures.
 #[derive(Debug, Clone)]
 pub(super) struct Wheels<const N: usize> {
     limit: f64,
     motor: MotorSpec,
-    /// The part of a speed difference that the lag leaves after one tick.
+    /// Fraction of a speed difference that remains after one tick.
     decay: f64,
-    /// Metres of roll in an encoder tick, and its inverse.
+    /// Roll per encoder tick (m), and its inverse.
     tick_length: f64,
     ticks_per_metre: f64,
     ideal_encoders: bool,
     speeds: [f64; N],
     roll: [f64; N],
-    /// Encoder counts, and the roll that they stand for.
+    /// Encoder counts, and the corresponding roll.
     counts: [i64; N],
     measured: [f64; N],
 }
 
-/// The description of a drive's wheels, which are all alike.
+/// Description of a drive's wheels, which are identical.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WheelSpec {
     pub(super) diameter: f64,
@@ -31,6 +32,9 @@ pub(super) struct WheelSpec {
 }
 
 impl WheelSpec {
+    /// Of a robot without wheels.
+    pub(super) const NONE: Self = Self { diameter: 0.0, max_speed: 0.0, ticks_per_turn: 1.0 };
+
     /// The fastest rim speed.
     pub(super) fn limit(&self) -> f64 {
         0.5 * self.diameter * self.max_speed
@@ -55,17 +59,17 @@ impl<const N: usize> Wheels<N> {
         }
     }
 
-    /// Whether nothing moves and nothing shall.
+    /// Whether the wheels are at rest and are to stay so.
     pub(super) fn rest(&self, command: &[f64; N]) -> bool {
         *command == [0.0; N] && self.speeds == [0.0; N]
     }
 
-    /// Lets the motors follow their commanded rim speeds for one tick and returns how far each wheel rolled.
+    /// Lets the motors follow their rim speed commands for one tick; returns the roll of each wheel.
     pub(super) fn follow(&mut self, command: [f64; N]) -> [f64; N] {
         let change: [f64; N] = std::array::from_fn(|w| (command[w] - self.speeds[w]) * (1.0 - self.decay));
         let largest = change.iter().fold(0.0, |most: f64, change| most.max(change.abs()));
         let allowed = self.motor.max_acceleration * TICK;
-        // All wheels are held back alike, so that a limit does not bend the path.
+        // All wheels are limited by the same factor, so that the limit does not bend the path.
         let scale = if largest > allowed { allowed / largest } else { 1.0 };
         std::array::from_fn(|w| {
             let before = self.speeds[w];
@@ -80,7 +84,7 @@ impl<const N: usize> Wheels<N> {
         })
     }
 
-    /// Takes the rim speeds and the rolling of a tick as they are.
+    /// Takes over the rim speeds and the roll of a tick.
     pub(super) fn turn(&mut self, speeds: [f64; N], rolled: [f64; N]) {
         self.speeds = speeds;
         for (roll, rolled) in self.roll.iter_mut().zip(rolled) {
@@ -88,7 +92,7 @@ impl<const N: usize> Wheels<N> {
         }
     }
 
-    /// What the encoders counted in this tick, in metres.
+    /// Measured roll of each wheel in this tick (m).
     pub(super) fn measure(&mut self) -> [f64; N] {
         std::array::from_fn(|wheel| {
             let (before, roll) = (self.measured[wheel], self.roll[wheel]);
@@ -99,7 +103,7 @@ impl<const N: usize> Wheels<N> {
         })
     }
 
-    /// What the encoders say that each wheel has rolled.
+    /// Measured roll of each wheel since the start.
     pub(super) fn measured(&self) -> [f64; N] {
         self.measured
     }
@@ -112,28 +116,28 @@ impl<const N: usize> Wheels<N> {
         self.limit
     }
 
-    /// The part of a speed difference that one tick leaves.
+    /// Fraction of a speed difference that remains after one tick.
     pub(super) fn decay(&self) -> f64 {
         self.decay
     }
 
-    /// The smallest roll that matters to a controller: half an encoder tick.
+    /// Smallest roll relevant to a controller: half an encoder tick.
     pub(super) fn resolution(&self) -> f64 {
         if self.ideal_encoders { 5e-5 } else { 0.5 * self.tick_length }
     }
 
-    /// An encoder's count since the start.
+    /// Encoder count since the start.
     pub(super) fn count(&self, wheel: usize) -> i64 {
         self.counts[wheel]
     }
 
-    /// The largest change of a wheel's rim speed, in m/s².
+    /// Largest change of a wheel's rim speed (m/s²).
     pub(super) fn max_acceleration(&self) -> f64 {
         self.motor.max_acceleration
     }
 }
 
-/// The largest whole number up to `x`, without a call to the platform's library.
+/// Largest integer up to `x`, without a call to the platform's library.
 fn floor(x: f64) -> i64 {
     let whole = x as i64;
     whole - i64::from(x < whole as f64)

@@ -6,9 +6,9 @@ use super::fault::{Fault, FaultKind, Sensor};
 use super::memory::{Disturbance, Memory};
 use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::{
-    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error,
-    ErrorKind, Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors,
-    Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, DepthSensor, Display, DisplayImage, DisplayOption, DistanceSensors, Drive,
+    Encoders, Error, ErrorKind, Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres,
+    Motors, Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
@@ -306,5 +306,6 @@ impl<R: Odometry + Clock> Odometry for Faulty<R> {
 }
 
 hooked! {
-    Faulty, ready, [Clock], Drive, Manoeuvres, StallDetector, Display, Keys, Radio, Motors, Servos, Encoders, Inertial
+    Faulty, ready, [Clock], Drive, Manoeuvres, StallDetector, Display, Keys, Radio, Motors, Servos, Encoders, Inertial,
+    DepthSensor
 }

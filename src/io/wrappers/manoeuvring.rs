@@ -1,11 +1,11 @@
 use image::RgbImage;
 
-use crate::geometry::{Pose, Twist, Vector3, angle_difference};
+use crate::geometry::{Pose, Twist, Vector3, angle_difference, units};
 use crate::io::control::Stopwatch;
 use crate::io::{
-    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill,
-    Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd,
-    Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, DepthSensor, Display, DisplayImage, DisplayOption, DistanceSensors, Drive,
+    Encoders, Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry,
+    Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::kinematics::{Displacement, arc_between};
 use crate::parameter::{ParameterError, require_finite, require_not_negative, require_positive};
@@ -129,8 +129,6 @@ struct Held {
     told: f64,
 }
 
-/// Distance equivalent to a radian of turning (m/rad), to tell turning robots from held ones.
-const ARM: f64 = 0.1;
 /// Distance within which a robot counts as not having moved (m).
 const PLACE: f64 = 0.005;
 /// Time for which a robot must be held (s).
@@ -143,11 +141,11 @@ impl Held {
 
     fn update(&mut self, pose: Pose, told: Twist, seconds: f64) {
         let turned = angle_difference(pose.heading, self.pose.heading).abs();
-        if pose.distance_to(self.pose.position()) + ARM * turned >= PLACE {
+        if pose.distance_to(self.pose.position()) + units::ARM * turned >= PLACE {
             *self = Self::at(pose);
         } else {
             self.seconds += seconds;
-            self.told += (told.linear.abs() + ARM * told.angular.abs()) * seconds;
+            self.told += (told.linear.abs() + units::ARM * told.angular.abs()) * seconds;
         }
     }
 
@@ -405,5 +403,6 @@ hooked!(
     Radio,
     Servos,
     Encoders,
-    Inertial
+    Inertial,
+    DepthSensor
 );

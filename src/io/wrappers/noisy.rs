@@ -5,14 +5,14 @@ use image::RgbImage;
 
 use crate::geometry::{Pose, Twist, Vector3, normalize_angle};
 use crate::io::delegate::{
-    ambassador_impl_Clock, ambassador_impl_Display, ambassador_impl_Drive, ambassador_impl_Encoders,
-    ambassador_impl_Inertial, ambassador_impl_Keys, ambassador_impl_Manoeuvres, ambassador_impl_Motors,
-    ambassador_impl_Radio, ambassador_impl_Servos, ambassador_impl_StallDetector,
+    ambassador_impl_Clock, ambassador_impl_DepthSensor, ambassador_impl_Display, ambassador_impl_Drive,
+    ambassador_impl_Encoders, ambassador_impl_Inertial, ambassador_impl_Keys, ambassador_impl_Manoeuvres,
+    ambassador_impl_Motors, ambassador_impl_Radio, ambassador_impl_Servos, ambassador_impl_StallDetector,
 };
 use crate::io::{
-    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error,
-    Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel,
-    Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, DepthSensor, Display, DisplayImage, DisplayOption, DistanceSensors, Drive,
+    Encoders, Error, Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors,
+    Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::random::Stream;
 use crate::world::Colour;
@@ -99,6 +99,7 @@ impl Default for Noise {
 #[delegate(Motors, target = "inner")]
 #[delegate(Servos, target = "inner")]
 #[delegate(Encoders, target = "inner")]
+#[delegate(DepthSensor, target = "inner")]
 #[delegate(Inertial, target = "inner")]
 pub struct Noisy<R> {
     inner: R,

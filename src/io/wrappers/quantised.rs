@@ -2,13 +2,14 @@ use ambassador::Delegate;
 use image::RgbImage;
 
 use crate::geometry::{Pose, Twist, Vector3, math, normalize_angle, units};
+use crate::io::camera::FRAME_RATE;
 use crate::io::delegate::ambassador_impl_StallDetector;
 use crate::io::{
-    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error,
-    Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel,
-    Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, DepthSensor, Display, DisplayImage, DisplayOption, DistanceSensors, Drive,
+    Encoders, Error, Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors,
+    Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
-use crate::world::Colour;
+use crate::world::{Colour, PsdSpec};
 
 /// A robot with RoBIOS's numbers: whole millimetres, degrees, milliseconds and percent, and a maximum
 /// distance of 9.999 m.
@@ -37,12 +38,8 @@ pub struct Quantised<R> {
     turns: bool,
 }
 
-/// Reading in millimetres from which RoBIOS reports nothing.
-const NOTHING: f64 = 9999.0;
 /// Minimum distance (m): 0 would mean a missing sensor.
 const NEAREST: f64 = 0.001;
-/// Duration of an image (s): RoBIOS's camera delivers 30 per second.
-const FRAME: f64 = 0.033;
 
 impl<R> Quantised<R> {
     /// Rounds a robot's numbers.
@@ -112,7 +109,11 @@ fn pose(pose: Pose) -> Pose {
 
 fn range(metres: f64) -> f64 {
     let millimetres = units::to_mm(metres).round();
-    if millimetres < NOTHING { units::from_mm(millimetres.max(0.0)) } else { f64::INFINITY }
+    if millimetres < units::to_mm(PsdSpec::DEFAULT_MAX_RANGE) {
+        units::from_mm(millimetres.max(0.0))
+    } else {
+        f64::INFINITY
+    }
 }
 
 impl<R: Clock> Clock for Quantised<R> {
@@ -206,7 +207,7 @@ impl<R: DistanceSensors> DistanceSensors for Quantised<R> {
 impl<R: Lidar> Lidar for Quantised<R> {
     fn scan_into(&mut self, scan: &mut LidarScan) -> Result<()> {
         self.inner.scan_into(scan)?;
-        scan.range_max = scan.range_max.min(units::from_mm(NOTHING));
+        scan.range_max = scan.range_max.min(PsdSpec::DEFAULT_MAX_RANGE);
         scan.ranges.iter_mut().for_each(|distance| *distance = range(*distance));
         Ok(())
     }
@@ -237,7 +238,7 @@ impl<R: Camera + Clock> Camera for Quantised<R> {
             self.set_resolution(self.resolution)?;
         }
         self.inner.image_into(image)?;
-        self.inner.wait(FRAME)
+        self.inner.wait(1.0 / FRAME_RATE)
     }
 }
 
@@ -396,6 +397,12 @@ impl<R: Encoders> Encoders for Quantised<R> {
 
     fn reset_encoder(&mut self, motor: u8) -> Result<()> {
         self.inner.reset_encoder(motor)
+    }
+}
+
+impl<R: DepthSensor> DepthSensor for Quantised<R> {
+    fn depth(&mut self) -> Result<f64> {
+        Ok(length(self.inner.depth()?))
     }
 }
 

@@ -111,6 +111,11 @@ macro_rules! signatures {
             fn reset_encoder(motor: u8) -> ();
         } }
     };
+    (DepthSensor => $then:ident!($($context:tt)*)) => {
+        $then! { $($context)* DepthSensor {
+            fn depth() -> f64;
+        } }
+    };
     (Inertial => $then:ident!($($context:tt)*)) => {
         $then! { $($context)* Inertial {
             fn attitude() -> Attitude;

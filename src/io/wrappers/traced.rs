@@ -6,9 +6,9 @@ use image::RgbImage;
 use super::trace_text::{Digest, Token, put_scan};
 use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::{
-    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill,
-    Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd,
-    Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, DepthSensor, Display, DisplayImage, DisplayOption, DistanceSensors, Drive,
+    Encoders, Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry,
+    Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
@@ -261,3 +261,4 @@ signatures! { Motors => traced_impl!() }
 signatures! { Servos => traced_impl!() }
 signatures! { Encoders => traced_impl!() }
 signatures! { Inertial => traced_impl!() }
+signatures! { DepthSensor => traced_impl!() }

@@ -1,11 +1,11 @@
-//! A tube with round ends, cut aslant by the surface of water.
+//! A capsule, cut obliquely by the water surface.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::hull::{Displaced, cap, segment};
 use crate::geometry::{Vector3, math};
 
-/// A capsule about the origin under a plane: a cylinder that reaches `half` to both sides, and two half balls.
+/// The part of a centred capsule below a plane: a cylinder of length `2 half`, and two half balls.
 pub(super) fn cut(radius: f64, half: f64, axis: usize, up: &Vector3, depth: f64) -> Displaced {
     let mut along = Vector3::zeros();
     along[axis] = 1.0;
@@ -20,10 +20,10 @@ pub(super) fn cut(radius: f64, half: f64, axis: usize, up: &Vector3, depth: f64)
     ends[0] + ends[1] + cylinder(radius, half, axis, up, depth)
 }
 
-/// Half of the unit ball, on the side of `outward`, under a plane.
+/// The part of half of the unit ball, on the side of `outward`, below a plane.
 ///
-/// What the plane and the half's own face cut out of the sphere has two arcs as its border; its area follows from
-/// Gauss and Bonnet, and the volume from it and from the faces by the divergence theorem.
+/// The plane and the flat face bound a region of the sphere by two arcs. Its area follows from the
+/// Gauss–Bonnet theorem; the volume follows from the areas by the divergence theorem.
 fn half_ball(outward: &Vector3, up: &Vector3, depth: f64) -> Displaced {
     let half = Displaced { volume: 2.0 / 3.0 * PI, moment: outward * (0.25 * PI) };
     if depth >= 1.0 {
@@ -39,7 +39,7 @@ fn half_ball(outward: &Vector3, up: &Vector3, depth: f64) -> Displaced {
         return uncrossed(half, up, depth, cosine);
     }
     let rim = (1.0 - depth * depth).sqrt();
-    // Where the face ends in the water's plane, and the plane in the face.
+    // Position of the line where water plane and flat face meet, in the plane and in the face.
     let (across_plane, across_face) = (-depth * cosine / sine, depth / sine);
     let arc = 2.0 * (FRAC_PI_2 + math::asin((across_plane / rim).clamp(-1.0, 1.0)));
     let corner = FRAC_PI_2 + math::asin((cosine / rim).clamp(-1.0, 1.0));
@@ -49,7 +49,7 @@ fn half_ball(outward: &Vector3, up: &Vector3, depth: f64) -> Displaced {
     Displaced { volume, moment: moment * -0.5 }
 }
 
-/// A half ball whose face the water's plane does not cross within it.
+/// A half ball whose flat face the water plane does not cross.
 fn uncrossed(half: Displaced, up: &Vector3, depth: f64, cosine: f64) -> Displaced {
     let is_cut = depth * cosine <= 0.0;
     match (is_cut, depth > 0.0) {
@@ -63,7 +63,8 @@ fn uncrossed(half: Displaced, up: &Vector3, depth: f64, cosine: f64) -> Displace
     }
 }
 
-/// The integral of `radius² - distance from the middle²` over the part of a disc on which a coordinate is at most `d`.
+/// Integral of `radius² - r²` over the part of a disc in which one coordinate is at most `d`; `r` is the
+/// distance from the centre.
 fn roundness(radius: f64, d: f64) -> f64 {
     let t = (d / radius).clamp(-1.0, 1.0);
     let s = (1.0 - t * t).sqrt();
@@ -71,7 +72,7 @@ fn roundness(radius: f64, d: f64) -> f64 {
     4.0 / 3.0 * radius * radius * radius * radius * integral
 }
 
-/// A cylinder along an axis through the origin, `half` to both sides, under a plane.
+/// The part of a centred cylinder of length `2 half` along an axis, below a plane.
 fn cylinder(radius: f64, half: f64, axis: usize, up: &Vector3, depth: f64) -> Displaced {
     if half <= 0.0 {
         return Displaced::NOTHING;
@@ -80,7 +81,7 @@ fn cylinder(radius: f64, half: f64, axis: usize, up: &Vector3, depth: f64) -> Di
     let mut across = *up;
     across[axis] = 0.0;
     let steepness = across.norm().max(f64::MIN_POSITIVE);
-    // How far the water stands up the cross-section at a place along the axis, in radii.
+    // Water level in the cross-section at a position along the axis, in radii.
     let rise = |x: f64| (depth - slope * x) / steepness / radius;
     let (low, high) = if slope > 0.0 { (half, -half) } else { (-half, half) };
     let place = |level: f64| ((depth - level * radius * steepness) / slope).clamp(-half, half);
@@ -103,19 +104,18 @@ fn cylinder(radius: f64, half: f64, axis: usize, up: &Vector3, depth: f64) -> Di
     Displaced { volume: whole + partial, moment }
 }
 
-/// Means over a cylinder's cross-sections in which the water rises steadily from one level to another: of a disc of
-/// radius 1.
+/// Means over the cross-sections of a cylinder of radius 1, in which the water level rises linearly.
 struct Section {
     area: f64,
-    /// The mean of the area times the place along the way, from -1/2 to 1/2.
+    /// Mean of area times position along the axis, from -1/2 to 1/2.
     lean: f64,
-    /// The mean of the area's moment along the direction in which the water rises.
+    /// Mean first moment in the direction of the rising level.
     sideways: f64,
 }
 
-/// Levels nearer than this are integrated by points, as the differences of the closed forms lose their digits.
+/// Below this difference of levels, Gauss–Legendre quadrature avoids cancellation in the closed forms.
 const NEAR: f64 = 0.02;
-/// Places and weights of Gauss and Legendre's rule for five points, on -1/2 to 1/2.
+/// Nodes and weights of the five-point Gauss–Legendre rule on -1/2 to 1/2.
 const GAUSS: [(f64, f64); 5] = [
     (-0.453_089_922_969_332, 0.118_463_442_528_094_54),
     (-0.269_234_655_052_841_54, 0.239_314_335_249_683_24),
@@ -147,7 +147,7 @@ impl Section {
     }
 }
 
-/// The integrals from 0 to a level of a segment's area, of the area times the level, and of its moment.
+/// Integrals from 0 to a level: of a segment's area, of area times level, and of its first moment.
 struct Antiderivatives {
     area: f64,
     first: f64,

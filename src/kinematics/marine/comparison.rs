@@ -1,7 +1,7 @@
-//! Two craft of Fossen's Python Vehicle Simulator, by the figures in it, so that the equations of this module can be
-//! held against those of that program.
+//! Two craft of Fossen's Python Vehicle Simulator, with its parameters, to compare the equations of this
+//! module with that program.
 //!
-//! Formulas and signs are the program's: x forward, y to the right, z down.
+//! Formulas and signs follow the program: x forward, y to the right, z down.
 
 use std::f64::consts::PI;
 
@@ -10,31 +10,35 @@ use super::{Craft, CraftSpec, GRAVITY, HullPart, Motion, Thruster, Wrench};
 use crate::ParameterError;
 use crate::geometry::{Point3, Vector3, math};
 
-/// The density of water in both of the program's drag formulas, in kg/m³.
+/// Water density in the program's drag formulas (kg/m³).
 const SEA: f64 = 1026.0;
-/// Hoerner's drag coefficients of cross-sections: half of the beam over the draught, and the coefficient, around the
-/// two craft.
+/// Hoerner's drag coefficients of cross-sections, in the range of the two craft: half beam over draught, and
+/// coefficient.
 const HOERNER: [(f64, f64); 3] = [(0.4933, 1.2108), (0.5585, 1.0836), (0.6464, 0.9986)];
 
-/// Turns between y right, z down and y left, z up.
+/// Converts between y right, z down and y left, z up.
 fn over(vector: Vector3) -> Vector3 {
     Vector3::new(vector.x, -vector.y, -vector.z)
 }
 
-/// The REMUS 100: an underwater craft like a torpedo, with a propeller, a rudder and stern planes.
+/// The REMUS 100: a torpedo-shaped underwater craft with a propeller, a rudder and stern planes.
 #[derive(Debug, Clone)]
 pub struct Remus100 {
-    /// Its body. Damping in surge and sway, lift, fins and propeller are in [`Remus100::forces`].
+    /// The body. [`Remus100::forces`] adds damping in surge and sway, lift, fins and propeller.
     pub craft: Craft,
     added: Vector3,
     fading: [f64; 2],
 }
 
 impl Remus100 {
-    /// Metres from nose to tail, and across.
+    /// Length and diameter (m).
     const SIZE: [f64; 2] = [1.6, 0.19];
 
-    /// The craft, in steps of some seconds.
+    /// The craft, with an integration step in seconds.
+    ///
+    /// # Errors
+    ///
+    /// If the step is out of range.
     pub fn new(step: f64) -> Result<Self, ParameterError> {
         let (a, b) = (0.5 * Self::SIZE[0], 0.5 * Self::SIZE[1]);
         let mass = 4.0 / 3.0 * PI * SEA * a * b * b;
@@ -86,8 +90,8 @@ impl Remus100 {
         })
     }
 
-    /// All forces but weight, buoyancy, inertia and the body's own damping, at a speed through the water and a speed
-    /// over ground. Rudder and stern planes in radians, the propeller in turns per second.
+    /// All forces except weight, buoyancy, inertia and the body's damping, from the motion through the water
+    /// and the speed over ground (m/s). Controls: rudder and stern planes (rad), propeller (turns/s).
     pub fn forces(&self, through_water: &Motion, speed: f64, [rudder, stern, turns]: [f64; 3]) -> Wrench {
         let flow = over(through_water.linear);
         let (fins, propeller) = (fins(&flow, rudder, stern), propeller(speed, turns));
@@ -102,8 +106,8 @@ impl Remus100 {
         down + self.without_munk(through_water)
     }
 
-    /// What the program leaves out of the added mass's Coriolis forces, as they make the model unstable: all but those
-    /// of rolling.
+    /// Cancels the Coriolis forces of the added mass that the program omits, because they make the model
+    /// unstable: all except those of roll.
     fn without_munk(&self, through_water: &Motion) -> Wrench {
         let carried = self.added.component_mul(&through_water.linear);
         let swung = Vector3::new(0.0, through_water.angular.y, through_water.angular.z);
@@ -133,7 +137,7 @@ fn propeller(speed: f64, turns: f64) -> Wrench {
     Wrench { force: Vector3::x() * (0.9 * thrust), moment: Vector3::x() * (0.1 * torque) }
 }
 
-/// Lift and drag of the REMUS 100's body as of a wing.
+/// Lift and drag of the REMUS 100's body, modelled as a wing.
 fn lift_and_drag(flow: &Vector3) -> Vector3 {
     let [length, across] = Remus100::SIZE;
     let area = 0.7 * length * across;
@@ -147,7 +151,7 @@ fn lift_and_drag(flow: &Vector3) -> Vector3 {
     Vector3::new(sin * lift - cos * drag, 0.0, -sin * drag - cos * lift) * pressure
 }
 
-/// The drag of water that crosses a long body, by strips (Fossen 2021, section 6.4).
+/// Cross-flow drag of a long body, by strip theory (Fossen 2021, section 6.4).
 fn cross_flow(length: f64, beam: f64, draught: f64, aside: f64, turning: f64) -> Wrench {
     let coefficient = hoerner(0.5 * beam / draught);
     let strip = length / 20.0;
@@ -166,27 +170,32 @@ fn hoerner(ratio: f64) -> f64 {
     a.1 + (b.1 - a.1) / (b.0 - a.0) * (ratio - a.0)
 }
 
-/// The Otter: a catamaran on the surface with two propellers.
+/// The Otter: a surface catamaran with two propellers.
 #[derive(Debug, Clone)]
 pub struct Otter {
-    /// Its body. What carries it is in [`Otter::forces`], as it has springs for the surface instead of a hull.
+    /// The body. It has no hull: [`Otter::forces`] models buoyancy by springs.
     pub craft: Craft,
     draught: f64,
     springs: [f64; 3],
 }
 
 impl Otter {
-    /// The load in kg, and where it is.
+    /// Load (kg).
     const LOAD: f64 = 25.0;
+    /// Position of the load (m).
     const LOAD_AT: Vector3 = Vector3::new(0.05, 0.0, -0.35);
-    /// Metres from end to end, across a pontoon, and from the middle to a pontoon's.
+    /// Length, beam of a pontoon, and lateral position of the pontoons' centres (m).
     const SIZE: [f64; 3] = [2.0, 0.25, 0.395];
-    /// Where the water plane has its middle.
+    /// Longitudinal position of the waterplane's centre (m).
     const FLOATS_AT: f64 = -0.2;
-    /// A propeller's thrust for the square of its speed, forward and backward, in N s².
+    /// Thrust per squared propeller speed, forward and backward (N s²).
     pub const THRUST: [f64; 2] = [0.02216 / 2.0, 0.01289 / 2.0];
 
-    /// The craft, in steps of some seconds.
+    /// The craft, with an integration step in seconds.
+    ///
+    /// # Errors
+    ///
+    /// If the step is out of range.
     pub fn new(step: f64) -> Result<Self, ParameterError> {
         let (empty, density) = (55.0, 1025.0);
         let mass = empty + Self::LOAD;
@@ -248,12 +257,13 @@ impl Otter {
         Ok(Self { craft: Craft::new(&spec, step)?, draught, springs })
     }
 
-    /// A propeller's fastest speed in rad/s.
+    /// Maximum propeller speed (rad/s).
     pub fn full_speed() -> f64 {
         (0.5 * 24.4 * GRAVITY / Self::THRUST[0]).sqrt()
     }
 
-    /// All forces but the propellers', inertia and damping: at a height above rest and at roll and pitch in radians.
+    /// All forces except thrust, inertia and damping, from the motion through the water, the height above
+    /// rest (m), and roll and pitch (rad).
     pub fn forces(&self, through_water: &Motion, height: f64, [roll, pitch]: [f64; 2]) -> Wrench {
         let (pitch, depth) = (-pitch, -height);
         let [heave, rolling, pitching] = self.springs;
@@ -269,7 +279,7 @@ impl Otter {
     }
 }
 
-/// Stiffness of the Otter's water plane against sinking, rolling and pitching.
+/// Hydrostatic stiffness of the Otter in heave, roll and pitch.
 fn springs(density: f64, volume: f64, draught: f64, centre: f64) -> [f64; 3] {
     let [length, beam, aside] = Otter::SIZE;
     let fullness = 0.75;
@@ -285,7 +295,7 @@ fn springs(density: f64, volume: f64, draught: f64, centre: f64) -> [f64; 3] {
 }
 
 impl Motion {
-    /// What it is after some seconds at an acceleration.
+    /// The motion after some time (s) at a constant acceleration.
     #[must_use]
     pub fn after(&self, acceleration: &Motion, seconds: f64) -> Self {
         let moved =

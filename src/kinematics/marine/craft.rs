@@ -1,4 +1,4 @@
-use nalgebra::{Matrix3, Matrix6, Rotation3, Vector6};
+use nalgebra::{Matrix3, Matrix6, Rotation3, UnitQuaternion, Vector6};
 
 use super::{CraftSpec, CraftState, Displaced, GRAVITY, HullPart, MAX_THRUSTERS, Thruster};
 use crate::ParameterError;
@@ -158,6 +158,54 @@ impl Craft {
         Point3::from(self.origin)
     }
 
+    /// Mass and moments of inertia with those of the water that moves along: kg for the three axes, kg m² about them.
+    pub fn inertia(&self) -> [f64; 6] {
+        self.wet.matrix.diagonal().into()
+    }
+
+    /// Metres from the middle of the hull's volume to the hull's lowest point, when it is turned so.
+    pub fn lowest(&self, attitude: &UnitQuaternion<f64>) -> f64 {
+        let up = attitude.inverse() * Vector3::z();
+        let end = |part: &HullPart| up.dot(&part.centre().coords) - part.reach(&up);
+        self.hull.iter().map(end).fold(0.0, f64::min)
+    }
+
+    /// Kilograms.
+    pub fn mass(&self) -> f64 {
+        self.mass
+    }
+
+    /// Metres from the middle of the hull's volume to the hull's highest point, when it is turned so.
+    pub fn highest(&self, attitude: &UnitQuaternion<f64>) -> f64 {
+        let up = attitude.inverse() * Vector3::z();
+        let end = |part: &HullPart| up.dot(&part.centre().coords) + part.reach(&up);
+        self.hull.iter().map(end).fold(0.0, f64::max)
+    }
+
+    /// Metres from the middle of the hull's volume within which all of the hull is.
+    pub fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// The parts of the hull, about its middle.
+    pub fn hull(&self) -> &[HullPart] {
+        &self.hull
+    }
+
+    /// The speed along a direction that an impulse of 1 N s along it gives to a place of the craft.
+    pub fn mobility(&self, place: &Vector3, direction: &Vector3) -> f64 {
+        let push = stack(direction, &place.cross(direction));
+        push.dot(&(self.wet.inverse * push))
+    }
+
+    /// The motion after an impulse in N s at a place of the craft, in its frame.
+    #[must_use]
+    pub fn struck(&self, velocity: &Motion, place: &Vector3, impulse: &Vector3) -> Motion {
+        let change = self.wet.inverse * stack(impulse, &place.cross(impulse));
+        let (linear, angular) = split(&change);
+        Motion { linear: velocity.linear + linear, angular: velocity.angular + angular }
+    }
+
     /// Newtons by which buoyancy exceeds the weight when all of the hull is under water.
     pub fn reserve(&self, density: f64) -> f64 {
         GRAVITY * (density * self.whole.volume - self.mass)
@@ -206,7 +254,7 @@ impl Craft {
 
     pub(super) fn kinetic(&self, state: &CraftState, water: &Water) -> f64 {
         let speed = stack(&state.velocity.linear, &state.velocity.angular);
-        0.5 * speed.dot(&(self.inertia(water).matrix * speed))
+        0.5 * speed.dot(&(self.inertia_in(water).matrix * speed))
     }
 
     /// Whether the surface may cross the hull.
@@ -270,7 +318,7 @@ impl Craft {
         relative.fixed_rows_mut::<3>(0).zip_apply(&current, |speed, current| *speed -= current);
         let share = self.share(volume, water.density);
         let total = wrench + stack(&restoring.force, &restoring.moment);
-        let mut rates = self.accelerate(self.inertia(water), &relative, share, &total);
+        let mut rates = self.accelerate(self.inertia_in(water), &relative, share, &total);
         let (_, angular) = split(speed);
         let turned = current.cross(&angular);
         rates.fixed_rows_mut::<3>(0).zip_apply(&turned, |rate, turned| *rate += turned);
@@ -284,7 +332,7 @@ impl Craft {
         if volume >= most || most == 0.0 { 1.0 } else { volume / most }
     }
 
-    fn inertia(&self, water: &Water) -> &Inertia {
+    fn inertia_in(&self, water: &Water) -> &Inertia {
         if water.level == f64::NEG_INFINITY { &self.dry } else { &self.wet }
     }
 

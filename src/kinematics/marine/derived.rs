@@ -47,6 +47,15 @@ impl CraftSpec {
         spec.linear_damping = spec.quadratic_damping.map(|quadratic| CREEP * quadratic);
         Self { hull, ..spec }
     }
+
+    /// Square metres of what is out of fresh water at rest, seen from ahead and from the side: wind pushes it.
+    pub fn windage(&self) -> [f64; 2] {
+        let level = floats_at(&self.hull, self.mass);
+        [0, 1].map(|axis| {
+            let dry = |part: &HullPart| 1.0 - part.displaced(&Vector3::z(), level).volume / part.volume();
+            self.hull.iter().map(|part| dry(part) * frontal(part, axis)).sum()
+        })
+    }
 }
 
 /// The square of a radius of gyration, for the squares of the half sizes across the axis.

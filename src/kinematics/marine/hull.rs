@@ -3,43 +3,43 @@ use crate::ParameterError;
 use crate::geometry::{Point3, Vector3, math};
 use crate::parameter::{require_finite, require_positive};
 
-/// A solid part of a hull, in its craft's frame. Parts do not overlap.
+/// A solid part of a hull, in the craft's frame. Parts must not overlap.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum HullPart {
     /// A cuboid along the craft's axes.
     Box {
-        /// Metres along each axis.
+        /// Size along each axis (m).
         size: Vector3,
-        /// Its middle.
+        /// Centre.
         centre: Point3,
     },
-    /// A cylinder with round ends: a tube.
+    /// A cylinder with hemispherical ends.
     Capsule {
-        /// Metres.
+        /// Radius (m).
         radius: f64,
-        /// Metres from end to end, the round ends included.
+        /// Length, including the ends (m).
         length: f64,
-        /// The axis of the craft along which it lies: 0 is forward, 1 to the left, 2 upwards.
+        /// Axis of the craft that it is parallel to: 0 forward, 1 left, 2 up.
         axis: usize,
-        /// Its middle.
+        /// Centre.
         centre: Point3,
     },
     /// An ellipsoid along the craft's axes.
     Ellipsoid {
-        /// Metres from the middle to the surface along each axis.
+        /// Semi-axes (m).
         half_axes: Vector3,
-        /// Its middle.
+        /// Centre.
         centre: Point3,
     },
 }
 
-/// Displaced water: its volume, and the volume times its centre.
+/// Displaced water: its volume and first moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Displaced {
-    /// Cubic metres.
+    /// Volume (m³).
     pub volume: f64,
-    /// Cubic metres times metres from the craft's origin.
+    /// First moment about the craft's origin, volume times centre (m⁴).
     pub moment: Vector3,
 }
 
@@ -47,12 +47,12 @@ impl Displaced {
     /// No water.
     pub const NOTHING: Self = Self { volume: 0.0, moment: Vector3::new(0.0, 0.0, 0.0) };
 
-    /// Its middle, on which buoyancy acts; the origin if there is no water.
+    /// Centre of buoyancy; the origin if no water is displaced.
     pub fn centre(&self) -> Point3 {
         if self.volume > 0.0 { Point3::from(self.moment / self.volume) } else { Point3::origin() }
     }
 
-    /// The same about an origin at another place.
+    /// The same relative to another origin.
     fn seen_from(self, origin: Vector3) -> Self {
         Self { moment: self.moment - origin * self.volume, ..self }
     }
@@ -73,7 +73,7 @@ impl std::iter::Sum for Displaced {
 }
 
 impl HullPart {
-    /// Its middle.
+    /// Centre.
     pub fn centre(&self) -> Point3 {
         match *self {
             Self::Box { centre, .. } | Self::Capsule { centre, .. } | Self::Ellipsoid { centre, .. } => {
@@ -82,7 +82,7 @@ impl HullPart {
         }
     }
 
-    /// The same part about an origin at another place.
+    /// The same part relative to another origin.
     #[must_use]
     pub(super) fn seen_from(mut self, origin: Vector3) -> Self {
         match &mut self {
@@ -93,7 +93,7 @@ impl HullPart {
         self
     }
 
-    /// Metres from its middle to its surface along each axis.
+    /// Half of its extent along each axis (m).
     pub fn half_size(&self) -> Vector3 {
         match *self {
             Self::Box { size, .. } => 0.5 * size,
@@ -106,7 +106,7 @@ impl HullPart {
         }
     }
 
-    /// Cubic metres.
+    /// Volume (m³).
     pub fn volume(&self) -> f64 {
         use std::f64::consts::PI;
         match *self {
@@ -118,7 +118,7 @@ impl HullPart {
         }
     }
 
-    /// How far it reaches from its middle along a unit vector.
+    /// Support function: its extent from the centre along a unit vector (m).
     #[inline]
     pub(super) fn reach(&self, along: &Vector3) -> f64 {
         match *self {
@@ -130,9 +130,9 @@ impl HullPart {
         }
     }
 
-    /// The water that it displaces where the points `p` with `up · p < level` are under water.
+    /// The water that it displaces, if points `p` with `up · p < level` are under water.
     ///
-    /// The volume is exact, not sampled: a polyhedron, a cap, or a tube cut aslant. O(1).
+    /// The volume is exact, not sampled: that of a polyhedron, a cap, or an obliquely cut capsule. O(1).
     ///
     /// ```
     /// use roverlab::geometry::{Point3, Vector3};
@@ -179,8 +179,8 @@ impl HullPart {
     }
 }
 
-/// A cuboid about the origin under a plane: the sum of tetrahedra from a point of the plane to what is wet of each
-/// face. The plane itself adds nothing.
+/// The part of a centred cuboid below a plane: the sum of the tetrahedra from a point of the plane to the wet
+/// part of each face. The plane itself contributes nothing.
 fn cut_box(half: Vector3, up: &Vector3, depth: f64) -> Displaced {
     let apex = up * depth;
     let mut sum = Displaced::NOTHING;
@@ -202,7 +202,7 @@ fn cut_box(half: Vector3, up: &Vector3, depth: f64) -> Displaced {
 
 /// The tetrahedra from an apex to the part of a face that is below a plane.
 fn wet_part(corners: &[Vector3; 4], up: &Vector3, depth: f64, apex: &Vector3) -> Displaced {
-    // A quadrilateral and a plane have five corners at most.
+    // A quadrilateral cut by a plane has at most five corners.
     let (mut wet, mut count) = ([Vector3::zeros(); 5], 0);
     for (i, here) in corners.iter().enumerate() {
         let there = &corners[(i + 1) % 4];
@@ -225,7 +225,7 @@ fn wet_part(corners: &[Vector3; 4], up: &Vector3, depth: f64, apex: &Vector3) ->
     sum
 }
 
-/// An ellipsoid about the origin under a plane: a cap of the unit ball, stretched.
+/// The part of a centred ellipsoid below a plane: a scaled cap of the unit ball.
 fn cut_ellipsoid(half: Vector3, up: &Vector3, depth: f64) -> Displaced {
     let stretched = half.component_mul(up);
     let length = stretched.norm();
@@ -234,7 +234,7 @@ fn cut_ellipsoid(half: Vector3, up: &Vector3, depth: f64) -> Displaced {
     Displaced { volume: cap.volume * stretch, moment: cap.moment.component_mul(&half) * stretch }
 }
 
-/// The unit ball about the origin under a plane.
+/// The part of the centred unit ball below a plane.
 pub(super) fn cap(up: &Vector3, depth: f64) -> Displaced {
     use std::f64::consts::PI;
     let depth = depth.clamp(-1.0, 1.0);
@@ -243,7 +243,7 @@ pub(super) fn cap(up: &Vector3, depth: f64) -> Displaced {
     Displaced { volume, moment: up * (-0.25 * PI * left * left) }
 }
 
-/// The area of the part of the disc of some radius on which a coordinate is at most `d`.
+/// Area of the part of a disc in which one coordinate is at most `d`.
 pub(super) fn segment(radius: f64, d: f64) -> f64 {
     let d = d.clamp(-radius, radius);
     let half_chord = (radius * radius - d * d).max(0.0).sqrt();
@@ -276,7 +276,7 @@ mod tests {
         ]
     }
 
-    /// Whether a point is in a part.
+    /// Whether a point lies inside a part.
     fn holds(part: &HullPart, point: Vector3) -> bool {
         let local = point - part.centre().coords;
         match *part {
@@ -302,8 +302,8 @@ mod tests {
             prop_assert!(centre < 1e-11 / whole.min(1.0), "{}", centre);
         }
 
-        /// The derivative of volume by the level is the waterplane's area, and of the moment along `up` the area times
-        /// the level: this fails for any wrong constant.
+        /// The derivative of the volume by the level is the waterplane area, and that of the moment along
+        /// `up` is area times level: any wrong constant fails.
         #[test]
         fn volume_and_moment_grow_by_the_water_plane(part in part(), up in unit(), share in -0.95..0.95f64) {
             let level = up.dot(&part.centre().coords) + share * part.reach(&up);
@@ -311,7 +311,7 @@ mod tests {
             let (more, less) = (part.displaced(&up, level + step), part.displaced(&up, level - step));
             let area = (more.volume - less.volume) / (2.0 * step);
             let growth = (more.moment - less.moment).dot(&up) / (2.0 * step);
-            // Edges of a box make the second derivative jump.
+            // The second derivative jumps at the edges of a box.
             prop_assert!((growth - level * area).abs() < 1e-3 * (1.0 + area), "{} {}", growth, level * area);
             prop_assert!(area > 0.0);
         }

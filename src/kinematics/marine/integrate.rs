@@ -1,7 +1,7 @@
 use nalgebra::{Quaternion, UnitQuaternion, Vector6};
 
 use super::craft::{split, stack};
-use super::{Craft, MAX_THRUSTERS, Motion, Water, Wrench};
+use super::{Craft, MAX_THRUSTERS, Motion, Thruster, Water, Wrench};
 use crate::geometry::{Point3, Pose3, Vector3};
 
 /// Where a craft is, how it moves and how its thrusters turn.
@@ -134,7 +134,7 @@ impl Craft {
             }
             let full = if shaft > 0.0 { thruster.force } else { thruster.back };
             let depth = water.level - (state.position + state.attitude * thruster.place.coords).z;
-            let grip = (0.5 * (1.0 + depth / thruster.radius)).clamp(0.0, 1.0);
+            let grip = (0.5 * (1.0 + depth / Thruster::RADIUS)).clamp(0.0, 1.0);
             let force = thruster.direction * (full * shaft * shaft.abs() * grip);
             sum += stack(&force, &thruster.place.coords.cross(&force));
         }

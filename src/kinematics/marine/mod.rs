@@ -18,6 +18,7 @@
 //!
 //! Reference: T. I. Fossen, *Handbook of Marine Craft Hydrodynamics and Motion Control*, second edition, 2021.
 
+mod allocation;
 mod capsule;
 mod comparison;
 mod craft;
@@ -29,6 +30,7 @@ mod spec;
 #[cfg(test)]
 mod tests;
 
+pub use allocation::{Allocated, Allocation};
 pub use comparison::{Otter, Remus100};
 pub use craft::{Craft, Motion, Water, Wrench};
 pub use hull::{Displaced, HullPart};

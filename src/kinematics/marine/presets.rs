@@ -2,18 +2,19 @@ use super::{CraftSpec, HullPart, Thruster};
 use crate::geometry::{Point3, Vector3};
 
 impl CraftSpec {
-    /// Mako (book, section 8.1): two tubes in a frame, a thruster at each side and one at each end.
+    /// Mako (book, section 8.1): two tubes in a frame, with a thruster at each side and each end.
     ///
-    /// | number | origin |
+    /// | value | origin |
     /// |---|---|
-    /// | 1.34 m long, 0.645 m wide, 0.46 m high, 35 kg; two tubes of plastic in a frame of aluminium; four trolling motors of 12 V and 7 A | Braeunl et al. 2004 |
-    /// | tubes of 160 and 110 mm | standard pipes that carry 35 kg with 2.8 % to spare: "naturally buoyant" |
-    /// | middle of the mass 60 mm below that of the volume | batteries in the lower tube |
-    /// | 35 N forward, 25 N backward | 84 W at a third of the 1.2 N/W of trolling motors; [`Thruster::BACK`] |
-    /// | drag forward 42 N s²/m² | 0.084 m² of tubes, frame and motors, as a bluff body |
+    /// | 1.34 m long, 0.645 m wide, 0.46 m high, 35 kg; two plastic tubes in an aluminium frame; four trolling motors of 12 V and 7 A | Braeunl et al. 2004 |
+    /// | tubes of 160 and 110 mm | standard pipes, which carry 35 kg with a reserve of 2.8 %: "naturally buoyant" |
+    /// | centre of mass 60 mm below the centre of volume | batteries in the lower tube |
+    /// | 25 N forward, 17.5 N backward | 84 W at 0.3 N/W, between trolling motors (0.37) and small thrusters (0.18); [`Thruster::BACK`] |
+    /// | forward drag 42 N s²/m² | 0.084 m² of tubes, frame and motors, as a bluff body |
     /// | the rest | [`CraftSpec::of_hull`] |
     ///
-    /// The origin is on the floor below its middle. Thrusters 1 left, 2 front, 3 right, 4 back; forward lifts.
+    /// The origin is at the bottom, below the centre. Thrusters: 1 left, 2 front, 3 right, 4 back; 2 and 4
+    /// lift when they turn forward.
     pub fn mako() -> Self {
         let tube = |radius, length, up| HullPart::Capsule {
             radius,
@@ -25,10 +26,8 @@ impl CraftSpec {
         let mut craft = Self::of_hull(35.0, Point3::new(0.0, 0.0, 0.20), hull);
         craft.quadratic_damping[0] = 42.0;
         craft.linear_damping[0] = 4.2;
-        let motor = |name: &str, x, y, direction| Thruster {
-            back: 25.0,
-            ..Thruster::new(name, Point3::new(x, y, 0.26), direction, 35.0)
-        };
+        let motor =
+            |name: &str, x, y, direction| Thruster::new(name, Point3::new(x, y, 0.26), direction, 25.0);
         craft.thrusters = vec![
             motor("LEFT", 0.0, 0.29, Vector3::x()),
             motor("FRONT", 0.50, 0.0, Vector3::z()),
@@ -38,10 +37,10 @@ impl CraftSpec {
         craft
     }
 
-    /// The solar raft (book, section 8.1): a solar panel of 100 W on two watertight tubes, with two thrusters.
+    /// The solar raft (book, section 8.1): a 100 W solar panel on two watertight tubes, with two thrusters.
     ///
-    /// The panel is 1.2 m by 0.54 m, as panels of 100 W are; tubes of 160 mm and 1.3 m carry it and its 20 kg with two
-    /// fifths of their volume. Thrusters of 30 N reach about 1 m/s.
+    /// The panel has the usual size for 100 W, 1.2 m by 0.54 m. Tubes of 160 mm by 1.3 m carry the total of
+    /// 20 kg with two fifths of their volume. Thrusters of 30 N give about 1 m/s.
     pub fn solar_raft() -> Self {
         let tube = |left| HullPart::Capsule {
             radius: 0.08,

@@ -1,7 +1,7 @@
 use super::{HullPart, MAX_THRUSTERS};
 use crate::ParameterError;
 use crate::geometry::{Point3, Vector3};
-use crate::parameter::{require, require_finite, require_not_negative, require_positive};
+use crate::parameter::{require, require_finite, require_not_negative};
 
 /// What a craft is: its mass, its hull and what drives it. Places are in its own frame: x forward, y left, z up.
 ///
@@ -58,18 +58,18 @@ pub struct Thruster {
     pub back: f64,
     /// The time constant, in seconds, with which its speed follows the command.
     pub lag: f64,
-    /// Metres from the middle of the propeller to its tips: at less depth it draws air.
-    pub radius: f64,
 }
 
 impl Thruster {
     /// What a propeller that is made to push forward pushes backward, as a share: between the values that are
     /// measured of boats' motors (0.58 of the Otter's) and of symmetric blades (1).
     pub const BACK: f64 = 0.7;
+    /// Metres from the middle of a propeller to its tips: at less depth it draws air.
+    pub const RADIUS: f64 = 0.05;
 
-    /// A thruster of 50 mm radius with a lag of 0.2 s.
+    /// A thruster with a lag of 0.2 s.
     pub fn new(name: impl Into<String>, place: Point3, direction: Vector3, force: f64) -> Self {
-        Self { name: name.into(), place, direction, force, back: Self::BACK * force, lag: 0.2, radius: 0.05 }
+        Self { name: name.into(), place, direction, force, back: Self::BACK * force, lag: 0.2 }
     }
 
     fn validate(&self) -> Result<(), ParameterError> {
@@ -82,8 +82,7 @@ impl Thruster {
         require("thruster's force", self.force, self.force <= MOST_FORCE, "at most 1e6 N")?;
         let weaker = (0.0..=self.force).contains(&self.back);
         require("thruster's force backward", self.back, weaker, "0 to its force forward")?;
-        require_not_negative("thruster's lag", self.lag)?;
-        require_positive("thruster's radius", self.radius)
+        require_not_negative("thruster's lag", self.lag)
     }
 }
 
@@ -92,7 +91,20 @@ const MOST_FORCE: f64 = 1e6;
 const MOST_MASS: f64 = 1e6;
 
 impl CraftSpec {
-    pub(super) fn validate(&self) -> Result<(), ParameterError> {
+    /// The speed, in m/s, at which damping equals all that the thrusters push ahead; 0 without any that does.
+    pub fn top_speed(&self) -> f64 {
+        let ahead = |thruster: &Thruster| {
+            let share = thruster.direction.x / thruster.direction.norm();
+            if share > 0.0 { share * thruster.force } else { -share * thruster.back }
+        };
+        let force: f64 = self.thrusters.iter().map(ahead).sum();
+        let (linear, quadratic) = (self.linear_damping[0], self.quadratic_damping[0]);
+        let root = (linear * linear + 4.0 * quadratic * force).sqrt();
+        if force > 0.0 { 2.0 * force / (linear + root) } else { 0.0 }
+    }
+
+    /// Fails with the name of a number that is not what it must be.
+    pub fn validate(&self) -> Result<(), ParameterError> {
         require(
             "craft's mass",
             self.mass,

@@ -1,9 +1,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use crate::geometry::{Pose, angle_difference, math};
-
-/// Gate of the innovation test (standard deviations).
-const SIGMAS: f64 = 3.5;
+use crate::kinematics::{DISTANCE_ERROR, OUTLIER, SCALE_ERROR, TURN_ERROR};
 
 /// Scale error of odometry (wheel wear), as a fraction of the distance.
 #[derive(Debug, Clone, Copy)]
@@ -35,23 +33,15 @@ pub(super) struct PlaceInCell {
 impl PlaceInCell {
     /// A robot roughly in the centre of a cell.
     pub(super) fn at(odometry: Pose, cell: f64) -> Self {
-        /// Initial standard deviation of the position (cells).
+        /// Cells by which the robot stands off the middle at the start, and radians by which it is turned: standard deviations.
         const OFF: f64 = 0.05;
-        /// Initial standard deviation of the orientation (rad).
-        const TURN: f64 = 0.06;
-        /// Standard deviation of the odometry scale (fraction).
-        const STRETCH: f64 = 0.015;
-        let spread = [OFF * OFF * cell * cell, OFF * OFF * cell * cell, TURN * TURN];
-        let stretch = Stretch { share: 0.0, variance: STRETCH * STRETCH, along: 0.0 };
+        let spread = [OFF * OFF * cell * cell, OFF * OFF * cell * cell, OFF * OFF];
+        let stretch = Stretch { share: 0.0, variance: SCALE_ERROR * SCALE_ERROR, along: 0.0 };
         Self { along: 0.0, off: 0.0, turn: 0.0, spread, common: 0.0, stretch, odometry }
     }
 
     /// Follows odometry. If the robot has turned by more than 45 degrees, the cell frame turns with it.
     pub(super) fn predict(&mut self, odometry: Pose) {
-        /// Error of odometry per distance (fraction).
-        const MISSED: f64 = 0.01;
-        /// Error of odometry per turn (fraction).
-        const MISSED_OF_TURN: f64 = 0.006;
         let moved = self.odometry.to_local(odometry.position());
         let way = moved.coords.norm();
         // Larger wheels turn the robot farther, too.
@@ -62,7 +52,7 @@ impl PlaceInCell {
         self.along += ahead * (1.0 + self.stretch.share);
         self.off += sin * moved.x + cos * moved.y;
         let [along, off, turn] = self.spread;
-        let missed = MISSED * MISSED;
+        let missed = DISTANCE_ERROR * DISTANCE_ERROR;
         self.spread = [
             along
                 + missed * way * way.max(0.01)
@@ -71,7 +61,7 @@ impl PlaceInCell {
             // The error of a turn is the same fraction for all its parts, so its square grows with the whole
             // turn, a quarter.
             turn + missed * way
-                + turned.abs() * FRAC_PI_2 * (self.stretch.variance + MISSED_OF_TURN * MISSED_OF_TURN),
+                + turned.abs() * FRAC_PI_2 * (self.stretch.variance + TURN_ERROR * TURN_ERROR),
         ];
         self.common += way * turn;
         self.stretch.along += ahead * self.stretch.variance;
@@ -112,13 +102,13 @@ impl PlaceInCell {
 
     /// Whether a longitudinal correction passes the innovation test.
     pub(super) fn believes_along(&self, farther: f64, error: f64) -> bool {
-        farther * farther < SIGMAS * SIGMAS * (self.spread[0] + error * error)
+        farther * farther < OUTLIER * OUTLIER * (self.spread[0] + error * error)
     }
 
     /// Whether a lateral measurement passes the innovation test.
     pub(super) fn believes(&self, off: f64, error: f64) -> bool {
         let innovation = off - self.off;
-        innovation * innovation < SIGMAS * SIGMAS * (self.spread[1] + error * error)
+        innovation * innovation < OUTLIER * OUTLIER * (self.spread[1] + error * error)
     }
 
     /// Increases the lateral variance, because measurements contradict the estimate.

@@ -1,8 +1,11 @@
+use std::f64::consts::FRAC_PI_4;
+
 use nalgebra::{SMatrix, SVector};
 
 use super::rig::{Rig, RigSensor};
 use super::sight::{Crossing, Crossings};
 use crate::geometry::{Point, Pose, Vector, angle_difference, direction, math, normalize_angle};
+use crate::kinematics::{LEAST_RANGE_ERROR, OUTLIER};
 use crate::maze::{Cell, Direction, Maze, Scale, WallState};
 
 /// Localisation in a partly known maze, from odometry and three distance sensors.
@@ -72,28 +75,14 @@ const ANGLE: usize = 4;
 /// Index of the drift (rad/m).
 const BEND: usize = 5;
 
-/// Minimum standard deviation of a reading (m); covers unmodelled errors.
-const LEAST_RANGE: f64 = 1e-3;
-/// Initial standard deviations (m, rad).
+/// The standard deviations at the start: metres and radians.
 const START: [f64; 2] = [1e-3, 4e-3];
-/// Scale of the slip noise relative to the odometry model; covers the filter's own errors.
-const SLIP: f64 = 2.0;
-/// Gate of the innovation test (standard deviations).
-const GATE: f64 = 4.0;
-/// Limit on the position error in data association (cells): below half a cell, the nearest feature is the
-/// right one.
+/// Cells by which a robot that does not know better may be wrong about its place: what it sees is then the nearest that it
+/// can be.
 const NEAREST: f64 = 0.45;
-/// Distance from a corner within which a ray may hit something other than the wall's face (m).
-const CORNER: f64 = 0.012;
-/// Minimum cosine to the wall's normal (14 degrees); other beams may see past an opening beside the wall.
+/// Beams square to a wall, up to 14 degrees: others may see what stands behind an opening beside it.
 const SQUARE: f64 = 0.97;
-/// Maximum range at which a slanted beam can distinguish posts from what lies behind them (cells).
-const POST_RANGE: f64 = 0.8;
-/// Maximum apparent displacement of a post (cells).
-const POST_GATE: f64 = 0.25;
-/// Mean distance of a hit from a post's centre, as a fraction of half its width.
-const MET: f64 = 0.8;
-/// Standard deviation of an observed edge (m).
+/// How sharply a beam sees an edge, in metres.
 const EDGE: f64 = 0.004;
 
 impl MazeLocaliser {
@@ -168,7 +157,7 @@ impl MazeLocaliser {
     /// Adds the slip of both wheels, which grows with the square root of the distance.
     fn add_slip(&mut self, length: f64, turned: f64, (sin, cos): (f64, f64)) {
         let aside = 0.5 * self.rig.track * turned;
-        let slip = SLIP * SLIP * self.rig.errors.slip * self.rig.errors.slip + 1e-8;
+        let slip = self.rig.errors.slip * self.rig.errors.slip + 1e-8;
         let wheels = [length - aside, length + aside].map(|way| slip * way.abs());
         let along = 0.25 * (wheels[0] + wheels[1]);
         let around = (wheels[0] + wheels[1]) / (self.rig.track * self.rig.track);
@@ -187,7 +176,7 @@ impl MazeLocaliser {
         let (x, y) = (sensor.mount.x, sensor.mount.y);
         let offset = Vector::new(x * cos - y * sin, x * sin + y * cos);
         let ray = direction(yaw);
-        let deviation = self.rig.range_error.max(LEAST_RANGE);
+        let deviation = self.rig.range_error.max(LEAST_RANGE_ERROR);
         if ray.x.abs().max(ray.y.abs()) <= SQUARE && self.notice_post(maze, offset, ray, reading) {
             return;
         }
@@ -203,10 +192,10 @@ impl MazeLocaliser {
             if passed == 0 && square {
                 self.notice_edge(sensor, &model, reading);
             }
-            let slack = GATE * (deviation + self.deviation(&model.range_slope()));
+            let slack = OUTLIER * (deviation + self.deviation(&model.range_slope()));
             let agrees = (reading - crossing.distance).abs() < slack.min(NEAREST * self.scale.cell);
-            // Uncertainty of the hit along the wall.
-            let margin = CORNER + 2.0 * self.deviation(&model.along_slope());
+            // How far along the wall the ray may be from where it seems to be.
+            let margin = OUTLIER * EDGE + 2.0 * self.deviation(&model.along_slope());
             let post = margin + 0.5 * self.scale.wall;
             let differs = reading - crossing.distance;
             match crossing.wall {
@@ -258,7 +247,7 @@ impl MazeLocaliser {
         // The change happened at some time since the last reading.
         let innovation = edge - (along - 0.5 * step);
         let variance = step * step / 12.0 + EDGE * EDGE;
-        let slack = GATE * (EDGE + self.deviation(&model.along_slope()));
+        let slack = OUTLIER * (EDGE + self.deviation(&model.along_slope()));
         if innovation.abs() < slack.clamp(0.3 * self.scale.cell, NEAREST * self.scale.cell) {
             self.update(&model.along_slope(), innovation, variance);
         }
@@ -266,23 +255,23 @@ impl MazeLocaliser {
 
     /// Correction by a bare post that a slanted beam hits. Returns whether the reading matches one.
     fn notice_post(&mut self, maze: &Maze, offset: Vector, ray: Vector, reading: f64) -> bool {
-        let (cell, half) = (self.scale.cell, 0.5 * self.scale.wall);
-        if reading > POST_RANGE * cell {
+        if !reading.is_finite() {
             return false;
         }
+        let (cell, half) = (self.scale.cell, 0.5 * self.scale.wall);
         let sensor = self.pose().position() + offset;
-        // The hit is slightly in front of the post's centre.
-        let met = sensor + ray * (reading + MET * half);
+        // A post is met a little before its middle.
+        let met = sensor + ray * (reading + FRAC_PI_4 * half);
         let [x, y] = [met.x, met.y].map(|place| (place / cell).round());
         let post = Point::new(x * cell, y * cell);
-        if (post - met).norm() > POST_GATE * cell || !is_bare(maze, x as i64, y as i64) {
+        if (post - met).norm() > NEAREST * cell || !is_bare(maze, x as i64, y as i64) {
             return false;
         }
         let aside = Vector::new(-ray.y, ray.x);
         let moved = Vector::new(-offset.y, offset.x);
-        let range = self.rig.range_error.max(LEAST_RANGE);
+        let range = self.rig.range_error.max(LEAST_RANGE_ERROR);
         for (towards, expected, variance) in
-            [(ray, reading + MET * half, range * range + 0.25 * half * half), (aside, 0.0, half * half)]
+            [(ray, reading + FRAC_PI_4 * half, range * range + 0.25 * half * half), (aside, 0.0, half * half)]
         {
             let view = post - (self.pose().position() + offset);
             // Derivative of the position of the post along a direction by x, y and heading.
@@ -302,7 +291,7 @@ impl MazeLocaliser {
     fn update(&mut self, slope: &SVector<f64, 6>, innovation: f64, variance: f64) {
         let spread = self.covariance * slope;
         let total = slope.dot(&spread) + variance;
-        if innovation * innovation > GATE * GATE * total {
+        if innovation * innovation > OUTLIER * OUTLIER * total {
             return;
         }
         let gain = spread / total;

@@ -1,5 +1,6 @@
 //! Ray casting in the known part of a maze.
 
+use crate::geometry::units::NEGLIGIBLE;
 use crate::geometry::{Point, Vector};
 use crate::maze::{Cell, Direction, Maze, Scale, WallState};
 
@@ -39,9 +40,6 @@ pub(super) struct Crossings<'a> {
     lines: [i64; 2],
 }
 
-/// Direction component below which a ray is parallel to the walls.
-const PARALLEL: f64 = 1e-6;
-
 impl<'a> Crossings<'a> {
     pub(super) fn new(maze: &'a Maze, scale: Scale, origin: Point, direction: Vector) -> Self {
         let half = 0.5 * scale.wall;
@@ -59,7 +57,7 @@ impl<'a> Crossings<'a> {
     /// Distance to the next line in x or y (m).
     fn distance(&self, axis: usize) -> f64 {
         let speed = self.direction[axis];
-        if speed.abs() < PARALLEL {
+        if speed.abs() < NEGLIGIBLE {
             return f64::INFINITY;
         }
         let face = self.lines[axis] as f64 * self.scale.cell - 0.5 * self.scale.wall * speed.signum();

@@ -40,9 +40,9 @@ struct Returning {
 const SLACK: f64 = 0.5;
 /// How much worse, in metres, for each metre that the place has been missed by.
 const SLACK_PER_METRE: f64 = 0.1;
-/// After so many robot radii the place has been missed for good, and the next one that can be left at all
-/// will do.
-const MISSED: f64 = 3.0;
+/// Robot radii after which the place has been missed for good, and the next one that can be left at all will
+/// do; and free space behind an edge that makes it a node.
+pub(super) const MISSED: f64 = 3.0;
 /// For so many steps a merit lasts.
 const LASTING: usize = 3;
 

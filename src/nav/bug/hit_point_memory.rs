@@ -1,5 +1,5 @@
 use super::body::{Body, GoalView};
-use super::leave_rule::LeaveRule;
+use super::leave_rule::{LeaveRule, OPEN};
 use super::strategy::{Decision, Place, Sight, Strategy};
 use crate::geometry::WallSide;
 
@@ -35,8 +35,6 @@ enum Course {
     Other,
 }
 
-/// Robot radii beyond which it is left behind.
-const AWAY: f64 = 2.5;
 /// The same for the hit point on the way back: it lies before the boundary rather than on its way.
 const HIT_POINT: f64 = 1.5;
 /// The share of the way back after which the hit point can be met.
@@ -50,7 +48,7 @@ impl<R, const ALTERNATING: bool> HitPointMemory<R, ALTERNATING> {
         let mut met = false;
         for remembered in &mut self.remembered {
             let distance = (remembered.place.point - sight.place.point).norm();
-            remembered.left_behind |= distance > AWAY * sight.radius;
+            remembered.left_behind |= distance > OPEN * sight.radius;
             let here = sight.in_line && remembered.place.is(&sight.place, sight.radius);
             met |= remembered.left_behind && here;
         }

@@ -59,8 +59,9 @@ pub(super) struct OnMainLine<const EVER: bool> {
 
 /// Metres to either side that still count as on the line.
 const LINE_WIDTH: f64 = 0.005;
-/// The free range along the line, in robot radii, from which on it is open even at a slant into the wall.
-const OPEN_LINE: f64 = 2.5;
+/// Robot radii beyond which a place is left behind, and a free range along the line from which on it is open even at a slant into
+/// the wall.
+pub(super) const OPEN: f64 = 2.5;
 
 impl<const EVER: bool> Default for OnMainLine<EVER> {
     fn default() -> Self {
@@ -82,7 +83,7 @@ impl<const EVER: bool> LeaveRule for OnMainLine<EVER> {
         if !on_line || line.dot(&(goal - sight.place.point)) < 0.0 {
             return false;
         }
-        let open = sight.is_open() || sight.free >= OPEN_LINE * sight.radius;
+        let open = sight.is_open() || sight.free >= OPEN * sight.radius;
         if open && sight.distance <= self.nearest - sight.step {
             return true;
         }

@@ -24,10 +24,8 @@ pub(super) struct Edge {
 
 /// Directions that are looked at, one a degree as of an EyeBot's lidar.
 const DIRECTIONS: usize = 360;
-/// Radians between them.
+/// Radians between them; as much of what is a metre away may hide between two beams.
 const SPACING: f64 = TAU / DIRECTIONS as f64;
-/// What may hide between two beams, in metres for each metre away.
-const HIDDEN: f64 = TAU / 360.0;
 
 impl Default for Panorama {
     fn default() -> Self {
@@ -51,7 +49,7 @@ impl Panorama {
     /// Shortens the free ranges blocked by one point.
     fn take_in(&mut self, point: &Point, radius: f64) {
         let away = point.coords.norm();
-        let radius = (radius + HIDDEN * away).min(away - 1e-3);
+        let radius = (radius + SPACING * away).min(away - 1e-3);
         if radius <= 0.0 {
             return;
         }
@@ -143,7 +141,7 @@ mod tests {
             let mut surroundings = Surroundings::default();
             surroundings.update(points.iter().copied(), 3.0);
             let unit = direction(SPACING * index as f64);
-            let wide = surroundings.free_distance(unit, 0.1 + 2.0 * HIDDEN).0;
+            let wide = surroundings.free_distance(unit, 0.1 + 2.0 * SPACING).0;
             let narrow = surroundings.free_distance(unit, 0.1).0;
             let found = panorama.free[index];
             // A larger disc is stopped earlier. The clearance limits the wide one, so the bound below is
@@ -173,13 +171,12 @@ mod tests {
         let edges: Vec<Edge> = panorama.edges(0.2).collect();
         assert_eq!(edges.len(), 2, "{edges:?}");
         for edge in edges {
-            // The tangent to the disc around the wall's end at (0.8, 0.3), enlarged by what may hide at 0.85
-            // m.
-            let expected = math::atan2(0.3, 0.8) + math::asin((0.1 + HIDDEN * 0.854) / 0.854);
+            // The tangent to the disc around the wall's end at (0.8, 0.3), with what may hide at 0.85 m.
+            let expected = math::atan2(0.3, 0.8) + math::asin((0.1 + SPACING * 0.854) / 0.854);
             assert!((edge.bearing.abs() - expected).abs() < 1.1 * SPACING, "{edge:?}");
             assert_eq!(edge.obstacle, -edge.bearing.signum());
         }
-        assert!((panorama.free[0] - (0.7 - 0.8 * HIDDEN)).abs() < 1e-3);
+        assert!((panorama.free[0] - (0.7 - 0.8 * SPACING)).abs() < 1e-3);
         let seen: Vec<Point> = panorama.obstacle(0.0, 0.12).collect();
         assert!(seen.len() > 40 && seen.iter().all(|p| p.x < 0.8), "{seen:?}");
     }

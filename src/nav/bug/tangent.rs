@@ -1,5 +1,6 @@
 use super::algorithm::bug_algorithm;
 use super::body::{Body, GoalView};
+use super::circumnavigation::MISSED;
 use super::doubt::Doubt;
 use super::panorama::{Edge, Panorama};
 use super::strategy::{Decision, Sight, Strategy};
@@ -54,8 +55,6 @@ pub(super) struct Tangent {
 
 /// How far away, in robot radii, places count.
 const REACH: f64 = 33.0;
-/// Free space behind an edge, in robot radii, that makes it a node.
-const NODE_DEPTH: f64 = 3.0;
 /// The least cosine between the way to a node and that to the goal.
 const LEAST_PROGRESS: f64 = 0.1;
 /// How much longer, as a factor, the way over a node on the other side may be said to be, so that the robot
@@ -93,7 +92,7 @@ impl Tangent {
 
     /// The best node among those accepted by `pick`.
     fn best_node(&self, body: &Body, view: &GoalView, pick: impl Fn(&Edge) -> bool) -> Option<Edge> {
-        let depth = NODE_DEPTH * body.parameters.robot_radius;
+        let depth = MISSED * body.parameters.robot_radius;
         let weighed = |edge: &Edge| {
             let other_side = self.passing.is_some_and(|side| side != edge.obstacle);
             Self::length(edge, view) * if other_side { LOYALTY } else { 1.0 }

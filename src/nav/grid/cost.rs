@@ -6,6 +6,55 @@
 
 use std::f64::consts::SQRT_2;
 
+use crate::world::GridCell;
+
+/// What the steps of a [`GridSearch`](super::GridSearch) or a [`DStarLite`](super::DStarLite) cost.
+pub trait StepCosts {
+    /// The cost of a step from a cell to one beside it, in edges of a cell: no less than its length, which is 1 or the
+    /// square root of 2, and no more than 10,000; what lies beyond, and what is no number, counts as the nearer of them.
+    /// A step that cannot be made at all leads to or from a cell that is not free.
+    fn cost(&self, from: GridCell, to: GridCell) -> f64;
+
+    /// Whether every step costs its length.
+    #[doc(hidden)]
+    const UNIFORM: bool = false;
+}
+
+/// Steps cost their length.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Uniform;
+
+impl StepCosts for Uniform {
+    fn cost(&self, from: GridCell, to: GridCell) -> f64 {
+        if from.column != to.column && from.row != to.row { SQRT_2 } else { 1.0 }
+    }
+
+    const UNIFORM: bool = true;
+}
+
+/// The most that a step costs, so that whole ways add up.
+const DEAREST: u64 = 10_000 * STRAIGHT;
+
+/// The cost of a step as a whole number.
+#[inline]
+pub(super) fn of_step<C: StepCosts>(
+    costs: &C,
+    diagonal: bool,
+    ends: impl FnOnce() -> (GridCell, GridCell),
+) -> u64 {
+    let length = if diagonal { DIAGONAL } else { STRAIGHT };
+    if C::UNIFORM {
+        return length;
+    }
+    let (from, to) = ends();
+    fixed(costs.cost(from, to)).clamp(length, DEAREST)
+}
+
+/// A whole number in edges of a cell.
+pub(super) fn in_cells(cost: u64) -> f64 {
+    cost as f64 / STRAIGHT as f64
+}
+
 /// A step along an edge of the grid.
 pub(super) const STRAIGHT: u64 = 33_461;
 /// A step along a diagonal.

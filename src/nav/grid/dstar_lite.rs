@@ -2,11 +2,12 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::components::GridComponents;
-use super::cost::{DIAGONAL, STRAIGHT, octile};
+use super::cost::{StepCosts, Uniform, in_cells, octile, of_step};
 use super::path::{End, GridPath, PlanError, SearchStatistics};
 use crate::world::{BitGrid, GridCell};
 
 /// D\* Lite: the shortest octile path for a robot that discovers changes of the map on its way.
+/// Steps cost their length, or what [`StepCosts`] say.
 ///
 /// The search runs from the goal to the robot and is kept. When cells turn out to be blocked or free, only
 /// what depends on them is recomputed.
@@ -28,7 +29,8 @@ use crate::world::{BitGrid, GridCell};
 /// # Ok::<(), roverlab::world::BitGridError>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct DStarLite {
+pub struct DStarLite<C = Uniform> {
+    costs: C,
     grid: BitGrid,
     robot: GridCell,
     goal: GridCell,
@@ -64,11 +66,19 @@ impl DStarLite {
     /// Creates a planner for a map, the robot's cell and the goal. The goal may be blocked now and become
     /// free later. Fails for an empty map and for cells outside it.
     pub fn new(grid: &BitGrid, robot: GridCell, goal: GridCell) -> Result<Self, PlanError> {
+        Self::by(grid, Uniform, robot, goal)
+    }
+}
+
+impl<C: StepCosts> DStarLite<C> {
+    /// As [`new`](DStarLite::new), by what steps cost.
+    pub fn by(grid: &BitGrid, costs: C, robot: GridCell, goal: GridCell) -> Result<Self, PlanError> {
         if grid.width() == 0 || grid.height() == 0 {
             return Err(PlanError::EmptyMap);
         }
         let unknown = Distances { settled: FAR, implied: FAR, key: None };
         let mut this = Self {
+            costs,
             cells: vec![unknown; grid.width() * grid.height()],
             grid: grid.clone(),
             robot,
@@ -92,6 +102,11 @@ impl DStarLite {
         &self.grid
     }
 
+    /// Current step costs.
+    pub fn costs(&self) -> &C {
+        &self.costs
+    }
+
     /// Sets the robot's cell. Fails for a cell outside the map.
     pub fn move_to(&mut self, robot: GridCell) -> Result<(), PlanError> {
         self.check_inside(End::Start, robot)?;
@@ -108,7 +123,19 @@ impl DStarLite {
             return;
         }
         self.grid.set_free(cell, free);
-        // All steps through or beside the cell start and end around it.
+        self.update_around(cell);
+    }
+
+    /// Tells that steps to and from a cell cost something else. Outside the map nothing happens.
+    pub fn set_costs(&mut self, cell: GridCell, change: impl FnOnce(&mut C)) {
+        if self.grid.contains(cell) {
+            change(&mut self.costs);
+            self.update_around(cell);
+        }
+    }
+
+    /// All steps that a cell is part of, or beside, begin and end around it.
+    fn update_around(&mut self, cell: GridCell) {
         for row in cell.row.saturating_sub(1)..(cell.row + 2).min(self.grid.height()) {
             for column in cell.column.saturating_sub(1)..(cell.column + 2).min(self.grid.width()) {
                 self.update(GridCell::new(column, row));
@@ -145,7 +172,11 @@ impl DStarLite {
             at = next;
             cells.push(at);
         }
-        Ok(GridPath::through(&cells, self.statistics))
+        let mut path = GridPath::through(&cells, self.statistics);
+        if !C::UNIFORM {
+            path.cost = in_cells(self.cells[self.index(self.robot)].implied);
+        }
+        Ok(path)
     }
 
     /// Computes distances until the robot's is final.
@@ -217,7 +248,8 @@ impl DStarLite {
         let steps = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
         steps.map(|(dx, dy)| {
             let open = free(0, 0) && free(dx, dy) && free(dx, 0) && free(0, dy);
-            open.then(|| (at(dx, dy), if dx != 0 && dy != 0 { DIAGONAL } else { STRAIGHT }))
+            let cost = || of_step(&self.costs, dx != 0 && dy != 0, || (cell, at(dx, dy)));
+            open.then(|| (at(dx, dy), cost()))
         })
     }
 

@@ -1,12 +1,13 @@
 use crate::world::{BitGrid, GridCell};
 
 use super::components::GridComponents;
-use super::cost::{self, DIAGONAL, STRAIGHT};
+use super::cost::{self, StepCosts, Uniform};
 use super::path::{GridPath, GridPlanner, PlanError, SearchStatistics, check};
 use super::queue::BucketQueue;
 
 /// Dijkstra's algorithm and A\* on a grid, from cell to cell: steps along edges and along diagonals with both
-/// side cells free, so that no corner is cut (book, section 10.6).
+/// side cells free, so that no corner is cut (book, section 10.6). Steps cost
+/// their length, or what [`StepCosts`] say.
 ///
 /// A\* uses the octile distance as its lower bound. The cells are their own graph; the search state is one
 /// integer per cell, which includes the query it belongs to, so that a new query need not clear it.
@@ -27,7 +28,8 @@ use super::queue::BucketQueue;
 /// # Ok::<(), roverlab::world::BitGridError>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct GridSearch {
+pub struct GridSearch<C = Uniform> {
+    costs: C,
     grid: BitGrid,
     components: GridComponents,
     informed: bool,
@@ -44,7 +46,7 @@ pub struct GridSearch {
 pub struct GridStep {
     /// The cell.
     pub cell: GridCell,
-    /// Length of the path to it (cells).
+    /// Cost of the path to it (cells).
     pub cost: f64,
     /// Lower bound of the rest (cells); 0 in Dijkstra's algorithm.
     pub estimate: f64,
@@ -83,15 +85,27 @@ const ROWS: [isize; 8] = [0, 1, 0, -1, 1, 1, -1, -1];
 impl GridSearch {
     /// Dijkstra's algorithm, which ends as soon as the goal is settled.
     pub fn dijkstra(grid: &BitGrid) -> Self {
-        Self::new(grid, false)
+        Self::new(grid, Uniform, false)
     }
 
     /// A\*.
     pub fn astar(grid: &BitGrid) -> Self {
-        Self::new(grid, true)
+        Self::new(grid, Uniform, true)
+    }
+}
+
+impl<C: StepCosts> GridSearch<C> {
+    /// Dijkstra's algorithm by what steps cost.
+    pub fn dijkstra_by(grid: &BitGrid, costs: C) -> Self {
+        Self::new(grid, costs, false)
     }
 
-    fn new(grid: &BitGrid, informed: bool) -> Self {
+    /// A\* by what steps cost.
+    pub fn astar_by(grid: &BitGrid, costs: C) -> Self {
+        Self::new(grid, costs, true)
+    }
+
+    fn new(grid: &BitGrid, costs: C, informed: bool) -> Self {
         let stride = grid.width() + 2;
         let cells = stride * (grid.height() + 2);
         let mut free = vec![0; cells.div_ceil(64) + 1];
@@ -100,6 +114,7 @@ impl GridSearch {
             free[index / 64] |= 1 << (index % 64);
         }
         Self {
+            costs,
             grid: grid.clone(),
             components: GridComponents::new(grid),
             informed,
@@ -126,7 +141,11 @@ impl GridSearch {
         }
         let statistics = self.search(self.index(start), self.index(goal), &mut trace);
         let cells = self.cells_back(self.index(start), self.index(goal));
-        Ok(GridPath::through(&cells, statistics))
+        let mut path = GridPath::through(&cells, statistics);
+        if !C::UNIFORM {
+            path.cost = cost::in_cells(self.labels[self.index(goal)].cost());
+        }
+        Ok(path)
     }
 
     fn search(&mut self, start: usize, goal: usize, trace: &mut impl FnMut(GridStep)) -> SearchStatistics {
@@ -157,7 +176,9 @@ impl GridSearch {
                     continue;
                 }
                 let next = node.wrapping_add_signed(offsets[i]);
-                let total = cost + if i < 4 { STRAIGHT } else { DIAGONAL };
+                let ends =
+                    || (cell(x, y), cell(x.wrapping_add_signed(COLUMNS[i]), y.wrapping_add_signed(ROWS[i])));
+                let total = cost + cost::of_step(&self.costs, i >= 4, ends);
                 let label = self.labels[next];
                 if label.is_of(self.query) && label.cost() <= total {
                     continue;
@@ -199,10 +220,9 @@ impl GridSearch {
     }
 
     fn step(&self, x: usize, y: usize, cost: u64, estimate: u64) -> GridStep {
-        let cells = |cost: u64| cost as f64 / STRAIGHT as f64;
-        let cell = GridCell::new(x - 1, y - 1);
+        let cell = cell(x, y);
         debug_assert!(self.grid.is_free(cell));
-        GridStep { cell, cost: cells(cost), estimate: cells(estimate) }
+        GridStep { cell, cost: cost::in_cells(cost), estimate: cost::in_cells(estimate) }
     }
 
     fn index(&self, cell: GridCell) -> usize {
@@ -213,7 +233,7 @@ impl GridSearch {
     fn cells_back(&self, start: usize, goal: usize) -> Vec<GridCell> {
         let (mut cells, mut at) = (Vec::new(), goal);
         loop {
-            cells.push(GridCell::new(at % self.stride - 1, at / self.stride - 1));
+            cells.push(cell(at % self.stride, at / self.stride));
             if at == start {
                 break;
             }
@@ -225,7 +245,12 @@ impl GridSearch {
     }
 }
 
-impl GridPlanner for GridSearch {
+/// The cell at coordinates that count the border.
+fn cell(x: usize, y: usize) -> GridCell {
+    GridCell::new(x - 1, y - 1)
+}
+
+impl<C: StepCosts> GridPlanner for GridSearch<C> {
     fn plan(&mut self, start: GridCell, goal: GridCell) -> Result<GridPath, PlanError> {
         self.plan_traced(start, goal, |_| {})
     }

@@ -9,6 +9,7 @@ use super::steering::Steering;
 use crate::geometry::{Point, Pose, Twist, angle_difference};
 use crate::io::control::{Behaviour, Decision, Halt, LidarObservation, Senses};
 use crate::io::{Error, Lidar, Odometry, Result};
+use crate::kinematics::OUTLIER;
 use crate::nav::surroundings::Surroundings;
 use crate::scan::{ScanFilter, check_measured};
 use crate::world::{GridCell, World};
@@ -90,28 +91,18 @@ struct Progress {
     blocked: u32,
 }
 
-/// Metres within which what is seen counts for the plan.
-const SEEING: f64 = 2.5;
-/// Metres within which what is seen counts for the next step.
+/// Metres within which what is seen counts for the next step, whose target is no farther away.
 const NEAR: f64 = 0.6;
-/// Metres within which it counts for a robot that does not get on.
-const TOUCHING: f64 = 0.05;
-/// What is seen so near to something known is that: in metres.
-const STRAY: f64 = 0.045;
-/// The same in standard deviations of a range.
-const STRAY_DEVIATIONS: f64 = 4.0;
-/// The farthest target of a step, in metres.
-const LOOKAHEAD: f64 = 0.5;
-/// Seconds that the robot looks before it plans.
-const LOOKING_TIME: f64 = 0.6;
+/// Metres within which it counts for a robot that does not get on, and so near to something known it is that.
+const TOUCHING: f64 = 0.045;
+/// Seconds that the robot looks before it plans, and for which it backs off.
+const PAUSE: f64 = 1.0;
 /// Seconds without moving after which it does not get on.
 const IDLE_TIME: f64 = 2.0;
 /// Seconds without getting nearer after which it does not get on.
 const WAITING_TIME: f64 = 25.0;
 /// Metres per second with which it backs off.
 const BACKING_SPEED: f64 = 0.06;
-/// Seconds for which it backs off.
-const BACKING_TIME: f64 = 1.0;
 /// So often it may fail to get on in one place.
 const MAX_BLOCKED: u32 = 8;
 /// So often it may doubt what it has seen.
@@ -154,7 +145,7 @@ impl Navigator {
                 blocked_at: start.position(),
                 blocked: 0,
             },
-            left: (LOOKING_TIME / parameters.period).ceil() as u32,
+            left: (PAUSE / parameters.period).ceil() as u32,
             doubts: 0,
             widened_at: start.position(),
         };
@@ -245,11 +236,9 @@ impl Navigator {
         self.surroundings.update(self.points.iter().copied(), NEAR);
         self.near.clear();
         self.near.extend(self.points.iter().filter(|point| point.coords.norm() < NEAR));
-        let stray = STRAY.max(STRAY_DEVIATIONS * self.filter.noise());
+        let stray = TOUCHING.max(OUTLIER * self.filter.noise());
         for point in &self.points {
-            if point.coords.norm() < SEEING {
-                self.marks.extend(self.chart.note(self.pose.to_world(*point), stray));
-            }
+            self.marks.extend(self.chart.note(self.pose.to_world(*point), stray));
         }
         Ok(())
     }
@@ -291,7 +280,7 @@ impl Navigator {
         self.doubts += 1;
         self.events.push(NavigatorEvent::Doubted { point: self.pose.position() });
         self.marks.clear();
-        self.left = (LOOKING_TIME / self.parameters.period).ceil() as u32;
+        self.left = (PAUSE / self.parameters.period).ceil() as u32;
         self.phase = NavigatorPhase::Looking;
     }
 
@@ -306,7 +295,7 @@ impl Navigator {
             return self.give_way();
         }
         let Some(route) = &self.route else { return Twist::STOP };
-        let target = route.target(&self.chart, self.pose.position(), LOOKAHEAD);
+        let target = route.target(&self.chart, self.pose.position(), NEAR);
         let clearance = self.chart.clearance(route.level);
         self.steering(clearance).towards(self.pose.to_local(target), self.pose.distance_to(self.goal), speed)
     }
@@ -380,7 +369,7 @@ impl Navigator {
             self.marks.extend(self.chart.insist(self.pose.to_world(*point)));
         }
         self.phase = NavigatorPhase::BackingOff;
-        self.left = (BACKING_TIME / self.parameters.period).ceil() as u32;
+        self.left = (PAUSE / self.parameters.period).ceil() as u32;
         self.back_off()
     }
 

@@ -16,8 +16,6 @@ pub(super) struct Steering<'a> {
 
 /// Seconds within which the robot stands, the motors' lag included, and a little more.
 const STOPPING_TIME: f64 = 0.5;
-/// How far, in metres, a step looks ahead for something in its way.
-const STEP: f64 = 0.15;
 /// Radians that a step may point past its target.
 const ASIDE: f64 = 1.2;
 /// Radians by which it is turned at a time.
@@ -27,7 +25,7 @@ impl Steering<'_> {
     /// The twist for a target in the robot's frame, on the way to a goal at a distance of `rest` metres.
     pub(super) fn towards(&self, target: Point, rest: f64, speed: Twist) -> Twist {
         let bearing = math::atan2(target.y, target.x);
-        let heading = self.past_obstacles(bearing, target.coords.norm().min(STEP));
+        let heading = self.past_obstacles(bearing, target.coords.norm());
         let limit = self.parameters.turn_rate;
         // Proportional to the error and damped by the turn rate: the motors' lag would cause oscillation
         // otherwise.

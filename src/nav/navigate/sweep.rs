@@ -1,5 +1,6 @@
 use std::f64::consts::TAU;
 
+use crate::geometry::units::NEGLIGIBLE;
 use crate::geometry::{Aabb, Point, Twist, math};
 use crate::world::Footprint;
 
@@ -11,9 +12,6 @@ pub(super) struct Sweep {
     outline: Footprint,
     twist: Twist,
 }
-
-/// Turns slower than this, in radians per second, are none.
-const STRAIGHT: f64 = 1e-6;
 
 impl Sweep {
     /// The outline inflated by `margin` metres; a rectangle keeps its corners.
@@ -36,7 +34,7 @@ impl Sweep {
         if self.is_inside(point) {
             return if self.moves_off(point) { f64::INFINITY } else { 0.0 };
         }
-        if self.twist.angular.abs() < STRAIGHT { self.straight(point) } else { self.turning(point) }
+        if self.twist.angular.abs() < NEGLIGIBLE { self.straight(point) } else { self.turning(point) }
     }
 
     fn is_inside(&self, point: Point) -> bool {

@@ -8,13 +8,13 @@ use crate::race::cone::{Cone, ConeColour};
 use crate::race::error::LineError;
 use crate::race::grip::GripLimit;
 use crate::race::lane_model::FARTHEST;
-use crate::race::map::{ConeMap, ConeMapParameters};
+use crate::race::map::{ConeMap, ConeMapParameters, STRIDE};
 use crate::race::profile::{CarLimits, SpeedProfile};
-use crate::race::racer::{RacerParameters, STILL};
+use crate::race::racer::{ASTRAY, RacerParameters, STILL};
 use crate::race::racing_line::CarOutline;
 use crate::race::reckoning::Reckoning;
 use crate::race::sight::{ConeSighting, sightings};
-use crate::race::tracker::{LineTracker, LineTrackerParameters};
+use crate::race::tracker::{CRAWL, LineTracker, LineTrackerParameters};
 use crate::race::tyres::Tyres;
 
 /// Parameters of [`EventRacer`].
@@ -122,26 +122,14 @@ pub struct EventRacer {
 
 /// Seconds that it looks before it moves.
 const LOOKS: f64 = 0.3;
-/// Metres per second at which it looks for the layout from nearer.
-const CREEP: f64 = 1.0;
-/// Metres that it goes so.
-const CREEPS: f64 = 6.0;
-/// Metres behind the place where the car stands at first at which lines begin.
-const BEHIND: f64 = 4.0;
-/// Metres before the origin of a skidpad at which its line begins.
+/// Metres before the origin of a skidpad, and behind the start of a strip, at which lines begin.
 const BEFORE: f64 = 30.0;
-/// Metres before the origin of a skidpad up to which it is entered slowly.
-const ENTERED: f64 = 2.0;
 /// Metres by which a number of the layout changes before the line is planned again.
 const CHANGED: f64 = 0.02;
 /// Metres between a cone and the side of a car that passes it.
 const BESIDE: f64 = 0.07;
-/// Metres between a cone and the nose of a car that stands before it.
-const STANDS: f64 = 0.5;
 /// Metres ahead that cones in the way matter.
 const AHEAD: f64 = 45.0;
-/// Metres from the end of its line within which a car has driven it.
-const END: f64 = 2.0;
 
 impl EventRacer {
     /// A car before the start of an acceleration.
@@ -263,7 +251,7 @@ impl EventRacer {
             self.phase = if self.line.is_some() { EventPhase::Driving } else { EventPhase::Lost };
             return Twist::default();
         }
-        if self.blind >= self.parameters.patience[0] || self.way >= CREEPS {
+        if self.blind >= self.parameters.patience[0] || self.way >= ASTRAY {
             self.phase = EventPhase::Lost;
         }
         let outline = self.parameters.outline;
@@ -274,7 +262,7 @@ impl EventRacer {
         });
         let creeps =
             self.time >= 2.0 * LOOKS && self.blind == 0.0 && free && self.phase == EventPhase::Looking;
-        if creeps { Twist::new(CREEP, 0.0) } else { Twist::default() }
+        if creeps { Twist::new(CRAWL, 0.0) } else { Twist::default() }
     }
 
     /// Distance from the line at which a car would touch a cone, plus a margin (m).
@@ -289,12 +277,12 @@ impl EventRacer {
         let behind = p.outline.nose - p.outline.ahead;
         let (points, entered) = match shape {
             EventShape::Strip { .. } => {
-                (line::straight(-behind - BEHIND, p.strip + p.stop[0] - behind), f64::NEG_INFINITY)
+                (line::straight(-behind - BEFORE, p.strip + p.stop[0] - behind), f64::NEG_INFINITY)
             }
             EventShape::Eight { apart, .. } => {
                 let room = p.outline.half_width + ConeColour::Unknown.radius() + p.outline.room;
                 let ends = [-BEFORE, p.stop[1] - behind];
-                (line::smooth_eight(apart, line::radius(shape, room), ends), -ENTERED)
+                (line::smooth_eight(apart, line::radius(shape, room), ends), -STRIDE)
             }
         };
         let mut profile = SpeedProfile::open(&points, &p.limits, p.limits.top_speed, 0.0)?;
@@ -341,7 +329,7 @@ impl EventRacer {
     fn is_at_end(&self) -> bool {
         let Some(line) = &self.line else { return false };
         let left = &line.profile().lengths[line.passed()..line.points().len() - 1];
-        left.iter().sum::<f64>() < END
+        left.iter().sum::<f64>() < STRIDE
     }
 
     /// Limits a command so that the car stops before obstacles, such as the cones at the end of a lane.
@@ -352,7 +340,7 @@ impl EventRacer {
         let places = places.map(|place| layout.pose.to_local(place));
         let gaps = places.filter_map(|place| line.distance_to(place, self.beside(), AHEAD));
         let Some(gap) = gaps.min_by(f64::total_cmp) else { return command };
-        let free = (gap - (p.outline.nose - p.outline.ahead) - STANDS).max(0.0);
+        let free = (gap - (p.outline.nose - p.outline.ahead) - p.outline.room).max(0.0);
         slowed(command, (1.6 * p.limits.brake * free).sqrt())
     }
 

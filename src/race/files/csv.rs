@@ -1,4 +1,4 @@
-use super::FARTHEST;
+use crate::geometry::units::FARTHEST;
 use crate::world::formats::{FormatError, Location, shown};
 
 /// A field of a line of comma-separated values.

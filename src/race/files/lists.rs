@@ -2,8 +2,9 @@
 
 use saphyr_parser::Event;
 
-use super::{FARTHEST, MOST};
+use super::MOST;
 use crate::geometry::Point;
+use crate::geometry::units::FARTHEST;
 use crate::world::formats::{FormatError, Location, YamlEvents};
 
 /// A list of items read by `item`.

@@ -19,8 +19,6 @@ use super::{ConeTrack, Corridor};
 use crate::geometry::Point;
 use crate::world::formats::{FormatError, Location, shown};
 
-/// Numbers of files beyond this are no tracks.
-const FARTHEST: f64 = 1e5;
 /// Cones or stations of a file.
 const MOST: usize = 20_000;
 

@@ -1,4 +1,5 @@
 use super::*;
+use crate::geometry::math;
 use crate::race::landmark::SURE;
 
 fn sighting(x: f64, y: f64) -> ConeSighting {

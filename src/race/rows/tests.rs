@@ -35,7 +35,7 @@ fn rows_go_on_where_a_cone_is_missing() {
 
 #[test]
 fn a_leg_costs_more_the_more_it_turns_and_the_longer_it_is() {
-    let end = End { cone: Some(0), place: Point::new(0.0, -1.8), heading: 0.0, turn: 0.0, share: 0.85 };
+    let end = End { cone: Some(0), place: Point::new(0.0, -1.8), heading: 0.0, share: 0.85 };
     let cost = |x: f64, y: f64| end.cost_to(Point::new(x, y), 10.5);
     assert!(cost(4.0, -1.8) < cost(5.0, -1.8) && cost(4.0, -1.8) < cost(3.0, 0.8));
     assert_eq!(cost(10.6, -1.8), None);

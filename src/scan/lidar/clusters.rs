@@ -1,6 +1,8 @@
 use super::ScanFeaturesParameters;
 use crate::geometry::{Point, direction, math};
 use crate::io::LidarScan;
+use crate::kinematics::OUTLIER;
+use crate::scan::filter::GRAZING;
 
 /// A beam with an echo.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,11 +20,6 @@ pub(super) struct Cluster {
     /// Whether the adjacent beams on either side hit something farther away, or nothing.
     pub(super) stands_before: [bool; 2],
 }
-
-/// Smallest angle at which beams are expected to hit a wall (rad).
-const GRAZING: f64 = 0.1;
-/// Further range difference allowed between adjacent beams on a wall (standard deviations).
-const SIGMAS: f64 = 6.0;
 
 /// Splits a scan where adjacent beams hit different surfaces (G. A. Borges and M.-J. Aldon, "Line extraction
 /// in 2D range images for mobile robotics", 2004). In a full-turn scan, a cluster across the scan's ends
@@ -72,7 +69,7 @@ fn is_break(scan: &LidarScan, one: usize, other: usize, parameters: &ScanFeature
     }
     let step = scan.angle_increment.abs();
     let slope = math::sin(step) / math::sin((GRAZING - step).max(0.3 * GRAZING));
-    (a - b).abs() > a.min(b) * slope.min(1.0) + SIGMAS * parameters.range_error + 0.01
+    (a - b).abs() > a.min(b) * slope.min(1.0) + OUTLIER * parameters.range_error + 0.01
 }
 
 /// Whether the neighbours of a cluster are farther away, on either side.

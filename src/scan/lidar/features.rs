@@ -2,7 +2,7 @@ use std::ops::Range;
 
 use super::ScanFeaturesParameters;
 use super::clusters::{Cluster, Hit, clusters};
-use super::split_merge::{Part, straight_parts};
+use super::split_merge::{ALIKE, Part, straight_parts};
 use crate::geometry::{FittedLine, Point, angle_difference};
 use crate::io::{LidarScan, Result};
 
@@ -105,12 +105,10 @@ fn wall(hits: &[Hit], part: &Part) -> ScanWall {
 
 /// The corner of two consecutive walls (counter-clockwise), if it lies near their ends.
 fn corner(one: &ScanWall, other: &ScanWall, parameters: &ScanFeaturesParameters) -> Option<ScanCorner> {
-    /// Minimum angle between the walls of a corner (rad).
-    const LEAST_TURN: f64 = 0.2;
     let turn = angle_difference(other.line.angle(), one.line.angle());
     let position = one.line.crossing(&other.line)?;
     let near = |end: Point| (position - end).norm() < parameters.corner_gap;
-    (turn.abs() > LEAST_TURN && near(one.ends[1]) && near(other.ends[0]))
+    (turn.abs() > ALIKE && near(one.ends[1]) && near(other.ends[0]))
         .then_some(ScanCorner { position, angle: std::f64::consts::PI - turn })
 }
 

@@ -13,8 +13,8 @@ pub(super) struct Part {
 
 /// Number of hits averaged before distances from a line are compared, so that one noisy hit splits no wall.
 const SMOOTHING: usize = 3;
-/// Difference in direction below which two walls may be one (rad).
-const ALIKE: f64 = 0.12;
+/// Walls whose directions differ by less than this, in radians, may be one, and make no corner.
+pub(super) const ALIKE: f64 = 0.12;
 
 /// Straight parts of a cluster by split-and-merge (T. Pavlidis and S. L. Horowitz, "Segmentation of plane
 /// curves", 1974; the fastest and best for scans in the comparison of V. Nguyen et al., 2007).

@@ -4,6 +4,7 @@ use super::LocaliserParameters;
 use super::map::LocalisationMap;
 use crate::geometry::{Pose, Vector, angle_difference, direction, math, normalize_angle};
 use crate::io::LidarScan;
+use crate::scan::filter::{GRAZING, RANGE_ERROR};
 use crate::world::space::Scanner;
 
 /// A possible pose of the robot.
@@ -37,12 +38,8 @@ struct Evidence {
     explained: f64,
 }
 
-/// Sine of the smallest angle to a wall at which a beam determines the wall's position.
-const GRAZING: f64 = 0.2;
 /// Number of beams that count as one, because beams are not independent.
 const BEAMS_AS_ONE: f64 = 4.0;
-/// Minimum error of an expected range (m).
-pub(super) const LEAST_ERROR: f64 = 0.01;
 /// Fraction of beams that may measure anything.
 const OUTLIERS: f64 = 0.1;
 /// Exponent of the likelihood; a pose error affects all beams.
@@ -144,7 +141,7 @@ fn evidence(
     let lidar = pose.compose(&scan.mount);
     map.expect(&mut bench.scanner, &lidar, &mut bench.expected);
     let expected = &bench.expected;
-    let sigma = parameters.range_error.max(LEAST_ERROR);
+    let sigma = parameters.range_error.max(RANGE_ERROR);
     let blurred = 2.0 * sigma;
     let mut found = Evidence {
         information: Matrix3::zeros(),

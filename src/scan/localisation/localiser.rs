@@ -139,9 +139,7 @@ impl Localiser {
 
     /// Starts at a pose known to within a few centimetres and degrees, instead of searching the whole world.
     pub fn start_at(&mut self, pose: Pose) {
-        /// Standard deviation of the start pose (m, rad).
-        const SPREAD: f64 = 0.03;
-        self.hypotheses = vec![Hypothesis::new(pose, SPREAD)];
+        self.hypotheses = vec![Hypothesis::new(pose, KNOWN)];
         (self.odometry, self.viewed, self.searched, self.unexplained) = (None, None, None, 0);
     }
 

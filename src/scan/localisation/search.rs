@@ -1,11 +1,12 @@
 use std::f64::consts::{PI, SQRT_2};
 
 use super::LocaliserParameters;
-use super::hypothesis::LEAST_ERROR;
 use super::map::LocalisationMap;
 use super::surfaces::{STEP, Surfaces};
 use crate::geometry::{Aabb, Point, Pose, Vector, math, normalize_angle};
 use crate::io::LidarScan;
+use crate::kinematics::OUTLIER;
+use crate::scan::filter::RANGE_ERROR;
 
 /// Search for all poses at which a scan's points lie on surfaces.
 ///
@@ -50,8 +51,6 @@ const LEVELS: usize = 6;
 const KEPT: usize = 2;
 /// Number of scan points that are compared.
 const COMPARED: usize = 72;
-/// Tolerance of points on surfaces (standard deviations of a range).
-const DEVIATIONS: f64 = 4.0;
 /// Maximum number of blocks that may be found.
 const MOST_BLOCKS: usize = 2000;
 
@@ -68,7 +67,7 @@ pub(super) fn search(
         return None;
     }
     let misses = ((1.0 - share) * points.len() as f64) as usize;
-    let noise = DEVIATIONS * parameters.range_error.max(LEAST_ERROR);
+    let noise = OUTLIER * parameters.range_error.max(RANGE_ERROR);
     let levels = levels(&points, noise);
     let mut search = Search { surfaces: map.surfaces(), points, levels, misses, found: Vec::new() };
     search.blocks(&map.bounds()).then_some(search.found)

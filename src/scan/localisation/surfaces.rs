@@ -1,3 +1,5 @@
+use std::f64::consts::FRAC_1_SQRT_2;
+
 use crate::geometry::Point;
 use crate::world::{Clearance, Raster};
 
@@ -15,15 +17,13 @@ pub(super) struct Surfaces {
 
 /// Length of a step (m).
 pub(super) const STEP: f64 = 0.025;
-/// Maximum distance of a place from the centre of its cell (edges).
-const HALF_DIAGONAL: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 impl Surfaces {
     /// Measures from the cells that contain a surface. `clearance` must cover at least half a cell diagonal.
     pub(super) fn new(clearance: &Clearance) -> Self {
         let raster = clearance.raster();
         let (columns, rows) = (raster.columns(), raster.rows());
-        let slack = HALF_DIAGONAL * raster.resolution();
+        let slack = FRAC_1_SQRT_2 * raster.resolution();
         let mut squares: Vec<f32> = (0..raster.cells())
             .map(|cell| if clearance.at(cell) <= slack { 0.0 } else { f32::INFINITY })
             .collect();
@@ -132,7 +132,7 @@ mod tests {
             assert!(bound <= truth, "{bound} for {truth} at {place}");
             let is_inside = world.floor.contains(place);
             assert!(
-                !is_inside || bound > truth - 0.05 * 4.0 * HALF_DIAGONAL - STEP,
+                !is_inside || bound > truth - 0.05 * 4.0 * FRAC_1_SQRT_2 - STEP,
                 "{bound} for {truth} at {place}"
             );
         }

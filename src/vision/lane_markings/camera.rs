@@ -2,23 +2,27 @@ use crate::ParameterError;
 use crate::geometry::{Point, Vector, math};
 use crate::parameter::{require, require_finite, require_positive};
 
-/// Where a camera sits that looks at the road, and how its lens maps places on level ground to pixels.
+/// Mount and lens of a camera that looks at the road. It maps points of level ground to pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RoadCamera {
-    /// The horizontal field of view in radians.
+    /// Horizontal field of view (rad).
     pub field_of_view: f64,
-    /// Whether the lens is equidistant, as a fisheye's; otherwise it is a pinhole.
+    /// Whether the lens is an equidistant fisheye rather than a pinhole.
     pub fisheye: bool,
-    /// Radians above the horizontal: negative where it looks down.
+    /// Tilt above the horizontal (rad); negative if it looks down.
     pub tilt: f64,
-    /// Metres above the ground.
+    /// Height above the ground (m).
     pub height: f64,
-    /// Metres ahead of the robot's origin.
+    /// Position ahead of the robot's origin (m).
     pub ahead: f64,
 }
 
 impl RoadCamera {
-    /// Fails with the name of the field that is out of range.
+    /// Checks the fields.
+    ///
+    /// # Errors
+    ///
+    /// If a field is out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         let widest = if self.fisheye { std::f64::consts::TAU } else { std::f64::consts::PI };
         let view = self.field_of_view;
@@ -33,7 +37,7 @@ impl RoadCamera {
         require_finite("camera ahead", self.ahead)
     }
 
-    /// Pixels for a radian, of a fisheye, or for a metre a metre away.
+    /// Focal length (pixels; for a fisheye, pixels per radian).
     fn focal(&self, width: u32) -> f64 {
         let width = f64::from(width);
         if self.fisheye {
@@ -43,12 +47,12 @@ impl RoadCamera {
         }
     }
 
-    /// Column and row of a point of the ground, in the robot's frame, in an image of a size; pixel (0, 0) has its middle at
-    /// (0.5, 0.5). `None` behind the camera. `pitch` is added to the tilt.
+    /// Projects a ground point in the robot's frame to column and row in an image of a given size. The centre
+    /// of pixel (0, 0) is (0.5, 0.5). `pitch` is added to the tilt (rad). `None` behind the camera.
     pub fn project(&self, place: Point, pitch: f64, (width, height): (u32, u32)) -> Option<(f64, f64)> {
         let (sin, cos) = math::sin_cos(self.tilt + pitch);
         let (ahead, up) = (place.x - self.ahead, -self.height);
-        // Right, down and along the line of sight.
+        // Right, down, and along the optical axis.
         let (x, y, z) = (-place.y, ahead * sin - up * cos, ahead * cos + up * sin);
         let focal = self.focal(width);
         let scale = if self.fisheye {
@@ -63,7 +67,7 @@ impl RoadCamera {
         Some((0.5 * f64::from(width) + scale * x, 0.5 * f64::from(height) + scale * y))
     }
 
-    /// How a point of the ground seems to move, in metres for each radian, when the camera looks up.
+    /// Apparent motion of a ground point per radian of upward pitch (m/rad).
     pub(super) fn lift(&self, place: Point) -> Vector {
         let ahead = place.x - self.ahead;
         Vector::new((ahead * ahead + self.height * self.height) / self.height, ahead * place.y / self.height)

@@ -1,17 +1,18 @@
 use crate::geometry::{Point, Vector, math};
 
-/// Curvatures by which a road is known: at the car, and at even distances ahead. Between them they change evenly.
+/// Number of curvature knots: at the car, and at equal distances ahead. In between, curvature is linear.
 pub(super) const KNOTS: usize = 6;
-/// Metres from knot to knot.
+/// Distance between knots (m).
 pub(super) const SPACING: f64 = 0.4;
-/// Metres from one place of the table to the next, and how many of them there are.
+/// Step of the table (m).
 const STEP: f64 = 0.025;
+/// Number of entries in the table.
 const PLACES: usize = 112;
 
-/// The curvatures at the knots, in 1/m.
+/// Curvatures at the knots (1/m).
 pub(super) type Bends = [f64; KNOTS];
 
-/// The middle of a road as a table, from where the car is abreast of on. It begins at the origin, along x.
+/// Centre line of a road as a table, from abreast of the car on. It begins at the origin, along x.
 #[derive(Debug, Clone)]
 pub(super) struct Curve {
     places: Vec<Place>,
@@ -22,30 +23,30 @@ struct Place {
     point: Point,
     forward: Vector,
     bend: f64,
-    /// How the point moves with each of the curvatures.
+    /// Derivatives of the point by the curvatures (m²).
     slopes: [Vector; KNOTS],
 }
 
-/// A point as the road sees it.
+/// A point in road coordinates.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Foot {
-    /// Metres along the road.
+    /// Distance along the road (m).
     pub(super) along: f64,
-    /// Metres to the left of its middle.
+    /// Distance to the left of the centre line (m).
     pub(super) left: f64,
-    /// The direction to the left there.
+    /// Direction to the left there.
     pub(super) normal: Vector,
-    /// How `left` changes with each of the curvatures.
+    /// Derivatives of `left` by the curvatures (m²).
     pub(super) slopes: [f64; KNOTS],
 }
 
-/// The share that each knot has in the curvature at a place.
+/// Weights of the knots in the curvature at a position.
 fn shares(along: f64) -> [f64; KNOTS] {
     let at = (along / SPACING).clamp(0.0, (KNOTS - 1) as f64);
     std::array::from_fn(|knot| (1.0 - (at - knot as f64).abs()).max(0.0))
 }
 
-/// The curvature at a place.
+/// Curvature at a position (1/m).
 pub(super) fn bend_at(bends: &Bends, along: f64) -> f64 {
     bends.iter().zip(shares(along)).map(|(bend, share)| bend * share).sum()
 }
@@ -60,7 +61,7 @@ impl Curve {
             let (sin, cos) = math::sin_cos(heading);
             let forward = Vector::new(cos, sin);
             places.push(Place { point, forward, bend: bend_at(bends, along), slopes });
-            // By the middle of the step.
+            // Midpoint rule.
             let shares = shares(along + 0.5 * STEP);
             let bend: f64 = bends.iter().zip(shares).map(|(bend, share)| bend * share).sum();
             let (sin, cos) = math::sin_cos(heading + 0.5 * STEP * bend);
@@ -75,7 +76,7 @@ impl Curve {
         Self { places }
     }
 
-    /// The pose of the curve some metres along it: a point, and the direction there.
+    /// Point and direction at a distance along the curve (m).
     pub(super) fn at(&self, along: f64) -> (Point, Vector) {
         let index = ((along / STEP).max(0.0) as usize).min(PLACES - 1);
         let place = self.places[index];
@@ -87,7 +88,7 @@ impl Curve {
         )
     }
 
-    /// Where a point is beside the curve; `None` beyond its end.
+    /// Road coordinates of a point; `None` beyond the end of the curve.
     pub(super) fn foot(&self, point: Point) -> Option<Foot> {
         let mut along = point.x;
         for _ in 0..4 {

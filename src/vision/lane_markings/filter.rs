@@ -3,22 +3,22 @@ use crate::ParameterError;
 use crate::geometry::Point;
 use crate::vision::GrayView;
 
-/// Something bright that is as wide as a line, on a row of the ground.
+/// A bright point of a line's width, on a row of the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MarkingPoint {
-    /// Its middle in the robot's frame, if the camera is as it is said to be.
+    /// Centre in the robot's frame, for the nominal camera.
     pub place: Point,
-    /// By how many levels it is brighter than what is beside it.
+    /// Contrast to both sides (gray levels).
     pub contrast: f64,
-    /// Metres across a pixel there.
+    /// Width of a pixel there (m).
     pub pixel: f64,
 }
 
-/// Finds what is as wide as a line in an image, in rows across the road as if seen from above. It keeps its tables from image
+/// Finds points of lines in an image, in rows across the road as seen from above. Tables are kept from image
 /// to image.
 ///
-/// On each row of ground, the mean over a line's width is compared with the brighter one of those beside it, half a line's
-/// width away; peaks that are bright enough for their surroundings are lines.
+/// On each row of the ground, the mean over a line's width is compared with the brighter of the means of both
+/// sides, half a line's width away. Peaks of sufficient contrast are points of lines.
 ///
 /// ```
 /// use roverlab::geometry::Point;
@@ -48,14 +48,14 @@ pub struct MarkingFilter {
     reach: f64,
     size: (u32, u32),
     rows: Vec<Row>,
-    /// For every sample, where it is in the image, and its distance from the pixel before it in 16ths, to the right and down.
+    /// Pixel of every sample, with the offset to the right and down in 16ths of a pixel.
     samples: Vec<Sample>,
-    /// Sums of a row's samples from its beginning on.
+    /// Prefix sums of a row's samples.
     sums: Vec<u32>,
     response: Vec<i32>,
 }
 
-/// A row of the ground: metres ahead, where its samples begin, and the place of the first one.
+/// A row of the ground: distance ahead (m), range of its samples, and lateral position of the first one (m).
 #[derive(Debug, Clone, Copy)]
 struct Row {
     ahead: f64,
@@ -74,15 +74,20 @@ struct Sample {
 
 /// Samples across a line.
 const ACROSS: usize = 4;
-/// Rows of the ground are this many line widths apart at least.
+/// Minimum distance of the rows (line widths).
 const ROW_STEP: f64 = 0.6;
-/// Levels of contrast below which nothing is a line, and the same as a share of what is beside it.
+/// Minimum contrast of a line (gray levels).
 const LEAST: i32 = 8;
+/// Minimum contrast as a fraction of the brightness beside it.
 const SHARE: f64 = 0.18;
 
 impl MarkingFilter {
-    /// A filter for lines of a width in metres, up to `reach` metres ahead of the camera and half as far to its sides. Fails
-    /// where one of them makes no sense.
+    /// A filter for lines of a given width (m), up to `reach` ahead of the camera (m) and half as far to its
+    /// sides.
+    ///
+    /// # Errors
+    ///
+    /// If a parameter is out of range.
     pub fn new(camera: RoadCamera, line_width: f64, reach: f64) -> Result<Self, ParameterError> {
         camera.validate()?;
         let expected = "5 to 200 mm";
@@ -102,7 +107,7 @@ impl MarkingFilter {
         })
     }
 
-    /// Finds the points of lines, from near to far and from right to left.
+    /// Finds points of lines, ordered from near to far and from right to left.
     pub fn find(&mut self, image: GrayView<'_>, points: &mut Vec<MarkingPoint>) {
         points.clear();
         let size = (image.width() as u32, image.height() as u32);
@@ -116,7 +121,7 @@ impl MarkingFilter {
         }
     }
 
-    /// Finds which pixels the samples are.
+    /// Computes the pixels of the samples.
     fn work_out(&mut self, size: (u32, u32)) {
         (self.size, self.rows, self.samples) = (size, Vec::new(), Vec::new());
         let step = self.line_width / ACROSS as f64;
@@ -128,13 +133,13 @@ impl MarkingFilter {
             if row.to - row.from > 8 * ACROSS {
                 self.rows.push(row);
             }
-            // The next row of pixels.
+            // Advance to the next row of pixels.
             let deep = self.depth_of_row(ahead);
             ahead += deep.max(least);
         }
     }
 
-    /// Metres of ground from one row of pixels to the next.
+    /// Length of ground between two rows of pixels (m).
     fn depth_of_row(&self, ahead: f64) -> f64 {
         let row = |x: f64| self.camera.project(Point::new(x, 0.0), 0.0, self.size).map(|(_, row)| row);
         match (row(ahead), row(ahead + 0.01)) {
@@ -174,7 +179,7 @@ impl MarkingFilter {
         Row { ahead, from, to: self.samples.len(), right, pixel }
     }
 
-    /// Reads a row's samples, and adds them up.
+    /// Reads a row's samples into the prefix sums.
     fn measure(&mut self, image: GrayView<'_>, row: &Row) {
         let width = self.size.0;
         self.sums.clear();
@@ -192,7 +197,7 @@ impl MarkingFilter {
 
     fn peaks(&mut self, row: &Row, points: &mut Vec<MarkingPoint>) {
         let count = row.to - row.from;
-        // A line of less than a pixel is as wide as that.
+        // A line narrower than a pixel is one pixel wide.
         let step = self.line_width / ACROSS as f64;
         let across = ACROSS.max((row.pixel / step).round() as usize);
         let (half, side) = (across / 2, across.div_ceil(2));
@@ -221,19 +226,19 @@ impl MarkingFilter {
             while i < count && self.response[i] > 0 {
                 i += 1;
             }
-            // What is much wider than a line is none.
+            // Reject anything much wider than a line.
             if i - from > 4 * across {
                 continue;
             }
             let best = (from..i).max_by_key(|&k| self.response[k]).unwrap_or(from);
             let (mut weight, mut moment) = (0.0, 0.0);
             for k in from..i {
-                // Only what is at least half as bright belongs to the peak.
+                // Only samples with at least half the peak's contrast count.
                 let above = f64::from(2 * self.response[k] - self.response[best]).max(0.0);
                 weight += above;
                 moment += above * k as f64;
             }
-            // The mean over a line's width from half of it before a sample on: its middle is between two samples.
+            // Each mean begins half a line's width before its sample, so its centre lies between two samples.
             let middle = moment / weight - half as f64 + 0.5 * (across as f64 - 1.0);
             let y = row.right + step * middle;
             let contrast = f64::from(self.response[best]) / 256.0;
@@ -241,7 +246,7 @@ impl MarkingFilter {
         }
     }
 
-    /// The camera that it looks through.
+    /// The camera.
     pub fn camera(&self) -> &RoadCamera {
         &self.camera
     }

@@ -1,9 +1,9 @@
-//! The lane that a camera sees (book, chapter 13): markings on the ground, and the road that they belong to.
+//! Lane detection by camera (book, chapter 13): markings on the ground, and the road that they belong to.
 //!
-//! [`MarkingFilter`] looks at the image as if from above, and finds what is bright and as wide as a line. [`LaneFinder`] fits
-//! one road to that: curves in parallel, whichever of them are to be seen, with curvatures that change along the way, and
-//! tracks it with its covariance while the car drives. Sizes are those of the road; for one of a smaller scale,
-//! [`RoadModel::size`] says so.
+//! [`MarkingFilter`] finds bright points of a line's width, in rows of the ground. [`LaneFinder`] fits a road
+//! to these points: parallel lines, some of which may be invisible, with varying curvature. It tracks the
+//! road and its covariance while the car drives. Lengths are those of the actual road; [`RoadModel::size`] is
+//! its scale relative to the rules.
 
 mod camera;
 mod curve;

@@ -9,13 +9,13 @@ fn pinhole() -> RoadCamera {
     RoadCamera { field_of_view: 1.65, fisheye: false, tilt: -0.42, height: 0.25, ahead: 0.06 }
 }
 
-/// A picture of lines beside a circular road, of a lane's middle that is `offset` to the right of the car.
+/// An image of the lines of a circular road whose lane centre is `offset` to the right of the car.
 fn road(camera: &RoadCamera, (offset, heading, bend): (f64, f64, f64), lines: &[f64], pitch: f64) -> Vec<u8> {
     let mut random = Stream::new(7);
     let mut image: Vec<u8> = (0..SIZE.0 * SIZE.1).map(|_| 36 + random.below(12) as u8).collect();
     let (sin, cos) = math::sin_cos(heading);
     for line in lines {
-        // The middle of the road is half a lane to the left of the lane's.
+        // The road's centre is half a lane to the left of the lane's.
         let left = line + 0.21 - offset;
         for step in 0..6000 {
             let along = f64::from(step) * 5e-4;

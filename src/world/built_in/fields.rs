@@ -5,28 +5,27 @@ use crate::geometry::{Point, Segment, math};
 use crate::world::formats::maz;
 use crate::world::{Colour, Texture, Wall, World};
 
-/// Lines of a playing field.
+/// Colour of the lines of a playing field.
 const WHITE: Colour = Colour::from_hex(0xf0_f0_f0);
-/// A playing field.
+/// Colour of a playing field.
 const GRASS: Colour = Colour::from_hex(0x2a_7d_3c);
-/// One team's goal.
+/// Colour of one team's goal.
 const BLUE: Colour = Colour::from_hex(0x28_50_b4);
-/// The other team's goal.
+/// Colour of the other team's goal.
 const YELLOW: Colour = Colour::from_hex(0xe6_c8_28);
 
-/// A maze without inner walls. The mazes have the sizes and the letters that the book's scripts use; the
-/// walls are our own.
+/// A maze without inner walls. Mazes have the sizes and letters of the book's scripts; the walls are our own.
 const RECTANGLE: &str = " _ _ _ _ _\n|. . . . .|\n|. . . . .|\n|_ _ _ _ _|\n600\n";
-/// A maze with a way from the start.
+/// A maze with a path from the start.
 const SMALL: &str = " _ _ _ _\n|_  |   |\n|  _| | |\n| |   |_|\n|S|_|_ _|\n360\n";
-/// A field with a letter in each of sixteen cells: one letter.
+/// A field with a letter in each of sixteen cells, all the same.
 const BOTS16: &str = " _ _ _ _\n|a a a a|\n|a a a a|\n|a a a a|\n|A A A A|\n500\n";
-/// The same with four letters.
+/// The same with four different letters.
 const BOTS4X4: &str = " _ _ _ _\n|a b c d|\n|b c d a|\n|c d a b|\n|D A B C|\n500\n";
 
 impl World {
-    /// The worlds that every script knows by the names of their files in EyeSim: Soccer1998, Field, Field2,
-    /// Chess, Carolo, obstacles, rectangle, small, bots16, bots4x4.
+    /// Worlds that every script knows by their EyeSim file names: Soccer1998, Field, Field2, Chess, Carolo,
+    /// obstacles, rectangle, small, bots16, bots4x4.
     pub const PREDEFINED: [&'static str; 10] = [
         "Soccer1998",
         "Field",
@@ -40,7 +39,7 @@ impl World {
         "bots4x4",
     ];
 
-    /// A world of [`PREDEFINED`](Self::PREDEFINED), without regard to case.
+    /// A world of [`PREDEFINED`](Self::PREDEFINED), case-insensitive.
     pub fn predefined(name: &str) -> Option<Self> {
         let name = Self::PREDEFINED.into_iter().find(|known| known.eq_ignore_ascii_case(name))?;
         Some(match name {
@@ -59,14 +58,14 @@ impl World {
 }
 
 fn maze(text: &str) -> World {
-    // The texts above are right, as the tests say.
+    // The texts above are valid, which tests verify.
     maz::parse(text, "built-in.maz").map_or_else(|_| World::walled(2.0, 2.0), |parsed| parsed.value)
 }
 
-/// A picture on a floor of so many metres, each pixel 5 mm wide: the colour at metres from the near left
-/// corner.
+/// A floor image of a size in metres with pixels of 5 mm. `colour` is a function of the distances from the
+/// near left corner (m).
 fn painted(name: &str, (width, height): (f64, f64), colour: impl Fn(f64, f64) -> Colour) -> Texture {
-    /// Metres of a pixel of a field's texture.
+    /// Pixel size of a field's texture (m).
     const PIXEL: f64 = 0.005;
     let pixels = |metres: f64| (metres / PIXEL).round() as u32;
     let (columns, rows) = (pixels(width), pixels(height));
@@ -82,7 +81,7 @@ fn wall(a: [f64; 2], b: [f64; 2], colour: Colour) -> Wall {
     Wall { colour, ..Wall::new(Point::new(a[0], a[1]), Point::new(b[0], b[1])) }
 }
 
-/// The field of the small robots' league in 1998, of the size of a table for table tennis, with its goals.
+/// The field of the RoboCup small-size league in 1998, as large as a table-tennis table, with its goals.
 fn soccer() -> World {
     let (length, width, goal, depth) = (2.74, 1.525, 0.5, 0.18);
     let mut world = World::empty(length, width);
@@ -112,7 +111,7 @@ fn soccer() -> World {
     world
 }
 
-/// A table for swarms (sections 5.2 and 5.3): open, but for a blue wall at its far end.
+/// A field for swarms (sections 5.2 and 5.3): open, with a blue wall at its far end.
 fn field() -> World {
     let mut world = World::empty(7.0, 3.0);
     world.walls.push(wall([7.0, 0.0], [7.0, 3.0], BLUE));
@@ -121,7 +120,7 @@ fn field() -> World {
 
 /// A board of eight by eight squares.
 fn chess() -> World {
-    /// Metres of a square of the chequered floor.
+    /// Size of a square of the chequered floor (m).
     const SQUARE: f64 = 0.3;
     let side = 8.0 * SQUARE;
     let mut world = World::walled(side, side);
@@ -133,9 +132,9 @@ fn chess() -> World {
     world
 }
 
-/// The model town's loop (section 13.2), for driving on the left and clockwise round it.
+/// The model town's loop (section 13.2), for clockwise driving on the left.
 fn carolo() -> World {
-    /// Metres of its side.
+    /// Length of its side (m).
     const SIDE: f64 = 3.1;
     let corners =
         [(0.33, 0.45), (0.33, 2.60), (2.72, 2.60), (2.72, 1.95), (2.40, 1.55), (2.72, 1.15), (2.72, 0.45)];

@@ -1,6 +1,6 @@
-//! What scenes know by name without a file: the robots, objects and worlds of the book's scripts.
+//! Robots, objects and worlds of the book's scripts, which scenes know by name without a file.
 //!
-//! They have the names that EyeSim gives them; how they look and how large they are is our own.
+//! Their names are those of EyeSim; appearance and dimensions are our own.
 
 mod fields;
 mod objects;

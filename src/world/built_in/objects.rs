@@ -3,20 +3,20 @@ use std::sync::Arc;
 use super::signs::Sign;
 use crate::world::{Colour, Mesh, ObjectKind, Shape};
 
-/// Orange cones.
+/// Colour of orange cones.
 const ORANGE: Colour = Colour::from_hex(0xff_6a_00);
-/// Blue cones.
+/// Colour of blue cones.
 const BLUE: Colour = Colour::from_hex(0x12_4f_c8);
-/// Yellow cones.
+/// Colour of yellow cones.
 const YELLOW: Colour = Colour::from_hex(0xff_d4_00);
-/// Green cones.
+/// Colour of green cones.
 const GREEN: Colour = Colour::from_hex(0x1c_9a_3c);
-/// Crates.
+/// Colour of crates.
 const WOOD: Colour = Colour::from_hex(0x9c_6b_30);
 
 impl ObjectKind {
-    /// The objects that every scene knows by name. The balls' and boxes' masses, and the cones' and signs'
-    /// sizes, are those of real ones or of models that suit the robots.
+    /// Objects that every scene knows by name. The masses of balls and boxes and the sizes of cones and signs
+    /// are those of real ones, or of models that suit the robots.
     pub const PREDEFINED: [&'static str; 22] = [
         "can",
         "soccer",
@@ -42,8 +42,8 @@ impl ObjectKind {
         "CancelSpeedLimitSign",
     ];
 
-    /// An object of [`PREDEFINED`](Self::PREDEFINED), without regard to case, or by the name of the file that
-    /// describes it in EyeSim's own folders, as `coneorange`.
+    /// An object of [`PREDEFINED`](Self::PREDEFINED), case-insensitive, or by the name of its file in
+    /// EyeSim's folders, such as `coneorange`.
     pub fn predefined(name: &str) -> Option<Self> {
         let name = file_name(name).unwrap_or(name);
         let known = Self::PREDEFINED.into_iter().find(|known| known.eq_ignore_ascii_case(name))?;
@@ -69,9 +69,9 @@ impl ObjectKind {
     }
 }
 
-/// What EyeSim calls the files of some objects, and the objects' names.
+/// Object name for an EyeSim file name.
 fn file_name(name: &str) -> Option<&'static str> {
-    /// The names by which scripts ask for objects, and what they are called here.
+    /// File names in scripts, and the corresponding names here.
     const FILES: [(&str, &str); 8] = [
         ("coneorange", "Cone-O"),
         ("coneblue", "Cone-B"),
@@ -85,8 +85,8 @@ fn file_name(name: &str) -> Option<&'static str> {
     FILES.into_iter().find(|(file, _)| file.eq_ignore_ascii_case(name)).map(|(_, name)| name)
 }
 
-/// A traffic cone of a Formula Student track, or one `scale` times as large. Sensors other than cameras meet
-/// a round cone with the area of its square foot.
+/// A traffic cone of a Formula Student track, or one `scale` times as large. For sensors other than cameras
+/// it is a round cone with the area of its square foot.
 fn cone(name: &str, colour: Colour, scale: f64) -> ObjectKind {
     let (half, height, plate) = (0.114 * scale, 0.325 * scale, 0.030 * scale);
     let shape = Shape::Cone { radius: 0.129 * scale, top: 0.025 * scale, height };
@@ -108,12 +108,12 @@ fn cone(name: &str, colour: Colour, scale: f64) -> ObjectKind {
     }
 }
 
-/// The colour of a cone's reflecting band: white, but black where white would not show.
+/// Colour of a cone's reflecting band: white, or black on cones with too little contrast.
 fn band(colour: Colour) -> Colour {
     if colour == YELLOW { Colour::from_hex(0x20_20_20) } else { Colour::WHITE }
 }
 
-/// A sign on a post. It is placed by the way of those who read it: its picture looks back at them.
+/// A sign on a post, placed beside the way of its readers: its picture faces against its heading.
 fn sign_on_a_post(name: &str, sign: Sign) -> ObjectKind {
     let (radius, height, half, thickness) = (0.0045, 0.430, 0.065, 0.0005);
     let mut mesh = Mesh::default();
@@ -125,7 +125,7 @@ fn sign_on_a_post(name: &str, sign: Sign) -> ObjectKind {
         let (top, foot) = (height, height - 2.0 * half);
         [[x, left, top], [x, left, foot], [x, -left, foot], [x, -left, top]]
     };
-    // Who looks along the heading has the left on the left.
+    // Seen along the heading, left is on the left.
     mesh.quadrangle(plate(-radius - thickness, half), picture);
     mesh.quadrangle(plate(-radius, -half), back);
     let shape = Shape::Cylinder { radius, height };

@@ -15,18 +15,18 @@ pub(super) struct Word {
 
 impl Word {
     pub(super) fn new(word: &str) -> Self {
-        // The letters of the font stand 13 pixels high, 3 below the upper edge.
+        // Letters of the font are 13 pixels high, 3 below the upper edge.
         let size = Size::new(10 * word.len() as u32, 20);
         let mut written = Self { size, ink: vec![false; (size.width * size.height) as usize] };
         let style = MonoTextStyle::new(&FONT_10X20, BinaryColor::On);
         let text = Text::with_baseline(word, Point::zero(), style, Baseline::Top);
-        // Nothing that is drawn here can fail.
+        // This drawing target cannot fail.
         let Ok(_) = text.draw(&mut written);
         written
     }
 
-    /// Whether there is ink at a place, from -1 to 1 across the word, and from -1 above to 1 below its
-    /// capitals.
+    /// Whether there is ink at a point; coordinates are from -1 to 1 across the word, and from -1 above to 1
+    /// below its capitals.
     pub(super) fn covers(&self, x: f64, y: f64) -> bool {
         let (column, row) = (0.5 * (x + 1.0) * f64::from(self.size.width), 3.0 + 0.5 * (y + 1.0) * 13.0);
         let inside = (0.0..f64::from(self.size.width)).contains(&column) && (0.0..20.0).contains(&row);

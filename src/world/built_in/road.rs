@@ -1,37 +1,37 @@
 use crate::geometry::{Point, Segment};
 use crate::world::Colour;
 
-/// A road of two lanes that comes back to its beginning, seen from above.
+/// A closed two-lane road, seen from above.
 #[derive(Debug)]
 pub(super) struct Road {
-    /// Where on the road each pixel is, row by row from the far side; `None` beside it.
+    /// Road coordinates of each pixel, row by row from the far side; `None` beside the road.
     places: Vec<Option<Place>>,
     side: usize,
-    /// Metres that a pixel is wide.
+    /// Size of a pixel (m).
     pixel: f64,
 }
 
 #[derive(Debug, Clone, Copy)]
 struct Place {
-    /// Metres to the middle line.
+    /// Distance from the centre line (m).
     aside: f64,
-    /// Metres along it.
+    /// Distance along the centre line (m).
     along: f64,
 }
 
-/// Metres of a lane's width.
+/// Width of a lane (m).
 const LANE: f64 = 0.200;
-/// Metres of a line's width.
+/// Width of a line (m).
 const LINE: f64 = 0.012;
-/// Metres of a dash, and of the gap behind it.
+/// Length of a dash and of the gap after it (m).
 const DASH: f64 = 0.120;
-/// The floor of the model town.
+/// Colour of the model town's floor.
 const ASPHALT: Colour = Colour::from_hex(0x2c_2c_2e);
-/// The paint on it.
+/// Colour of the road markings.
 const PAINT: Colour = Colour::from_hex(0xf4_f4_f4);
 
 impl Road {
-    /// The road around some corners on a square floor of so many pixels, each `pixel` metres wide.
+    /// The road around some corners on a square floor of `side` pixels, each `pixel` metres wide.
     pub(super) fn around(corners: &[Point], side: usize, pixel: f64) -> Self {
         let mut road = Self { places: vec![None; side * side], side, pixel };
         let line = smooth(corners);
@@ -44,13 +44,11 @@ impl Road {
         road
     }
 
-    /// Lays a straight part of the middle line.
+    /// Adds a straight part of the centre line.
     fn lay(&mut self, part: Segment, along: f64) {
-        /// Metres from the middle of a road to its outer line's far edge.
-        const REACH: f64 = LANE + LINE;
         let pixel = self.pixel;
         let pixels = |low: f64, high: f64| {
-            let (low, high) = ((low - REACH) / pixel, (high + REACH) / pixel);
+            let (low, high) = ((low - LANE - LINE) / pixel, (high + LANE + LINE) / pixel);
             (low.max(0.0) as usize)..(high.max(0.0).ceil() as usize).min(self.side)
         };
         let (columns, rows) = (
@@ -64,17 +62,17 @@ impl Road {
                 let share = ((point - part.a).dot(&way) / way.norm_squared()).clamp(0.0, 1.0);
                 let aside = (point - (part.a + way * share)).norm();
                 let here = &mut self.places[(self.side - 1 - up) * self.side + column];
-                if aside <= REACH && here.is_none_or(|before| aside < before.aside) {
+                if aside <= LANE + LINE && here.is_none_or(|before| aside < before.aside) {
                     *here = Some(Place { aside, along: along + share * way.norm() });
                 }
             }
         }
     }
 
-    /// What is painted at a pixel, counted from the far left corner.
+    /// Colour of a pixel, counted from the far left corner.
     pub(super) fn colour(&self, column: usize, row: usize) -> Colour {
         let Some(Place { aside, along }) = self.places[row * self.side + column] else { return ASPHALT };
-        // The part of the pixel that a line of some distance covers.
+        // Fraction of the pixel covered by a line at a distance.
         let covered = |distance: f64| ((0.5 * LINE - distance) / self.pixel + 0.5).clamp(0.0, 1.0);
         let dash = if along % (2.0 * DASH) < DASH { covered(aside) } else { 0.0 };
         let share = dash.max(covered((aside - LANE).abs()));
@@ -87,7 +85,7 @@ impl Road {
     }
 }
 
-/// Cuts the corners of a closed line four times (Chaikin's algorithm).
+/// Smooths a closed line by four rounds of corner cutting (Chaikin's algorithm).
 fn smooth(corners: &[Point]) -> Vec<Point> {
     let mut line = corners.to_vec();
     for _ in 0..4 {
@@ -105,7 +103,7 @@ mod tests {
     fn lines_lie_on_both_sides_of_the_lanes() {
         let corners = [(1.0, 1.0), (1.0, 3.0), (3.0, 3.0), (3.0, 1.0)].map(|(x, y)| Point::new(x, y));
         let road = Road::around(&corners, 800, 0.005);
-        // Across the straight part on the left, half way up.
+        // Across the straight part on the left, half-way up.
         let row: Vec<usize> = (0..400).filter(|&column| road.colour(column, 400) != ASPHALT).collect();
         let near = |metres: f64| row.iter().any(|&column| (column as f64 * 0.005 - metres).abs() < 0.01);
         assert!(near(0.8) && near(1.2), "{row:?}");

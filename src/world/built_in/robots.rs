@@ -1,12 +1,15 @@
+use std::sync::Arc;
+
 use crate::geometry::{Aabb, Point, units};
+use crate::kinematics::marine::CraftSpec;
 use crate::world::{
-    Body, CameraSpec, CarDynamics, DriveSpec, Footprint, InertialSpec, LidarSpec, Mast, MotorSpec, Mount,
-    PsdSpec, RobotSpec,
+    Body, CameraSpec, CarDynamics, DepthSensorSpec, DriveSpec, Footprint, InertialSpec, LidarSpec, Mast,
+    MotorSpec, Mount, PsdSpec, RobotSpec,
 };
 
 impl RobotSpec {
     /// The robots that every scene knows by name.
-    pub const PREDEFINED: [&'static str; 13] = [
+    pub const PREDEFINED: [&'static str; 15] = [
         "S4",
         "SoccerBot",
         "LabBot",
@@ -20,9 +23,11 @@ impl RobotSpec {
         "Car",
         "Ackermann",
         "SAE",
+        "Mako",
+        "SolarRaft",
     ];
 
-    /// EyeSim's S4: a small differential drive robot with four PSDs, a lidar and a camera.
+    /// EyeSim's S4: a small differential-drive robot with four PSDs, a lidar and a camera.
     ///
     /// Wheels, encoders and track are those of its description file; the outline is a disc of 60 mm.
     pub fn s4() -> Self {
@@ -50,6 +55,7 @@ impl RobotSpec {
                 field_of_view: CameraSpec::DEFAULT_FIELD_OF_VIEW,
                 fisheye: false,
             }),
+            depth_sensor: None,
             inertial: InertialSpec::default(),
             model: None,
             mesh: None,
@@ -57,9 +63,9 @@ impl RobotSpec {
         }
     }
 
-    /// EyeSim's LabBot: a larger differential drive robot, with a high handle at its back by which others
-    /// tell it from afar (book, section 5.3). A lidar of 100 mm's height and 10 degrees' tilt sees the handle
-    /// from up to 2.8 m.
+    /// EyeSim's LabBot: a larger differential-drive robot with a high handle at its back, by which others
+    /// recognise it from afar (book, section 5.3). A lidar at a height of 100 mm with a tilt of 10 degrees
+    /// sees the handle from up to 2.8 m.
     pub fn labbot() -> Self {
         Self {
             name: "LabBot".into(),
@@ -81,7 +87,7 @@ impl RobotSpec {
         }
     }
 
-    /// A robot on four Mecanum wheels, after the book's Omni-1 (section 7.2), with an S4's sensors.
+    /// A robot with four Mecanum wheels, modelled on the book's Omni-1 (section 7.2), with an S4's sensors.
     pub fn omni() -> Self {
         let (half_length, half_width) = (0.130, 0.120);
         Self {
@@ -104,8 +110,8 @@ impl RobotSpec {
         }
     }
 
-    /// A snow truck on two belts, a model in 1:12 (book, section 7.3), with an S4's sensors, a lidar on
-    /// its roof and an inertial unit.
+    /// A snow truck on two belts, a 1:12 model (book, section 7.3), with an S4's sensors, a lidar on its roof
+    /// and an inertial unit.
     pub fn blizzard() -> Self {
         let (half_length, half_width) = (0.200, 0.130);
         Self {
@@ -135,8 +141,8 @@ impl RobotSpec {
         }
     }
 
-    /// A model car that is steered as its big sisters are (book, section 7.1), with an S4's sensors. Its
-    /// turning circle measures 0.45 m in radius.
+    /// A model car with Ackermann steering (book, section 7.1) and an S4's sensors. The radius of its turning
+    /// circle is 0.45 m.
     pub fn car() -> Self {
         let (wheelbase, half_width) = (0.260, 0.090);
         let (back, front) = (-0.060, 0.320);
@@ -166,8 +172,8 @@ impl RobotSpec {
         }
     }
 
-    /// A model car in 1:10 for roads by the rules of the CAuDri-Challenge (book, chapter 13): 3 m/s at most, tyres that slip, and
-    /// a wide camera on a mast above the rear axle, which looks down on the road.
+    /// A 1:10 model car for roads by the rules of the CAuDri-Challenge (book, chapter 13): at most 3 m/s,
+    /// tyres that slip, and a wide-angle camera on a mast above the rear axle, tilted down to the road.
     pub fn road_car() -> Self {
         let (wheelbase, half_width) = (0.260, 0.095);
         Self {
@@ -179,7 +185,7 @@ impl RobotSpec {
                 max_steering: units::from_deg(28.0),
                 max_wheel_speed: 3.0 / 0.033,
                 ticks_per_turn: 1300.0,
-                // Rubber on the smooth floor of a hall; a servo of 60 degrees in 0.12 s turns the wheels.
+                // Rubber on a smooth indoor floor; a servo with 60 degrees in 0.12 s steers the wheels.
                 dynamics: Some(CarDynamics {
                     mass_centre: 0.125,
                     gyration: 0.110,
@@ -211,8 +217,8 @@ impl RobotSpec {
         }
     }
 
-    /// A student's Formula car (book, section 14.5), with a motor at each wheel, a low lidar at its nose and
-    /// a camera above the driver's head.
+    /// A Formula Student car (book, section 14.5) with a motor at each wheel, a low lidar at its nose and a
+    /// camera above the driver's head.
     pub fn race_car() -> Self {
         let (nose, half_width) = (2.15, 0.70);
         Self {
@@ -235,7 +241,7 @@ impl RobotSpec {
             mass: 250.0,
             psds: Vec::new(),
             lidar: Some(LidarSpec {
-                // Where the cones of a track are 65 mm in radius.
+                // At this height the cones of a track have a radius of 65 mm.
                 mount: Mount { x: nose, z: 0.20, ..Mount::default() },
                 field_of_view: std::f64::consts::PI,
                 tilt: 0.0,
@@ -254,8 +260,8 @@ impl RobotSpec {
         }
     }
 
-    /// The racing car as EyeSim's programs drive it (section 14.5): at full motor it does 5 m/s, and its
-    /// lidar scans all round.
+    /// The racing car for EyeSim's programs (section 14.5): 5 m/s at full motor power, and an all-round
+    /// lidar.
     pub fn sae() -> Self {
         let mut car = Self { name: "SAE".into(), ..Self::race_car() };
         if let DriveSpec::Ackermann { max_wheel_speed, .. } = &mut car.drive {
@@ -265,8 +271,8 @@ impl RobotSpec {
         car
     }
 
-    /// The follower of section 5.3: an S4 whose tilted lidar looks over robots of its kind (Program 5.8),
-    /// with four more sensors (Program 5.9).
+    /// The follower of section 5.3: an S4 with a tilted lidar that sees over robots of its kind (Program
+    /// 5.8), and four additional sensors (Program 5.9).
     pub fn lidarbot() -> Self {
         let s4 = Self::s4();
         let ahead = s4.psds[0].clone();
@@ -289,6 +295,69 @@ impl RobotSpec {
         Self { name: "LidarBot".into(), psds, lidar: Some(lidar), ..s4 }
     }
 
+    /// The underwater craft Mako (book, chapter 8), with PSDs ahead, to the left, to the right, back, up and down.
+    ///
+    /// Its body is [`CraftSpec::mako`](crate::kinematics::marine::CraftSpec::mako).
+    pub fn mako() -> Self {
+        let psd = |id, name: &str, (x, y, z), (pitch, yaw)| PsdSpec {
+            id,
+            name: name.into(),
+            mount: Mount { x, y, z, roll: 0.0, pitch: units::from_deg(pitch), yaw: units::from_deg(yaw) },
+            max_range: PsdSpec::DEFAULT_MAX_RANGE,
+        };
+        let (half_length, half_width, height) = (0.670, 0.3225, 0.460);
+        Self {
+            name: "Mako".into(),
+            drive: DriveSpec::Craft(Arc::new(CraftSpec::mako())),
+            footprint: Footprint::Rectangle(Aabb::new(
+                Point::new(-half_length, -half_width),
+                Point::new(half_length, half_width),
+            )),
+            height,
+            mass: 35.0,
+            psds: vec![
+                psd(1, "PSD_FRONT", (half_length, 0.0, 0.34), (0.0, 0.0)),
+                psd(2, "PSD_LEFT", (0.0, half_width, 0.26), (0.0, 90.0)),
+                psd(3, "PSD_RIGHT", (0.0, -half_width, 0.26), (0.0, -90.0)),
+                psd(4, "PSD_BACK", (-half_length, 0.0, 0.34), (0.0, 180.0)),
+                psd(5, "PSD_UP", (0.0, 0.0, height), (-90.0, 0.0)),
+                psd(6, "PSD_DOWN", (0.0, 0.0, 0.0), (90.0, 0.0)),
+            ],
+            lidar: None,
+            camera: Some(CameraSpec {
+                mount: Mount { x: 0.60, z: 0.10, ..Mount::default() },
+                tilt: 0.0,
+                max_pan: 0.0,
+                max_tilt: units::from_deg(90.0),
+                field_of_view: CameraSpec::DEFAULT_FIELD_OF_VIEW,
+                fisheye: false,
+            }),
+            depth_sensor: Some(DepthSensorSpec { channel: 18, z: 0.26 }),
+            inertial: InertialSpec::ALL,
+            body: Body { mass_centre: [0.0, 0.0, 0.20], ..Body::default() },
+            ..Self::s4()
+        }
+    }
+
+    /// The solar raft (book, section 8.1): a boat with two thrusters.
+    ///
+    /// Its body is [`CraftSpec::solar_raft`](crate::kinematics::marine::CraftSpec::solar_raft).
+    pub fn solar_raft() -> Self {
+        Self {
+            name: "SolarRaft".into(),
+            drive: DriveSpec::Craft(Arc::new(CraftSpec::solar_raft())),
+            footprint: Footprint::Rectangle(Aabb::new(Point::new(-0.65, -0.38), Point::new(0.65, 0.38))),
+            height: 0.24,
+            mass: 20.0,
+            psds: Vec::new(),
+            lidar: None,
+            camera: None,
+            inertial: InertialSpec::ALL,
+            body: Body { mass_centre: [0.0, 0.0, 0.08], ..Body::default() },
+            ..Self::s4()
+        }
+    }
+
     /// A robot of [`PREDEFINED`](Self::PREDEFINED), without regard to case.
     pub fn predefined(name: &str) -> Option<Self> {
         let name = Self::PREDEFINED.into_iter().find(|known| known.eq_ignore_ascii_case(name))?;
@@ -299,6 +368,8 @@ impl RobotSpec {
             "Blizzard" => Self::blizzard(),
             "Car" | "Ackermann" => Self::car(),
             "SAE" => Self::sae(),
+            "Mako" => Self::mako(),
+            "SolarRaft" => Self::solar_raft(),
             _ => Self::s4(),
         };
         Some(Self { name: name.into(), ..spec })
@@ -317,7 +388,7 @@ fn front_and_back(front: f64, back: f64, z: f64) -> Vec<PsdSpec> {
         .collect()
 }
 
-/// PSDs 1 to 4 at the front, left, right and back, as the simulator numbers them.
+/// PSDs 1 to 4 at the front, left, right and back, with the simulator's numbers.
 fn four_psds(ahead: f64, aside: f64, z: f64) -> Vec<PsdSpec> {
     [
         (1, "PSD_FRONT", ahead, 0.0, 0.0),

@@ -16,13 +16,13 @@ pub(super) enum Sign {
     CancelSpeedLimit,
 }
 
-/// Pixels on each side of a sign's picture.
+/// Width and height of a sign's picture (pixels).
 const SIZE: u32 = 160;
-/// The red of prohibitions and warnings.
+/// Colour of prohibitions and warnings.
 const RED: Colour = Colour::from_hex(0xc4_12_1c);
-/// The blue of orders and advice.
+/// Colour of orders and advice.
 const BLUE: Colour = Colour::from_hex(0x0b_4d_a2);
-/// The gray of what has ended.
+/// Colour of end signs.
 const GRAY: Colour = Colour::from_hex(0x60_60_60);
 
 impl Sign {
@@ -39,18 +39,18 @@ impl Sign {
         })
     }
 
-    /// What is on it; transparent beside it.
+    /// The sign's picture; transparent outside.
     pub(super) fn picture(self) -> RgbaImage {
         let words = ["STOP", "P", "30"].map(Word::new);
         drawn(|x, y| self.colour(x, y, &words))
     }
 
-    /// Its outline in white, to be coloured as its back.
+    /// Its outline in white, to be coloured like its back.
     pub(super) fn picture_from_behind(self) -> RgbaImage {
         drawn(|x, y| (self.edge(-x, y) <= 1.0).then_some(Colour::WHITE))
     }
 
-    /// How far out a place is: 1 on the sign's edge.
+    /// Relative distance of a point from the centre: 1 at the sign's edge.
     fn edge(self, x: f64, y: f64) -> f64 {
         match self {
             Self::Stop => {
@@ -69,7 +69,7 @@ impl Sign {
             return None;
         }
         let stroke = |from: f64, to: f64| (from..to).contains(&edge);
-        // Across the sign, from the lower left to the upper right.
+        // Diagonal from the lower left to the upper right.
         let bar = |half: f64| (x + y).abs() < half;
         Some(match self {
             Self::Stop if stroke(0.88, 0.96) || stop.covers(x / 0.74, y / 0.3) => Colour::WHITE,
@@ -91,27 +91,25 @@ impl Sign {
     }
 }
 
-/// An image of what stands at each place from -1 to 1 across and -1 at the top to 1 at the bottom.
+/// An image from the colour at each point, from -1 to 1 across and from -1 at the top to 1 at the bottom.
 fn drawn(colour: impl Fn(f64, f64) -> Option<Colour>) -> RgbaImage {
     let place = |pixel: u32| 2.0 * (f64::from(pixel) + 0.5) / f64::from(SIZE) - 1.0;
     RgbaImage::from_fn(SIZE, SIZE, |column, row| match colour(place(column), place(row)) {
         Some(Colour { red, green, blue }) => Rgba([red, green, blue, 255]),
-        // The colour of the rim, which filters mix in.
+        // Colour of the rim, for filters that mix it in.
         None => Rgba([160, 160, 160, 0]),
     })
 }
 
-/// How far out a place is of a triangle that stands on its tip: 1 on its edge.
+/// Relative distance of a point in a triangle on its tip: 1 at its edge.
 fn triangle(x: f64, y: f64) -> f64 {
-    /// Half the width of a triangle as high as it is wide, as a share.
-    const SLANT: f64 = 0.5;
-    let side = (x.abs() - SLANT * (1.0 - y)) / SLANT;
-    (side + 1.0).max(-y)
+    // It is as high as it is wide.
+    (2.0 * x.abs() + y).max(-y)
 }
 
-/// A person who walks, in a few strokes.
+/// A walking person in a few strokes.
 fn is_walker(x: f64, y: f64) -> bool {
-    /// The pedestrian: lines from point to point, in shares of the sign.
+    /// Line segments of the pedestrian, relative to the sign.
     const LIMBS: [([f64; 2], [f64; 2]); 5] = [
         ([0.02, -0.12], [0.0, 0.15]),
         ([0.0, 0.12], [-0.16, 0.44]),
@@ -131,7 +129,7 @@ fn is_walker(x: f64, y: f64) -> bool {
 mod tests {
     use super::*;
 
-    /// The share of a picture's opaque pixels that `is_it`.
+    /// Fraction of a picture's opaque pixels for which `is_it`.
     fn share(sign: Sign, is_it: impl Fn([u8; 4]) -> bool) -> f64 {
         let picture = sign.picture();
         let seen: Vec<_> = picture.pixels().filter(|pixel| pixel[3] == 255).collect();

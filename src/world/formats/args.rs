@@ -1,4 +1,4 @@
-//! The arguments of a line, read one after the other in SI units.
+//! Reads the arguments of a line in sequence, in SI units.
 
 use std::ops::RangeInclusive;
 
@@ -17,27 +17,27 @@ pub(super) struct Args<'l, 'a> {
 }
 
 impl<'l, 'a> Args<'l, 'a> {
-    /// The words after the keyword.
+    /// Starts at the word after the keyword.
     pub(super) fn after_keyword(line: &'l Line<'a>) -> Self {
         Self { line, next: 1 }
     }
 
-    /// All words of the line.
+    /// Starts at the first word.
     pub(super) fn all(line: &'l Line<'a>) -> Self {
         Self { line, next: 0 }
     }
 
-    /// How many words are left.
+    /// Number of remaining words.
     pub(super) fn left(&self) -> usize {
         self.line.words.len() - self.next
     }
 
-    /// The next word, if there is one, without taking it.
+    /// The next word, without consuming it; `None` at the end.
     pub(super) fn peek(&self) -> Option<Word<'a>> {
         self.line.words.get(self.next).copied()
     }
 
-    /// How many of the words that are left, from the next one on, are numbers.
+    /// Number of consecutive remaining words that are numbers.
     pub(super) fn numbers_ahead(&self) -> usize {
         let words = &self.line.words[self.next..];
         words.iter().take_while(|w| !w.quoted && number::parse(w.text, 0).is_some()).count()
@@ -50,7 +50,7 @@ impl<'l, 'a> Args<'l, 'a> {
         Ok(word)
     }
 
-    /// A file name with one of some endings. One with blanks outside quotes is accepted with a warning.
+    /// A file name with an allowed extension. Blanks outside quotes are accepted with a warning.
     pub(super) fn path(
         &mut self,
         what: &str,
@@ -72,27 +72,27 @@ impl<'l, 'a> Args<'l, 'a> {
         Ok(word.text)
     }
 
-    /// A length or coordinate of any sign, in metres.
+    /// A length or coordinate of any sign (m).
     pub(super) fn length(&mut self, what: &str) -> Result<f64, FormatError> {
         self.number(what, "in millimetres", MILLI, -MAX_METRES..=MAX_METRES)
     }
 
-    /// A length of at least zero, in metres.
+    /// A non-negative length (m).
     pub(super) fn size(&mut self, what: &str) -> Result<f64, FormatError> {
         self.number(what, "in millimetres", MILLI, 0.0..=MAX_METRES)
     }
 
-    /// A length of more than zero, in metres.
+    /// A positive length (m).
     pub(super) fn positive_size(&mut self, what: &str) -> Result<f64, FormatError> {
         self.number(what, "in millimetres", MILLI, f64::MIN_POSITIVE..=MAX_METRES)
     }
 
-    /// A direction in degrees, -180 to 180.
+    /// A direction from -180 to 180 degrees.
     pub(super) fn direction_degrees(&mut self, what: &str) -> Result<f64, FormatError> {
         self.degrees(what, number::ANGLES).map(number::normalize_degrees)
     }
 
-    /// A direction in radians, -pi to pi.
+    /// A direction from -pi to pi (rad).
     pub(super) fn direction(&mut self, what: &str) -> Result<f64, FormatError> {
         self.direction_degrees(what).map(units::from_deg)
     }
@@ -102,12 +102,12 @@ impl<'l, 'a> Args<'l, 'a> {
         self.number(what, "in degrees", 0, range)
     }
 
-    /// A number without a unit, or in an SI unit that `what` names.
+    /// A number without a unit, or in the SI unit named by `what`.
     pub(super) fn plain(&mut self, what: &str, range: RangeInclusive<f64>) -> Result<f64, FormatError> {
         self.number(what, "", 0, range)
     }
 
-    /// A whole number.
+    /// An integer.
     pub(super) fn count(&mut self, what: &str, range: RangeInclusive<u32>) -> Result<u32, FormatError> {
         let at = self.next;
         let expected = format!("{what}, a whole number from {} to {}", range.start(), range.end());
@@ -119,18 +119,18 @@ impl<'l, 'a> Args<'l, 'a> {
         Ok(whole)
     }
 
-    /// Three channels of 0 to 255. Fractions are rounded.
+    /// Three channels from 0 to 255; fractions are rounded.
     pub(super) fn colour(&mut self, what: &str) -> Result<Colour, FormatError> {
         let mut channel = |name| self.channel(&format!("{what}'s {name}"));
         Ok(Colour::new(channel("red")?, channel("green")?, channel("blue")?))
     }
 
-    /// A number of 0 to 255.
+    /// A number from 0 to 255.
     pub(super) fn channel(&mut self, what: &str) -> Result<u8, FormatError> {
         Ok(self.plain(what, 0.0..=255.0)?.round() as u8)
     }
 
-    /// Warns about words that are left.
+    /// Warns about remaining words.
     pub(super) fn finish(self, notes: &mut Notes<'_>) {
         if self.left() > 0 {
             let extra = shown(self.line.rest(self.next));
@@ -175,15 +175,15 @@ fn shown_range(range: &RangeInclusive<f64>, power: i32) -> String {
     }
 }
 
-/// Places and sizes of 3D models, whose axes point right, up and forward.
+/// Points and sizes of 3D models, whose axes point right, up and forwards.
 impl Args<'_, '_> {
-    /// A place: right, up, forward.
+    /// A point: right, up, forward.
     pub(super) fn model_place(&mut self, what: &str) -> Result<Place3, FormatError> {
         let [right, up, forward] = self.three(what, Self::length)?;
         Ok([forward, -right, up])
     }
 
-    /// Sizes of more than zero: to the right, upwards, forward.
+    /// Positive sizes: right, up, forward.
     pub(super) fn model_size(&mut self, what: &str) -> Result<Place3, FormatError> {
         let [right, up, forward] = self.three(what, Self::positive_size)?;
         Ok([forward, right, up])
@@ -198,7 +198,7 @@ impl Args<'_, '_> {
         Ok([next("x")?, next("y")?, next("z")?])
     }
 
-    /// A name that is not empty.
+    /// A non-empty name.
     pub(super) fn name(&mut self, what: &str) -> Result<String, FormatError> {
         let at = self.next;
         let word = self.word(what)?;

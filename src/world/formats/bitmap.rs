@@ -1,7 +1,7 @@
-//! Maps as pictures (book, section 10.3): dark pixels are obstacles, light ones free. PGM, PNG or BMP.
+//! Pictures as maps (book, section 10.3): dark pixels are obstacles, light ones free. PGM, PNG or BMP.
 //!
-//! A pixel is a cell, the upper left one the first of the first row. It is blocked if its brightness, the mean of red, green
-//! and blue, is less than half of white. Transparency does not count.
+//! Each pixel is a cell; the upper left one is the first of the first row. It is blocked if its brightness,
+//! the mean of red, green and blue, is less than half of white. Transparency is ignored.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use super::limits::MAX_IMAGE_BYTES;
 use super::source::{SourceFile, read_limited, unreadable};
 use crate::world::BitGrid;
 
-/// Reads a picture from disk.
+/// Reads a picture from a file.
 pub fn load(path: impl AsRef<Path>) -> Result<Parsed<BitGrid>, FormatError> {
     let name = path.as_ref().display().to_string();
     let bytes = read_limited(path.as_ref(), MAX_IMAGE_BYTES)
@@ -27,7 +27,7 @@ pub fn load(path: impl AsRef<Path>) -> Result<Parsed<BitGrid>, FormatError> {
 /// let name = "floor plan.pgm".to_string();
 /// let grid = bitmap::parse(&SourceFile { name, bytes: b"P5 3 1 255\n\xff\x00\xff".to_vec() })?.value;
 /// assert!(grid.is_free(GridCell::new(0, 0)) && !grid.is_free(GridCell::new(1, 0)), "black is a wall");
-/// // From the disk:
+/// // From a file:
 /// assert!(bitmap::load("no such plan.png").unwrap_err().to_string().contains("no such plan.png"));
 /// # Ok::<(), roverlab::world::formats::FormatError>(())
 /// ```
@@ -40,7 +40,7 @@ pub fn parse(source: &SourceFile) -> Result<Parsed<BitGrid>, FormatError> {
         let colours = picture.to_rgb8();
         BitGrid::from_fn(width, height, |x, y| {
             let pixel = colours.get_pixel(x as u32, y as u32).0;
-            // Three times 127.5, the middle between black and white.
+            // Three times 127.5, half-way between black and white.
             2 * pixel.map(u32::from).iter().sum::<u32>() >= 765
         })
     };

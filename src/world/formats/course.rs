@@ -1,4 +1,4 @@
-//! Files of courses for model cars, in a plain format of ours: `docs/courses.md` describes it.
+//! Files of courses for model cars, in a plain format of our own; see `docs/courses.md`.
 
 use std::fmt::Write as _;
 
@@ -11,16 +11,16 @@ use crate::world::road::{
     Alignment, Centre, Course, Crossing, Direction, Element, Line, Mark, MarkKind, RightOfWay, Traffic,
 };
 
-/// Metres of a road that is laid, if only to say what is wrong with it.
+/// Largest length for which a road is computed, if only to report its error (m).
 const LONGEST: f64 = 1000.0;
-/// Sections and marks of a course at most.
+/// Largest number of sections and marks of a course.
 const MOST: usize = 10_000;
-/// Metres of an arm of a crossing that states none, by the rules' size.
+/// Default length of a crossing's arm at the scale of the rules (m).
 const ARM: f64 = 1.0;
 const KEYWORDS: &str = "a statement of a course: traffic, scale, lane, line, start, straight, arc, clothoid, centre, \
     start-line, gap, side-road, crossing, stop-line, give-way-line, zebra, barred, arrow, speed, speed-end, parking or artefact";
 
-/// Reads a course. What stands in the file is read strictly: nothing is left out or guessed.
+/// Reads a course strictly: nothing is ignored or guessed.
 ///
 /// ```
 /// use roverlab::world::formats::course;
@@ -47,7 +47,7 @@ pub fn parse(text: &str, file: &str) -> Result<Course, FormatError> {
     draft.finish(file)
 }
 
-/// Writes a course as [`parse`] reads it.
+/// Writes a course in the form that [`parse`] reads.
 pub fn print(course: &Course) -> String {
     let mut text = String::from("course 1\n");
     let mm = |metres: f64| millimetres(metres / course.size);
@@ -80,7 +80,7 @@ pub fn print(course: &Course) -> String {
     text
 }
 
-/// Writes a part of an element, if it has a length.
+/// Writes a part of an element, if its length is not zero.
 fn section(text: &mut String, element: &Element, (from, to): (f64, f64), size: f64) {
     let long = to - from;
     if long <= 1e-9 {
@@ -99,7 +99,7 @@ fn section(text: &mut String, element: &Element, (from, to): (f64, f64), size: f
     };
 }
 
-/// Degrees of an arc, more than half a turn as well.
+/// Degrees of an arc, which may exceed half a turn.
 fn degrees_of(radians: f64) -> String {
     format!("{}", units::to_deg(radians))
 }
@@ -153,7 +153,7 @@ fn name_of<T: PartialEq>(names: &[(&'static str, T)], value: T) -> &'static str 
     names.iter().find(|(_, known)| *known == value).map_or("", |(name, _)| name)
 }
 
-/// The first line says what the file is.
+/// The first line identifies the format.
 fn head(line: &Words<'_>) -> Result<(), FormatError> {
     if line.words[0].text != "course" {
         return Err(line.error(0, "`course 1`"));
@@ -163,7 +163,7 @@ fn head(line: &Words<'_>) -> Result<(), FormatError> {
     end(line, &args)
 }
 
-/// Fails at a word that is too many.
+/// Fails at an extra word.
 fn end(line: &Words<'_>, args: &Args<'_, '_>) -> Result<(), FormatError> {
     if args.left() == 0 {
         Ok(())
@@ -172,7 +172,7 @@ fn end(line: &Words<'_>, args: &Args<'_, '_>) -> Result<(), FormatError> {
     }
 }
 
-/// A word of a list.
+/// A word from a list.
 fn choice<T: Copy>(
     line: &Words<'_>,
     args: &mut Args<'_, '_>,
@@ -185,7 +185,7 @@ fn choice<T: Copy>(
     found.map(|(_, value)| *value).ok_or_else(|| line.error(at, list))
 }
 
-/// A course as far as it has been read, in the size of the rules.
+/// The part of a course that has been read, at the scale of the rules.
 struct Draft {
     traffic: Traffic,
     scale: f64,
@@ -228,7 +228,7 @@ impl Draft {
         Ok(())
     }
 
-    /// Reads a statement about the whole course, which comes before the first section.
+    /// Reads a statement about the whole course, which must precede the first section.
     fn of_all(&mut self, line: &Words<'_>, args: &mut Args<'_, '_>) -> Result<bool, FormatError> {
         match line.words[0].text {
             "traffic" => self.traffic = choice(line, args, &TRAFFIC)?,
@@ -244,7 +244,7 @@ impl Draft {
         if self.elements.is_empty() { Ok(true) } else { Err(line.error(0, "it before the first section")) }
     }
 
-    /// Reads a part of the road, or the kind of its centre line from here on.
+    /// Reads a part of the road, or the kind of its centre marking from here on.
     fn section(&mut self, line: &Words<'_>, args: &mut Args<'_, '_>) -> Result<bool, FormatError> {
         let element = match line.words[0].text {
             "straight" => Element::straight(args.positive_size("the length")?),
@@ -275,7 +275,7 @@ impl Draft {
         Ok(true)
     }
 
-    /// The course in its own size.
+    /// The course at its own scale.
     fn finish(self, file: &str) -> Result<Course, FormatError> {
         let wrong = |found: &str, expected: &str| FormatError::new(file, Location::START, found, expected);
         if self.length > LONGEST {
@@ -299,7 +299,7 @@ impl Draft {
     }
 }
 
-/// Reads what is painted here.
+/// Reads a mark at the present place.
 fn mark(line: &Words<'_>, args: &mut Args<'_, '_>) -> Result<MarkKind, FormatError> {
     Ok(match line.words[0].text {
         "start-line" => MarkKind::Start,
@@ -328,7 +328,7 @@ fn mark(line: &Words<'_>, args: &mut Args<'_, '_>) -> Result<MarkKind, FormatErr
     })
 }
 
-/// The angle, which arms there are and how long they are, and who has to wait: all but the angle may be left out.
+/// The angle, the existing arms, their length, and the right of way; all but the angle are optional.
 fn crossing(line: &Words<'_>, args: &mut Args<'_, '_>) -> Result<Crossing, FormatError> {
     let angle = units::from_deg(args.degrees("the angle", 60.0..=120.0)?);
     let arms = if args.left() > 0 { choice(line, args, &ARMS)? } else { [1.0, 1.0] };

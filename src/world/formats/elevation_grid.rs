@@ -1,4 +1,4 @@
-//! ESRI ASCII grids (`.asc`): elevations of real terrain, as surveys publish them.
+//! ESRI ASCII grids (`.asc`): elevations of real terrain, a common format of surveys.
 //!
 //! ```text
 //! ncols 3
@@ -11,8 +11,9 @@
 //! 811.9 -9999 813.2
 //! ```
 //!
-//! The first row of numbers is that of greatest y. The lower left corner is that of the lower left cell, or, as
-//! `xllcenter` and `yllcenter`, the middle of it. Places without data get the grid's lowest elevation, with a warning.
+//! The first row of numbers has the largest y. The corner is the lower left corner of the lower left cell, or
+//! its centre with `xllcenter` and `yllcenter`. Places without data get the grid's lowest elevation, with a
+//! warning.
 //!
 //! ```
 //! use roverlab::world::formats::elevation_grid;
@@ -32,36 +33,36 @@ use crate::ParameterError;
 use crate::geometry::{Aabb, Point, Vector};
 use crate::world::HeightField;
 
-/// Elevations at the middles of square cells, in metres.
+/// Elevations at the centres of square cells (m).
 #[derive(Debug, Clone, PartialEq)]
 pub struct ElevationGrid {
-    /// Cells along x.
+    /// Number of cells along x.
     pub columns: usize,
-    /// Cells along y.
+    /// Number of cells along y.
     pub rows: usize,
-    /// Metres from a cell to the next.
+    /// Distance between adjacent cells (m).
     pub cell_size: f64,
-    /// The middle of the cell of least x and y, in the survey's coordinates.
+    /// Centre of the cell with the smallest x and y, in the survey's coordinates.
     pub origin: Point,
-    /// Row by row from that of least y.
+    /// Rows of elevations, starting at the smallest y.
     pub elevations: Vec<f32>,
 }
 
 impl ElevationGrid {
-    /// The lowest and the highest elevation.
+    /// Lowest and highest elevation.
     pub fn range(&self) -> (f32, f32) {
         let range = (f32::INFINITY, f32::NEG_INFINITY);
         self.elevations.iter().fold(range, |(low, high), &e| (low.min(e), high.max(e)))
     }
 
-    /// The surface at its true size, its corner at (0, 0).
+    /// The surface at its true size, with a corner at (0, 0).
     pub fn surface(&self) -> Result<HeightField, ParameterError> {
         let gaps = Vector::new(self.columns.saturating_sub(1) as f64, self.rows.saturating_sub(1) as f64);
         let area = Aabb::new(Point::origin(), Point::origin() + gaps * self.cell_size);
         HeightField::new(self.columns, self.rows, area, self.elevations.clone())
     }
 
-    /// The surface over an area from (0, 0), its lowest place at 0 and its highest at `top` metres.
+    /// The surface scaled to an area from (0, 0), with elevations from 0 to `top` metres.
     pub fn scaled(&self, width: f64, height: f64, top: f64) -> Result<HeightField, ParameterError> {
         let (low, high) = self.range();
         let scale = if high > low { top / f64::from(high - low) } else { 0.0 };
@@ -71,7 +72,7 @@ impl ElevationGrid {
     }
 }
 
-/// Reads a grid. Fails, with the place in the file, where it is not as described above.
+/// Reads a grid. An error states the location in the file.
 pub fn parse(text: &str, file: &str) -> Result<Parsed<ElevationGrid>, FormatError> {
     if text.len() as u64 > MAX_GRID_BYTES {
         let expected = format!("a file of at most {} MiB", MAX_GRID_BYTES >> 20);
@@ -117,7 +118,7 @@ struct Header {
 }
 
 impl Header {
-    /// Reads the keywords, in any order and case, up to the first number that has none.
+    /// Reads the keywords, in any order and case, up to the first number without a keyword.
     fn read(words: &mut Words<'_>) -> Result<Self, FormatError> {
         let (mut columns, mut rows, mut cell_size, mut no_data) = (None, None, None, None);
         let (mut corner, mut middle) = ([None; 2], [None; 2]);
@@ -147,20 +148,20 @@ impl Header {
     }
 }
 
-/// A word of the file and its place.
+/// A word of the file with its location.
 #[derive(Debug, Clone, Copy)]
 struct Word<'a> {
     text: &'a str,
     line: usize,
-    /// Bytes from the line's start.
+    /// Byte offset in the line.
     offset: usize,
 }
 
-/// The words that are not read yet.
+/// Unread words.
 struct Words<'a> {
     file: &'a str,
     lines: std::iter::Enumerate<std::str::Lines<'a>>,
-    /// The line that is being read, its number, and what is left of it.
+    /// The present line, its number, and its unread part.
     line: &'a str,
     number: usize,
     rest: &'a str,
@@ -188,7 +189,7 @@ impl<'a> Words<'a> {
         Some(word)
     }
 
-    /// A finite number within the range of elevations and coordinates.
+    /// A finite number in the range of elevations and coordinates.
     fn number(&mut self, what: &str) -> Result<f64, FormatError> {
         let Some(word) = self.next() else { return Err(self.error_here(what)) };
         let value = number::parse(word.text, 0).filter(|value| value.abs() <= f64::from(f32::MAX));
@@ -216,7 +217,7 @@ impl<'a> Words<'a> {
         FormatError::new(self.file, Location { line: word.line, column }, shown(word.text), expected)
     }
 
-    /// The error for what is missing at the present place.
+    /// The error for a missing item at the present location.
     fn error_here(&mut self, expected: impl Into<String>) -> FormatError {
         if let Some(word) = self.peek() {
             return self.error(&word, expected);

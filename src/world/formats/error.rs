@@ -2,7 +2,7 @@ use std::fmt;
 
 use crate::parameter::debug_as_sentence;
 
-/// A place in a text file. Lines and columns count from 1, columns in characters.
+/// A location in a text file. Lines and columns count from 1, columns in characters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Location {
     /// The line.
@@ -16,21 +16,21 @@ impl Location {
     pub const START: Location = Location { line: 1, column: 1 };
 }
 
-/// Why a file could not be read: where, what stands there, and what should.
+/// Why a file could not be read: location, found and expected text.
 ///
-/// A file that is missing is reported at the line that names it.
+/// A missing file is reported at the line that names it.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{line}:{column}: found {found}; expected {expected}")]
 pub struct FormatError {
-    /// The file as its reader was given it.
+    /// File name as given to the reader.
     pub file: String,
-    /// The line, from 1.
+    /// Line, from 1.
     pub line: usize,
-    /// The column in characters, from 1.
+    /// Column in characters, from 1.
     pub column: usize,
-    /// What stands there.
+    /// Text found there.
     pub found: String,
-    /// What should stand there.
+    /// Text expected there.
     pub expected: String,
 }
 
@@ -48,22 +48,22 @@ impl FormatError {
         }
     }
 
-    /// Where it is.
+    /// Its location.
     pub fn location(&self) -> Location {
         Location { line: self.line, column: self.column }
     }
 }
 
-/// Something odd in a file that its reader got over.
+/// A problem in a file that its reader could work around.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Warning {
-    /// The file as its reader was given it.
+    /// File name as given to the reader.
     pub file: String,
-    /// The line, from 1.
+    /// Line, from 1.
     pub line: usize,
-    /// The column in characters, from 1.
+    /// Column in characters, from 1.
     pub column: usize,
-    /// What is odd, and what the reader did about it.
+    /// The problem and the reader's workaround.
     pub message: String,
 }
 
@@ -73,26 +73,26 @@ impl fmt::Display for Warning {
     }
 }
 
-/// What a file says, and what was odd about it.
+/// Content of a file, with warnings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parsed<T> {
-    /// What the file says.
+    /// Content of the file.
     pub value: T,
-    /// What was odd, in the order in which it was met; at most [`Parsed::MAX_WARNINGS`].
+    /// Warnings in the order of their occurrence; at most [`Parsed::MAX_WARNINGS`].
     pub warnings: Vec<Warning>,
 }
 
 impl<T> Parsed<T> {
-    /// Warnings beyond this number are left out, so that a broken file does not fill the memory.
+    /// Largest number of warnings; the limit keeps a broken file from filling the memory.
     pub const MAX_WARNINGS: usize = 1000;
 
-    /// The same warnings about another value.
+    /// Another value with the same warnings.
     pub fn map<U>(self, change: impl FnOnce(T) -> U) -> Parsed<U> {
         Parsed { value: change(self.value), warnings: self.warnings }
     }
 }
 
-/// Collects the warnings about one file and the files that it names.
+/// Collects the warnings about a file and the files that it names.
 #[derive(Debug)]
 pub(super) struct Notes<'f> {
     pub(super) file: &'f str,
@@ -109,7 +109,7 @@ impl<'f> Notes<'f> {
         self.extend([Warning { file, line: at.line, column: at.column, message }]);
     }
 
-    /// Makes an error a warning that ends with what is done instead.
+    /// Converts an error to a warning that ends with the workaround.
     pub(super) fn get_over(&mut self, error: FormatError, instead: &str) {
         let FormatError { file, line, column, found, expected } = error;
         let message = format!("found {found}; expected {expected}; {instead}");

@@ -2,20 +2,21 @@
 //!
 //! | line | meaning |
 //! |---|---|
-//! | `obj FILE` | the 3D model that cameras see, a Wavefront OBJ in metres before it is scaled |
-//! | `name NAME` | by which scenes place it; the file's name without it |
-//! | `scale S` | the factor for the model and for its colliders, whose numbers are in millimetres; 1 without it |
-//! | `mass KG X Y Z` | its mass and the middle of it |
-//! | `[collider] box X Y Z SX SY SZ` | a solid cuboid: middle, sizes |
-//! | `[collider] sphere X Y Z R` | a solid ball |
-//! | `[collider] capsule X Y Z R H AXIS` | a solid capsule along `x`, `y` or `z` |
-//! | `buoyancy VOLUME` | cubic metres of water that it displaces; kept, as there is no water |
-//! | `fixed` | nothing moves it |
-//! | `falls` | robots knock it over; a line of our own, which EyeSim skips |
-//! | `cone R TOP HEIGHT` | its shape is a cone with these radii of foot and top instead; a line of our own |
-//! | `colour R G B` | its colour; a line of our own, which EyeSim skips |
+//! | `obj FILE` | 3D model for cameras, a Wavefront OBJ in metres before scaling |
+//! | `name NAME` | name for scenes; default: the name of the file |
+//! | `scale S` | factor for the model and its colliders, whose numbers are in millimetres; default 1 |
+//! | `mass KG X Y Z` | mass and its centre |
+//! | `[collider] box X Y Z SX SY SZ` | solid cuboid: centre, sizes |
+//! | `[collider] sphere X Y Z R` | solid ball |
+//! | `[collider] capsule X Y Z R H AXIS` | solid capsule along `x`, `y` or `z` |
+//! | `buoyancy VOLUME` | displaced water in cubic metres; kept, but without effect |
+//! | `fixed` | immovable object |
+//! | `falls` | robots knock it over; our extension, which EyeSim skips |
+//! | `cone R TOP HEIGHT` | cone with these radii of foot and top as the shape; our extension |
+//! | `colour R G B` | colour; our extension, which EyeSim skips |
 //!
-//! The model's axes point right, up and forward. The object's shape is the upright one that holds all its colliders.
+//! The model's axes point right, up and forwards. The object's shape is the upright one that contains all its
+//! colliders.
 //!
 //! ```
 //! use roverlab::world::formats::esobj;
@@ -38,13 +39,13 @@ use super::number::{self, MILLI, millimetres};
 use super::source::{Files, check_length};
 use crate::world::{Axis, Body, Collider, Colour, ObjectKind, Place3, Shape};
 
-/// The colour of objects that state none.
+/// Default colour of objects.
 pub const DEFAULT_COLOUR: Colour = Colour::new(160, 160, 160);
 
-/// The shape of objects without colliders.
+/// Shape of objects without colliders.
 pub const DEFAULT_SHAPE: Shape = Shape::Cylinder { radius: 0.05, height: 0.1 };
 
-/// Reads an object, without its 3D model: [`load_object`](super::load_object) and scripts read that too.
+/// Reads an object without its 3D model; [`load_object`](super::load_object) and scripts also read the model.
 pub fn parse(text: &str, file: &str) -> Result<Parsed<ObjectKind>, FormatError> {
     let (kind, _) = read(text, file)?;
     Ok(kind)
@@ -65,7 +66,7 @@ pub(super) fn parse_with_model(
     Ok(notes.finish(kind))
 }
 
-/// Reads an object, and tells where it names its model.
+/// Reads an object; also returns the location of its model's name.
 fn read(text: &str, file: &str) -> Result<(Parsed<ObjectKind>, Location), FormatError> {
     check_length(text, file)?;
     let kind = ObjectKind::new(super::stem(file), DEFAULT_SHAPE, DEFAULT_COLOUR);
@@ -178,13 +179,13 @@ impl Reader<'_> {
                 let message = "no collider; a cylinder of 100 mm across and 100 mm high is taken";
                 self.notes.warn(Location::START, message);
                 if self.kind.model.is_none() {
-                    // There is nothing to scale.
+                    // Nothing needs scaling.
                     body.scale = 1.0;
                 }
             }
             Some(shape) => {
                 self.kind.shape = shape;
-                // The shape says all.
+                // The shape is sufficient.
                 if body.scale == 1.0 && *body.colliders == [Body::collider_of_shape(shape)] {
                     body.colliders.clear();
                 }
@@ -195,9 +196,9 @@ impl Reader<'_> {
     }
 }
 
-/// Writes an object, so that [`parse`] gives it back.
+/// Writes an object in a form that [`parse`] reads back.
 ///
-/// A shape that is not that of the kind's colliders is written in their place.
+/// If the shape differs from that of the kind's colliders, it replaces them.
 pub fn print(kind: &ObjectKind) -> String {
     lexer::written(|text| write_kind(text, kind))
 }
@@ -207,7 +208,7 @@ fn write_kind(text: &mut String, kind: &ObjectKind) -> std::fmt::Result {
         writeln!(text, "obj {}", quote(&model.to_string_lossy()))?;
     }
     writeln!(text, "name {}", quote(&kind.name))?;
-    // Without colliders there is only the model to scale.
+    // Without colliders, only the model needs scaling.
     let bare = kind.model.is_some() && kind.body.colliders.is_empty() && kind.shape == DEFAULT_SHAPE;
     let keep = bare || kind.body.shape() == Some(kind.shape);
     let scale = if keep { kind.body.scale } else { 1.0 };
@@ -257,7 +258,7 @@ fn write_collider(text: &mut String, collider: &Collider) -> std::fmt::Result {
     }
 }
 
-/// A place in the order of the files: right, up, forward.
+/// A point in the order of the files: right, up, forward.
 pub(super) fn model_place([forward, left, up]: Place3) -> String {
     [-left, up, forward].map(|metres| number::print(metres, MILLI)).join(" ")
 }
@@ -312,7 +313,7 @@ mod tests {
     #[test]
     fn predefined_objects_survive() {
         for name in ObjectKind::PREDEFINED {
-            // What is drawn in code is in no file.
+            // Models drawn in code are in no file.
             let kind = ObjectKind { mesh: None, ..ObjectKind::predefined(name).unwrap() };
             assert_eq!(object(&print(&kind)), kind);
         }

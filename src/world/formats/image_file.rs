@@ -1,4 +1,4 @@
-//! The images that other files name: PNG, JPEG, BMP, and PGM and its kin.
+//! Images named by other files: PNG, JPEG, BMP, and PGM and related formats.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -11,8 +11,8 @@ use super::limits::MAX_IMAGE_BYTES;
 use super::source::{Files, SourceFile};
 use crate::world::{OccupancyGrid, Texture};
 
-/// Looks a texture up that a file names at some place, and reads it. Without it, if that is tolerated, things
-/// are as `instead` says.
+/// Finds and reads a texture that a file names. If a missing one is tolerated, `instead` describes the
+/// replacement.
 pub(super) fn load(
     texture: &mut Texture,
     named: (&str, Location),
@@ -27,7 +27,7 @@ pub(super) fn load(
     Ok(())
 }
 
-/// Bytes that decoding an image may take.
+/// Memory limit of image decoding (bytes).
 const MAX_DECODED_BYTES: u64 = 128 << 20;
 
 pub(super) fn decode_image(source: &SourceFile) -> Result<DynamicImage, FormatError> {

@@ -1,7 +1,7 @@
-//! Lines and words, as all of EyeSim's text formats share them.
+//! Lines and words, common to all of EyeSim's text formats.
 //!
-//! Words stand between blanks; `"…"` and `'…'` hold blanks together. A `;` outside quotes and a `#` at the start of a
-//! word begin a comment. Lines end with LF, CR LF or CR; byte order marks are skipped.
+//! Blanks separate words; `"…"` and `'…'` quote blanks. A `;` outside quotes or a `#` at the start of a word
+//! begins a comment. Lines end with LF, CR LF or CR; byte order marks are skipped.
 
 use winnow::combinator::{alt, delimited, not, preceded, terminated};
 use winnow::prelude::*;
@@ -14,11 +14,11 @@ use super::limits::MAX_WORDS;
 /// A word of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Word<'a> {
-    /// Without its quotes.
+    /// Text without its quotes.
     pub(super) text: &'a str,
-    /// Whether it stood in quotes.
+    /// Whether it was in quotes.
     pub(super) quoted: bool,
-    /// Bytes of the line before it, quotes included.
+    /// Byte offset in the line, before any quote.
     start: usize,
 }
 
@@ -33,7 +33,7 @@ pub(super) struct Line<'a> {
 }
 
 impl<'a> Line<'a> {
-    /// The word of some index, or the end of the last word.
+    /// Location of a word, or of the end of the last word.
     pub(super) fn location(&self, index: usize) -> Location {
         self.at(self.words.get(index).map_or(self.end, |word| word.start))
     }
@@ -44,7 +44,7 @@ impl<'a> Line<'a> {
         FormatError::new(self.file, self.location(index), found, expected)
     }
 
-    /// The rest of the line from a word on, without comment, quotes as written.
+    /// The rest of the line from a word on, with quotes but without the comment.
     pub(super) fn rest(&self, index: usize) -> &'a str {
         self.words.get(index).map_or("", |word| self.text[word.start..self.end].trim_end())
     }
@@ -54,7 +54,7 @@ impl<'a> Line<'a> {
     }
 }
 
-/// The lines of a text with their numbers from 1, without line ends and byte order mark.
+/// Lines of a text with numbers from 1, without line ends and byte order mark.
 pub(super) fn numbered(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let lines = text.split('\n').flat_map(|line| line.strip_suffix('\r').unwrap_or(line).split('\r'));
@@ -86,7 +86,7 @@ pub(super) fn line<'a>(file: &'a str, number: usize, text: &'a str) -> Result<Op
 
 type Input<'a> = LocatingSlice<&'a str>;
 
-/// A byte order mark in the middle of a file is as invisible as a blank.
+/// A byte order mark within a file is invisible, like a blank.
 fn is_blank(c: char) -> bool {
     c.is_whitespace() || c == '\u{feff}'
 }
@@ -95,7 +95,7 @@ fn blanks<'a>(input: &mut Input<'a>) -> ModalResult<&'a str> {
     take_while(0.., is_blank).parse_next(input)
 }
 
-/// The place of the next word, unless the line or its content ends here.
+/// Position of the next word; `None` at the end of the line or its content.
 fn position(input: &mut Input<'_>) -> ModalResult<usize> {
     not(alt((winnow::combinator::eof.void(), winnow::token::one_of([';', '#']).void()))).parse_next(input)?;
     Ok(input.current_token_start())
@@ -110,7 +110,7 @@ fn word<'a>(input: &mut Input<'a>) -> ModalResult<(&'a str, bool)> {
     alt((quoted('"'), quoted('\''), preceded(unquoted, bare))).parse_next(input)
 }
 
-/// A word for a message: in backquotes, on one line, not too long.
+/// A word for a message: in backquotes, on one line and shortened.
 pub(crate) fn shown(word: &str) -> String {
     let mut short: String = word.chars().take(40).flat_map(char::escape_debug).collect();
     if word.chars().nth(40).is_some() {
@@ -119,9 +119,9 @@ pub(crate) fn shown(word: &str) -> String {
     format!("`{short}`")
 }
 
-/// A word as a file must hold it: in quotes if it has blanks or would read as something else.
+/// A word as written to a file, in quotes if it has blanks or would be read differently.
 ///
-/// Line ends and a second kind of quote cannot be written and become blanks and `'`.
+/// Line ends and a second kind of quote cannot be represented; they become blanks and `'`.
 pub(super) fn quote(word: &str) -> String {
     let bare = !word.is_empty()
         && !word.starts_with(['"', '\'', '#'])
@@ -137,10 +137,10 @@ pub(super) fn quote(word: &str) -> String {
     }
 }
 
-/// What a writer writes.
+/// The output of a writer.
 pub(super) fn written(write: impl FnOnce(&mut String) -> std::fmt::Result) -> String {
     let mut text = String::new();
-    // A string takes everything: its writer never fails.
+    // Writing to a string never fails.
     let _ = write(&mut text);
     text
 }

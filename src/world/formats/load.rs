@@ -8,8 +8,8 @@ use super::world_file::{Kind, kind, parse_world};
 use super::{esobj, robi, sim};
 use crate::world::{ObjectKind, RobotSpec, Scene};
 
-/// Reads a scene from disk: a `.sim`, or the `.wld`, `.maz`, ROS map (`.yaml`, `.yml`) or MovingAI map (`.map`) of one
-/// without robots.
+/// Reads a scene from a file: a `.sim`, or without robots a `.wld`, `.maz`, ROS map (`.yaml`, `.yml`) or
+/// MovingAI map (`.map`).
 ///
 /// ```
 /// let file = std::env::temp_dir().join(format!("roverlab-{}.wld", std::process::id()));
@@ -27,7 +27,8 @@ pub fn load_scene(path: impl AsRef<Path>) -> Result<Parsed<Scene>, FormatError> 
     parse_scene(read_file(path)?, &path.display().to_string(), &mut DiskFiles::new())
 }
 
-/// Reads a scene from the bytes of its file, whose name says what kind it is, and from the files that it names.
+/// Reads a scene from the bytes of its file, with the kind determined by its name, and from the files that it
+/// names.
 ///
 /// ```
 /// use roverlab::world::formats::{MemoryFiles, parse_scene, parse_scene_tolerantly};
@@ -49,8 +50,8 @@ pub fn parse_scene(
     scene_of(bytes, file, &mut Files::new(files, false))
 }
 
-/// As [`parse_scene`], but that scripts are read as by [`sim::parse_tolerantly`], and that a world without
-/// the images that it names has a gray, level floor.
+/// Like [`parse_scene`], but scripts are read as by [`sim::parse_tolerantly`], and a world with missing
+/// images has a gray, level floor.
 pub fn parse_scene_tolerantly(
     bytes: Vec<u8>,
     file: &str,
@@ -70,21 +71,16 @@ fn scene_of(bytes: Vec<u8>, file: &str, files: &mut Files<'_>) -> Result<Parsed<
     })
 }
 
-/// Reads a robot's description, `.robi`, with its 3D model from disk.
+/// Reads a robot's description (`.robi`) and its 3D model from files.
 pub fn load_robot(path: impl AsRef<Path>) -> Result<Parsed<RobotSpec>, FormatError> {
-    robot_from(path.as_ref(), false)
+    let path = path.as_ref();
+    robot_of(read_file(path)?, &path.display().to_string(), &mut Files::new(&mut DiskFiles::new(), false))
 }
 
-/// As [`load_robot`], but that a robot whose model is missing or broken has none.
+/// Like [`load_robot`], but a missing or broken model is left out.
 pub fn load_robot_tolerantly(path: impl AsRef<Path>) -> Result<Parsed<RobotSpec>, FormatError> {
-    robot_from(path.as_ref(), true)
-}
-
-fn robot_from(path: &Path, tolerant: bool) -> Result<Parsed<RobotSpec>, FormatError> {
-    let read = |text: &str, file: &str| {
-        robi::parse_with_model(text, file, &mut Files::new(&mut DiskFiles::new(), tolerant))
-    };
-    decoded(read_file(path)?, &path.display().to_string(), read)
+    let path = path.as_ref();
+    parse_robot_tolerantly(read_file(path)?, &path.display().to_string(), &mut DiskFiles::new())
 }
 
 /// Reads a robot's description from the bytes of its file, without its 3D model.
@@ -94,7 +90,7 @@ fn robot_from(path: &Path, tolerant: bool) -> Result<Parsed<RobotSpec>, FormatEr
 /// let text = "drive DIFFERENTIAL_DRIVE\nname Mine\nwheel 54 3600 1100 45\npsd 1 FRONT 50 0 20 0 0 0\n";
 /// let robot = parse_robot(text.into(), "mine.robi")?;
 /// assert_eq!((robot.value.psds.len(), robot.value.name.as_str()), (1, "Mine"));
-/// // From the disk; errors name the file.
+/// // From a file; errors state its name.
 /// for error in [load_robot("none.robi").err(), load_robot_tolerantly("none.robi").err()] {
 ///     assert!(error.expect("there is none").to_string().contains("none.robi"));
 /// }
@@ -103,6 +99,30 @@ fn robot_from(path: &Path, tolerant: bool) -> Result<Parsed<RobotSpec>, FormatEr
 /// ```
 pub fn parse_robot(bytes: Vec<u8>, file: &str) -> Result<Parsed<RobotSpec>, FormatError> {
     decoded(bytes, file, robi::parse)
+}
+
+/// As [`load_robot_tolerantly`], from the bytes of the robot's file and from the files that it names.
+///
+/// ```
+/// use roverlab::world::formats::{MemoryFiles, parse_robot_tolerantly};
+/// let text = "drive DIFFERENTIAL_DRIVE\nname Mine\nmodel mine.obj\nwheel 54 3600 1100 45\n";
+/// let mut files = MemoryFiles::default();
+/// let bare = parse_robot_tolerantly(text.into(), "mine.robi", &mut files)?;
+/// assert!(bare.value.mesh.is_none() && bare.warnings[0].to_string().contains("mine.obj"));
+/// files.0.insert("mine.obj".into(), b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".to_vec());
+/// assert!(parse_robot_tolerantly(text.into(), "mine.robi", &mut files)?.value.mesh.is_some());
+/// # Ok::<(), roverlab::world::formats::FormatError>(())
+/// ```
+pub fn parse_robot_tolerantly(
+    bytes: Vec<u8>,
+    file: &str,
+    files: &mut dyn FileSource,
+) -> Result<Parsed<RobotSpec>, FormatError> {
+    robot_of(bytes, file, &mut Files::new(files, true))
+}
+
+fn robot_of(bytes: Vec<u8>, file: &str, files: &mut Files<'_>) -> Result<Parsed<RobotSpec>, FormatError> {
+    decoded(bytes, file, |text, file| robi::parse_with_model(text, file, files))
 }
 
 /// Reads an object's description, `.esObj`, with its 3D model from disk.
@@ -114,8 +134,8 @@ pub fn load_object(path: impl AsRef<Path>) -> Result<Parsed<ObjectKind>, FormatE
     decoded(read_file(path)?, &path.display().to_string(), read)
 }
 
-/// The bytes of a file on disk, for the functions that read formats from bytes. Fails as those do for a file that
-/// does not exist, cannot be read or is too long.
+/// Bytes of a file, for the functions that read formats from bytes. Like these, it fails for a file that does
+/// not exist, cannot be read or is too long.
 pub fn read_file(path: impl AsRef<Path>) -> Result<Vec<u8>, FormatError> {
     let path = path.as_ref();
     let file = path.display().to_string();
@@ -123,7 +143,7 @@ pub fn read_file(path: impl AsRef<Path>) -> Result<Vec<u8>, FormatError> {
         .map_err(|error| unreadable(&error, &file, &file, Location::START, MAX_TEXT_BYTES))
 }
 
-/// Hands the text of a file and its name to a reader.
+/// Passes the text and the name of a file to a reader.
 fn decoded<T>(
     bytes: Vec<u8>,
     file: &str,

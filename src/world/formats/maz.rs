@@ -1,6 +1,6 @@
-//! EyeSim's mazes (`.maz`): walls as a picture of `_` and `|`, one cell every two columns.
+//! EyeSim's mazes (`.maz`): walls drawn with `_` and `|`, two columns per cell.
 //!
-//! The character in column `i`, from 0, belongs to `x = (i + 1) / 2` cells, rounded down, from the left edge.
+//! The character in column `i` (from 0) is at `x = (i + 1) / 2` cells from the left edge, rounded down.
 //!
 //! ```text
 //!  _ _ _
@@ -10,18 +10,18 @@
 //! 360
 //! ```
 //!
-//! * `|` is a wall of one cell's height at `x`. It usually stands in an even column; one in an odd column,
-//!   the place of a cell, counts as well: it closes that cell on the right.
-//! * `_` in an odd column is a wall below the cell that ends at `x`; in the first line, the maze's upper
-//!   edge.
-//! * A letter stands in the middle of the cell that ends at `x`, in an odd or an even column. A capital has a
-//!   wall below it as well. `s` and `u` head up, `l` left, `d` down, `r` right; `o` is a golf ball, `x` a
-//!   crate; other letters are places for simulation scripts to use. `.` and blanks are empty.
-//! * The cell size in millimetres is a single number before or after the picture; 360 without one.
-//! * The lower left corner of the picture is the origin. Empty lines, comments and lines that begin with anything but
-//!   `|`, `_` or a blank are skipped.
+//! * `|` is a wall of one cell's height at `x`, usually in an even column. In an odd column, the place of a
+//!   cell, it also counts: it closes that cell on the right.
+//! * `_` in an odd column is a wall below the cell that ends at `x`; in the first line it is the upper edge
+//!   of the maze.
+//! * A letter is in the middle of the cell that ends at `x`, in an odd or even column. A capital also has a
+//!   wall below it. `s` and `u` head up, `l` left, `d` down, `r` right; `o` is a golf ball, `x` a crate;
+//!   other letters are places for simulation scripts. `.` and blanks are empty.
+//! * The cell size in millimetres is a single number before or after the picture; default 360.
+//! * The lower left corner of the picture is the origin. Empty lines, comments and lines that begin with
+//!   anything but `|`, `_` or a blank are skipped.
 //!
-//! Walls are as thick and high as EyeSim's default, whatever the size of a cell.
+//! Walls have EyeSim's default thickness and height, independent of the cell size.
 //!
 //! ```
 //! use roverlab::world::formats::maz;
@@ -50,20 +50,20 @@ use crate::world::{Object, ObjectKind, Place, Wall, World};
 pub struct MazGrid {
     columns: usize,
     rows: usize,
-    /// Metres from one cell to the next.
+    /// Cell size (m).
     pub cell: f64,
-    /// `rows + 1` lines of `columns` walls, the lower edge first.
+    /// `rows + 1` lines of `columns` walls, starting with the lower edge.
     horizontal: Vec<bool>,
-    /// `rows` lines of `columns + 1` walls, the left edge first.
+    /// `rows` lines of `columns + 1` walls, starting with the left edge.
     vertical: Vec<bool>,
     letters: Vec<Option<char>>,
 }
 
 impl MazGrid {
-    /// The cell size of files that state none, in metres.
+    /// Default cell size (m).
     pub const DEFAULT_CELL: f64 = 0.360;
 
-    /// A maze without walls, of at least one column; `None` if it has more than a million cells.
+    /// A maze without walls, with at least one column; `None` above a million cells.
     pub fn new(columns: usize, rows: usize, cell: f64) -> Option<Self> {
         let (columns, lines) = (columns.max(1), rows.checked_add(1)?);
         let size = (columns + 1).checked_mul(lines).filter(|&size| size <= MAX_MAZE_CELLS)?;
@@ -77,44 +77,44 @@ impl MazGrid {
         })
     }
 
-    /// Cells from left to right.
+    /// Number of cells from left to right.
     pub fn columns(&self) -> usize {
         self.columns
     }
 
-    /// Cells from bottom to top.
+    /// Number of cells from bottom to top.
     pub fn rows(&self) -> usize {
         self.rows
     }
 
-    /// Whether there is a wall below the cell of a column and a row; row [`MazGrid::rows`] means the upper edge.
-    /// Outside the maze there is none.
+    /// Whether there is a wall below the cell at a column and row; row [`MazGrid::rows`] is the upper edge.
+    /// There are no walls outside the maze.
     pub fn wall_below(&self, column: usize, row: usize) -> bool {
         column < self.columns && self.horizontal.get(row * self.columns + column).is_some_and(|&wall| wall)
     }
 
-    /// Whether there is a wall to the left of the cell of a column and a row; column [`MazGrid::columns`] means the
-    /// right edge. Outside the maze there is none.
+    /// Whether there is a wall to the left of the cell at a column and row; column [`MazGrid::columns`] is
+    /// the right edge. There are no walls outside the maze.
     pub fn wall_left(&self, column: usize, row: usize) -> bool {
         column <= self.columns
             && self.vertical.get(row * (self.columns + 1) + column).is_some_and(|&wall| wall)
     }
 
-    /// Builds or removes the wall that [`MazGrid::wall_below`] tells of. Outside the maze nothing happens.
+    /// Builds or removes the wall of [`MazGrid::wall_below`]; no effect outside the maze.
     pub fn set_wall_below(&mut self, column: usize, row: usize, wall: bool) {
         if column < self.columns && row <= self.rows {
             self.horizontal[row * self.columns + column] = wall;
         }
     }
 
-    /// Builds or removes the wall that [`MazGrid::wall_left`] tells of. Outside the maze nothing happens.
+    /// Builds or removes the wall of [`MazGrid::wall_left`]; no effect outside the maze.
     pub fn set_wall_left(&mut self, column: usize, row: usize, wall: bool) {
         if column <= self.columns && row < self.rows {
             self.vertical[row * (self.columns + 1) + column] = wall;
         }
     }
 
-    /// The letter of a cell, in lower case.
+    /// Letter of a cell, in lower case.
     pub fn letter(&self, column: usize, row: usize) -> Option<char> {
         if column < self.columns {
             self.letters.get(row * self.columns + column).copied().flatten()
@@ -123,7 +123,8 @@ impl MazGrid {
         }
     }
 
-    /// Puts a letter into a cell, in lower case. What is no ASCII letter empties it; outside the maze nothing happens.
+    /// Sets the letter of a cell, in lower case. Anything but an ASCII letter empties it; no effect outside
+    /// the maze.
     pub fn set_letter(&mut self, column: usize, row: usize, letter: Option<char>) {
         if column < self.columns && row < self.rows {
             let letter = letter.filter(char::is_ascii_alphabetic).map(|c| c.to_ascii_lowercase());
@@ -131,7 +132,7 @@ impl MazGrid {
         }
     }
 
-    /// The world that the maze describes. Walls in line are joined into one.
+    /// The world of the maze. Collinear walls are joined.
     pub fn to_world(&self) -> World {
         let mut world = World::empty(self.columns as f64 * self.cell, self.rows as f64 * self.cell);
         for row in 0..=self.rows {
@@ -149,7 +150,7 @@ impl MazGrid {
     fn furnish(&self, world: &mut World) {
         let kind = |name| ObjectKind::predefined(name).map(Arc::new);
         let (golf, crates) = (kind("golf"), kind("crate"));
-        // As the picture is read: from the upper left corner.
+        // In the order of the picture: from the upper left corner.
         let cells = (0..self.rows).rev().flat_map(|row| (0..self.columns).map(move |column| (column, row)));
         for (column, row) in cells {
             let Some(letter) = self.letter(column, row) else { continue };
@@ -174,7 +175,7 @@ impl MazGrid {
     }
 }
 
-/// The maximal stretches `a..b` of `0..count` on which something holds.
+/// Maximal intervals `a..b` of `0..count` in which a condition holds.
 fn runs(count: usize, holds: impl Fn(usize) -> bool) -> impl Iterator<Item = (usize, usize)> {
     let mut next = 0;
     std::iter::from_fn(move || {
@@ -185,7 +186,7 @@ fn runs(count: usize, holds: impl Fn(usize) -> bool) -> impl Iterator<Item = (us
     })
 }
 
-/// The heading that a start letter stands for.
+/// Heading of a start letter.
 fn heading(letter: char) -> Option<f64> {
     let degrees = match letter.to_ascii_lowercase() {
         's' | 'u' => 90.0,
@@ -197,14 +198,14 @@ fn heading(letter: char) -> Option<f64> {
     Some(units::from_deg(degrees))
 }
 
-/// The first `s`, or else the first other letter with a heading.
+/// The first `s`, otherwise the first other letter with a heading.
 fn start(places: &[Place]) -> Option<Pose> {
     let s = places.iter().find(|place| place.letter.eq_ignore_ascii_case(&'s'));
     let place = s.or_else(|| places.iter().find(|place| place.heading.is_some()))?;
     Some(Pose::new(place.position.x, place.position.y, place.heading?))
 }
 
-/// Reads a maze as a world: its walls, its start, its places, its balls and crates.
+/// Reads a maze as a world: walls, start, places, balls and crates.
 pub fn parse(text: &str, file: &str) -> Result<Parsed<World>, FormatError> {
     Ok(parse_maze(text, file)?.map(|maze| maze.to_world()))
 }
@@ -217,11 +218,11 @@ pub fn parse_maze(text: &str, file: &str) -> Result<Parsed<MazGrid>, FormatError
     picture.finish()
 }
 
-/// The lines of a maze file, sorted.
+/// Classified lines of a maze file.
 struct Picture<'a> {
-    /// Line number and text of each row, the uppermost first.
+    /// Line number and text of each row, uppermost first.
     rows: Vec<(usize, &'a str)>,
-    /// Line number, rows before it, and metres of each cell size.
+    /// Line number, number of preceding rows, and value of each cell size (m).
     sizes: Vec<(usize, usize, f64)>,
     notes: Notes<'a>,
 }
@@ -270,7 +271,7 @@ impl<'a> Picture<'a> {
         Ok(self.notes.finish(maze))
     }
 
-    /// The line and the metres of the cell size that counts, if there is one.
+    /// Line and value (m) of the effective cell size; `None` without one.
     fn choose_size(&mut self, first: usize, last: usize) -> Option<(usize, f64)> {
         let mut chosen = None;
         for &(line, before, size) in &self.sizes {
@@ -287,7 +288,7 @@ impl<'a> Picture<'a> {
         chosen
     }
 
-    /// The world of the maze must have coordinates that other files can name. `line` tells the size of a cell.
+    /// Checks that the world's coordinates can be written to other files. `line` is that of the cell size.
     fn check_extent(&self, maze: &MazGrid, line: usize) -> Result<(), FormatError> {
         let extent = maze.columns.max(maze.rows) as f64 * maze.cell;
         if extent <= MAX_METRES {
@@ -300,10 +301,10 @@ impl<'a> Picture<'a> {
     }
 
     fn draw(&mut self, rows: &[(usize, &str)], cell: f64) -> Result<MazGrid, FormatError> {
-        // The uppermost line holds nothing but the upper edge, unless something stands in it.
+        // The uppermost line contains only the upper edge, unless a cell's character is in it.
         let roof = usize::from(!rows[0].1.contains(|c: char| c == '|' || c.is_alphabetic()));
         let count = rows.len() - roof;
-        // The last character of a row stands at half the row's length, or begins there.
+        // The last character of a row is at, or begins at, half the row's length.
         let columns = rows.iter().map(|row| row.1.chars().count() / 2).max().unwrap_or(0);
         let mut maze = MazGrid::new(columns, count, cell).ok_or_else(|| {
             let found = format!("a maze of {columns} by {count} cells");
@@ -324,7 +325,7 @@ impl<'a> Picture<'a> {
 }
 
 impl MazGrid {
-    /// Enters a character of the picture. Returns whether it has a meaning in its column.
+    /// Adds a character of the picture. Returns whether it has a meaning in its column.
     fn draw(&mut self, row: usize, column: usize, c: char) -> bool {
         let edge = column.div_ceil(2);
         match (c, edge.checked_sub(1)) {
@@ -367,12 +368,12 @@ fn cell_size(text: &str, file: &str, number: usize, line: &str) -> Result<f64, F
     if size > 0.0 && size <= MAX_METRES { Ok(size) } else { Err(error("more than 0 and at most 1000000000")) }
 }
 
-/// Writes a maze, so that [`parse_maze`] gives it back.
+/// Writes a maze in a form that [`parse_maze`] reads back.
 pub fn print(maze: &MazGrid) -> String {
     let mut lines: Vec<String> = (0..=maze.rows).rev().map(|row| maze.print_row(row)).collect();
     let width = 2 * maze.columns;
     if lines.iter().all(|line| line.trim_end().len() < width) {
-        // Nothing stands in the last column: a dot keeps its place.
+        // The last column is empty; a dot preserves it.
         if let Some(last) = lines.last_mut() {
             last.replace_range(width - 1..width, ".");
         }

@@ -1,7 +1,7 @@
 //! Readers and writers of the file formats.
 //!
-//! Every reader answers with a [`Parsed`] value and its [`Warning`]s, or with a [`FormatError`] that names file, line,
-//! column, what stands there and what was expected. Files are in millimetres and degrees; values are in SI units.
+//! Every reader returns a [`Parsed`] value with its [`Warning`]s, or a [`FormatError`] with file, line,
+//! column, found and expected text. Files are in millimetres and degrees; values are in SI units.
 
 mod args;
 pub mod bitmap;
@@ -22,6 +22,7 @@ pub mod ros_map;
 pub mod sim;
 mod source;
 mod terrain_file;
+mod water;
 pub mod wld;
 mod world_file;
 mod yaml;
@@ -29,8 +30,8 @@ mod yaml_events;
 
 pub use error::{FormatError, Location, Parsed, Warning};
 pub use load::{
-    load_object, load_robot, load_robot_tolerantly, load_scene, parse_robot, parse_scene,
-    parse_scene_tolerantly, read_file,
+    load_object, load_robot, load_robot_tolerantly, load_scene, parse_robot, parse_robot_tolerantly,
+    parse_scene, parse_scene_tolerantly, read_file,
 };
 pub use source::{DiskFiles, FileSource, MemoryFiles, SourceFile, in_any_case};
 

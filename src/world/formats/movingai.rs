@@ -1,22 +1,22 @@
 //! MovingAI's grid maps (`.map`) and scenarios (`.scen`).
 //!
-//! A map is a header (`type octile`, `height H`, `width W`, `map`) and a line of characters for each row, the upper one
-//! first:
+//! A map has a header (`type octile`, `height H`, `width W`, `map`) and one line of characters per row, upper
+//! row first:
 //!
 //! | character | meaning |
 //! |---|---|
 //! | `.` `G` | ground |
-//! | `S` | swamp, which one may walk into from the ground |
-//! | `W` | water, which one may move about in but neither enter from the ground nor leave |
+//! | `S` | swamp, accessible from the ground |
+//! | `W` | water, connected to itself only |
 //! | `T` | trees |
 //! | `@` `O` | out of bounds |
 //!
-//! A scenario file is a line `version 1` and a line for each query: bucket, map, width, height, start column and row,
-//! goal column and row, and the length of the shortest path in steps along edges and diagonals, of which the latter need
-//! both cells beside them free.
+//! A scenario file has a line `version 1` and one line per query: bucket, map, width, height, start column
+//! and row, goal column and row, and length of the shortest path along edges and diagonals. A diagonal step
+//! requires both adjacent cells to be free.
 //!
-//! N. R. Sturtevant, *Benchmarks for Grid-Based Pathfinding*, IEEE Trans. Computational Intelligence and AI in
-//! Games 4(2), 2012.
+//! N. R. Sturtevant, *Benchmarks for Grid-Based Pathfinding*, IEEE Trans. Computational Intelligence and AI
+//! in Games 4(2), 2012.
 //!
 //! ```
 //! use roverlab::world::formats::movingai::{Map, parse_map, parse_scenarios, print_map, print_scenarios};
@@ -49,7 +49,7 @@ pub struct Map {
 }
 
 impl Map {
-    /// A map with ground where a grid is free, and `@` elsewhere.
+    /// A map with ground on the grid's free cells, and `@` elsewhere.
     pub fn from_grid(grid: &BitGrid) -> Self {
         let (width, height) = (grid.width(), grid.height());
         let cells = (0..height).flat_map(|row| (0..width).map(move |column| GridCell::new(column, row)));
@@ -57,12 +57,12 @@ impl Map {
         Self { width, height, terrain }
     }
 
-    /// Cells in a row.
+    /// Cells per row.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows.
+    /// Number of rows.
     pub fn height(&self) -> usize {
         self.height
     }
@@ -73,12 +73,12 @@ impl Map {
         if inside { char::from(self.terrain[cell.row * self.width + cell.column]) } else { '@' }
     }
 
-    /// The cells that one may walk on from the ground: ground and swamp. Row 0 is the upper one.
+    /// Cells accessible from the ground: ground and swamp. Row 0 is the upper one.
     pub fn grid(&self) -> BitGrid {
         self.cells_of(b".GS")
     }
 
-    /// The cells of water, which are a map of their own.
+    /// Water cells, which form a separate map.
     ///
     /// ```
     /// use roverlab::world::GridCell;
@@ -93,19 +93,19 @@ impl Map {
 
     fn cells_of(&self, terrain: &[u8]) -> BitGrid {
         let free = |column, row| terrain.contains(&self.terrain[row * self.width + column]);
-        // A map has no more cells than a grid may have.
+        // A map never exceeds the size limit of a grid.
         BitGrid::from_fn(self.width, self.height, free)
             .unwrap_or_else(|_| unreachable!("checked by the reader"))
     }
 }
 
-/// Millimetres along an edge of a cell where a map stands for a floor: a way one cell wide then has room for small robots
-/// even on plans whose cells are as coarse as those of a large map must be.
+/// Cell size of a map used as a floor (mm). Paths one cell wide then have room for small robots, even on
+/// plans with coarse cells.
 pub const CELL_MM: f64 = 500.0;
 
 impl Map {
-    /// The map as a floor: cells of [`CELL_MM`], the lower left corner of the map at the origin, and all around it, as outside
-    /// of every map, no way. So the grid has one more column or row of occupied cells on each side.
+    /// The map as a floor: cells of [`CELL_MM`], with the map's lower left corner at the origin, and a border
+    /// of occupied cells, one column or row on each side, because outside of every map there is no way.
     pub fn occupancy(&self) -> OccupancyGrid {
         let (width, height) = (self.width + 2, self.height + 2);
         let cell = units::from_mm(CELL_MM);
@@ -127,23 +127,23 @@ impl Map {
 /// A query with its answer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Query {
-    /// The bucket: queries of similar lengths.
+    /// Bucket: queries of similar lengths.
     pub bucket: u32,
-    /// The map's name as written.
+    /// Name of the map as written.
     pub map: String,
-    /// Cells in a row of the map.
+    /// Cells per row of the map.
     pub width: usize,
-    /// Rows of the map.
+    /// Number of rows of the map.
     pub height: usize,
-    /// From here.
+    /// Start cell.
     pub start: GridCell,
-    /// To here.
+    /// Goal cell.
     pub goal: GridCell,
-    /// The length of the shortest path in cells.
+    /// Length of the shortest path (cells).
     pub optimal: f64,
 }
 
-/// Reads a map from disk.
+/// Reads a map from a file.
 ///
 /// ```
 /// use roverlab::world::formats::movingai::{load_map, load_scenarios, parse_map, parse_scenarios};
@@ -151,7 +151,7 @@ pub struct Query {
 /// let text = "version 1\n0 corridor.map 3 1 0 0 1 0 1.0\n";
 /// let queries = parse_scenarios(text, "corridor.map.scen")?.value;
 /// assert_eq!((map.grid().count_free(), queries[0].optimal), (2, 1.0));
-/// // From the disk:
+/// // From a file:
 /// assert!(load_map("none.map").is_err() && load_scenarios("none.map.scen").is_err());
 /// # Ok::<(), roverlab::world::formats::FormatError>(())
 /// ```
@@ -159,7 +159,7 @@ pub fn load_map(path: impl AsRef<Path>) -> Result<Parsed<Map>, FormatError> {
     read(path.as_ref(), parse_map)
 }
 
-/// Reads scenarios from disk.
+/// Reads scenarios from a file.
 pub fn load_scenarios(path: impl AsRef<Path>) -> Result<Parsed<Vec<Query>>, FormatError> {
     read(path.as_ref(), parse_scenarios)
 }
@@ -227,14 +227,14 @@ pub fn parse_map(text: &str, file: &str) -> Result<Parsed<Map>, FormatError> {
     Ok(Notes::new(file).finish(Map { width, height, terrain }))
 }
 
-/// What is accepted as a width or a height.
+/// Valid widths and heights, for messages.
 const SIZE: &str = "a number of cells from 1 to 33554432";
 
 fn size(text: &str) -> Option<usize> {
     text.parse().ok().filter(|&n| n > 0 && n <= BitGrid::MAX_CELLS)
 }
 
-/// The place of a word in a line, or of the line's end.
+/// Location of a word in a line, or of the line's end.
 fn place(number: usize, line: &str, word: Option<&str>) -> Location {
     let offset = word.map_or(line.trim_end().len(), |word| word.as_ptr() as usize - line.as_ptr() as usize);
     Location { line: number, column: line[..offset].chars().count() + 1 }
@@ -248,11 +248,11 @@ fn check_length(text: &str, file: &str) -> Result<(), FormatError> {
     Err(FormatError::new(file, Location::START, "a larger file", expected))
 }
 
-/// The lines that are not read yet.
+/// Unread lines.
 struct Lines<'a, I> {
     file: &'a str,
     inner: I,
-    /// The number of the line that was read last.
+    /// Number of the last line read.
     last: usize,
 }
 
@@ -333,7 +333,7 @@ pub fn parse_scenarios(text: &str, file: &str) -> Result<Parsed<Vec<Query>>, For
     Ok(Notes::new(file).finish(queries))
 }
 
-/// One line. The name of the map may hold blanks, so that the numbers after it are counted from the end.
+/// A query line. The name of the map may contain blanks, so the numbers are counted from the end.
 fn query(file: &str, number: usize, line: &str) -> Result<Query, FormatError> {
     let words: Vec<&str> = line.split_whitespace().collect();
     if words.len() < 9 {

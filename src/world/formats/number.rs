@@ -1,7 +1,8 @@
 //! Decimal numbers, read and written without loss.
 //!
-//! Millimetres become metres by moving the decimal point of the text, not by a division: `22.7` is the `f64`
-//! nearest to 0.0227, and every `f64` in metres has a text in millimetres that reads back as itself.
+//! Conversion between millimetres and metres shifts the decimal point of the text instead of dividing: `22.7`
+//! is the `f64` nearest to 0.0227, and every `f64` in metres has a text in millimetres that reads back as the
+//! same value.
 
 use std::ops::RangeInclusive;
 
@@ -13,13 +14,13 @@ use winnow::token::one_of;
 use super::limits::MAX_DEGREES;
 use crate::geometry::units;
 
-/// The power of ten between millimetres and metres.
+/// Power of ten from millimetres to metres.
 pub(super) const MILLI: i32 = -3;
 
-/// Reads a decimal number times a power of ten. `None` if the text is no number; infinite if it overflows.
+/// Reads a decimal number times a power of ten. `None` if it is not a number; infinite on overflow.
 pub(super) fn parse(text: &str, power: i32) -> Option<f64> {
     let (mantissa, exponent) = decimal.parse(text).ok()?;
-    // More digits than any exponent needs: beyond that the value is zero or infinite anyway.
+    // More digits than any exponent needs; the value is zero or infinite anyway.
     let exponent =
         exponent.map_or(0, |e| e.parse::<i64>().unwrap_or(if e.starts_with('-') { -99_999 } else { 99_999 }));
     let exponent = exponent.clamp(-99_999, 99_999) + i64::from(power);
@@ -34,14 +35,15 @@ fn decimal<'s>(input: &mut &'s str) -> ModalResult<(&'s str, Option<&'s str>)> {
     (mantissa, opt(exponent)).parse_next(input)
 }
 
-/// Whether a word is meant as a number, however badly written: world files tell walls from keywords by it.
+/// Whether a word is intended as a number, even a malformed one; world files distinguish walls from keywords
+/// by it.
 pub(super) fn looks_like_number(word: &str) -> bool {
     let bare = word.trim_start_matches(['+', '-']);
     bare.strip_prefix('.').unwrap_or(bare).starts_with(|c: char| c.is_ascii_digit())
         || ["nan", "inf", "infinity"].iter().any(|special| bare.eq_ignore_ascii_case(special))
 }
 
-/// The shortest text that [`parse`] reads back as `value`, given the same power.
+/// Shortest text that [`parse`] reads back as `value` for the same power.
 pub(super) fn print(value: f64, power: i32) -> String {
     let scientific = format!("{value:e}");
     let Some((mantissa, exponent)) = scientific.split_once('e') else { return scientific };
@@ -64,15 +66,15 @@ pub(super) fn print(value: f64, power: i32) -> String {
     }
 }
 
-/// Metres as a text in millimetres.
+/// A length in metres as text in millimetres.
 pub(super) fn millimetres(metres: f64) -> String {
     print(metres, MILLI)
 }
 
-/// Radians as a text in degrees.
+/// An angle in radians as text in degrees.
 ///
-/// Angles that come from a text go back to a text that gives the same radians; others may move by one unit in the
-/// last place, because not every angle in radians has an `f64` in degrees.
+/// Angles read from text are written as text for the same radians; others may change by one unit in the last
+/// place, because not every angle in radians has an `f64` in degrees.
 pub(super) fn degrees(radians: f64) -> String {
     let exact = units::to_deg(radians);
     let rounded: f64 = format!("{exact:.11e}").parse().unwrap_or(exact);
@@ -86,7 +88,7 @@ pub(super) fn degrees(radians: f64) -> String {
     print(best, 0)
 }
 
-/// The number from which taking `shift` away gives `value`, so that it survives being written and read.
+/// The number that gives `value` after subtraction of `shift`, so that it survives writing and reading.
 pub(super) fn undo_shift(value: f64, shift: f64) -> f64 {
     let sum = value + shift;
     let (mut up, mut down) = (sum, sum);
@@ -98,10 +100,11 @@ pub(super) fn undo_shift(value: f64, shift: f64) -> f64 {
     candidates.into_iter().find(|&candidate| candidate - shift == value).unwrap_or(sum)
 }
 
-/// The range of angles that files may hold, in degrees.
+/// Range of angles in files (degrees).
 pub(super) const ANGLES: RangeInclusive<f64> = -MAX_DEGREES..=MAX_DEGREES;
 
-/// The same direction in -180 to 180 degrees. Exact, as degrees are multiples of small binary fractions.
+/// The same direction from -180 to 180 degrees. Exact, because degrees are multiples of small binary
+/// fractions.
 pub(super) fn normalize_degrees(degrees: f64) -> f64 {
     if (-180.0..=180.0).contains(&degrees) { degrees } else { degrees - 360.0 * (degrees / 360.0).round() }
 }

@@ -2,18 +2,18 @@
 //!
 //! | key | meaning |
 //! |---|---|
-//! | `image` | the image (PGM, PNG or BMP), looked up from the YAML file's folder |
+//! | `image` | image file (PGM, PNG or BMP), relative to the YAML file's folder |
 //! | `resolution` | metres per pixel |
-//! | `origin` | x, y and yaw of the lower left pixel's lower left corner, in metres and radians |
+//! | `origin` | x, y (m) and yaw (rad) of the lower left corner of the lower left pixel |
 //! | `negate` | 0: black is occupied; 1: white is |
-//! | `occupied_thresh`, `free_thresh` | a cell is occupied above the one and free below the other |
+//! | `occupied_thresh`, `free_thresh` | cells are occupied above the former and free below the latter |
 //! | `mode` | `trinary` (the default), `scale` or `raw` |
 //!
-//! A pixel of brightness v, 0 to 255, has the occupancy p = (255 - v) / 255, or v / 255 if negated. *Trinary* knows
-//! free, occupied and unknown. *Scale* turns what lies between the thresholds into percent, and transparent pixels
-//! into unknown ones. *Raw* takes v itself as percent, and more than 100 as unknown. The brightness of a colour is the
-//! mean of red, green and blue. (Some map servers count the opacity as a fourth channel in mode *trinary*, which makes
-//! opaque pixels brighter than they look; this reader does not.)
+//! A pixel of brightness v (0 to 255) has occupancy p = (255 - v) / 255, or v / 255 if negated. *Trinary*
+//! distinguishes free, occupied and unknown. *Scale* converts values between the thresholds to percent, and
+//! transparent pixels to unknown. *Raw* interprets v as percent, and more than 100 as unknown. The brightness
+//! of a colour is the mean of red, green and blue. (Some map servers count opacity as a fourth channel in
+//! mode *trinary*, which brightens opaque pixels; this reader does not.)
 
 use std::fmt::Write as _;
 use std::io::Cursor;
@@ -32,7 +32,7 @@ use crate::ParameterError;
 use crate::geometry::Pose;
 use crate::world::{OccupancyGrid, World};
 
-/// How pixels become occupancies.
+/// Conversion of pixels to occupancies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Mode {
     /// Free, occupied or unknown.
@@ -44,7 +44,7 @@ pub enum Mode {
     Raw,
 }
 
-/// A map with what its file says about it.
+/// A map with the content of its YAML file.
 ///
 /// ```
 /// use roverlab::geometry::Pose;
@@ -56,46 +56,41 @@ pub enum Mode {
 /// files.0.insert("hall.pgm".into(), ros_map::print_image(&map)?);
 /// let read = ros_map::parse(&ros_map::print(&map), "hall.yaml", &mut files)?.value;
 /// assert_eq!(read, map);
-/// // On the disk, the image lies beside the YAML.
+/// // In a folder, the image is beside the YAML file.
 /// assert!(ros_map::save(&map, "no such folder/hall.yaml").is_err());
 /// assert!(ros_map::load("no such folder/hall.yaml").is_err());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct RosMap {
-    /// The name of the image as written.
+    /// Name of the image as written.
     pub image: String,
-    /// How pixels become occupancies.
+    /// Conversion of pixels to occupancies.
     pub mode: Mode,
-    /// Whether white is occupied, in place of black.
+    /// Whether white is occupied instead of black.
     pub negate: bool,
-    /// Above this, 0 to 1, a cell is occupied.
+    /// Occupancy (0 to 1) above which a cell is occupied.
     pub occupied_threshold: f64,
-    /// Below this, 0 to 1, a cell is free.
+    /// Occupancy (0 to 1) below which a cell is free.
     pub free_threshold: f64,
     /// The cells.
     pub grid: OccupancyGrid,
 }
 
 impl RosMap {
-    /// The threshold of files that state none.
-    pub const DEFAULT_OCCUPIED_THRESHOLD: f64 = 0.65;
-    /// The threshold of files that state none.
-    pub const DEFAULT_FREE_THRESHOLD: f64 = 0.196;
-
-    /// A trinary map with the usual thresholds.
+    /// A trinary map with the thresholds of files that state none.
     pub fn new(image: impl Into<String>, grid: OccupancyGrid) -> Self {
         Self {
             image: image.into(),
             mode: Mode::Trinary,
             negate: false,
-            occupied_threshold: Self::DEFAULT_OCCUPIED_THRESHOLD,
-            free_threshold: Self::DEFAULT_FREE_THRESHOLD,
+            occupied_threshold: 0.65,
+            free_threshold: 0.196,
             grid,
         }
     }
 
-    /// The occupancy in percent of a pixel, `None` if unknown. `brightness` is 0 to 255.
+    /// Occupancy of a pixel in percent; `None` if unknown. `brightness` is from 0 to 255.
     fn occupancy(&self, brightness: f64, transparent: bool) -> Option<u8> {
         let paint = if self.negate { brightness } else { 255.0 - brightness };
         let occupied = paint / 255.0;
@@ -112,7 +107,7 @@ impl RosMap {
     }
 }
 
-/// Reads a map from disk.
+/// Reads a map from a file.
 pub fn load(path: impl AsRef<Path>) -> Result<Parsed<RosMap>, FormatError> {
     let file = path.as_ref().display().to_string();
     let bytes = read_limited(path.as_ref(), MAX_TEXT_BYTES)
@@ -124,7 +119,7 @@ pub fn load(path: impl AsRef<Path>) -> Result<Parsed<RosMap>, FormatError> {
     Ok(notes.finish(parsed.value))
 }
 
-/// Reads a map whose image comes from some source.
+/// Reads a map; its image comes from `files`.
 pub fn parse(text: &str, file: &str, files: &mut dyn FileSource) -> Result<Parsed<RosMap>, FormatError> {
     check_length(text, file)?;
     let mut header = Header { notes: Notes::new(file), entries: yaml::mapping(text, file)? };
@@ -143,12 +138,12 @@ pub fn parse(text: &str, file: &str, files: &mut dyn FileSource) -> Result<Parse
     Ok(header.notes.finish(map))
 }
 
-/// The world of a map: the outlines of its occupied cells.
+/// The world of a map: outlines of its occupied cells.
 pub(super) fn to_world(map: &RosMap, file: &str) -> Result<World, FormatError> {
     grid_to_world(&map.grid, file)
 }
 
-/// The world of a grid, unless it has too many walls.
+/// The world of a grid; fails if it has too many walls.
 pub(super) fn grid_to_world(grid: &OccupancyGrid, file: &str) -> Result<World, FormatError> {
     let walls = grid.count_walls();
     if walls <= MAX_WALLS {
@@ -162,7 +157,7 @@ fn too_large(error: &ParameterError, file: &str, at: Location) -> FormatError {
     FormatError::new(file, at, error.to_string(), "a map of a size that fits")
 }
 
-/// The entries of a YAML file that are not read yet.
+/// Unread entries of a YAML file.
 struct Header<'f> {
     notes: Notes<'f>,
     entries: Vec<(Scalar, Value)>,
@@ -175,9 +170,9 @@ impl Header<'_> {
         let mut map = RosMap::new("", empty);
         map.mode = self.mode()?;
         map.negate = self.negate()?;
-        map.occupied_threshold = self.threshold("occupied_thresh", RosMap::DEFAULT_OCCUPIED_THRESHOLD)?;
+        map.occupied_threshold = self.threshold("occupied_thresh", map.occupied_threshold)?;
         let at = self.find("free_thresh").map_or(Location::START, Value::at);
-        map.free_threshold = self.threshold("free_thresh", RosMap::DEFAULT_FREE_THRESHOLD)?;
+        map.free_threshold = self.threshold("free_thresh", map.free_threshold)?;
         if map.free_threshold > map.occupied_threshold {
             let found = format!("the threshold {}", map.free_threshold);
             let expected = format!("at most occupied_thresh, which is {}", map.occupied_threshold);
@@ -310,7 +305,7 @@ impl Header<'_> {
 impl RosMap {
     fn fill(&mut self, pixels: &DynamicImage) {
         let grays = pixels.as_luma8();
-        // Every gray value once, in place of a division for each pixel.
+        // A table of all gray values avoids a division per pixel.
         let table: Vec<Option<u8>> = (0..=255u8).map(|v| self.occupancy(f64::from(v), false)).collect();
         let colours = if grays.is_none() { Some(pixels.to_rgba8()) } else { None };
         let height = self.grid.height();
@@ -343,7 +338,8 @@ pub fn print(map: &RosMap) -> String {
     let number = |value| number::print(value, 0);
     let origin = map.grid.origin();
     let mut text = String::new();
-    // A double-quoted YAML string escapes as JSON and Rust's debug output do, for all that a file name may hold.
+    // Double-quoted YAML strings use the escapes of JSON and of Rust's debug output, for all characters of
+    // file names.
     let image = map.image.replace('\\', "\\\\").replace('"', "\\\"").replace(['\n', '\r'], " ");
     let _ = writeln!(text, "image: \"{image}\"\nmode: {mode}\nresolution: {}", number(map.grid.resolution()));
     let (x, y, yaw) = (number(origin.x), number(origin.y), number(origin.heading));
@@ -353,10 +349,10 @@ pub fn print(map: &RosMap) -> String {
     text
 }
 
-/// The image of a map, in the format that the image's name ends in: PGM, PNG or BMP.
+/// Image of a map, in the format of the image's extension: PGM, PNG or BMP.
 ///
-/// Fails if no pixel value stands for one of the occupancies under the map's mode and thresholds, or if an unknown
-/// cell in mode *scale* needs a transparent pixel and the format is not PNG.
+/// Fails if an occupancy has no pixel value under the map's mode and thresholds, or if an unknown cell in
+/// mode *scale* needs a transparent pixel and the format is not PNG.
 pub fn print_image(map: &RosMap) -> Result<Vec<u8>, FormatError> {
     let error =
         |found: String, expected: &str| FormatError::new(&map.image, Location::START, found, expected);
@@ -390,11 +386,11 @@ pub fn print_image(map: &RosMap) -> Result<Vec<u8>, FormatError> {
 }
 
 impl RosMap {
-    /// The picture of the cells; the occupancy without a pixel value otherwise.
+    /// Picture of the cells; fails with an occupancy that has no pixel value.
     fn draw(&self) -> Result<DynamicImage, Option<u8>> {
         let transparent = self.mode == Mode::Scale && self.grid.count_unknown() > 0;
         let mut shades = [None; 102];
-        // From both ends to the middle, so that the plain values, black and white, win.
+        // From both ends to the middle, so that black and white take precedence.
         for v in (0..128u8).flat_map(|v| [127 - v, 128 + v]) {
             shades[slot(self.occupancy(f64::from(v), false))] = Some(v);
         }
@@ -418,7 +414,7 @@ fn slot(percent: Option<u8>) -> usize {
     percent.map_or(101, usize::from)
 }
 
-/// Writes a map to disk: the YAML at `path`, the image beside it.
+/// Writes a map to files: the YAML at `path`, the image beside it.
 pub fn save(map: &RosMap, path: impl AsRef<Path>) -> Result<(), FormatError> {
     let path = path.as_ref();
     let image = print_image(map)?;

@@ -7,7 +7,7 @@ use super::*;
 use crate::world::Occupancy;
 use crate::world::formats::MemoryFiles;
 
-/// A PGM of one row.
+/// A PGM with one row.
 fn row(pixels: &[u8]) -> Vec<u8> {
     [format!("P5\n# made by hand\n{} 1\n255\n", pixels.len()).as_bytes(), pixels].concat()
 }
@@ -38,7 +38,7 @@ fn trinary_compares_with_both_thresholds() {
     let negated = "negate: 1\noccupied_thresh: 0.65\nfree_thresh: 0.196\nmode: trinary";
     let expected = [Some(0), None, None, Some(100), Some(100), Some(100)];
     assert_eq!(occupancies(negated, pixels), expected);
-    // Exactly on a threshold is neither above nor below it: p = 0.8 and p = 0.2.
+    // Values exactly on a threshold are neither above nor below it: p = 0.8 and p = 0.2.
     let edges = "negate: 0\noccupied_thresh: 0.8\nfree_thresh: 0.2";
     assert_eq!(occupancies(edges, row(&[51, 50, 204, 205])), [None, Some(100), None, Some(0)]);
 }

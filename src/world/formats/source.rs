@@ -6,37 +6,36 @@ use std::path::{Component, Path, PathBuf};
 use super::error::{FormatError, Location, Notes};
 use super::limits::MAX_TEXT_BYTES;
 
-/// A file that was found.
+/// A file that was read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SourceFile {
-    /// The name by which messages call it, and by which files that it names are looked up.
+    /// Its name in messages, to which names in the file are relative.
     pub name: String,
     /// Its content.
     pub bytes: Vec<u8>,
 }
 
-/// Where the files come from that a file names.
+/// Source of files named in other files.
 pub trait FileSource {
-    /// Finds and reads the file that `referrer` calls `reference`, if it is at most `limit` bytes long.
+    /// Finds and reads the file that `referrer` calls `reference`, up to a length of `limit` bytes.
     fn read(&mut self, reference: &str, referrer: &str, limit: u64) -> io::Result<SourceFile>;
 }
 
-/// Files on disk, looked up from the file that names them.
+/// Files on disk, relative to the file that names them.
 ///
-/// First comes the name as written, from the folder of the file that names it. A file that is not there is
-/// looked for where EyeSim's own installation would have it, and where it lies if it came along without the
-/// installation's folders: the rest of the name behind `..` from that folder and the three above it; shorter
-/// and shorter ends of the name in that folder; and the same in the folders that EyeSim has for its kind,
-/// such as `texture` or `objects`, in or up to three folders above it. Last come the working folder and the
-/// home folder. Letters may differ in case.
+/// The name as written is tried first, from the folder of the file that names it. Then follow the places of
+/// EyeSim's own installation, and places of files copied without the installation's folders: the rest of the
+/// name after `..` from that folder and the three above it; ever shorter ends of the name in that folder; and
+/// the same in EyeSim's folders for the kind of file, such as `texture` or `objects`, in that folder or up to
+/// three above it. Last are the working folder and the home folder. Case may differ.
 ///
-/// `\` counts as `/`; a leading `~` and `$HOME` stand for the home folder; EyeSim 6's `%sim%` is dropped, and
-/// so is a drive letter where it leads nowhere.
+/// `\` counts as `/`; a leading `~` and `$HOME` mean the home folder. EyeSim 6's `%sim%` is dropped, as is an
+/// invalid drive letter.
 ///
 /// ```
 /// use roverlab::world::formats::DiskFiles;
 /// let files = DiskFiles::with_home(None);
-/// // A name that `src/lib.rs` mentions, in other letters.
+/// // A name in `src/lib.rs`, in different case.
 /// let found = files.find("KINEMATICS/mod.rs", "src/lib.rs").expect("it is there");
 /// assert!(found.ends_with("kinematics/mod.rs"));
 /// assert_eq!(files.find("nowhere.wld", "src/lib.rs"), None);
@@ -47,17 +46,17 @@ pub struct DiskFiles {
 }
 
 impl DiskFiles {
-    /// With the user's home folder.
+    /// Uses the user's home folder.
     pub fn new() -> Self {
         Self { home: std::env::home_dir() }
     }
 
-    /// With another folder in place of the home folder, or none.
+    /// Uses a different home folder, or none.
     pub fn with_home(home: Option<PathBuf>) -> Self {
         Self { home }
     }
 
-    /// The name with folders between `/`, and the home folder in place of what stands for it.
+    /// The name with `/` as separator and the home folder inserted.
     fn plain(&self, reference: &str) -> String {
         let mut written = reference.replace('\\', "/");
         if let Some(home) = self.home.as_deref().and_then(Path::to_str) {
@@ -70,7 +69,7 @@ impl DiskFiles {
         if old { written[5..].trim_start_matches('/').into() } else { written }
     }
 
-    /// Where the file is that `referrer` calls `reference`.
+    /// Path of the file that `referrer` calls `reference`.
     pub fn find(&self, reference: &str, referrer: &str) -> Option<PathBuf> {
         let plain = self.plain(reference);
         let folder = Path::new(referrer).parent().unwrap_or(Path::new(""));
@@ -83,10 +82,10 @@ impl DiskFiles {
     }
 }
 
-/// How many folders above that of the file that names another one belong to the same installation.
+/// Number of folders above the referring file's folder that belong to the same installation.
 const LEVELS: usize = 3;
 
-/// A file that is not where its name says, in the folders of EyeSim's installation or brought along without
+/// Finds a file that is not at its named place in the folders of EyeSim's installation, or copied without
 /// them.
 fn installed(folder: &Path, plain: &str) -> Option<PathBuf> {
     let bare = plain.trim_start_matches(|c: char| c.is_ascii_alphabetic()).strip_prefix(':').unwrap_or(plain);
@@ -94,7 +93,7 @@ fn installed(folder: &Path, plain: &str) -> Option<PathBuf> {
     let tails: Vec<PathBuf> = (0..parts.len()).map(|from| parts[from..].iter().collect()).collect();
     let whole = tails.first()?;
     let mut above = vec![folder.to_owned()];
-    // Folders may be relative, so their ancestors are found by `..`.
+    // Folders may be relative, so their ancestors are expressed with `..`.
     above.extend((1..=LEVELS).map(|level| folder.join(["..", "../..", "../../.."][level - 1])));
     let by_root = above.iter().find_map(|root| in_any_case(root, whole));
     let brought = || tails.iter().find_map(|tail| in_any_case(folder, tail));
@@ -108,7 +107,7 @@ fn installed(folder: &Path, plain: &str) -> Option<PathBuf> {
     by_root.or_else(brought).or_else(by_kind)
 }
 
-/// The folders that EyeSim and its users have for files of a kind.
+/// Folders in which EyeSim and its users keep files of a kind.
 fn kind_folders(file: &Path) -> &'static [&'static str] {
     let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     match ending.to_ascii_lowercase().as_str() {
@@ -123,7 +122,7 @@ fn kind_folders(file: &Path) -> &'static [&'static str] {
     }
 }
 
-/// The file of a path from a folder, whose names differ at most in the case of their letters.
+/// The file at a path relative to a folder; names may differ in case.
 ///
 /// ```
 /// use std::path::Path;
@@ -158,10 +157,10 @@ impl FileSource for DiskFiles {
     }
 }
 
-/// Where the files come from that a file names, and what becomes of one that is missing or broken.
+/// Source of referenced files, with the policy for missing or broken ones.
 pub(super) struct Files<'a> {
     source: &'a mut dyn FileSource,
-    /// Whether the reader gets over it with a warning.
+    /// Whether errors become warnings.
     pub(super) tolerant: bool,
 }
 
@@ -170,12 +169,12 @@ impl<'a> Files<'a> {
         Self { source, tolerant }
     }
 
-    /// The source itself, for formats that name files of their own.
+    /// The source, for formats that name files themselves.
     pub(super) fn source(&mut self) -> &mut dyn FileSource {
         self.source
     }
 
-    /// Reads the file that is called `reference` at some place of another one.
+    /// Reads the file called `reference` at a location in another file.
     pub(super) fn read(
         &mut self,
         reference: &str,
@@ -185,7 +184,7 @@ impl<'a> Files<'a> {
         self.read_if_there(reference, named, limit)?.ok_or_else(|| missing(reference, named))
     }
 
-    /// As [`read`](Self::read); `None` if there is no such file.
+    /// Like [`read`](Self::read); `None` if the file does not exist.
     pub(super) fn read_if_there(
         &mut self,
         reference: &str,
@@ -199,8 +198,7 @@ impl<'a> Files<'a> {
         }
     }
 
-    /// Hands on what came of reading, or gets over its error with a warning that ends with what is done
-    /// instead.
+    /// Passes a result on, or converts its error to a warning that ends with the workaround.
     pub(super) fn get_over<T>(
         &self,
         result: Result<T, FormatError>,
@@ -217,7 +215,7 @@ impl<'a> Files<'a> {
     }
 }
 
-/// Files in memory, found by the name as written: for tests, and for worlds made by programs.
+/// Files in memory, found by the exact name: for tests and for worlds made by programs.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct MemoryFiles(pub BTreeMap<String, Vec<u8>>);
 
@@ -231,9 +229,9 @@ impl FileSource for MemoryFiles {
     }
 }
 
-/// Reads a regular file of at most `limit` bytes.
+/// Reads a regular file of up to `limit` bytes.
 pub(super) fn read_limited(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
-    // A pipe or a device would block or never end.
+    // A pipe or device could block or never end.
     if path.is_dir() {
         return Err(io::ErrorKind::IsADirectory.into());
     }
@@ -248,7 +246,7 @@ pub(super) fn read_limited(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The error for a file that could not be read, placed where it is named.
+/// The error for a file that could not be read, located where it is named.
 pub(super) fn unreadable(error: &io::Error, name: &str, file: &str, at: Location, limit: u64) -> FormatError {
     let name = super::lexer::shown(name);
     let (found, expected) = match error.kind() {
@@ -261,12 +259,12 @@ pub(super) fn unreadable(error: &io::Error, name: &str, file: &str, at: Location
     FormatError::new(file, at, found, expected)
 }
 
-/// The error for a file that does not exist, placed where it is named.
+/// The error for a missing file, located where it is named.
 pub(super) fn missing(name: &str, (file, at): (&str, Location)) -> FormatError {
     unreadable(&io::ErrorKind::NotFound.into(), name, file, at, 0)
 }
 
-/// The text of a file: UTF-8, or Latin-1 with a warning.
+/// Text of a file: UTF-8, or Latin-1 with a warning.
 pub(super) fn decode(bytes: Vec<u8>, notes: &mut Notes<'_>) -> Result<String, FormatError> {
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) || bytes.contains(&0) {
         return Err(FormatError::new(
@@ -285,7 +283,7 @@ pub(super) fn decode(bytes: Vec<u8>, notes: &mut Notes<'_>) -> Result<String, Fo
     })
 }
 
-/// Refuses a text that is too long.
+/// Rejects a text that is too long.
 pub(super) fn check_length(text: &str, file: &str) -> Result<(), FormatError> {
     if text.len() as u64 <= MAX_TEXT_BYTES {
         return Ok(());
@@ -294,7 +292,7 @@ pub(super) fn check_length(text: &str, file: &str) -> Result<(), FormatError> {
     Err(FormatError::new(file, Location::START, "a larger file", expected))
 }
 
-/// The name of a file without folders and ending: the name of robots and objects that state none.
+/// Name of a file without folder and extension, the default name of robots and objects.
 pub(super) fn stem(file: &str) -> String {
     let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
     Path::new(name).file_stem().map_or_else(|| name.into(), |stem| stem.to_string_lossy().into_owned())
@@ -304,7 +302,7 @@ pub(super) fn stem(file: &str) -> String {
 mod tests {
     use super::*;
 
-    /// A folder that goes away with the test.
+    /// A temporary folder, removed after the test.
     struct Folder(PathBuf);
 
     impl Folder {
@@ -357,7 +355,7 @@ mod tests {
         ] {
             assert_eq!(read(reference).as_deref(), Ok(expected), "{reference}");
         }
-        // Without the installation's folders, or from another folder of it.
+        // Without the installation's folders, or from another of its folders.
         folder.write("project/scripts/picture.PNG", "beside");
         folder.write("project/worlds/texture/carpet.jpg", "installed");
         folder.write("project/object/sign/sign.esObj", "renamed");

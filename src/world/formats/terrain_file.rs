@@ -1,4 +1,4 @@
-//! The file of hills that a world names: a gray image, or an ESRI ASCII grid.
+//! Terrain files of a world: a gray image or an ESRI ASCII grid.
 
 use image::DynamicImage;
 
@@ -12,13 +12,13 @@ use crate::ParameterError;
 use crate::geometry::{Aabb, Point};
 use crate::world::{HeightField, Terrain};
 
-/// How names of such files end.
+/// Extensions of terrain files.
 pub(super) const ENDINGS: &[&str] = &[".png", ".jpg", ".jpeg", ".bmp", ".asc"];
 
-/// Reads the surface of hills that a file names at some place. Without it, if that is tolerated, things are as
-/// `instead` says.
+/// Reads the terrain that a file names at a location. If a missing one is tolerated, `instead` describes the
+/// replacement.
 ///
-/// What is wrong in an image is reported where it is named, and what is wrong in a grid at its place in the grid.
+/// Errors of an image are reported where it is named, errors of a grid at their location in the grid.
 pub(super) fn load(
     terrain: &mut Terrain,
     named: (&str, Location),
@@ -69,7 +69,7 @@ fn from_image(
         return Err(here(&found, format!("at most {most} by {most} pixels")));
     }
     let heights = heights(image, terrain.max_elevation);
-    // A single row or column of pixels is level across.
+    // A single row or column of pixels is extended at constant height.
     let widened: Vec<f32> = match (columns, rows) {
         (1, _) => heights.iter().flat_map(|&height| [height, height]).collect(),
         _ => heights,
@@ -80,7 +80,7 @@ fn from_image(
     surface.map_err(|error| misplaced(&error, named))
 }
 
-/// Elevations row by row from that of least y, which is the image's last.
+/// Rows of elevations from the smallest y, which is the image's last row.
 fn heights(image: DynamicImage, top: f64) -> Vec<f32> {
     let width = image.width() as usize;
     let gray = image.into_luma16();
@@ -88,7 +88,7 @@ fn heights(image: DynamicImage, top: f64) -> Vec<f32> {
     gray.as_raw().chunks(width).rev().flat_map(|row| row.iter().map(height)).collect()
 }
 
-/// A size that makes no sense, where the world's file states it.
+/// The error for an invalid size, located in the world's file.
 fn misplaced(error: &ParameterError, (file, at): (&str, Location)) -> FormatError {
     let found = format!("a terrain whose {} is {}", error.name(), error.value());
     FormatError::new(file, at, found, error.expected())
@@ -120,7 +120,7 @@ mod tests {
         std::sync::Arc::unwrap_or_clone(terrain.surface.unwrap())
     }
 
-    /// The upper left pixel is white: at the least x and the greatest y.
+    /// The upper left pixel is white: smallest x and largest y.
     #[test]
     fn an_image_lies_as_a_floor_does_whatever_its_format() {
         let gray = ImageBuffer::from_fn(8, 8, |x, y| Luma([if x < 4 && y < 4 { 255_u8 } else { 0 }]));
@@ -136,7 +136,7 @@ mod tests {
             let surface = surface(&line, (name, encoded(image, format)));
             assert_eq!((surface.columns(), surface.rows()), (8, 8));
             assert_eq!(surface.area().max, Point::new(7.0, 14.0));
-            // Blocks of 8 by 8 pixels are JPEG's own, but it rounds.
+            // JPEG uses blocks of 8 by 8 pixels, with rounding.
             let near = |x: f64, y: f64, z: f64| (surface.height(Point::new(x, y)).unwrap() - z).abs() < 0.05;
             assert!(near(0.0, 14.0, 0.5) && near(7.0, 14.0, 0.0), "{name}");
             assert!(near(0.0, 0.0, 0.0) && near(7.0, 0.0, 0.0), "{name}");

@@ -4,19 +4,24 @@
 //! |---|---|
 //! | `floor W H`, or `width W` and `height H` | a floor from (0, 0) |
 //! | `floor_texture FILE` | an image stretched over it: PNG, JPEG or BMP |
-//! | `X1 Y1 X2 Y2 [THICKNESS HEIGHT [R G B]]` | a wall; other counts of numbers use the first four |
-//! | `push X Y PHI` … `pop` | moves the walls between them: by (X, Y), then turned **clockwise** by PHI |
+//! | `X1 Y1 X2 Y2 [THICKNESS HEIGHT [R G B]]` | a wall; with other counts, the first four numbers are used |
+//! | `push X Y PHI` … `pop` | moves the walls between them by (X, Y), then turns them **clockwise** by PHI |
 //! | `position X Y PHI` | the start pose, PHI counter-clockwise |
 //! | `terrain W H TOP FILE` | hills, which carry robots and stop rays; sets the floor's size too |
-//! | `water_level Z` | water, in pictures, and in which robots on hills drown |
+//! | `water_level Z` | the surface of water, which carries craft, and in which other robots on hills drown |
+//! | `water_density KG` | of a cubic metre; 1000 without it; a line of our own, as are those below |
+//! | `current VX VY [DEPTH]` | a current in mm/s; one that changes with depth has a line for each depth, from above |
+//! | `waves HEIGHT PERIOD PHI [jonswap]` | waves: mm from trough to crest, seconds, and where they run; with a spectrum |
+//! | `wind VX VY` | in mm/s, on what of a craft is out of the water |
 //!
-//! The hills' elevations come from a gray PNG, JPEG or BMP image, black at 0 and white at TOP, or from an ESRI ASCII
-//! grid (`.asc`), its lowest place at 0 and its highest at TOP. The image lies as the floor's does, its first row at the
-//! greatest y; its outer pixels are the elevations on the border. Beyond the hills there is no ground.
+//! The elevations come from a gray PNG, JPEG or BMP image, with black at 0 and white at TOP, or from an ESRI
+//! ASCII grid (`.asc`), with its lowest point at 0 and its highest at TOP. Like a floor image, the image has
+//! its first row at the largest y; its outer pixels are the elevations on the border. Beyond the hills there
+//! is no ground.
 //!
-//! Keywords are read in any case. A line that begins with anything else is skipped with a warning, and so is a wall
-//! of fewer than four numbers, as EyeSim does. A world without a floor gets one that reaches from (0, 0) as far as
-//! its walls. Objects, marks and places do not belong into this format: simulation scripts hold them.
+//! Keywords are case-insensitive. As in EyeSim, a line that begins with anything else is skipped with a
+//! warning, and so is a wall with fewer than four numbers. The default floor extends from (0, 0) to the
+//! walls' extent. Objects, marks and places are not part of this format; simulation scripts contain them.
 //!
 //! ```
 //! use roverlab::world::formats::wld;
@@ -38,11 +43,11 @@ use super::lexer::{self, Line, quote};
 use super::limits::{MAX_METRES, MAX_PUSHES, MAX_WALLS};
 use super::number::{self, degrees, millimetres};
 use super::source::{Files, check_length};
-use super::terrain_file;
+use super::{terrain_file, water};
 use crate::geometry::{Aabb, Point, Pose, Segment, math, units};
 use crate::world::{Terrain, Wall, World};
 
-/// Reads a world, without the images that it names: [`load_scene`](super::load_scene) reads these too.
+/// Reads a world without the images that it names; [`load_scene`](super::load_scene) also reads these.
 pub fn parse(text: &str, file: &str) -> Result<Parsed<World>, FormatError> {
     let (world, _) = read(text, file)?;
     Ok(world)
@@ -72,7 +77,7 @@ pub(super) fn parse_with_images(
     Ok(notes.finish(world))
 }
 
-/// Where the names of images stand.
+/// Locations of image names.
 struct Places {
     texture: Location,
     terrain: Location,
@@ -130,11 +135,8 @@ impl<'f> Reader<'f> {
             "terrain" => self.terrain(line, &mut args)?,
             "water_level" => {
                 self.world.water_level = Some(args.length("the water level")?);
-                self.notes.warn(
-                    line.location(0),
-                    "`water_level`: water carries nothing; on hills, robots drown in it",
-                );
             }
+            keyword if water::line(keyword, line, &mut args, &mut self.world.water)? => {}
             _ => {
                 let message = format!("unknown keyword {}; the line is skipped", lexer::shown(keyword));
                 self.notes.warn(line.location(0), message);
@@ -170,7 +172,6 @@ impl<'f> Reader<'f> {
         self.world.terrain = Some(Terrain { width, height, max_elevation, file: file.into(), surface: None });
         self.places.terrain = line.location(4);
         self.floor(width, height);
-        self.notes.warn(line.location(0), "`terrain`: cameras show a level floor");
         Ok(())
     }
 
@@ -208,7 +209,7 @@ impl<'f> Reader<'f> {
         Ok(())
     }
 
-    /// A point of the innermost pushed frame in the world.
+    /// A point of the innermost pushed frame, in world coordinates.
     fn place(&self, point: Point, line: &Line<'_>) -> Result<Point, FormatError> {
         let Some(frame) = self.frames.last() else { return Ok(point) };
         let placed = frame.to_world(point);
@@ -268,10 +269,10 @@ fn pose(args: &mut Args<'_, '_>) -> Result<Pose, FormatError> {
     Ok(Pose::new(x, y, args.direction("the start's heading")?))
 }
 
-/// Writes a world, so that [`parse`] gives it back.
+/// Writes a world in a form that [`parse`] reads back.
 ///
-/// The format's floors begin at (0, 0): of one that begins elsewhere only the upper right corner is kept. Objects,
-/// marks and places are left out.
+/// The format's floors begin at (0, 0); of other floors, only the upper right corner is kept. Objects, marks
+/// and places are left out.
 pub fn print(world: &World) -> String {
     lexer::written(|text| write_world(text, world))
 }
@@ -290,6 +291,7 @@ fn write_world(text: &mut String, world: &World) -> std::fmt::Result {
     if let Some(level) = world.water_level {
         writeln!(text, "water_level {}", millimetres(level))?;
     }
+    water::write(text, &world.water)?;
     if let Some(start) = world.start {
         let heading = degrees(start.heading);
         writeln!(text, "position {} {} {heading}", millimetres(start.x), millimetres(start.y))?;
@@ -314,7 +316,8 @@ fn write_wall(text: &mut String, wall: &Wall) -> std::fmt::Result {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::{Colour, Texture};
+    use crate::geometry::Vector;
+    use crate::world::{Colour, Texture, Water, Waves};
     use proptest::prelude::*;
 
     fn world(text: &str) -> World {
@@ -332,13 +335,7 @@ mod tests {
                     position 100 200 90\nwater_level 150\nterrain 6000 7000 300 ../h/crater.png";
         let Parsed { value, warnings } = parse(text, "test.wld").unwrap();
         let warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
-        assert_eq!(
-            warnings,
-            [
-                "test.wld:8:1: `water_level`: water carries nothing; on hills, robots drown in it",
-                "test.wld:9:1: `terrain`: cameras show a level floor",
-            ]
-        );
+        assert!(warnings.is_empty(), "{warnings:?}");
         assert_eq!(value.floor.max, Point::new(6.0, 7.0));
         assert_eq!(value.floor_texture, Some("my floor.png".into()));
         assert_eq!(value.walls[0], Wall::new(Point::new(0.0, 0.0), Point::new(5.0, 0.0)));
@@ -412,6 +409,28 @@ mod tests {
         })
     }
 
+    fn water() -> impl Strategy<Value = Water> {
+        let speed = || (-9999..9999i32, -9999..9999i32);
+        let waves = proptest::option::of((0..99i32, 50..300i32, -179..=180i32, any::<bool>()));
+        let layers = proptest::collection::vec((1..5000i32, speed()), 0..4);
+        (500.0..1500.0f64, layers, waves, speed()).prop_map(|(density, layers, waves, wind)| {
+            let vector = |(x, y): (i32, i32)| Vector::new(f64::from(x), f64::from(y)) / 1000.0;
+            let mut depth = -1000;
+            let layer = |(more, speed): (i32, (i32, i32))| {
+                depth += more;
+                (f64::from(depth) / 1000.0, vector(speed))
+            };
+            let waves = waves.map(|(height, period, degrees, irregular)| Waves {
+                height: f64::from(height) / 1000.0,
+                period: f64::from(period) / 10.0,
+                direction: units::from_deg(f64::from(degrees)),
+                irregular,
+            });
+            let current = layers.into_iter().map(layer).collect();
+            Water { density, current, waves, wind: vector(wind) }
+        })
+    }
+
     prop_compose! {
         fn any_world()(
             floor in (0.0..1e6f64, 0.0..1e6f64),
@@ -420,6 +439,7 @@ mod tests {
             start in proptest::option::of((length(), length(), -180..=180i32)),
             terrain in proptest::option::of((0.0..99.0f64, 0.0..99.0f64, length(), path())),
             water_level in proptest::option::of(length()),
+            water in water(),
         ) -> World {
             World {
                 floor_texture,
@@ -429,6 +449,7 @@ mod tests {
                     Terrain { width, height, max_elevation, file: path.file, surface: None }
                 }),
                 water_level,
+                water,
                 ..World::empty(floor.0, floor.1)
             }
         }
@@ -439,8 +460,7 @@ mod tests {
         #[test]
         fn what_is_printed_reads_back(world in any_world()) {
             let parsed = parse(&print(&world), "w.wld").unwrap();
-            let unused = usize::from(world.terrain.is_some()) + usize::from(world.water_level.is_some());
-            prop_assert_eq!(parsed.warnings.len(), unused);
+            prop_assert!(parsed.warnings.is_empty());
             prop_assert_eq!(parsed.value, world);
         }
 

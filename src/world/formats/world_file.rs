@@ -5,14 +5,13 @@ use super::source::{Files, decode, missing, stem};
 use super::{maz, movingai, ros_map, wld};
 use crate::world::World;
 
-/// Finds and reads the world that a file calls `reference` at some place, or one of that name which is built
-/// in.
+/// Finds and reads the world that a file calls `reference` at a location, or the built-in one of that name.
 pub(super) fn read_world(
     reference: &str,
     (referrer, at): (&str, Location),
     files: &mut Files<'_>,
 ) -> Result<Parsed<World>, FormatError> {
-    // A script that names a script, itself for one, is no world: say so before reading it.
+    // A script is not a world, even if it names one; it is rejected before it is read.
     if !matches!(kind(reference), Kind::World | Kind::Maze | Kind::Map | Kind::Grid) {
         return Err(not_a_world(reference, referrer, at));
     }
@@ -30,7 +29,7 @@ pub(super) fn read_world(
     Ok(notes.finish(parsed.value))
 }
 
-/// Reads a world from the text of its file, which another one names at some place.
+/// Reads a world from the text of its file, which is named in another file.
 pub(super) fn parse_world(
     text: &str,
     file: &str,
@@ -59,7 +58,7 @@ fn not_a_world(name: &str, referrer: &str, at: Location) -> FormatError {
     FormatError::new(referrer, at, shown(name), "a file that ends in .wld, .maz, .yaml, .yml or .map")
 }
 
-/// What a file holds, by its ending.
+/// Content of a file according to its extension.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Script,
@@ -70,7 +69,7 @@ pub(super) enum Kind {
     Other,
 }
 
-/// The kind of a file by its ending, in any case.
+/// Kind of a file by its extension, case-insensitive.
 pub(super) fn kind(name: &str) -> Kind {
     let ending = name.rsplit_once('.').map_or(String::new(), |(_, ending)| ending.to_ascii_lowercase());
     match ending.as_str() {

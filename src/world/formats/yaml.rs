@@ -1,4 +1,4 @@
-//! Flat YAML mappings: a scalar or a list of scalars for each key, with the place of each.
+//! Flat YAML mappings: each key has a scalar or a list of scalars; all with locations.
 
 use saphyr_parser::{Event, ScalarStyle};
 
@@ -6,19 +6,19 @@ use super::error::{FormatError, Location};
 use super::lexer::shown;
 use super::yaml_events::YamlEvents;
 
-/// Keys of a file.
+/// Largest number of keys in a file.
 const MAX_KEYS: usize = 1000;
 
-/// A scalar with its place.
+/// A scalar with its location.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Scalar {
     pub(super) text: String,
-    /// Whether it stood without quotes, so that it may be a number.
+    /// Whether it was unquoted, and may therefore be a number.
     pub(super) plain: bool,
     pub(super) at: Location,
 }
 
-/// A key's value.
+/// Value of a key.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Value {
     Scalar(Scalar),
@@ -34,7 +34,7 @@ impl Value {
     }
 }
 
-/// The entries of the first document, in order. Anything nested deeper is an error.
+/// Entries of the first document, in order. Deeper nesting is an error.
 pub(super) fn mapping(text: &str, file: &str) -> Result<Vec<(Scalar, Value)>, FormatError> {
     let mut events = YamlEvents::new(text, file, "keys with values");
     let mut entries = Vec::new();

@@ -1,4 +1,4 @@
-//! The events of a YAML file one by one, with their places and messages about what does not fit.
+//! Sequential events of a YAML file, with locations and error messages.
 
 use saphyr_parser::{Event, Parser, Span, StrInput};
 
@@ -9,7 +9,7 @@ use super::lexer::shown;
 pub(crate) struct YamlEvents<'a> {
     parser: Parser<'a, StrInput<'a>>,
     file: &'a str,
-    /// What the file is made of, for messages.
+    /// Expected content of the file, for messages.
     content: &'static str,
 }
 
@@ -18,7 +18,7 @@ impl<'a> YamlEvents<'a> {
         Self { parser: Parser::new_from_str(text), file, content }
     }
 
-    /// Goes to the first key of the file.
+    /// Advances to the first key of the file.
     pub(crate) fn enter(&mut self) -> Result<(), FormatError> {
         match self.first()? {
             (Event::MappingStart(..), _) => Ok(()),
@@ -26,7 +26,7 @@ impl<'a> YamlEvents<'a> {
         }
     }
 
-    /// The first event of what is in the file.
+    /// First event of the file's content.
     pub(crate) fn first(&mut self) -> Result<(Event<'a>, Location), FormatError> {
         loop {
             match self.next()? {
@@ -47,7 +47,7 @@ impl<'a> YamlEvents<'a> {
         }
     }
 
-    /// A list of what `item` makes of its events, which has at most so many.
+    /// A list whose items are read by `item`, with a length limit.
     pub(crate) fn items<T>(
         &mut self,
         (most, what): (usize, &str),

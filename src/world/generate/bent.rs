@@ -1,4 +1,4 @@
-//! Obstacles that are lines with corners: hooks, zig-zags, corridors and square spirals.
+//! Obstacles made of bent lines: hooks, zig-zags, corridors and square spirals.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -7,7 +7,7 @@ use super::figure::{Figure, Outline, beside, stroke};
 use super::straight::points;
 use crate::geometry::{Point, Pose, direction};
 
-/// A U, from shallow to deep.
+/// A U, shallow to deep.
 pub(super) fn trough(brush: &mut Brush) -> Figure {
     let (line, width, half, depth) = trough_line(brush);
     let ground = Point::new(0.0, 0.5 * width + 0.6 * brush.gap);
@@ -15,7 +15,7 @@ pub(super) fn trough(brush: &mut Brush) -> Figure {
     Figure::of(vec![brush.wall_or_stroke(line, width)]).with_pockets(pockets).centred()
 }
 
-/// A U whose opening another wall shuts.
+/// A U with its opening closed by another wall.
 pub(super) fn shut_trough(brush: &mut Brush) -> Figure {
     let (line, width, half, depth) = trough_line(brush);
     let reach = half + 0.5 * width;
@@ -56,7 +56,7 @@ pub(super) fn zigzag(brush: &mut Brush) -> Figure {
     Figure::of(vec![brush.wall_or_stroke(line, width)]).with_pockets(pockets).centred()
 }
 
-/// Legs of a length up and down in turn, at 40 to 55 degrees to either side.
+/// Alternating legs of a given length up and down, at 40 to 55 degrees to either side.
 fn zigzag_line(brush: &mut Brush, legs: usize, length: f64) -> Vec<Point> {
     let length = length.max(1.5 * brush.gap);
     let slope = brush.stream.between(0.6, 0.92);
@@ -95,7 +95,7 @@ pub(super) fn corridor(brush: &mut Brush) -> Figure {
     Figure::of(sides.map(Outline::open).to_vec()).with_pockets(pockets).centred()
 }
 
-/// A channel with baffles from either side in turn.
+/// A channel with alternating baffles.
 pub(super) fn baffles(brush: &mut Brush) -> Figure {
     let half = brush.gap * brush.stream.between(1.1, 1.5);
     let spacing = brush.gap * brush.stream.between(1.2, 1.7);
@@ -112,7 +112,7 @@ pub(super) fn baffles(brush: &mut Brush) -> Figure {
     Figure::of(outlines).with_pockets(pockets).centred()
 }
 
-/// A closed band along an L, a U or a zig-zag, wide enough for a robot to be inside.
+/// A closed band along an L, U or zig-zag, wide enough for a robot inside.
 pub(super) fn hollow_bend(brush: &mut Brush) -> Figure {
     let width = brush.gap * brush.stream.between(1.3, 1.8);
     let reach = brush.radius.max(1.6 * width);
@@ -128,7 +128,7 @@ pub(super) fn hollow_bend(brush: &mut Brush) -> Figure {
     Figure::of(vec![stroke(&line, width)]).with_chambers(chambers).centred()
 }
 
-/// The figure whose lines are those of `figure`, with a crooked wall that leads away from one of its corners.
+/// The figure with a crooked wall attached to one of its corners.
 pub(super) fn with_tail(brush: &mut Brush, mut figure: Figure) -> Figure {
     let corners = &figure.outlines[0].points;
     let Some(&root) =

@@ -1,5 +1,5 @@
-//! Obstacles that grow out of the border wall, in a frame whose x axis runs along the border and whose y axis points
-//! into the field.
+//! Obstacles attached to the border wall. In their frame, the x axis runs along the border and the y axis
+//! points into the field.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -9,7 +9,7 @@ use super::round::{arc, wave};
 use super::straight::points;
 use crate::geometry::{Point, Pose};
 
-/// A field between (0, 0) and (`width`, `height`).
+/// A field from (0, 0) to (`width`, `height`).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Field {
     pub(super) width: f64,
@@ -17,12 +17,12 @@ pub(super) struct Field {
 }
 
 impl Field {
-    /// The shorter side.
+    /// Length of the shorter side.
     pub(super) fn shorter(&self) -> f64 {
         self.width.min(self.height)
     }
 
-    /// The pose of a frame on one of the four sides, at a share of its length, and that length.
+    /// Frame on one of the four sides at a fraction of its length, and that length.
     fn side(&self, side: usize, share: f64) -> (Pose, f64) {
         let (w, h) = (self.width, self.height);
         match side % 4 {
@@ -34,7 +34,7 @@ impl Field {
     }
 }
 
-/// A wall that stands out from the border, straight, with a hook or with a cross-piece.
+/// A wall that projects from the border: straight, with a hook or with a cross-piece.
 pub(super) fn spur(brush: &mut Brush, field: Field) -> Figure {
     let reach = (field.shorter() * brush.stream.between(0.15, 0.7)).max(1.6 * brush.gap);
     let hook = (brush.radius * brush.stream.between(0.6, 1.3)).max(1.2 * brush.gap);
@@ -77,14 +77,14 @@ pub(super) fn alcove(brush: &mut Brush, field: Field) -> Figure {
             Outline::open(points(&[(edge + door, depth), (half, depth), (half, 0.0)])),
         ]
     } else {
-        // The door is beside the border.
+        // The door is next to the border.
         vec![Outline::open(points(&[(-half, 0.0), (-half, depth), (half, depth), (half, door)]))]
     };
     let pockets = vec![Point::new(0.0, 0.6 * brush.gap), Point::new(0.6 * brush.gap - half, 0.6 * brush.gap)];
     on_border(brush, field, Figure::of(outlines).with_pockets(pockets))
 }
 
-/// A room or half ring on the border without a door.
+/// A room or half ring on the border, without a door.
 pub(super) fn shut_alcove(brush: &mut Brush, field: Field) -> Figure {
     let half = brush.radius.max(1.3 * brush.gap);
     let line = if brush.stream.chance(0.5) {
@@ -97,7 +97,7 @@ pub(super) fn shut_alcove(brush: &mut Brush, field: Field) -> Figure {
     on_border(brush, field, Figure::of(vec![Outline::open(line)]).with_chambers(vec![chamber]))
 }
 
-/// A corner of the field, cut off by a quarter ring or an angle.
+/// A corner of the field, closed by a quarter ring or an angle.
 pub(super) fn shut_corner(brush: &mut Brush, field: Field) -> Figure {
     let reach = (1.4 * brush.radius).max(1.7 * brush.gap);
     let line = if brush.stream.chance(0.5) {
@@ -112,7 +112,7 @@ pub(super) fn shut_corner(brush: &mut Brush, field: Field) -> Figure {
     figure.placed(pose, false)
 }
 
-/// A line across the whole field: straight, wavy or with steps.
+/// A line across the whole field: straight, wavy or stepped.
 pub(super) fn divider(brush: &mut Brush, field: Field) -> Figure {
     let share = brush.stream.between(0.3, 0.7);
     let (frame, length) = field.side(brush.stream.below(2), 0.0);
@@ -134,7 +134,7 @@ pub(super) fn divider(brush: &mut Brush, field: Field) -> Figure {
     Figure::of(vec![Outline::open(line)]).with_chambers(chambers).placed(frame, false)
 }
 
-/// Moves a figure of the border's frame to a random place on the border, away from the corners.
+/// Moves a figure from the border's frame to a random place on the border, away from the corners.
 fn on_border(brush: &mut Brush, field: Field, figure: Figure) -> Figure {
     let share = brush.stream.between(0.12, 0.88);
     let (pose, _) = field.side(brush.stream.below(4), share);

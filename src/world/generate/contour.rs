@@ -1,4 +1,4 @@
-//! The line of walls around a room.
+//! The outline of walls around a room.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -6,7 +6,7 @@ use super::round;
 use crate::geometry::{Aabb, Point, Segment, Vector, cross, math, normalize_angle};
 use crate::world::Wall;
 
-/// A straight or round part of a contour, as the points along it.
+/// A straight or round part of a contour, as points along it.
 #[derive(Debug, Clone)]
 pub(super) struct Piece {
     points: Vec<Point>,
@@ -17,9 +17,9 @@ impl Piece {
         Self { points: vec![from, to] }
     }
 
-    /// An arc from a point about a middle, by an angle counter-clockwise. No facet is longer than 40 mm.
+    /// An arc from a point about a centre, by an angle counter-clockwise, with facets of at most 40 mm.
     pub(super) fn arc(from: Point, middle: Point, turn: f64) -> Self {
-        /// Metres of a facet of a round contour at most.
+        /// Longest facet of a round contour (m).
         const FACET: f64 = 0.04;
         let arm = from - middle;
         let angle = math::atan2(arm.y, arm.x);
@@ -42,13 +42,13 @@ impl Piece {
     }
 }
 
-/// A closed line of walls with the room to its left.
+/// A closed line of walls; the room is to its left.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Contour {
     pieces: Vec<Piece>,
 }
 
-/// Where the line turns by more than this, in radians, there is a corner.
+/// Smallest change of direction that counts as a corner (rad).
 const CORNER: f64 = 0.25;
 
 impl Contour {
@@ -62,7 +62,7 @@ impl Contour {
         self.pieces.push(piece);
     }
 
-    /// Straight pieces from a point through others to a last one.
+    /// Straight pieces through a sequence of points.
     pub(super) fn lines(&mut self, from: Point, through: &[Point], to: Point) {
         let mut last = from;
         for &point in through.iter().chain([&to]) {
@@ -87,7 +87,7 @@ impl Contour {
         Aabb::around(self.points()).unwrap_or(Aabb::new(Point::origin(), Point::origin()))
     }
 
-    /// The corners with their angles inside.
+    /// The corners with their interior angles.
     pub(super) fn corners(&self) -> Vec<(Point, f64)> {
         let points = self.points();
         let n = points.len();
@@ -100,7 +100,7 @@ impl Contour {
             .collect()
     }
 
-    /// Whether all corners have angles within a range, and the line goes round once.
+    /// Whether all corner angles are in a range and the line winds once.
     pub(super) fn angles_within(&self, (least, most): (f64, f64)) -> bool {
         let points = self.points();
         let n = points.len();
@@ -121,8 +121,8 @@ impl Contour {
         self.pieces.iter().map(|piece| (piece.nearest(point) - point).norm()).fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether a robot can keep a distance to the wall all the way round, so that no other wall is nearer, with room to
-    /// spare.
+    /// Whether a robot can follow the wall all the way round at a distance, with no other wall nearer and
+    /// some margin.
     pub(super) fn can_be_followed(&self, distance: f64) -> bool {
         let lengths: Vec<f64> = self.pieces.iter().map(Piece::length).collect();
         if !self.corners_have_room(distance) {
@@ -131,7 +131,7 @@ impl Contour {
         (0..self.pieces.len()).all(|i| {
             let others: Vec<usize> = strangers(i, &lengths, 1.5 * distance);
             let nearby = |j: usize| j != i && !others.contains(&j);
-            // In corners the robot keeps its distance to the next wall as well, and does not come to all places.
+            // In corners the robot also keeps its distance to the next wall, so it does not use all places.
             let is_used = |place: Point| {
                 let near = (0..self.pieces.len()).filter(|&j| nearby(j));
                 near.map(|j| (self.pieces[j].nearest(place) - place).norm()).all(|gap| gap > 0.95 * distance)
@@ -143,7 +143,7 @@ impl Contour {
                     others.iter().all(|&j| {
                         let other = self.pieces[j].nearest(place);
                         let behind = (other - point).dot(&inward) < 0.0;
-                        // Behind the wall there may be another room, but the walls must not cross.
+                        // There may be another room behind the wall, but walls must not cross.
                         if behind || !used {
                             (other - point).norm() > 0.05
                         } else {
@@ -155,7 +155,7 @@ impl Contour {
         })
     }
 
-    /// Whether the straight sides between two sharp corners are long enough to be driven along.
+    /// Whether the straight sides between two sharp corners are long enough to drive along.
     fn corners_have_room(&self, distance: f64) -> bool {
         let corners = self.corners();
         let needs = |point: Point| {
@@ -165,12 +165,12 @@ impl Contour {
         self.pieces.iter().all(|piece| {
             let (first, last) = (piece.points[0], piece.points[piece.points.len() - 1]);
             let taken = needs(first) + needs(last);
-            // The sides of doors may be short; the ones that the robot drives along may not.
+            // Sides of doors may be short; sides that the robot drives along may not.
             taken == 0.0 || piece.length() < 0.06 || piece.length() > taken + distance
         })
     }
 
-    /// The walls, moved. Their faces towards the room are on the line, and overlap at corners.
+    /// The walls, shifted. Their faces towards the room are on the line and overlap at corners.
     pub(super) fn walls(&self, shift: Vector) -> Vec<Wall> {
         let points: Vec<Point> = self.points().into_iter().map(|point| point + shift).collect();
         let n = points.len();
@@ -184,8 +184,8 @@ impl Contour {
                 let (a, b) = (points[i], points[(i + 1) % n]);
                 let along = (b - a) / (b - a).norm();
                 let outward = Vector::new(along.y, -along.x) * half;
-                // Where the room's corner is less than a half turn the outer faces have to be longer to meet; where it
-                // is more than three right angles they would come out on the other side.
+                // Where the room's corner is less than a half turn, the outer faces must be longer to meet;
+                // above three right angles they would protrude on the other side.
                 let more = |turn: f64| {
                     if turn > 0.0 {
                         half * math::tan(0.5 * turn.min(2.0))
@@ -202,7 +202,7 @@ impl Contour {
     }
 }
 
-/// Points along a segment, no more than `spacing` apart, with the direction into the room.
+/// Points along a segment, at most `spacing` apart, with the direction into the room.
 fn samples(segment: &Segment, spacing: f64) -> impl Iterator<Item = (Point, Vector)> + use<> {
     let along = segment.b - segment.a;
     let inward = Vector::new(-along.y, along.x) / along.norm();
@@ -211,7 +211,7 @@ fn samples(segment: &Segment, spacing: f64) -> impl Iterator<Item = (Point, Vect
     (0..=count).map(move |k| (start + along * (k as f64 / count as f64), inward))
 }
 
-/// The pieces that are farther along the line from a piece than a length, in either direction.
+/// Pieces farther than `apart` from piece `of` along the line, in both directions.
 fn strangers(of: usize, lengths: &[f64], apart: f64) -> Vec<usize> {
     let n = lengths.len();
     let gap = |from: usize, to: usize| -> f64 {

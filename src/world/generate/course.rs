@@ -8,39 +8,39 @@ use crate::geometry::{Point, Pose, Vector};
 use crate::random::Stream;
 use crate::world::World;
 
-/// How often a field is drawn anew with as many obstacles before it gets one fewer.
+/// Number of draws with the same number of obstacles, before it is reduced by one.
 const TRIES_WITH_ALL: usize = 8;
 
-/// How many places are drawn for the start to choose among.
+/// Number of candidates for the start.
 const START_PLACES: usize = 12;
 
-/// A world with a start, a goal, and the answer.
+/// A world with a start, a goal and the reachability of the goal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Course {
     /// The field with its border, obstacles and objects. Its own start pose is the course's.
     pub world: World,
-    /// Where the robot starts.
+    /// Start pose.
     pub start: Pose,
-    /// Where it is to go.
+    /// Goal.
     pub goal: Point,
-    /// Whether it can get there.
+    /// Whether the goal is reachable.
     pub reachable: bool,
-    /// The obstacles, in the order in which they were placed. Objects are not among them.
+    /// Obstacles in the order of their placement, without objects.
     pub obstacles: Vec<ObstacleKind>,
 }
 
 /// Draws a course.
 ///
-/// Start and goal have room for a disc as wide as the narrowest corridor, and often lie in hard places: in a cove, a
-/// room, a corridor or close to a wall. The way between them tends to be longer than the straight line. An
-/// unreachable goal lies in a closed line of walls with the start outside, or the other way round.
+/// Start and goal have room for a disc as wide as the narrowest corridor, and are often in difficult places:
+/// in a cove, a room, a corridor or close to a wall. The path between them tends to be longer than the
+/// straight line. An unreachable goal is within a closed line of walls with the start outside, or vice versa.
 ///
-/// The answer is found by flooding the free cells of the finished world, of a sixth of the robot's radius each, and
-/// holds for every disc from the robot's radius to half the narrowest corridor: fields that contain a passage or
-/// niche between these widths where the robot could come are drawn anew. With many such misses the number of
-/// obstacles goes down, so that a course is always found.
+/// Reachability is determined by a flood fill of the finished world's free cells, each a sixth of the robot's
+/// radius wide. It holds for every disc from the robot's radius to half the narrowest corridor: fields with
+/// an accessible passage or niche between these widths are drawn again. After many such failures the number
+/// of obstacles is reduced, so that a course is always found.
 ///
-/// Takes some 20 ms for a course of the default options.
+/// The run time is about 20 ms with default options.
 ///
 /// ```
 /// use roverlab::random::Stream;
@@ -58,7 +58,7 @@ pub fn obstacle_course(stream: &mut Stream, options: &CourseOptions) -> Result<C
     draw(stream, options, &ObstacleKind::DRAWN)
 }
 
-/// The same of some kinds of obstacles.
+/// The same with selected kinds of obstacles.
 pub(super) fn draw(
     stream: &mut Stream,
     options: &CourseOptions,
@@ -82,7 +82,7 @@ pub(super) fn draw(
     }
 }
 
-/// An empty field, with a box around the goal if it is to be unreachable: what is left if nothing else was found.
+/// An empty field, with a box around an unreachable goal: the fallback if no other course was found.
 fn plain_course(options: &CourseOptions, margins: Margins, enclosed: bool) -> Course {
     let side = options.size.0;
     let mut world = World::walled(side, side);
@@ -119,12 +119,12 @@ fn try_course(
     Some(Course { world, start, goal, reachable: !enclosed, obstacles: layout.kinds })
 }
 
-/// A start and a goal with a way between them.
+/// A start and a goal with a path between them.
 fn connected_places(stream: &mut Stream, layout: &Layout, survey: &Survey) -> Option<(Point, Point)> {
     let region = survey.largest_region().filter(|&region| survey.is_sound(region))?;
     let goal = survey.draw_place(stream, region, &layout.pockets)?;
     let steps = survey.steps_from(goal);
-    // How much longer the way in steps along edges is than without obstacles.
+    // Ratio of the path length in edge steps to that without obstacles.
     let detour = |start: &Point| {
         let steps = survey.raster().cell_at(*start).and_then(|cell| steps[cell]).unwrap_or(0);
         let straight = (start.x - goal.x).abs() + (start.y - goal.y).abs();
@@ -140,7 +140,7 @@ fn connected_places(stream: &mut Stream, layout: &Layout, survey: &Survey) -> Op
     Some((start?, goal))
 }
 
-/// A start and a goal without a way between them: mostly the goal in the enclosure, sometimes the start.
+/// A start and a goal without a path between them: usually the goal is in the enclosure, sometimes the start.
 fn separated_places(stream: &mut Stream, layout: &Layout, survey: &Survey) -> Option<(Point, Point)> {
     let inside = layout.chambers.iter().find_map(|&chamber| survey.region_at(chamber))?;
     let outside = survey.largest_region()?;
@@ -154,7 +154,7 @@ fn separated_places(stream: &mut Stream, layout: &Layout, survey: &Survey) -> Op
     Some((start, goal))
 }
 
-/// Places for a start in a region that are no nearer to the goal than a share of the field's shorter side.
+/// Start candidates in a region, at least a fraction of the field's shorter side from the goal.
 fn starts(
     stream: &mut Stream,
     layout: &Layout,
@@ -180,7 +180,7 @@ mod tests {
         obstacle_course(&mut Stream::new(seed), options).unwrap()
     }
 
-    /// FNV-1a over the bits of all that a robot can meet.
+    /// FNV-1a hash of the bits of everything that a robot can encounter.
     fn digest(course: &Course) -> u64 {
         let walls = course
             .world
@@ -195,7 +195,7 @@ mod tests {
         })
     }
 
-    /// What must hold for every course.
+    /// Properties of every course.
     fn check(course: &Course, options: &CourseOptions) -> Result<(), TestCaseError> {
         let (start, goal) = (course.start.position(), course.goal);
         let size = course.world.floor.size();
@@ -275,7 +275,7 @@ mod tests {
         }
     }
 
-    /// Changes with every change of the generator: courses of a seed are part of what users publish.
+    /// Changes whenever the generator changes; users publish seeds of courses.
     #[test]
     fn a_seed_keeps_its_course() {
         assert_eq!(digest(&course(1, &CourseOptions::default())), 12_986_112_471_343_185_681);

@@ -1,4 +1,4 @@
-//! What there is along the sides and at the corners of a room.
+//! Features along the sides and at the corners of a room.
 
 use std::f64::consts::{FRAC_PI_3, PI, TAU};
 
@@ -7,7 +7,7 @@ use super::{RoomFeature, RoomOptions};
 use crate::geometry::{Point, Vector, cross, math};
 use crate::random::Stream;
 
-/// The wall with curves, doors, points and niches along the sides and at the corners.
+/// The wall with curves, doors, wedges and niches along the sides and at the corners.
 pub(super) fn decorated(
     stream: &mut Stream,
     options: &RoomOptions,
@@ -64,13 +64,13 @@ fn rounding(
     Some(Rounding { arc: Piece::arc(start, start + left, turn), start, end })
 }
 
-/// A straight side of a room, which lies to the left of it.
+/// A straight side with the room to its left.
 struct Side {
     from: Point,
     to: Point,
     along: Vector,
     inward: Vector,
-    /// Metres at either end that stay as they are, and metres between.
+    /// Unchanged length at each end, and the length between (m).
     margin: f64,
     room: f64,
 }
@@ -84,23 +84,23 @@ impl Side {
         Self { from, to, along, inward, margin, room: length - 2.0 * margin }
     }
 
-    /// A place so many metres along the side and into the room.
+    /// A point given by metres along the side and into the room.
     fn place(&self, (along, inward): (f64, f64)) -> Point {
         self.from + self.along * along + self.inward * inward
     }
 
-    /// Adds straight walls through some places.
+    /// Adds straight walls through some points.
     fn through(&self, contour: &mut Contour, places: &[(f64, f64)]) {
         let points: Vec<Point> = places.iter().map(|&place| self.place(place)).collect();
         contour.lines(self.from, &points, self.to);
     }
 
-    /// Where something of some width begins, if there is room for it.
+    /// Random start of a feature of some width; `None` if there is no room.
     fn begin(&self, stream: &mut Stream, width: f64) -> Option<f64> {
         (width <= self.room).then(|| self.margin + stream.uniform() * (self.room - width))
     }
 
-    /// Adds the side, perhaps with something special in it.
+    /// Adds the side, possibly with a feature.
     fn draw(&self, stream: &mut Stream, options: &RoomOptions, contour: &mut Contour) -> Option<RoomFeature> {
         let feature = match stream.below(10) {
             0 | 1 => self.curve(stream, options, contour),
@@ -161,7 +161,7 @@ impl Side {
         Some(RoomFeature::Door)
     }
 
-    /// A point that juts in: sharper outside than the corners of rooms otherwise are.
+    /// A wedge into the room, with a sharper tip than other corners.
     fn wedge(
         &self,
         stream: &mut Stream,
@@ -189,7 +189,7 @@ impl Side {
     }
 }
 
-/// A triangle over a straight side with some angle at its tip, more or less lopsided: the tip, and the width.
+/// A triangle over a straight side with a tip angle, more or less asymmetric: the tip and the width.
 fn triangle(stream: &mut Stream, tip: f64, height: f64) -> (Vector, f64) {
     let share = stream.between(0.35, 0.65);
     let [left, right] = [share, 1.0 - share].map(|share| height / math::tan(share * (PI - tip)));

@@ -3,7 +3,7 @@ use super::brush::{Brush, Drawing};
 use super::figure::Figure;
 use super::{bent, round, straight};
 
-/// A figure that shuts a part of the field off.
+/// A figure that closes off a part of the field.
 pub(super) fn draw(brush: &mut Brush, field: Field) -> Drawing {
     match brush.stream.below(14) {
         0 => Drawing::OnBorder(border::divider(brush, field)),
@@ -18,7 +18,7 @@ pub(super) fn draw(brush: &mut Brush, field: Field) -> Drawing {
     }
 }
 
-/// A closed line of a simple shape, sometimes with a wall that leads away from it.
+/// A closed line of a simple shape, sometimes with an attached wall.
 fn ring(brush: &mut Brush) -> Figure {
     brush.radius = brush.radius.max(1.8 * brush.gap);
     let figure = match brush.stream.below(5) {

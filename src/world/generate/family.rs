@@ -7,7 +7,7 @@ use super::course::{Course, draw};
 use super::{CourseOptions, ObstacleKind};
 use crate::random::Stream;
 
-/// Families of courses that are hard in one way each, to compare algorithms that go to a goal by sensors.
+/// Families of courses with one kind of difficulty each, to compare sensor-based navigation algorithms.
 ///
 /// ```
 /// use roverlab::random::Stream;
@@ -19,21 +19,21 @@ use crate::random::Stream;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum CourseFamily {
-    /// A few obstacles with hollows into which the way to the goal can lead.
+    /// A few obstacles with hollows on the way to the goal.
     LocalMinima,
-    /// A large field, crowded with obstacles of every kind.
+    /// A large field with many obstacles of every kind.
     ComplexTerrain,
-    /// Obstacles whose boundaries hold a robot back little or not at all: convex ones, stars and bows.
+    /// Obstacles whose boundaries hardly hold a robot back: convex ones, stars and bows.
     SemiConvex,
-    /// Obstacles of every kind, one of which shuts the goal off, or the start.
+    /// Obstacles of every kind, one of which closes off the goal or the start.
     Unreachable,
 }
 
 impl CourseFamily {
-    /// All of them.
+    /// All families.
     pub const ALL: [Self; 4] = [Self::LocalMinima, Self::ComplexTerrain, Self::SemiConvex, Self::Unreachable];
 
-    /// What it is called.
+    /// Name of the family.
     pub fn name(self) -> &'static str {
         match self {
             Self::LocalMinima => "local minima",
@@ -43,7 +43,7 @@ impl CourseFamily {
         }
     }
 
-    /// Sizes and numbers of its courses.
+    /// Sizes and numbers for its courses.
     pub fn options(self) -> CourseOptions {
         let reachable = CourseOptions { unreachable_share: 0.0, ..CourseOptions::default() };
         match self {
@@ -54,11 +54,11 @@ impl CourseFamily {
         }
     }
 
-    /// Draws a course, as [`obstacle_course`](super::obstacle_course) does.
+    /// Draws a course like [`obstacle_course`](super::obstacle_course).
     ///
     /// # Errors
     ///
-    /// None with the options as they are.
+    /// None with the present options.
     pub fn course(self, stream: &mut Stream) -> Result<Course, ParameterError> {
         draw(stream, &self.options(), self.kinds())
     }
@@ -90,7 +90,7 @@ impl fmt::Display for CourseFamily {
     }
 }
 
-/// A name that no family of courses has.
+/// An unknown name of a family of courses.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error("unknown family of courses `{found}`; expected one of {}", CourseFamily::ALL.map(CourseFamily::name).join(", "))]
 pub struct UnknownFamily {
@@ -102,7 +102,7 @@ debug_as_sentence!(UnknownFamily);
 impl FromStr for CourseFamily {
     type Err = UnknownFamily;
 
-    /// Reads a name, in capitals or not, with spaces, hyphens or underscores.
+    /// Reads a name, case-insensitive, with spaces, hyphens or underscores.
     fn from_str(text: &str) -> Result<Self, UnknownFamily> {
         let plain = |text: &str| text.trim().to_ascii_lowercase().replace(['_', '-'], " ");
         let named = |family: &Self| plain(family.name()) == plain(text);

@@ -5,7 +5,7 @@ use crate::world::Wall;
 #[derive(Debug, Clone)]
 pub(super) struct Outline {
     pub(super) points: Vec<Point>,
-    /// Whether the last point is joined to the first, so that nothing gets in.
+    /// Whether the last point is joined to the first, which closes the line.
     pub(super) closed: bool,
 }
 
@@ -18,7 +18,7 @@ impl Outline {
         Self { points, closed: false }
     }
 
-    /// The straight pieces, each with whether the line turns sharply at its ends.
+    /// Straight pieces, with flags for sharp turns at their ends.
     fn pieces(&self) -> impl Iterator<Item = (Point, Point, bool, bool)> {
         let n = self.points.len();
         let count = if self.closed { n } else { n - 1 };
@@ -28,7 +28,7 @@ impl Outline {
         })
     }
 
-    /// Whether the line turns by more than some 30 degrees at a point, or ends there.
+    /// Whether the line turns by more than about 30 degrees at a point, or ends there.
     fn is_sharp(&self, i: usize) -> bool {
         let n = self.points.len();
         if !self.closed && (i == 0 || i == n - 1) {
@@ -39,8 +39,8 @@ impl Outline {
         into.dot(&out) < 0.87 * math::hypot(into.x, into.y) * math::hypot(out.x, out.y)
     }
 
-    /// The walls along the line. At sharp corners they are longer by half their thickness, so that corners are
-    /// square and without notches.
+    /// Walls along the line. At sharp corners they are extended by half their thickness, which makes corners
+    /// square without notches.
     pub(super) fn walls(&self, thickness: f64) -> impl Iterator<Item = Wall> {
         self.pieces().map(move |(a, b, sharp_a, sharp_b)| {
             let along = b - a;
@@ -51,7 +51,7 @@ impl Outline {
         })
     }
 
-    /// Whether a point lies inside of a closed line.
+    /// Whether a point is inside a closed line.
     pub(super) fn holds(&self, point: Point) -> bool {
         let crossings = self.pieces().filter(|(a, b, ..)| {
             (a.y > point.y) != (b.y > point.y)
@@ -61,13 +61,13 @@ impl Outline {
     }
 }
 
-/// An obstacle: lines of walls, and the places in its arms that make it hard.
+/// An obstacle: lines of walls, and difficult places within it.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Figure {
     pub(super) outlines: Vec<Outline>,
     /// Places in coves, rooms and corridors, with room for the robot.
     pub(super) pockets: Vec<Point>,
-    /// Places inside of closed lines, with room for the robot.
+    /// Places inside closed lines, with room for the robot.
     pub(super) chambers: Vec<Point>,
 }
 
@@ -86,7 +86,7 @@ impl Figure {
         self
     }
 
-    /// The figure at another place, turned, and mirrored at its x axis if asked for.
+    /// The figure at another pose, optionally mirrored at its x axis.
     pub(super) fn placed(mut self, pose: Pose, mirrored: bool) -> Self {
         let side = if mirrored { -1.0 } else { 1.0 };
         let (sin, cos) = math::sin_cos(pose.heading);
@@ -99,7 +99,7 @@ impl Figure {
         self
     }
 
-    /// The figure moved so that the box around it has its middle at the origin.
+    /// The figure with the centre of its bounding box at the origin.
     pub(super) fn centred(self) -> Self {
         let points = self.outlines.iter().flat_map(|o| o.points.iter().copied());
         match crate::geometry::Aabb::around(points) {
@@ -112,7 +112,7 @@ impl Figure {
     }
 }
 
-/// The line beside a line at a distance to its left, with mitred corners.
+/// The parallel of a line at a distance to its left, with mitred corners.
 pub(super) fn beside(line: &[Point], distance: f64) -> Vec<Point> {
     let normal = |i: usize| {
         let along = line[i + 1] - line[i];
@@ -123,21 +123,21 @@ pub(super) fn beside(line: &[Point], distance: f64) -> Vec<Point> {
         .map(|i| {
             let before = normal(i.max(1) - 1);
             let after = normal(i.min(last - 1));
-            // The mitre is longer than the distance by one over the cosine of half the turn.
+            // The mitre is longer than the distance by a factor of one over the cosine of half the turn.
             let sum = before + after;
             line[i] + sum * (2.0 * distance / sum.norm_squared().max(0.2))
         })
         .collect()
 }
 
-/// The outline of a stroke of a width along a line.
+/// Outline of a stroke of a width along a line.
 pub(super) fn stroke(line: &[Point], width: f64) -> Outline {
     let mut points = beside(line, -0.5 * width);
     points.extend(beside(line, 0.5 * width).into_iter().rev());
     Outline::closed(points)
 }
 
-/// The points that divide a line into pieces of at most a length; its corners are among them.
+/// Points that divide a line into pieces of at most a length, including its corners.
 pub(super) fn divided(line: &[Point], length: f64) -> Vec<Point> {
     let mut points = vec![line[0]];
     for pair in line.windows(2) {
@@ -148,7 +148,7 @@ pub(super) fn divided(line: &[Point], length: f64) -> Vec<Point> {
     points
 }
 
-/// The least distance between two straight lines, 0 if they cross.
+/// Smallest distance between two line segments; 0 if they cross.
 pub(super) fn distance_between(a: (Point, Point), b: (Point, Point)) -> f64 {
     let side = |line: (Point, Point), p: Point| cross(line.1 - line.0, p - line.0);
     if side(a, b.0) * side(a, b.1) < 0.0 && side(b, a.0) * side(b, a.1) < 0.0 {

@@ -10,25 +10,25 @@ use crate::geometry::{Aabb, Point, Pose};
 use crate::random::Stream;
 use crate::world::{Object, ObjectKind, Shape, Wall, World};
 
-/// How often a figure is drawn anew, or an object moved, before the field counts as full.
+/// Number of attempts to place a figure or object before the field counts as full.
 const TRIES: usize = 40;
 
-/// A field that is being filled with obstacles that keep their distance from one another.
+/// A field being filled with obstacles at a distance from one another.
 #[derive(Debug)]
 pub(super) struct Layout {
     pub(super) field: Field,
     pub(super) world: World,
     pub(super) kinds: Vec<ObstacleKind>,
-    /// Places in the arms of the obstacles.
+    /// Places within the obstacles.
     pub(super) pockets: Vec<Point>,
-    /// Places that the enclosure shuts off.
+    /// Places within the enclosure.
     pub(super) chambers: Vec<Point>,
     pieces: Vec<Piece>,
-    /// Metres of room between the faces of any two solids.
+    /// Room between the faces of any two solids (m).
     room: f64,
 }
 
-/// What stands in the field already.
+/// A placed figure or object.
 #[derive(Debug)]
 struct Piece {
     /// Its lines, each with half its thickness.
@@ -63,8 +63,8 @@ impl Piece {
         self.lines.iter().all(|line| others.iter().all(|other| apart(line, other)))
     }
 
-    /// Whether part of the other piece lies inside of one of this piece's closed lines. With the lines apart, one
-    /// point of each of the other's lines tells.
+    /// Whether part of the other piece is inside one of this piece's closed lines. Since the lines are apart,
+    /// one point of each of the other's lines suffices.
     fn swallows(&self, other: &Self) -> bool {
         let points =
             || other.outlines.iter().map(|o| o.points[0]).chain(other.lines.first().map(|line| line.0));
@@ -77,7 +77,7 @@ fn overlap(a: &Aabb, b: &Aabb) -> bool {
 }
 
 impl Layout {
-    /// An empty field of a random size, with `room` metres to be left between solids.
+    /// An empty field of a random size, with `room` metres between solids.
     pub(super) fn new(stream: &mut Stream, options: &CourseOptions, room: f64) -> Self {
         let (least, greatest) = options.size;
         let mut side = || round_to_centimetre(stream.between(least, greatest)).clamp(least, greatest);
@@ -87,9 +87,10 @@ impl Layout {
         Self { field, world, kinds: Vec::new(), pockets: Vec::new(), chambers: Vec::new(), pieces, room }
     }
 
-    /// Draws an enclosure first, if asked for, then obstacles of some kinds until there are `count`, as far as they fit.
+    /// Draws an enclosure first, if `enclosed`, then obstacles of some kinds up to `count`, as far as they
+    /// fit.
     pub(super) fn fill(&mut self, stream: &mut Stream, kinds: &[ObstacleKind], count: usize, enclosed: bool) {
-        // About the side of the square that falls to each obstacle.
+        // Approximate side of the square available per obstacle.
         let share = self.field.shorter() / (count as f64 + 2.0).sqrt();
         if enclosed {
             self.try_kind(stream, ObstacleKind::Enclosure, share);
@@ -102,7 +103,7 @@ impl Layout {
         }
     }
 
-    /// Places a figure of a kind if a place is found, smaller with each few tries.
+    /// Places a figure of a kind if possible; its size decreases every few attempts.
     fn try_kind(&mut self, stream: &mut Stream, kind: ObstacleKind, share: f64) {
         for attempt in 0..TRIES {
             let thickness = draw_thickness(stream);
@@ -126,7 +127,7 @@ impl Layout {
         figure.placed(Pose::new(x, y, heading), stream.chance(0.5))
     }
 
-    /// Adds a figure, unless it comes too close to what is there; true if it was added.
+    /// Adds a figure unless it is too close to existing ones; returns whether it was added.
     fn place(&mut self, figure: Figure, thickness: f64, on_border: bool, kind: ObstacleKind) -> bool {
         let points = || figure.outlines.iter().flat_map(|o| &o.points);
         if !points().all(|&p| self.is_inside(p)) {
@@ -148,13 +149,14 @@ impl Layout {
     }
 
     fn is_inside(&self, p: Point) -> bool {
-        // Rounding may put a line's end on the border a little beyond it.
+        // Rounding may place a line's end slightly beyond the border.
         let slack = 1e-9;
         (-slack..=self.field.width + slack).contains(&p.x)
             && (-slack..=self.field.height + slack).contains(&p.y)
     }
 
-    /// Whether a piece is clear of all others; what stands on the border need not be clear of that, the first piece.
+    /// Whether a piece is clear of all others; pieces on the border are not checked against it, the first
+    /// piece.
     fn is_clear(&self, piece: &Piece, on_border: bool) -> bool {
         self.pieces[usize::from(on_border)..].iter().all(|other| {
             piece.is_clear_of(other, self.room) && !other.swallows(piece) && !piece.swallows(other)
@@ -180,7 +182,7 @@ impl Layout {
         }
     }
 
-    /// Puts a row of equal objects side by side, if there is room for it.
+    /// Places a row of equal objects side by side, if there is room.
     fn place_objects(&mut self, name: &str, pose: Pose, row: usize) {
         let Some(kind) = ObjectKind::predefined(name) else { return };
         let kind = Arc::new(ObjectKind { fixed: true, ..kind });
@@ -201,7 +203,7 @@ impl Layout {
     }
 }
 
-/// Mostly the default thickness of walls, some thicker, some of none at all.
+/// Usually the default thickness of walls, sometimes thicker, sometimes zero.
 fn draw_thickness(stream: &mut Stream) -> f64 {
     match stream.below(8) {
         0 => 0.0,

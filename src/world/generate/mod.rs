@@ -1,14 +1,14 @@
-//! Random worlds whose answers are known.
+//! Random worlds with known answers.
 //!
-//! [`obstacle_course`] draws a walled field of varied obstacles, many of them concave or curved, with a start and a
-//! goal that can or cannot be reached. Whether they can is not a matter of hair's breadths: every passage and every
-//! niche is either closed or as wide as [`CourseOptions::min_corridor`] says, which is checked on the finished world.
-//! The same stream gives the same world on every platform.
+//! [`obstacle_course`] draws a walled field of varied obstacles, many of them concave or curved, with a start
+//! and a goal, which is reachable or unreachable. Reachability does not depend on tiny gaps: every passage
+//! and niche is either closed or at least as wide as [`CourseOptions::min_corridor`], which is checked on the
+//! finished world. Equal streams give the same world on every platform.
 //!
-//! Algorithms that find their way to a goal by sensors (chapter 10) are judged on such courses.
+//! Sensor-based algorithms for finding a goal (chapter 10) are evaluated on such courses.
 //!
 //! [`room`] draws a room with corners of many angles, curved walls and doors, whose wall can be followed all the way round
-//! (chapter 6).
+//! (chapter 6). [`relief`] draws hills, craters, ramps and steps (chapter 7).
 
 mod bent;
 mod border;
@@ -21,6 +21,7 @@ mod family;
 mod figure;
 mod layout;
 mod options;
+mod relief;
 mod repertoire;
 mod room;
 mod round;
@@ -30,5 +31,6 @@ mod survey;
 pub use course::{Course, obstacle_course};
 pub use family::{CourseFamily, UnknownFamily};
 pub use options::CourseOptions;
+pub use relief::{Relief, ReliefKind, ReliefOptions, relief};
 pub use repertoire::ObstacleKind;
 pub use room::{Room, RoomFeature, RoomOptions, room};

@@ -1,7 +1,7 @@
 use crate::ParameterError;
 use crate::parameter::{require, require_up_to};
 
-/// What [`super::obstacle_course`] draws.
+/// Options of [`super::obstacle_course`].
 ///
 /// ```
 /// use roverlab::world::generate::CourseOptions;
@@ -11,23 +11,23 @@ use crate::parameter::{require, require_up_to};
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct CourseOptions {
-    /// The least and the greatest length of the field's sides, in metres. Each side is drawn on its own.
+    /// Smallest and largest length of the field's sides (m). Each side is drawn independently.
     pub size: (f64, f64),
-    /// The least and the greatest number of obstacles. A field that does not hold as many gets fewer.
+    /// Smallest and largest number of obstacles; fewer if they do not fit.
     pub obstacles: (usize, usize),
-    /// The most crates and cans that stand between the obstacles. They are fixed to the floor.
+    /// Largest number of crates and cans between the obstacles. They are fixed to the floor.
     pub objects: usize,
-    /// Metres of room that every passage between solids leaves, if it is not closed.
+    /// Smallest width of a passage between solids, unless it is closed (m).
     pub min_corridor: f64,
-    /// The radius of the disc-shaped robot for which the course is made, in metres.
+    /// Radius of the disc-shaped robot for which the course is made (m).
     pub robot_radius: f64,
-    /// The share of courses whose goal cannot be reached, 0 to 1.
+    /// Fraction of courses with an unreachable goal, 0 to 1.
     pub unreachable_share: f64,
 }
 
 impl Default for CourseOptions {
-    /// Fields of 4 m to 6 m with three to eight obstacles and up to three objects, for a robot of 60 mm and passages
-    /// of 1.5 times its width; one goal in four cannot be reached.
+    /// Fields of 4 m to 6 m with three to eight obstacles and up to three objects, for a robot radius of 60
+    /// mm and passages of 1.5 robot widths; one goal in four is unreachable.
     fn default() -> Self {
         let robot_radius = 0.060;
         Self {
@@ -42,10 +42,10 @@ impl Default for CourseOptions {
 }
 
 impl CourseOptions {
-    /// The most obstacles, and the most objects, that may be asked for.
+    /// Limit of the numbers of obstacles and objects.
     pub const MAX_COUNT: usize = 100;
 
-    /// Checks that every number makes sense, and that the field holds more than the robot.
+    /// Checks that every number is valid, and that the field is larger than the robot.
     pub fn validate(&self) -> Result<(), ParameterError> {
         let radius = self.robot_radius;
         require_up_to("robot radius", radius, 10.0)?;

@@ -2,7 +2,7 @@ use super::border::{self, Field};
 use super::brush::{Brush, Drawing};
 use super::{bent, enclosure, round, straight};
 
-/// What an obstacle of a course looks like.
+/// Shape of an obstacle in a course.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum ObstacleKind {
@@ -22,13 +22,13 @@ pub enum ObstacleKind {
     Crescent,
     /// A C: a ring with an opening.
     OpenRing,
-    /// A G: a C with a bar that leads inwards.
+    /// A G: a C with an inward bar.
     HookedRing,
     /// A C within a C.
     NestedRings,
     /// A round spiral.
     Spiral,
-    /// Half rings to either side in turn.
+    /// Alternating half rings.
     Snake,
     /// A U.
     Trough,
@@ -48,19 +48,18 @@ pub enum ObstacleKind {
     Room,
     /// A room with a door within another.
     NestedRooms,
-    /// A wall that stands out from the border.
+    /// A wall that projects from the border.
     Spur,
     /// A half disc on the border.
     Bump,
     /// A room with a door on the border.
     Alcove,
-    /// What keeps the robot from an unreachable goal: a closed line of any shape, alone, on the border, or across
-    /// the field.
+    /// Closes off an unreachable goal: a closed line of any shape, alone, on the border, or across the field.
     Enclosure,
 }
 
 impl ObstacleKind {
-    /// The kinds that are drawn at random.
+    /// Kinds that are drawn at random.
     pub(super) const DRAWN: [Self; 24] = [
         Self::Polygon,
         Self::Disc,
@@ -88,7 +87,7 @@ impl ObstacleKind {
         Self::Alcove,
     ];
 
-    /// Whether the obstacle has a cove, a room or a corridor into which a robot can be drawn.
+    /// Whether the obstacle has a cove, room or corridor that can trap a robot.
     pub fn is_concave(self) -> bool {
         !matches!(self, Self::Polygon | Self::Disc | Self::Ellipse | Self::Bump | Self::Enclosure)
     }

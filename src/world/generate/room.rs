@@ -8,21 +8,22 @@ use crate::geometry::{Aabb, Point, Pose, direction, units};
 use crate::random::Stream;
 use crate::world::World;
 
-/// What [`super::room`] draws.
+/// Options of [`super::room`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct RoomOptions {
-    /// Metres from a room's middle to its corners, the least and the greatest.
+    /// Smallest and largest distance from a room's centre to its corners (m).
     pub reach: (f64, f64),
-    /// The least and the greatest angle of a corner, in radians, measured inside.
+    /// Smallest and largest interior angle of a corner (rad).
     pub corners: (f64, f64),
-    /// The least radius of a curved wall in metres.
+    /// Smallest radius of a curved wall (m).
     pub least_radius: f64,
-    /// The distance from the wall, in metres, that a robot has to be able to keep everywhere.
+    /// Distance from the wall that a robot must be able to keep everywhere (m).
     pub distance: f64,
 }
 
 impl Default for RoomOptions {
-    /// Rooms of some 5 m, corners of 60 to 300 degrees, curves down to a radius of 0.5 m, for a distance of 0.2 m.
+    /// Rooms of about 5 m, corners of 60 to 300 degrees and curves with radii from 0.5 m, for a distance of
+    /// 0.2 m.
     fn default() -> Self {
         Self {
             reach: (1.1, 2.8),
@@ -34,7 +35,7 @@ impl Default for RoomOptions {
 }
 
 impl RoomOptions {
-    /// Fails with the name of the option that is out of range.
+    /// Fails with the name of an option out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         let distance = self.distance;
         require("distance", distance, (0.05..=1.0).contains(&distance), "0.05 to 1 m")?;
@@ -54,41 +55,41 @@ impl RoomOptions {
     }
 }
 
-/// Something out of the ordinary along a room's wall.
+/// A special feature along a room's wall.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum RoomFeature {
-    /// A corner that is rounded.
+    /// A rounded corner.
     Rounding,
-    /// A part of a circle that is larger than the room there: the wall recedes.
+    /// An outward arc: the wall recedes.
     Bay,
-    /// A part of a circle that stands into the room.
+    /// An arc into the room.
     Bulge,
     /// An open door with a chamber behind it.
     Door,
-    /// A closed door, which lies somewhat back in the wall.
+    /// A closed door, slightly recessed.
     ClosedDoor,
-    /// A point that juts in, with a corner of far more than three right angles.
+    /// A wedge into the room, with a corner of far more than three right angles.
     Wedge,
-    /// A pointed niche, with two corners of more than a half turn beside a sharp one.
+    /// A pointed niche: a sharp corner between two corners of more than a half turn.
     Nook,
 }
 
-/// A room with one wall all round.
+/// A room with a single closed wall.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Room {
-    /// The walls. The start is the room's.
+    /// The walls; its start pose is the room's.
     pub world: World,
-    /// Somewhere in the room, with any heading.
+    /// A pose in the room with a random heading.
     pub start: Pose,
-    /// The corners and their angles inside, in radians.
+    /// The corners with their interior angles (rad).
     pub corners: Vec<(Point, f64)>,
-    /// What else there is.
+    /// Other features.
     pub features: Vec<RoomFeature>,
 }
 
-/// Draws a room whose wall can be followed at a distance all the way round: corners, curves, and doors, open ones with a
-/// chamber behind them.
+/// Draws a room whose wall can be followed at a distance all the way round, with corners, curves, and doors;
+/// open doors have a chamber behind them.
 ///
 /// ```
 /// use roverlab::random::Stream;
@@ -102,7 +103,7 @@ pub struct Room {
 ///
 /// If the options do not pass [`RoomOptions::validate`].
 pub fn room(stream: &mut Stream, options: &RoomOptions) -> Result<Room, ParameterError> {
-    /// Rooms that are drawn before it is given up.
+    /// Number of attempts to draw a room.
     const TRIES: usize = 5000;
     options.validate()?;
     for _ in 0..TRIES {
@@ -139,7 +140,7 @@ fn try_room(stream: &mut Stream, options: &RoomOptions) -> Option<Room> {
     Some(finish(&contour, start, features))
 }
 
-/// The corners of a room without anything special, counter-clockwise.
+/// Corners of a basic room, counter-clockwise.
 fn base(stream: &mut Stream, options: &RoomOptions) -> Vec<Point> {
     let (least, most) = options.reach;
     if stream.chance(0.25) {
@@ -161,7 +162,7 @@ fn base(stream: &mut Stream, options: &RoomOptions) -> Vec<Point> {
 }
 
 fn finish(contour: &Contour, start: Pose, features: Vec<RoomFeature>) -> Room {
-    /// Metres of floor round a room.
+    /// Width of the floor around a room (m).
     const MARGIN: f64 = 0.2;
     let bounds = contour.bounds().inflated(MARGIN);
     let shift = Point::origin() - bounds.min;
@@ -208,7 +209,7 @@ mod tests {
             let room = room(&mut Stream::new(seed), &RoomOptions::default()).unwrap();
             let free = Reachability::new(&room.world, 0.1, 0.02).unwrap();
             assert!(free.is_free(room.start.position()), "{seed}");
-            // There is no way out.
+            // The room has no exit.
             assert!(!free.connected(room.start.position(), Point::new(-0.1, -0.1)), "{seed}");
             assert_eq!(super::room(&mut Stream::new(seed), &RoomOptions::default()).unwrap(), room);
         }

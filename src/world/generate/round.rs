@@ -1,4 +1,4 @@
-//! Curved obstacles: circles and their parts as many short walls.
+//! Curved obstacles: circles and arcs of many short walls.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -18,7 +18,7 @@ pub(super) fn ellipse(brush: &mut Brush) -> Figure {
     oval(brush, brush.radius, brush.radius * flatness)
 }
 
-/// A closed oval with half axes `a` and `b`.
+/// A closed oval with semi-axes `a` and `b`.
 pub(super) fn oval(brush: &mut Brush, a: f64, b: f64) -> Figure {
     let step = brush.facet();
     let n = (TAU * a / step).clamp(16.0, 120.0) as usize;
@@ -30,7 +30,7 @@ pub(super) fn oval(brush: &mut Brush, a: f64, b: f64) -> Figure {
     Figure::of(vec![Outline::closed((0..n).map(corner).collect())]).with_chambers(chambers)
 }
 
-/// A C: most of a ring, open to one side.
+/// A C: most of a ring, open on one side.
 pub(super) fn open_ring(brush: &mut Brush) -> Figure {
     let (radius, width) = ring_size(brush);
     let half_mouth = half_mouth(brush, radius, width);
@@ -51,7 +51,7 @@ pub(super) fn hooked_ring(brush: &mut Brush) -> Figure {
     Figure::of(vec![brush.wall_or_stroke(line, width)]).with_pockets(pockets)
 }
 
-/// A C within a C, open to different sides.
+/// A C within a C, open on different sides.
 pub(super) fn nested_rings(brush: &mut Brush) -> Figure {
     let radius = brush.radius.max(2.9 * brush.gap);
     let inner = radius - brush.gap * brush.stream.between(1.2, 1.5);
@@ -64,7 +64,7 @@ pub(super) fn nested_rings(brush: &mut Brush) -> Figure {
     Figure::of(outlines.to_vec()).with_pockets(vec![Point::origin(), between])
 }
 
-/// A crescent, which tapers to the tips of its horns.
+/// A crescent that tapers to pointed horns.
 pub(super) fn crescent(brush: &mut Brush) -> Figure {
     let radius = brush.radius.max(1.7 * brush.gap);
     let belly = brush.stream.between(0.2, 0.45) * radius;
@@ -81,7 +81,7 @@ pub(super) fn crescent(brush: &mut Brush) -> Figure {
         .with_pockets(vec![Point::origin(), Point::new(0.4 * radius, 0.0)])
 }
 
-/// A round spiral with a corridor that leads to its middle.
+/// A round spiral with a corridor to its centre.
 pub(super) fn spiral(brush: &mut Brush) -> Figure {
     let width = brush.stream.between(0.02, 0.05);
     let pitch = brush.gap * brush.stream.between(1.1, 1.4) + width;
@@ -100,7 +100,7 @@ pub(super) fn spiral(brush: &mut Brush) -> Figure {
     Figure::of(vec![brush.wall_or_stroke(line, width)]).with_pockets(pockets)
 }
 
-/// A snake: half rings to either side in turn.
+/// A snake: alternating half rings.
 pub(super) fn snake(brush: &mut Brush) -> Figure {
     let bends = 2 + brush.stream.below(3);
     let bend = (brush.radius / bends as f64).max(0.75 * brush.gap);
@@ -128,7 +128,7 @@ pub(super) fn bow(brush: &mut Brush) -> Figure {
     Figure::of(vec![brush.wall_or_stroke(line, width)]).with_pockets(vec![cove]).centred()
 }
 
-/// A closed band along an arc, wide enough for a robot to be inside.
+/// A closed band along an arc, wide enough for a robot inside.
 pub(super) fn hollow_arc(brush: &mut Brush) -> Figure {
     let width = brush.gap * brush.stream.between(1.3, 1.8);
     let radius = brush.radius.max(1.6 * width);
@@ -140,14 +140,14 @@ pub(super) fn hollow_arc(brush: &mut Brush) -> Figure {
         .with_pockets(vec![Point::new(-0.2 * radius, 0.0)])
 }
 
-/// A C whose mouth another wall shuts.
+/// A C with its mouth closed by another wall.
 pub(super) fn shut_ring(brush: &mut Brush) -> Figure {
     let mut ring = open_ring(brush);
     ring.chambers = std::mem::take(&mut ring.pockets);
     let points = ring.outlines.iter().flat_map(|outline| &outline.points);
     let front = points.fold(f64::NEG_INFINITY, |front, p| front.max(p.x));
     let half = brush.radius.max(1.6 * brush.gap) * brush.stream.between(1.0, 1.5);
-    // The rightmost points of the ring are the lips of its mouth, or lie on a circle that the wall touches too.
+    // The ring's rightmost points are the edges of its mouth, or lie on a circle that the wall also touches.
     let lid = vec![Point::new(front, -half), Point::new(front, half)];
     ring.outlines.push(Outline::open(lid));
     ring
@@ -159,19 +159,19 @@ fn ring_size(brush: &mut Brush) -> (f64, f64) {
     (radius, brush.stream.between(0.04, thickest.max(0.05)))
 }
 
-/// Half the angle over which a ring is open, for a mouth of at least 1.5 gaps and at most a half ring.
+/// Half the opening angle of a ring, for a mouth of at least 1.5 gaps and at most a half ring.
 fn half_mouth(brush: &mut Brush, radius: f64, width: f64) -> f64 {
     let least = math::asin((0.5 * (1.5 * brush.gap + width) / (radius - 0.5 * width)).min(1.0));
     brush.stream.between(least, (least + 0.9).min(FRAC_PI_2))
 }
 
-/// The points of an arc from one angle to another, at most `facet` apart.
+/// Points of an arc from one angle to another, at most `facet` apart.
 pub(super) fn arc(middle: Point, radius: f64, from: f64, to: f64, facet: f64) -> Vec<Point> {
     let steps = ((to - from).abs() * radius / facet).ceil().max(4.0);
     (0..=steps as usize).map(|k| middle + direction(from + (to - from) * k as f64 / steps) * radius).collect()
 }
 
-/// A wavy line over a distance along x, as often up as down.
+/// A wavy line along x; the numbers of crests and troughs are equal.
 pub(super) fn wave(length: f64, height: f64, waves: f64, facet: f64) -> Vec<Point> {
     divided(&[Point::origin(), Point::new(length, 0.0)], facet)
         .into_iter()

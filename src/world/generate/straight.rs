@@ -6,7 +6,7 @@ use super::brush::Brush;
 use super::figure::{Figure, Outline};
 use crate::geometry::{Point, Pose, direction};
 
-/// A convex polygon of three to eight corners on an ellipse.
+/// A convex polygon with three to eight corners on an ellipse.
 pub(super) fn polygon(brush: &mut Brush) -> Figure {
     let n = 3 + brush.stream.below(6);
     let flatness = brush.stream.between(0.55, 1.0);
@@ -20,7 +20,7 @@ pub(super) fn polygon(brush: &mut Brush) -> Figure {
     Figure::of(vec![Outline::closed(points)]).with_chambers(vec![Point::origin()])
 }
 
-/// A star of four to seven points.
+/// A star with four to seven points.
 pub(super) fn star(brush: &mut Brush) -> Figure {
     let n = 4 + brush.stream.below(4);
     let waist = brush.stream.between(0.42, 0.65) * brush.radius;
@@ -65,13 +65,13 @@ pub(super) fn comb(brush: &mut Brush) -> Figure {
     let depth = brush.gap * brush.stream.between(1.5, 3.5);
     let spine = brush.stream.between(0.03, 0.08);
     let end = spaces as f64 * pitch + tooth;
-    // Along the back of the spine, then along teeth and spaces from right to left.
+    // Along the back of the spine, then along teeth and gaps from right to left.
     let mut corners = vec![(0.0, -spine), (end, -spine)];
     for k in (0..=spaces).rev() {
         let x = k as f64 * pitch;
         corners.extend([(x + tooth, 0.0), (x + tooth, depth), (x, depth), (x, 0.0)]);
     }
-    // The outermost teeth have no foot on their outer sides.
+    // The outermost teeth have no inner corner on their outer sides.
     corners.retain(|&(x, y)| y != 0.0 || (x != 0.0 && x != end));
     let pockets = (0..spaces)
         .map(|k| Point::new(k as f64 * pitch + tooth + 0.5 * space, (0.6 * brush.gap).max(0.4 * depth)))
@@ -89,14 +89,14 @@ pub(super) fn room(brush: &mut Brush) -> Figure {
     Figure::of(vec![brush.wall_or_stroke(walls, width)]).with_pockets(pockets)
 }
 
-/// A room with a door around another one, whose door is on another side.
+/// A room with a door around another one, with doors on different sides.
 pub(super) fn nested_rooms(brush: &mut Brush) -> Figure {
     let a = brush.radius.max(2.8 * brush.gap);
     let b = (a * brush.stream.between(0.75, 1.0)).max(2.6 * brush.gap);
     let aisle = brush.gap * brush.stream.between(1.15, 1.5);
     let outer = doored_walls(brush, a, b);
     let inner = doored_walls(brush, a - aisle, b - aisle);
-    // The doors are in the right walls; turn the inner room by half a turn.
+    // The doors are in the right walls; the inner room is turned by a half turn.
     let mut inner =
         Figure::of(vec![Outline::open(inner)]).placed(Pose::new(0.0, 0.0, 2.0 * FRAC_PI_2), false);
     inner.outlines.push(Outline::open(outer));
@@ -111,7 +111,7 @@ pub(super) fn shut_room(brush: &mut Brush) -> Figure {
         .with_chambers(vec![Point::origin(), Point::new(a - 0.7 * brush.gap, b - 0.7 * brush.gap)])
 }
 
-/// A room without a door inside of one with a door.
+/// A closed room inside a room with a door.
 pub(super) fn shut_room_in_room(brush: &mut Brush) -> Figure {
     let aisle = brush.gap * brush.stream.between(1.2, 1.6);
     let a = brush.radius.max(aisle + 1.2 * brush.gap);
@@ -124,19 +124,19 @@ pub(super) fn shut_room_in_room(brush: &mut Brush) -> Figure {
         .with_pockets(vec![Point::new(0.5 * aisle - a, 0.0)])
 }
 
-/// Half the lengths of a room's sides.
+/// Half the side lengths of a room.
 fn room_size(brush: &mut Brush) -> (f64, f64) {
     let a = brush.radius.max(1.5 * brush.gap);
     (a, (a * brush.stream.between(0.55, 1.0)).max(1.2 * brush.gap))
 }
 
-/// The walls of a room from one side of a door in its right wall round to the other.
+/// Walls of a room, from one side of a door in its right wall round to the other.
 fn doored_walls(brush: &mut Brush, a: f64, b: f64) -> Vec<Point> {
     let door = (brush.gap * brush.stream.between(1.3, 2.0)).min(1.8 * b);
     let low = brush.stream.between(-b, b - door);
     let high = low + door;
     let mut corners = vec![(a, high), (a, b), (-a, b), (-a, -b), (a, -b), (a, low)];
-    // No stumps shorter than the door's posts are thick.
+    // Avoids stumps shorter than the thickness of the door's posts.
     if b - high < 0.08 {
         corners.remove(0);
     }

@@ -3,23 +3,23 @@ use crate::geometry::Point;
 use crate::random::Stream;
 use crate::world::{Clearance, Raster, World};
 
-/// How often a random place is drawn in search of one in a region.
+/// Attempts to draw a random place in a region.
 const TRIES: usize = 60;
 
-/// The radii between which the answer must not change, and the size of the cells in which this is checked.
+/// Radii between which the reachability must not change, and the cell size for this check.
 ///
-/// If two places are connected for a robot, then so are their cells when tested with the lower radius; and if cells
-/// are connected with the upper radius, then so are the places for a disc as wide as the narrowest corridor. The
-/// radii differ from those by what a path moves when it goes through the middles of cells.
+/// If two places are connected for a robot, their cells are connected at the lower radius; if cells are
+/// connected at the upper radius, the places are connected for a disc as wide as the narrowest corridor. The
+/// radii allow for the displacement of a path to the cells' centres.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Margins {
     pub(super) resolution: f64,
     pub(super) low: f64,
     pub(super) high: f64,
-    /// Metres of room that obstacles keep, such that cells with the upper radius lead through.
+    /// Distance between obstacles with which cells at the upper radius lead through (m).
     pub(super) room: f64,
-    /// How far from the upper radius' region that of the lower may reach: the corners of rooms down to 60 degrees,
-    /// in which a small disc comes farther than a large one.
+    /// Largest distance of the lower radius' region from that of the upper one. It covers corners of rooms
+    /// down to 60 degrees, which a small disc can enter farther than a large one.
     rim: f64,
 }
 
@@ -33,7 +33,7 @@ impl Margins {
     }
 }
 
-/// The connected regions of a world for the lower and the upper radius.
+/// Connected regions of a world for the lower and upper radius.
 #[derive(Debug)]
 pub(super) struct Survey {
     margins: Margins,
@@ -43,7 +43,7 @@ pub(super) struct Survey {
 }
 
 impl Survey {
-    /// Measures a world; `None` if it is too large for that.
+    /// Surveys a world; `None` if it is too large.
     pub(super) fn new(world: &World, margins: Margins) -> Option<Self> {
         let limit = margins.high + 4.0 * margins.resolution;
         let clearance = Clearance::new(world, margins.resolution, limit).ok()?;
@@ -57,23 +57,23 @@ impl Survey {
         self.clearance.raster()
     }
 
-    /// The upper radius' region at a point.
+    /// Region of the upper radius at a point.
     pub(super) fn region_at(&self, point: Point) -> Option<u32> {
         self.high[self.raster().cell_at(point)?]
     }
 
-    /// The largest of the upper radius' regions.
+    /// Largest region of the upper radius.
     pub(super) fn largest_region(&self) -> Option<u32> {
         let count = self.high.iter().flatten().max()? + 1;
         let mut sizes = vec![0usize; count as usize];
         self.high.iter().flatten().for_each(|&region| sizes[region as usize] += 1);
-        // The last of equals, to have one answer.
+        // The last one of equal size, to be deterministic.
         (0..count).max_by_key(|&region| sizes[region as usize])
     }
 
-    /// Whether the places that a robot can reach from a cell of `region` are those with room for a disc as wide as
-    /// the narrowest corridor, but for a rim along the obstacles: no way narrower than that leads anywhere, and
-    /// neither does a niche.
+    /// Whether the robot's reachable places from a cell of `region` are those with room for a disc as wide as
+    /// the narrowest corridor, except for a rim along obstacles. Then no narrower passage or niche is
+    /// accessible.
     pub(super) fn is_sound(&self, region: u32) -> bool {
         let Some(seed) = self.high.iter().position(|&r| r == Some(region)) else { return false };
         let reached = self.low[seed];
@@ -89,7 +89,7 @@ impl Survey {
             .all(|cell| within_reach(&heights, cell, columns, reach))
     }
 
-    /// For every cell the rows between it and the nearest cell of a region in its column, at most `reach` + 1.
+    /// For every cell, the number of rows to the nearest cell of a region in its column, at most `reach` + 1.
     fn heights(&self, region: u32, reach: usize) -> Vec<usize> {
         let columns = self.raster().columns();
         let mut heights: Vec<usize> =
@@ -103,15 +103,14 @@ impl Survey {
         heights
     }
 
-    /// Whether a robot in one region of the upper radius cannot get to another.
+    /// Whether a robot cannot get from one region of the upper radius to another.
     pub(super) fn are_apart(&self, one: u32, other: u32) -> bool {
         let low_of =
             |region| self.high.iter().position(|&r| r == Some(region)).and_then(|cell| self.low[cell]);
         one != other && low_of(one) != low_of(other)
     }
 
-    /// A place in a region: one of the given ones, one beside an obstacle or one anywhere, moved to the middle of
-    /// its cell.
+    /// A place in a region, at the centre of a cell: one of the given ones, one beside an obstacle, or any.
     pub(super) fn draw_place(&self, stream: &mut Stream, region: u32, hard: &[Point]) -> Option<Point> {
         let kind = stream.uniform();
         (0..TRIES).find_map(|attempt| {
@@ -128,7 +127,7 @@ impl Survey {
         })
     }
 
-    /// For every cell of the upper radius' regions the steps along edges from a point, where there is a way.
+    /// For every cell in the upper radius' regions, the edge steps from a point; `None` without a path.
     pub(super) fn steps_from(&self, point: Point) -> Vec<Option<u32>> {
         let mut steps = vec![None; self.high.len()];
         let Some(seed) = self.raster().cell_at(point) else { return steps };
@@ -152,7 +151,7 @@ impl Survey {
     }
 }
 
-/// Whether a cell of a region lies within `reach` cells, given the distances within columns.
+/// Whether a cell of a region is within `reach` cells, given the distances in columns.
 fn within_reach(heights: &[usize], cell: usize, columns: usize, reach: usize) -> bool {
     let column = cell % columns;
     let row_start = cell - column;
@@ -172,7 +171,7 @@ mod tests {
         Survey::new(world, Margins::new(&CourseOptions::default())).unwrap()
     }
 
-    /// A field with a wall across it that leaves an opening of some width.
+    /// A field with a transverse wall that has an opening of some width.
     fn gate(width: f64) -> World {
         let mut world = World::walled(3.0, 2.0);
         let wall =
@@ -182,7 +181,7 @@ mod tests {
         world
     }
 
-    /// A field with two walls side by side that stand on the border.
+    /// A field with two parallel walls on the border.
     fn niche(width: f64) -> World {
         let mut world = World::walled(3.0, 2.0);
         for x in [1.0, 1.0 + width] {
@@ -215,7 +214,7 @@ mod tests {
         let survey = survey(&gate(0.3));
         let steps = survey.steps_from(Point::new(1.3, 0.3));
         let there = steps[survey.raster().cell_at(Point::new(1.7, 0.3)).unwrap()].unwrap();
-        // Up to the opening and back.
+        // To the opening and back.
         let metres = f64::from(there) * 0.01;
         assert!((1.8..2.2).contains(&metres), "{metres}");
         assert_eq!(steps[survey.raster().cell_at(Point::new(1.5, 0.3)).unwrap()], None);

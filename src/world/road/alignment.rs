@@ -1,6 +1,6 @@
 use crate::geometry::{Point, Pose, Vector, angle_difference, direction, math, normalize_angle};
 
-/// A part of a road's middle: its curvature changes evenly from one end to the other.
+/// A part of a road's centre line with linearly varying curvature.
 ///
 /// ```
 /// use roverlab::world::road::Element;
@@ -9,24 +9,24 @@ use crate::geometry::{Point, Pose, Vector, angle_difference, direction, math, no
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Element {
-    /// Metres.
+    /// Length (m).
     pub length: f64,
-    /// The curvature at its beginning and at its end, in 1/m; positive to the left.
+    /// Curvature at its beginning and end, positive to the left (1/m).
     pub curvature: [f64; 2],
 }
 
 impl Element {
-    /// A straight of some metres.
+    /// A straight of a length (m).
     pub fn straight(length: f64) -> Self {
         Self { length, curvature: [0.0; 2] }
     }
 
-    /// An arc of a radius in metres through an angle in radians, positive to the left.
+    /// An arc with a radius (m) and an angle (rad), positive to the left.
     pub fn arc(radius: f64, angle: f64) -> Self {
         Self { length: radius * angle.abs(), curvature: [1.0_f64.copysign(angle) / radius; 2] }
     }
 
-    /// A clothoid of some metres between two curvatures.
+    /// A clothoid of a length (m) between two curvatures.
     pub fn clothoid(length: f64, from: f64, to: f64) -> Self {
         Self { length, curvature: [from, to] }
     }
@@ -36,12 +36,12 @@ impl Element {
         if self.length > 0.0 { from + (to - from) * along / self.length } else { from }
     }
 
-    /// The heading beyond that at its beginning.
+    /// Change of heading since its beginning.
     fn turned(&self, along: f64) -> f64 {
         0.5 * along * (self.curvature[0] + self.curvature_at(along))
     }
 
-    /// The pose at its end, seen from its beginning.
+    /// Pose of its end relative to its beginning.
     pub(super) fn end(&self) -> Pose {
         let pieces = (self.length / STEP).ceil().max(1.0) as usize;
         let piece = self.length / pieces as f64;
@@ -51,38 +51,38 @@ impl Element {
         })
     }
 
-    /// The way from one place of it to another a short piece on, by Simpson's rule.
+    /// Displacement over a short piece, by Simpson's rule.
     fn chord(&self, heading: f64, from: f64, piece: f64) -> Vector {
         let at = |share: f64| direction(heading + self.turned(from + share * piece));
         (at(0.0) + at(0.5) * 4.0 + at(1.0)) * (piece / 6.0)
     }
 }
 
-/// A place on a line: its pose, and how the line bends there.
+/// A point on a line: pose and curvature.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Station {
     /// Position and direction of the line.
     pub pose: Pose,
-    /// In 1/m, positive to the left.
+    /// Curvature, positive to the left (1/m).
     pub curvature: f64,
 }
 
-/// The middle of a road: a closed chain of [elements](Element), known by its length.
+/// Centre line of a road: a closed chain of [elements](Element), parametrised by length.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Alignment {
     elements: Vec<Element>,
-    /// Evenly spaced, the last one before the first one again.
+    /// Evenly spaced; the first one follows the last one.
     stations: Vec<Station>,
     length: f64,
     gap: Pose,
 }
 
-/// Metres from station to station at most.
+/// Largest distance between stations (m).
 const STEP: f64 = 0.02;
 
 impl Alignment {
-    /// The chain of some elements from a start on. What is missing to its closing is spread evenly over it; see
-    /// [`gap`](Alignment::gap). Zero elements, or elements without length, give a line without stations.
+    /// The chain of some elements from a start pose. The closing error is spread evenly over it; see
+    /// [`gap`](Alignment::gap). Without elements, or with elements of zero length, the line has no stations.
     pub fn new(start: Pose, elements: Vec<Element>) -> Self {
         let length: f64 = elements.iter().map(|element| element.length).sum();
         let count = if length.is_finite() { (length / STEP).ceil() as usize } else { 0 };
@@ -100,7 +100,7 @@ impl Alignment {
         line
     }
 
-    /// The same line in another size.
+    /// The same line at a different scale.
     pub(super) fn scaled(&self, factor: f64) -> Self {
         let start = self.stations.first().map_or(Pose::default(), |station| station.pose);
         let elements = self.elements.iter().map(|element| Element {
@@ -110,7 +110,7 @@ impl Alignment {
         Self::new(Pose::new(start.x * factor, start.y * factor, start.heading), elements.collect())
     }
 
-    /// Lays the stations as the elements say. Returns the pose at the end.
+    /// Computes the stations from the elements. Returns the pose at the end.
     fn lay(&mut self, start: Pose, count: usize) -> Pose {
         let piece = self.length / count.max(1) as f64;
         let mut next = 0;
@@ -133,7 +133,7 @@ impl Alignment {
         pose
     }
 
-    /// Metres around.
+    /// Total length (m).
     pub fn length(&self) -> f64 {
         self.length
     }
@@ -143,17 +143,18 @@ impl Alignment {
         &self.elements
     }
 
-    /// Its stations, evenly spaced, at most 20 mm apart.
+    /// Its stations, evenly spaced by at most 20 mm.
     pub fn stations(&self) -> &[Station] {
         &self.stations
     }
 
-    /// What was missing from the end of the last element to the beginning of the first: metres along x and y, and radians.
+    /// Closing error between the end of the last element and the beginning of the first: metres along x and
+    /// y, and radians.
     pub fn gap(&self) -> Pose {
         self.gap
     }
 
-    /// The place some metres along it, any number of times around.
+    /// The station at a distance along it (m), over any number of rounds.
     pub fn at(&self, along: f64) -> Station {
         let count = self.stations.len();
         let place = along.rem_euclid(self.length) / self.length * count as f64;
@@ -169,13 +170,13 @@ impl Alignment {
         }
     }
 
-    /// The point some metres along it and some to its left.
+    /// The point at a distance along it and to its left (m).
     pub fn beside(&self, along: f64, left: f64) -> Point {
         self.at(along).pose.to_world(Point::new(0.0, left))
     }
 
-    /// Metres along it, and to its left, of a point: at the nearest place within `window` metres of `near`, or on the whole
-    /// line without it.
+    /// Distance of a point along the line and to its left (m), at the nearest station within `window` metres
+    /// of `near`, or on the whole line without `near`.
     pub fn locate(&self, point: Point, near: Option<(f64, f64)>) -> (f64, f64) {
         let count = self.stations.len();
         let piece = self.length / count as f64;

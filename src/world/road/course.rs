@@ -2,36 +2,37 @@ use super::alignment::Alignment;
 use crate::geometry::{Aabb, Point, Pose, Vector, angle_difference, direction, math};
 use crate::parameter::debug_as_sentence;
 
-/// A closed road of two lanes, one in each direction, with its markings. Cars drive along its line.
+/// A closed two-lane road, one lane per direction, with its markings. Cars drive in the direction of its
+/// line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Course {
-    /// On which side of the road cars drive.
+    /// Side of the road on which cars drive.
     pub traffic: Traffic,
-    /// Metres of the course for each metre of the rules: 0.5 at a scale of 2:1.
+    /// Metres of the course per metre of the rules: 0.5 at a scale of 2:1.
     pub size: f64,
-    /// The middle of the road.
+    /// Centre line of the road.
     pub line: Alignment,
-    /// Metres from the inner edge of one marking of a lane to that of the other.
+    /// Distance between the inner edges of a lane's markings (m).
     pub lane_width: f64,
-    /// Metres across a marking.
+    /// Width of a marking (m).
     pub line_width: f64,
-    /// Where kinds of the centre line begin, by metres along the line. Before the first one it is as at the end.
+    /// Start of each kind of centre marking along the line (m). Before the first one, the last one applies.
     pub centre: Vec<(f64, Centre)>,
-    /// What else is painted on the road, and what is not.
+    /// Other markings, and gaps in markings.
     pub marks: Vec<Mark>,
 }
 
-/// On which side of a road cars drive.
+/// Side of a road on which cars drive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Traffic {
     /// As in most countries.
     #[default]
     Right,
-    /// As in Australia, where the book's robots drive.
+    /// As in Australia, home of the book's robots.
     Left,
 }
 
-/// A line of the road, as seen by who drives along it.
+/// A line of the road, as seen in driving direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Line {
     /// The left edge.
@@ -42,13 +43,13 @@ pub enum Line {
     Right,
 }
 
-/// A kind of the line between the lanes.
+/// A kind of marking between the lanes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Centre {
-    /// Dashes of 200 mm with gaps of 200 mm: passing is allowed.
+    /// Dashes of 200 mm with gaps of 200 mm: overtaking is allowed.
     #[default]
     Dashed,
-    /// Two solid lines: no passing.
+    /// Two solid lines: no overtaking.
     Double,
     /// A solid line to the left of a dashed one.
     SolidLeft,
@@ -80,43 +81,44 @@ impl Direction {
     }
 }
 
-/// Something that is painted on the road, or missing from it, at a place along its line.
+/// A marking on the road, or a gap in one, at a place along its line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mark {
-    /// Metres along the line where it begins; the middle of a crossing.
+    /// Its start along the line (m); for a crossing, its middle.
     pub at: f64,
-    /// What it is.
+    /// Its kind.
     pub kind: MarkKind,
 }
 
-/// What a [`Mark`] is. Lengths are metres along the road, of the course itself; sizes that are not stated are those of the
-/// rules.
+/// Kinds of a [`Mark`]. Lengths are metres along the road at the scale of the course; unstated sizes are
+/// those of the rules.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum MarkKind {
-    /// The chequered line across the road at which laps start.
+    /// The chequered line across the road where laps start.
     Start,
-    /// A line that is missing for a length.
+    /// A gap of a length in a line.
     Gap(Line, f64),
-    /// The edge at a side road: short dashes for a length.
+    /// The edge at a side road: short dashes over a length.
     SideRoad(Direction, f64),
-    /// Another road that crosses this one, or this one itself on another part of its way.
+    /// A crossing with another road, or with another part of this one.
     Crossing(Crossing),
-    /// A line across the own lane before which cars stop; it ends here.
+    /// A stop line across the own lane, which ends here.
     StopLine,
-    /// The same as dashes, for cars that give way.
+    /// The same with dashes, for cars that give way.
     GiveWayLine,
     /// A crosswalk: stripes of 400 mm along the road across both lanes.
     Zebra,
-    /// An area from an edge of the road that cars may not enter: its length along the edge, and its width.
+    /// A closed area at an edge of the road: its length along the edge and its width.
     Barred(Direction, f64, f64),
     /// An arrow on the own lane.
     Arrow(Direction),
-    /// The number of a speed limit on the own lane, at most two digits, or the same struck out.
+    /// The number of a speed limit on the own lane, at most two digits; `true` strikes it out.
     Speed(u8, bool),
-    /// A parking area beside an edge: parallel to the road on the right, perpendicular on the left, of a length.
+    /// A parking area of a length beside an edge: parallel to the road on the right, perpendicular on the
+    /// left.
     Parking(Direction, f64),
-    /// A patch beside the road that is no marking: metres to the left of the line, its length and its width.
+    /// A patch beside the road that is not a marking: distance to the left of the line, length and width (m).
     Artefact(f64, f64, f64),
 }
 
@@ -137,18 +139,18 @@ impl MarkKind {
     }
 }
 
-/// How another road crosses this one.
+/// A crossing of this road with another one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crossing {
-    /// Radians from this road's direction to that of the other road, to the left.
+    /// Angle from this road's direction to that of the other road, positive to the left (rad).
     pub angle: f64,
-    /// Metres of the arms to the left and to the right that belong to no other part of the course; 0 without one.
+    /// Lengths of the left and right arms that are not part of the course (m); 0 without an arm.
     pub arms: [f64; 2],
-    /// Who has to wait.
+    /// Right of way.
     pub right_of_way: RightOfWay,
 }
 
-/// Who has to wait at a crossing, by the lines on its entries.
+/// Right of way at a crossing, by the lines at its entries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum RightOfWay {
     /// The arms have stop lines.
@@ -158,120 +160,120 @@ pub enum RightOfWay {
     Stop,
     /// This road has give-way lines.
     GiveWay,
-    /// Every entry has a give-way line: who comes from the right goes first.
+    /// Every entry has a give-way line: traffic from the right goes first.
     FromTheRight,
 }
 
-/// Where a car is on its lane.
+/// Position of a car in its lane.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LanePose {
-    /// Metres along the line.
+    /// Distance along the line (m).
     pub along: f64,
-    /// Metres to the left of the lane's middle.
+    /// Distance to the left of the lane's centre (m).
     pub offset: f64,
-    /// Radians to the left of the lane's direction.
+    /// Heading relative to the lane's direction, positive to the left (rad).
     pub heading: f64,
-    /// The curvature of the lane's middle there, in 1/m; positive to the left.
+    /// Curvature of the lane's centre line there, positive to the left (1/m).
     pub curvature: f64,
 }
 
-/// Why something is no course.
+/// Reason why a course is invalid.
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CourseError {
-    /// There is no road, or none that memory would hold.
+    /// The road has zero length, or is too long for the memory.
     #[error("a road of {length} m; expected one of {least} to {most} m")]
     Length {
-        /// Metres.
+        /// Its length (m).
         length: f64,
-        /// The shortest.
+        /// Shortest length (m).
         least: f64,
-        /// The longest.
+        /// Longest length (m).
         most: f64,
     },
-    /// The end is not where the road begins.
+    /// The road's end does not meet its beginning.
     #[error(
         "the road ends {distance:.3} m and {degrees:.2} degrees off its beginning; expected less than {most} m and 3 degrees"
     )]
     Open {
-        /// Metres from its end to its beginning.
+        /// Distance between end and beginning (m).
         distance: f64,
-        /// Degrees between their directions.
+        /// Angle between their directions (degrees).
         degrees: f64,
-        /// Metres that are closed by themselves.
+        /// Largest distance that is closed automatically (m).
         most: f64,
     },
     /// A bend is too tight.
     #[error("at {along:.3} m the road's middle has a radius of {radius:.3} m; expected at least {least} m")]
     TooTight {
-        /// Metres along the line.
+        /// Distance along the line (m).
         along: f64,
-        /// The radius there.
+        /// Radius there (m).
         radius: f64,
-        /// The least one.
+        /// Smallest radius (m).
         least: f64,
     },
-    /// A lane is narrower or wider than the rules say.
+    /// The lane width violates the rules.
     #[error("lanes of {width} m; expected {least} to {most} m")]
     LaneWidth {
-        /// Metres.
+        /// Width (m).
         width: f64,
-        /// The narrowest.
+        /// Smallest width (m).
         least: f64,
-        /// The widest.
+        /// Largest width (m).
         most: f64,
     },
     /// A lane is too narrow for the car.
     #[error("lanes of {lane} m and a car of {car} m; expected a car that fits in its lane")]
     CarTooWide {
-        /// Metres across the lane.
+        /// Width of the lane (m).
         lane: f64,
-        /// Metres across the car.
+        /// Width of the car (m).
         car: f64,
     },
-    /// The road crosses itself where no crossing is, or parts of it are too near to each other.
+    /// The road crosses itself without a crossing, or parts of it are too close.
     #[error(
         "the road at {first:.2} m and at {second:.2} m crosses itself or comes too near; expected a crossing at both, or {apart} m between their edges"
     )]
     CrossesItself {
-        /// Metres along the line.
+        /// Distance along the line (m).
         first: f64,
-        /// The other place.
+        /// The other place (m).
         second: f64,
-        /// Metres between edges that are enough.
+        /// Required distance between edges (m).
         apart: f64,
     },
-    /// A mark's place or size makes no sense.
+    /// The place or size of a mark is invalid.
     #[error("{name} of {value} m; expected {expected}")]
     Mark {
-        /// What is wrong.
+        /// Name of the invalid value.
         name: &'static str,
-        /// What it is.
+        /// The value.
         value: f64,
-        /// What it should be.
+        /// Expected range.
         expected: String,
     },
     /// A picture of the course would be too large.
     #[error("a floor of {width:.1} m x {height:.1} m in pixels of {pixel} m; expected at most {most} pixels")]
     TooLarge {
-        /// Metres.
+        /// Width (m).
         width: f64,
-        /// Metres.
+        /// Height (m).
         height: f64,
-        /// Metres.
+        /// Pixel size (m).
         pixel: f64,
-        /// Pixels.
+        /// Largest number of pixels.
         most: usize,
     },
 }
 
 debug_as_sentence!(CourseError);
 
-/// Metres from outer edges of markings to the floor's edge.
+/// Distance from the outer edges of markings to the edge of the floor (m).
 const MARGIN: f64 = 0.5;
 
 impl Course {
-    /// A road with dashes in its middle and nothing else on it. Fails as [`check`](Self::check) does.
+    /// A road with a dashed centre line and no other marks. Fails as [`check`](Self::check) does.
     pub fn new(line: Alignment) -> Result<Self, CourseError> {
         let course = Self::new_unchecked(line);
         course.check().map(|()| course)
@@ -289,7 +291,7 @@ impl Course {
         }
     }
 
-    /// The same course in another size: a factor of every length.
+    /// The same course with every length times a factor.
     #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
         let marks = self.marks.into_iter();
@@ -304,7 +306,7 @@ impl Course {
         }
     }
 
-    /// Fails if a car of a width in metres does not fit in the lanes.
+    /// Fails if a car of a width (m) does not fit in the lanes.
     pub fn check_car(&self, width: f64) -> Result<(), CourseError> {
         if width < self.lane_width {
             return Ok(());
@@ -312,12 +314,12 @@ impl Course {
         Err(CourseError::CarTooWide { lane: self.lane_width, car: width })
     }
 
-    /// Metres from the road's middle to the middle of its edge lines.
+    /// Distance from the road's centre line to the centre of its edge lines (m).
     pub fn edge(&self) -> f64 {
         self.lane_width + self.line_width
     }
 
-    /// Metres to the left of the road's middle to the middle of the own lane.
+    /// Distance from the road's centre line to the left, to the centre of the own lane (m).
     pub fn lane_middle(&self) -> f64 {
         let aside = 0.5 * self.edge();
         match self.traffic {
@@ -326,25 +328,27 @@ impl Course {
         }
     }
 
-    /// The kind of the line between the lanes at a place.
+    /// Kind of the centre marking at a place.
     pub fn centre_at(&self, along: f64) -> Centre {
         let before = self.centre.iter().rev().find(|(from, _)| *from <= along);
         before.or(self.centre.last()).map_or(Centre::Dashed, |(_, kind)| *kind)
     }
 
-    /// The middle of the own lane at the beginning of the line.
+    /// Pose on the own lane's centre at the beginning of the line.
     pub fn start(&self) -> Pose {
         self.pose(0.0, 0.0)
     }
 
-    /// The pose some metres along the line and some to the left of the own lane's middle, along the road.
+    /// Pose at a distance along the line and to the left of the own lane's centre (m), in the direction of
+    /// the road.
     pub fn pose(&self, along: f64, offset: f64) -> Pose {
         let pose = self.line.at(along).pose;
         let place = pose.to_world(Point::new(0.0, self.lane_middle() + offset));
         Pose::new(place.x, place.y, pose.heading)
     }
 
-    /// Where a pose is on the own lane. On a road that crosses itself, `near` says about where: metres along the line.
+    /// Lane position of a pose. If the road crosses itself, `near` is the approximate distance along the line
+    /// (m).
     pub fn locate(&self, pose: &Pose, near: Option<f64>) -> LanePose {
         let window = 1.0;
         let (along, left) = self.line.locate(pose.position(), near.map(|near| (near, window)));
@@ -358,7 +362,7 @@ impl Course {
         }
     }
 
-    /// The crossings and their places.
+    /// The crossings with their places.
     pub fn crossings(&self) -> impl Iterator<Item = (f64, Crossing)> {
         self.marks.iter().filter_map(|mark| match mark.kind {
             MarkKind::Crossing(crossing) => Some((mark.at, crossing)),
@@ -366,12 +370,12 @@ impl Course {
         })
     }
 
-    /// Metres along the road from the middle of a crossing to where the edge lines go on.
+    /// Distance along the road from the middle of a crossing to where the edge lines resume (m).
     pub fn crossing_reach(&self, crossing: &Crossing) -> f64 {
         (self.edge() + 0.5 * self.line_width) / math::sin(crossing.angle).abs().max(0.5)
     }
 
-    /// The floor around the road.
+    /// Bounding box of the floor.
     pub fn floor(&self) -> Aabb {
         let reach = self.edge() + (MARGIN + 0.5) * self.size;
         let around = |station: &super::Station| station.pose.position();

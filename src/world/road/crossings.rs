@@ -1,18 +1,18 @@
-//! Where a road comes back to itself.
+//! Crossings of a road with itself.
 
 use super::course::{Course, CourseError};
 use crate::geometry::Point;
 
-/// Metres between the outer edges of the markings of neighbouring parts of a road, at least.
+/// Smallest distance between the outer edges of adjacent parts of a road (m).
 const APART: f64 = 0.05;
-/// Metres along the road from one place that is looked at to the next.
+/// Distance between checked places along the road (m).
 const STRIDE: f64 = 0.10;
-/// Metres from the middle of a crossing within which the road may be near itself.
+/// Distance from the middle of a crossing within which the road may be near itself (m).
 const AROUND: f64 = 2.0;
-/// Metres between the middles of a crossing as its two ways see them.
+/// Largest distance between the middles of a crossing on its two ways (m).
 const TOGETHER: f64 = 0.15;
 
-/// Fails where a road crosses itself at no crossing, or nearly does.
+/// Fails where a road crosses or nearly crosses itself without a crossing.
 pub(super) fn check(course: &Course) -> Result<(), CourseError> {
     let line = &course.line;
     let size = course.size;
@@ -21,12 +21,12 @@ pub(super) fn check(course: &Course) -> Result<(), CourseError> {
     let places: Vec<Point> = (0..count).map(|i| line.at(stride * i as f64).pose.position()).collect();
     let width = 2.0 * course.edge() + course.line_width;
     let near = width + APART * size;
-    // Along a bend, the road is as near to itself as half the way around: that is no crossing.
+    // In a bend, the road is as near to itself as half a turn of it; that is not a crossing.
     let apart = ((1.6 * near / stride).ceil() as usize).max(1);
     let shared = shared_crossings(course);
     for first in 0..count {
         for second in first + apart..count.min(count + first + 1 - apart) {
-            // A stride's slack: between two places the road may be nearer.
+            // A tolerance of a stride, because the road may be nearer between two places.
             if (places[first] - places[second]).norm() >= near - 0.02 * size {
                 continue;
             }
@@ -46,7 +46,7 @@ pub(super) fn check(course: &Course) -> Result<(), CourseError> {
     Ok(())
 }
 
-/// The pairs of crossings that are one.
+/// Pairs of crossing marks that are the same crossing.
 pub(super) fn shared_crossings(course: &Course) -> Vec<(f64, f64)> {
     let middles: Vec<(f64, Point)> =
         course.crossings().map(|(at, _)| (at, course.line.at(at).pose.position())).collect();

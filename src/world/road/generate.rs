@@ -5,29 +5,30 @@ use super::course::{
 use crate::geometry::{Point, Pose, Vector, angle_difference, cross, direction, math};
 use crate::random::Stream;
 
-/// What a generated course is like. Lengths are those of the rules, before the size is applied.
+/// Options of a generated course. Lengths are those of the rules, before scaling.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CourseOptions {
-    /// On which side of the road cars drive.
+    /// Side of the road on which cars drive.
     pub traffic: Traffic,
-    /// Metres of the course for each metre of the rules.
+    /// Metres of the course per metre of the rules.
     pub size: f64,
-    /// Metres across a lane, from least to most.
+    /// Smallest and largest lane width (m).
     pub lane_width: [f64; 2],
-    /// Missing lines for each metre of the road.
+    /// Gaps in lines per metre of the road.
     pub gaps: f64,
-    /// Metres of a missing line at most.
+    /// Longest gap (m).
     pub longest_gap: f64,
-    /// The probability that a straight has a crossing or a side road, where there is room.
+    /// Probability of a crossing or side road on a straight with enough room.
     pub crossings: f64,
-    /// The probability that a straight has a crosswalk, where there is room.
+    /// Probability of a crosswalk on a straight with enough room.
     pub zebras: f64,
-    /// Patches beside the road for each of its metres.
+    /// Patches beside the road per metre.
     pub artefacts: f64,
 }
 
 impl Default for CourseOptions {
-    /// What Free Drive has: all kinds of lines, gaps to 1 m, crossings and side roads, and patches beside the road.
+    /// The options of Free Drive: all kinds of lines, gaps up to 1 m, crossings and side roads, and patches
+    /// beside the road.
     fn default() -> Self {
         Self {
             traffic: Traffic::Right,
@@ -42,10 +43,10 @@ impl Default for CourseOptions {
     }
 }
 
-/// A course by the rules: an outline of straights, with bends of clothoids and arcs in its corners, and markings drawn by
-/// chance. The same seed and options give the same course, to the bit. One of three has the form of an eight.
+/// A random course by the rules: straights with bends of clothoids and arcs, and random markings. Equal seeds
+/// and options give bit-identical courses. One in three is a figure of eight.
 ///
-/// Fails where the options contradict each other, so that no course is found.
+/// Fails if the options are contradictory, so that no course is found.
 pub fn generate(seed: u64, options: &CourseOptions) -> Result<Course, CourseError> {
     let mut last = None;
     for attempt in 0..ATTEMPTS {
@@ -59,16 +60,16 @@ pub fn generate(seed: u64, options: &CourseOptions) -> Result<Course, CourseErro
     Err(last.unwrap_or(CourseError::Length { length: 0.0, least: 6.0, most: 500.0 }))
 }
 
-/// Outlines that are tried: about one in twenty leaves room for all bends.
+/// Number of attempted outlines; about one in twenty has room for all bends.
 const ATTEMPTS: u64 = 2000;
-/// Metres of a straight at least.
+/// Shortest straight (m).
 const SHORTEST: f64 = 0.3;
-/// Radians of a bend at least.
+/// Smallest bend (rad).
 const GENTLEST: f64 = 0.15;
-/// The least radius of a road's inner edge, by the rules.
+/// Smallest radius of a road's inner edge, by the rules.
 const INNER: f64 = 1.0;
 
-/// A corner's bend: its elements, and metres from the corner to where they begin and end.
+/// Bend at a corner: its elements, and the distance from the corner to its beginning and end (m).
 struct Bend {
     elements: [Element; 3],
     tangent: f64,
@@ -92,7 +93,8 @@ fn attempt_course(random: &mut Stream, options: &CourseOptions) -> Option<Result
     if (0..count).any(|i| free(i) < SHORTEST) {
         return None;
     }
-    // The road begins in the middle of its longest straight; of an eight, on none that is crossed.
+    // The road begins in the middle of its longest straight; in a figure of eight, not on a crossing
+    // straight.
     let first =
         (0..count).filter(|i| !eight || (i + 1) % 3 != 0).max_by(|&a, &b| free(a).total_cmp(&free(b)))?;
     if free(first) < 1.6 {
@@ -110,7 +112,7 @@ fn attempt_course(random: &mut Stream, options: &CourseOptions) -> Option<Result
     Some(finished(random, options, lane, (start, elements)))
 }
 
-/// Corners around a middle.
+/// Corners around a centre.
 fn star_corners(random: &mut Stream) -> Vec<Point> {
     let count = 4 + random.below(5);
     let clockwise = random.chance(0.5);
@@ -129,8 +131,8 @@ fn star_corners(random: &mut Stream) -> Vec<Point> {
     corners
 }
 
-/// Corners of two loops whose way crosses itself at the origin: between the third corner and the fourth, and between the
-/// sixth and the first.
+/// Corners of a figure of eight that crosses itself at the origin: between the third and fourth corner, and
+/// between the sixth and first.
 fn eight_corners(random: &mut Stream) -> Vec<Point> {
     let half = 0.5 * random.between(70.0, 90.0_f64).to_radians();
     let (up, down) = (direction(half), direction(-half));
@@ -142,7 +144,7 @@ fn eight_corners(random: &mut Stream) -> Vec<Point> {
     [a, b, c, d, e, f].map(Point::from).to_vec()
 }
 
-/// By how much a way around some corners turns in each of them.
+/// Change of direction at each corner.
 fn turns(corners: &[Point]) -> Vec<f64> {
     let count = corners.len();
     let heading = |i: usize| {
@@ -160,7 +162,7 @@ fn bend(turn: f64, least: f64, random: &mut Stream) -> Bend {
     let arc = Element::arc(radius, turn.signum() * (angle - ease / radius));
     let elements = [Element::clothoid(ease, 0.0, bend), arc, Element::clothoid(ease, bend, 0.0)];
     let end = elements.iter().fold(Pose::default(), |pose, element| pose.compose(&element.end()));
-    // The way out leads back to the corner.
+    // The line through the end leads back to the corner.
     let tangent = end.x - end.y / math::tan(turn.signum() * angle);
     Bend { elements, tangent }
 }
@@ -179,12 +181,12 @@ fn finished(
     course.check().map(|()| course)
 }
 
-/// Puts markings on a course of the rules' size.
+/// Puts markings on a course at the scale of the rules.
 struct Marker<'c> {
     random: &'c mut Stream,
     options: &'c CourseOptions,
     course: &'c mut Course,
-    /// Where something is already: metres along the road, from and to.
+    /// Occupied intervals along the road (m).
     taken: Vec<(f64, f64)>,
 }
 
@@ -203,7 +205,7 @@ impl Marker<'_> {
         self.course.marks.push(Mark { at, kind });
     }
 
-    /// Takes a part of the road, if it is free.
+    /// Occupies a part of the road if it is free.
     fn take(&mut self, from: f64, to: f64) -> bool {
         let length = self.course.line.length();
         let apart =
@@ -215,7 +217,7 @@ impl Marker<'_> {
         is_free
     }
 
-    /// A crossing where the road crosses itself: at both of its places.
+    /// Marks a crossing of the road with itself, at both of its places.
     fn own_crossing(&mut self) {
         let line = self.course.line.clone();
         let count = (line.length() / 0.02) as usize;
@@ -245,7 +247,7 @@ impl Marker<'_> {
         }
     }
 
-    /// What stands on straights: crossings, side roads, crosswalks, numbers.
+    /// Adds crossings, side roads, crosswalks and numbers on straights.
     fn straights(&mut self) {
         let mut begun = 0.0;
         for element in self.course.line.elements().to_vec() {
@@ -278,7 +280,7 @@ impl Marker<'_> {
         }
     }
 
-    /// Whether nothing of the road is where the arms of a crossing would be.
+    /// Whether the arms of a crossing would not overlap the road.
     fn room_for_arms(&self, at: f64) -> bool {
         let line = &self.course.line;
         let pose = line.at(at).pose;
@@ -289,7 +291,7 @@ impl Marker<'_> {
         })
     }
 
-    /// Kinds of the centre line, each for 1 m at least.
+    /// Adds kinds of centre markings, each at least 1 m long.
     fn centre_line(&mut self) {
         let length = self.course.line.length();
         let kinds = [Centre::Dashed, Centre::Double, Centre::SolidLeft, Centre::SolidRight];
@@ -340,7 +342,7 @@ impl Marker<'_> {
     }
 }
 
-/// Where two straight ways meet: metres along each of them.
+/// Intersection of two straight lines: distances along each of them (m).
 fn crossing_of(first: &Pose, second: &Pose) -> Option<(f64, f64)> {
     let between: Vector = second.position() - first.position();
     let (a, b) = (first.forward(), second.forward());

@@ -1,9 +1,10 @@
-//! Roads for model cars (book, chapter 13): closed courses of two lanes by the rules of the CAuDri-Challenge, the successor
-//! of the Carolo-Cup.
+//! Roads for model cars (book, chapter 13): closed two-lane courses by the rules of the CAuDri-Challenge, the
+//! successor of the Carolo-Cup.
 //!
-//! The middle of the road is an [`Alignment`] of straights, arcs and clothoids; a [`Course`] has the markings beside it and
-//! what is painted on it, finds the place of a car on its lane, and is drawn as the floor of a [`World`](super::World). Courses
-//! come from [`generate`], or from files in a plain format of ours: see [`formats::course`](super::formats::course) and `docs/courses.md`.
+//! The centre line of a road is an [`Alignment`] of straights, arcs and clothoids. A [`Course`] adds the
+//! markings, locates a car in its lane, and is drawn as the floor of a [`World`](super::World). Courses come
+//! from [`generate`], or from files in a plain format of our own: see
+//! [`formats::course`](super::formats::course) and `docs/courses.md`.
 //!
 //! ```
 //! use roverlab::world::road::{Appearance, CourseOptions, generate};

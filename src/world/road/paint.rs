@@ -1,15 +1,15 @@
-//! What is painted on a course, as convex shapes of four corners.
+//! Markings of a course as convex quadrangles.
 
 use super::course::{Centre, Course, Crossing, Direction, Line, Mark, MarkKind, RightOfWay, Traffic};
 #[cfg(test)]
 use crate::geometry::cross;
 use crate::geometry::{Point, Pose, Vector, math};
 
-/// Metres by the rules.
+/// Lengths by the rules (m).
 const DASH: f64 = 0.20;
 const SIDE_DASH: (f64, f64) = (0.10, 0.05);
 const DOUBLE_GAP: f64 = 0.02;
-/// The width of stop lines, give-way lines and stripes, and the dashes and gaps of give-way lines.
+/// Width of stop lines, give-way lines and stripes, and dashes and gaps of give-way lines.
 const BROAD: f64 = 0.038;
 const GIVE_WAY: (f64, f64) = (0.08, 0.06);
 const ZEBRA: (f64, f64) = (0.40, 0.04);
@@ -19,10 +19,10 @@ const ARROW: (f64, f64) = (0.50, 0.07);
 const NUMBER: (f64, f64) = (0.40, 0.06);
 const PARKING: (f64, f64) = (0.30, 0.50);
 const SPOT: f64 = 0.35;
-/// Metres of a line's piece that is drawn straight.
+/// Length of a straight piece of a curved line (m).
 const PIECE: f64 = 0.03;
 
-/// All that is painted.
+/// All markings.
 pub(super) fn quads(course: &Course) -> Vec<[Point; 4]> {
     let mut painter = Painter { course, quads: Vec::new() };
     painter.edges();
@@ -38,7 +38,7 @@ struct Painter<'c> {
     quads: Vec<[Point; 4]>,
 }
 
-/// A part of the way along a road, in metres.
+/// An interval along a road (m).
 type Part = (f64, f64);
 
 impl Painter<'_> {
@@ -106,7 +106,7 @@ impl Painter<'_> {
         }
     }
 
-    /// Where a line is not: at its gaps, and at crossings.
+    /// Intervals where a line is missing: at its gaps and at crossings.
     fn missing(&self, line: Line) -> Vec<Part> {
         let mut missing = Vec::new();
         for mark in &self.course.marks {
@@ -122,7 +122,7 @@ impl Painter<'_> {
         missing
     }
 
-    /// Whether a line is broken at a crossing.
+    /// Whether a line is interrupted at a crossing.
     fn opens(&self, at: f64, crossing: &Crossing, line: Line) -> bool {
         let [left, right] = crossing.arms.map(|arm| arm > 0.0);
         let shared = super::crossings::shared_crossings(self.course);
@@ -135,10 +135,10 @@ impl Painter<'_> {
         }
     }
 
-    /// The parts of the road that are not missing.
+    /// Complement of the missing intervals.
     fn present(&self, missing: Vec<Part>) -> Vec<Part> {
         let length = self.course.line.length();
-        // What reaches beyond the end goes on at the beginning.
+        // Intervals beyond the end continue at the beginning.
         let mut missing: Vec<Part> = missing
             .into_iter()
             .flat_map(|(from, to)| [(from, to), (from - length, to - length), (from + length, to + length)])
@@ -158,7 +158,7 @@ impl Painter<'_> {
         present
     }
 
-    /// A line of a width, some metres to the left of the road's middle.
+    /// A line of a width at a distance to the left of the road's centre line (m).
     fn ribbon(&mut self, (from, to): Part, left: f64, width: f64) {
         let count = ((to - from) / self.size(PIECE)).ceil().max(1.0) as usize;
         let at = |i: usize| from + (to - from) * i as f64 / count as f64;
@@ -166,7 +166,7 @@ impl Painter<'_> {
         let line = &self.course.line;
         let mut before = (line.beside(from, inner), line.beside(from, outer));
         for i in 1..=count {
-            // A place at the very end would be that at the beginning, with another rounding.
+            // A place at the very end would be that at the beginning, with a different rounding.
             let here = (line.beside(at(i), inner), line.beside(at(i), outer));
             self.quads.push([before.0, here.0, here.1, before.1]);
             before = here;
@@ -181,13 +181,13 @@ impl Painter<'_> {
         }
     }
 
-    /// A rectangle of a frame.
+    /// A rectangle in a frame.
     fn block(&mut self, frame: &Pose, x: Part, y: Part) {
         let corner = |x, y| frame.to_world(Point::new(x, y));
         self.quads.push([corner(x.0, y.0), corner(x.1, y.0), corner(x.1, y.1), corner(x.0, y.1)]);
     }
 
-    /// A line from one point of a frame to another.
+    /// A line from one point to another in a frame.
     fn stroke(&mut self, frame: &Pose, from: Point, to: Point, width: f64) {
         let along = (to - from) / (to - from).norm().max(1e-9);
         let aside = Vector::new(-along.y, along.x) * (0.5 * width);
@@ -214,7 +214,7 @@ impl Painter<'_> {
         }
     }
 
-    /// From the inner edge of the line between the lanes to that of the own edge line.
+    /// From the inner edge of the centre marking to that of the own edge line.
     fn own_lane(&self) -> Part {
         let (inner, outer) =
             (0.5 * self.course.line_width, self.course.edge() - 0.5 * self.course.line_width);
@@ -224,7 +224,7 @@ impl Painter<'_> {
         }
     }
 
-    /// A broad line across a lane that ends at a frame's origin.
+    /// A broad line across a lane, which ends at a frame's origin.
     fn across(&mut self, frame: &Pose, lane: Part, dashes: Option<(f64, f64)>) {
         let along = (-self.size(BROAD), 0.0);
         let Some((dash, gap)) = dashes.map(|(dash, gap)| (self.size(dash), self.size(gap))) else {
@@ -257,7 +257,7 @@ impl Painter<'_> {
         }
     }
 
-    /// The arms of a crossing and the lines of who waits.
+    /// The arms of a crossing and the lines of those who wait.
     fn crossing(&mut self, frame: &Pose, crossing: &Crossing) {
         let own = self.course.crossing_reach(crossing);
         let own_waits = match crossing.right_of_way {
@@ -305,7 +305,7 @@ impl Painter<'_> {
         }
     }
 
-    /// A trapezoid from the edge of the road, filled with slanted stripes.
+    /// A trapezoid at the edge of the road, filled with slanted stripes.
     fn barred(&mut self, at: f64, side: Direction, long: f64, wide: f64) {
         let frame = self.course.line.at(at).pose;
         let (sign, edge) = (side.sign(), self.course.edge());
@@ -320,7 +320,7 @@ impl Painter<'_> {
         let lean = wide / math::tan(angle);
         let mut x = 0.5 * gap;
         while x < long {
-            // From the edge to the inner side, or to where the slope at the end cuts it off.
+            // From the edge to the inner side, or to the slope at the end.
             let depth = if x + lean <= long - slope { wide } else { (long - x) / (lean + slope) * wide };
             let start = if x < 0.0 { 0.0 } else { x };
             let end = point(start + lean * depth / wide, depth.max(0.0));
@@ -362,9 +362,10 @@ impl Painter<'_> {
         }
     }
 
-    /// A digit of seven strokes, upright for who drives towards it.
+    /// A digit of seven strokes, upright for an approaching driver.
     fn digit(&mut self, frame: &Pose, middle: f64, digit: u8, (high, wide): (f64, f64)) {
-        /// Top, upper right, lower right, bottom, lower left, upper left, middle: from the lowest bit on.
+        /// Top, upper right, lower right, bottom, lower left, upper left, middle: from the lowest bit
+        /// upwards.
         const STROKES: [u8; 10] = [0x3f, 0x06, 0x5b, 0x4f, 0x66, 0x6d, 0x7d, 0x07, 0x7f, 0x6f];
         let (l, r) = (middle + 0.5 * wide, middle - 0.5 * wide);
         let ends: [[(f64, f64); 2]; 7] = [
@@ -382,7 +383,8 @@ impl Painter<'_> {
         }
     }
 
-    /// Spots beside an edge: one long one parallel to the road on the right, short ones across it on the left.
+    /// Parking spots beside an edge: a long one parallel to the road on the right, short ones across on the
+    /// left.
     fn parking(&mut self, at: f64, side: Direction, long: f64) {
         let (sign, edge) = (side.sign(), self.course.edge());
         let depth = self.size(if side == Direction::Right { PARKING.0 } else { PARKING.1 });
@@ -394,7 +396,7 @@ impl Painter<'_> {
         for i in 0..=spots {
             let along = at + long * i as f64 / spots as f64;
             let frame = self.course.line.at(along).pose;
-            // The ends of the area slope away from it.
+            // The ends of the area are slanted outwards.
             let slope = match i {
                 0 => -depth,
                 _ if i == spots => depth,
@@ -406,7 +408,7 @@ impl Painter<'_> {
     }
 }
 
-/// Whether four corners turn the same way: what a raster fills.
+/// Whether four corners turn the same way, as the raster requires.
 #[cfg(test)]
 pub(super) fn is_convex(corners: &[Point; 4]) -> bool {
     let turns: [f64; 4] = std::array::from_fn(|i| {

@@ -6,39 +6,40 @@ use crate::geometry::{Aabb, Point, Vector, cross, math};
 use crate::random::Stream;
 use crate::world::{Texture, World};
 
-/// How a course looks.
+/// Appearance of a course.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Appearance {
-    /// Metres of floor in each pixel of its picture.
+    /// Size of a pixel of its picture on the floor (m).
     pub pixel: f64,
-    /// The share of the paint that is worn off, 0 to 1.
+    /// Fraction of the paint that is worn off, 0 to 1.
     pub wear: f64,
-    /// Patches of light that a lamp throws on the floor.
+    /// Number of light patches from lamps on the floor.
     pub glare: usize,
-    /// The seed of what is worn, where the light falls, and the grain of the floor.
+    /// Seed of wear, light and the floor's grain.
     pub seed: u64,
 }
 
 impl Default for Appearance {
-    /// 2 mm a pixel, fresh paint, no glare.
+    /// 2 mm per pixel, fresh paint, no glare.
     fn default() -> Self {
         Self { pixel: 0.002, wear: 0.0, glare: 0, seed: 1 }
     }
 }
 
-/// Pixels of a picture at most.
+/// Largest number of pixels of a picture.
 const MOST_PIXELS: usize = 200_000_000;
-/// The brightness of the floor, that of its grain, and that of paint.
+/// Brightness of the floor, of its grain, and of paint.
 const FLOOR: f64 = 44.0;
 const GRAIN: u32 = 10;
 const PAINT: f64 = 236.0;
-/// Metres across a spot of worn paint.
+/// Size of a spot of worn paint (m).
 const SPOT: f64 = 0.024;
-/// The brightest that a patch of light makes the floor, beyond what it is.
+/// Largest additional brightness of a light patch.
 const GLARE: f64 = 110.0;
 
 impl Course {
-    /// The course as a world: a floor with the picture of the road. Fails for a floor beyond what a picture holds.
+    /// The course as a world with the road's picture on its floor. Fails if the floor is too large for a
+    /// picture.
     pub fn world(&self, appearance: &Appearance) -> Result<World, CourseError> {
         let floor = self.floor();
         let image = self.floor_image(appearance)?;
@@ -47,7 +48,7 @@ impl Course {
         Ok(World { floor, floor_texture, start: Some(self.start()), ..world })
     }
 
-    /// The picture of the road from above, the far side on top, that fills its [floor](Self::floor).
+    /// Picture of the road from above, far side on top; it fills the [floor](Self::floor).
     pub fn floor_image(&self, appearance: &Appearance) -> Result<RgbaImage, CourseError> {
         let mut raster = Raster::new(self.floor(), appearance.pixel)?;
         for quad in quads(self) {
@@ -57,11 +58,11 @@ impl Course {
     }
 }
 
-/// How much of each pixel is covered by paint.
+/// Coverage of each pixel with paint.
 struct Raster {
     width: usize,
     height: usize,
-    /// The far left corner, and metres in a pixel along x and along y.
+    /// The far left corner, and the size of a pixel along x and y (m).
     corner: Point,
     pixel: Vector,
     covered: Vec<u8>,
@@ -81,7 +82,7 @@ impl Raster {
         Ok(Self { width, height, corner, pixel, covered: vec![0; width * height] })
     }
 
-    /// Paints a convex shape. Parts that share an edge add up there.
+    /// Paints a convex shape. The coverage of adjacent parts adds up at their common edge.
     fn fill(&mut self, corners: &[Point; 4]) {
         let own = corners.map(|corner| {
             let (x, y) = (corner.x - self.corner.x, self.corner.y - corner.y);
@@ -105,7 +106,7 @@ impl Raster {
         }
     }
 
-    /// The picture with what light and wear make of it.
+    /// The picture with light and wear.
     fn develop(&self, appearance: &Appearance) -> RgbaImage {
         let lamps = self.lamps(appearance);
         let salt = Stream::new(appearance.seed).child("road", 0).bits() as u32;
@@ -150,7 +151,7 @@ impl Raster {
     }
 }
 
-/// A straight edge: pixels from it on its inner side.
+/// A straight edge; distances are in pixels, positive inside.
 struct Edge {
     from: Point,
     normal: Vector,
@@ -168,7 +169,7 @@ impl Edge {
     }
 }
 
-/// A round patch of light, in pixels.
+/// A round patch of light (pixels).
 struct Lamp {
     x: f64,
     y: f64,
@@ -184,7 +185,7 @@ impl Lamp {
     }
 }
 
-/// A number from 0 to 1 that changes smoothly from spot to spot: where it is small, paint wears off first.
+/// A number from 0 to 1 that varies smoothly between spots; paint wears off first where it is small.
 fn worn_at((x, y): (f64, f64), salt: u32) -> f64 {
     let corner = |dx: u32, dy: u32| {
         let random = hash((x as u32).wrapping_add(dx), (y as u32).wrapping_add(dy), salt ^ 0x5bd1_e995);
@@ -196,7 +197,7 @@ fn worn_at((x, y): (f64, f64), salt: u32) -> f64 {
     top * (1.0 - v) + bottom * v
 }
 
-/// 32 bits that look random.
+/// A 32-bit hash.
 fn hash(x: u32, y: u32, salt: u32) -> u32 {
     let mut h = x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b) ^ salt;
     h = (h ^ h >> 16).wrapping_mul(0x7feb_352d);

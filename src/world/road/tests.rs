@@ -4,7 +4,7 @@ use super::paint::{is_convex, quads};
 use super::*;
 use crate::world::formats::course as file;
 
-/// The pictures of some courses, to be looked at.
+/// Writes the pictures of some courses for inspection.
 #[test]
 #[ignore = "writes pictures into the folder that ROAD_PICTURES names"]
 fn pictures() {

@@ -1,19 +1,19 @@
 use super::shape::Block;
 use crate::geometry::{Aabb, Point};
 
-/// Walls in a cluster.
+/// Walls per cluster.
 pub(super) const CLUSTER: usize = 4;
-/// Clusters in a district.
+/// Clusters per district.
 const DISTRICT: usize = 16;
 
-/// Neighbouring walls under one bounding box, and neighbouring clusters under one.
+/// Bounding boxes of groups of adjacent walls, and of groups of adjacent clusters.
 #[derive(Debug, Clone)]
 pub(super) struct Clusters {
     pub(super) clusters: Vec<Cluster>,
     districts: Vec<Cluster>,
 }
 
-/// A run of walls, or of clusters, and the box around it.
+/// An interval of walls or clusters with its bounding box.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cluster {
     pub(super) bounds: Aabb,
@@ -22,13 +22,13 @@ pub(super) struct Cluster {
 }
 
 impl Cluster {
-    /// The numbers of what it holds.
+    /// Indices of its members.
     #[inline]
     pub(super) fn members(&self) -> std::ops::Range<usize> {
         self.first as usize..self.end as usize
     }
 
-    /// The square of the distance to a point, in square metres.
+    /// Squared distance to a point (m²).
     #[inline]
     pub(super) fn squared_distance(&self, point: Point) -> f64 {
         let x = (self.bounds.min.x - point.x).max(point.x - self.bounds.max.x).max(0.0);
@@ -38,7 +38,7 @@ impl Cluster {
 }
 
 impl Clusters {
-    /// Orders walls so that neighbours of like size stand together, and clusters them.
+    /// Sorts walls so that neighbours of similar size are adjacent, and groups them.
     pub(super) fn of(walls: &[Block]) -> (Vec<Block>, Self) {
         let boxes: Vec<Aabb> = walls.iter().map(Block::bounds).collect();
         let all = boxes.iter().copied().reduce(|a, b| a.union(&b));
@@ -84,13 +84,13 @@ impl Clusters {
     }
 }
 
-/// Sizes that differ by less than a factor of four share a class, mostly.
+/// Class of a size; sizes that differ by less than a factor of four usually share a class.
 fn size_class(bounds: &Aabb) -> u16 {
     let size = bounds.size().amax();
     (size.to_bits() >> 53) as u16
 }
 
-/// The place of a box's middle along a Z-order curve over `all`.
+/// Position of a box's centre along a Z-order curve over `all`.
 fn place_along_curve(bounds: &Aabb, all: &Aabb) -> u64 {
     let size = all.size();
     let middle = (bounds.min.coords + bounds.max.coords) * 0.5 - all.min.coords;
@@ -98,7 +98,7 @@ fn place_along_curve(bounds: &Aabb, all: &Aabb) -> u64 {
     spread(step(middle.x, size.x)) | spread(step(middle.y, size.y)) << 1
 }
 
-/// The bits of a number with a zero between each two.
+/// Inserts a zero between the bits of a number.
 fn spread(bits: u16) -> u64 {
     (0..16).fold(0, |all, bit| all | (u64::from(bits >> bit & 1) << (2 * bit)))
 }

@@ -4,18 +4,18 @@ use super::store::Space;
 use crate::geometry::{Aabb, Pose, Vector};
 use crate::world::Footprint;
 
-/// Where an outline touches something or reaches into it.
+/// Contact or overlap of an outline with an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
-    /// The unit vector from the obstacle towards the outline: the shortest way out.
+    /// Unit vector from the obstacle towards the outline: the shortest way out.
     pub normal: Vector,
-    /// Metres to move along the normal until the two just touch.
+    /// Displacement along the normal until the two just touch (m).
     pub depth: f64,
-    /// What is touched; `None` is a wall.
+    /// The obstacle; `None` is a wall.
     pub with: Option<SolidId>,
 }
 
-/// What a question is about.
+/// Parameters of a query.
 #[derive(Clone, Copy)]
 struct Query {
     shape: Shape,
@@ -26,10 +26,11 @@ struct Query {
 }
 
 impl Space {
-    /// All contacts of an outline at a pose, between two heights, with walls and solids; `out` is cleared first.
+    /// All contacts of an outline at a pose, between two heights, with walls and solids; `out` is cleared
+    /// first.
     ///
-    /// Walls come first, then solids in their order; among walls, the deepest comes first. Touching counts, with
-    /// depth 0; standing on top of something does not. The solid `except` is overlooked.
+    /// Walls come first, deepest first, followed by solids in their order. Touching counts, with depth 0;
+    /// standing on top of something does not. The solid `except` is ignored.
     pub fn contacts(
         &self,
         outline: &Footprint,
@@ -42,8 +43,8 @@ impl Space {
         self.find_contacts(&query, out);
     }
 
-    /// The distance in metres from an outline at a pose, between two heights, to the nearest wall or solid: at most
-    /// `limit`, and 0 in contact. The solid `except` is overlooked.
+    /// Distance from an outline at a pose, between two heights, to the nearest wall or solid (m): at most
+    /// `limit`, and 0 in contact. The solid `except` is ignored.
     pub fn clearance(
         &self,
         outline: &Footprint,
@@ -56,14 +57,14 @@ impl Space {
         self.find_clearance(&query, limit)
     }
 
-    /// As [`clearance`](Self::clearance), to walls alone. Walls stay, so an outline that moves (and turns) by less
-    /// than this touches none.
+    /// Like [`clearance`](Self::clearance), for walls only. Walls are static, so an outline that moves (and
+    /// turns) by less than this touches none.
     pub fn walls_clearance(&self, outline: &Footprint, pose: &Pose, span: Span, limit: f64) -> f64 {
         let query = Query { shape: outline.at(pose), span, walls: true, solids: false, except: None };
         self.find_clearance(&query, limit)
     }
 
-    /// As [`clearance`](Self::clearance), to solids alone.
+    /// Like [`clearance`](Self::clearance), for solids only.
     pub fn solids_clearance(
         &self,
         outline: &Footprint,
@@ -82,14 +83,14 @@ impl Space {
         self.for_each_near(query, &query.shape.bounds(), |shape, with| {
             if let Some((normal, depth)) = query.shape.penetration(shape) {
                 let contact = Contact { normal, depth, with };
-                // A wall is met in each of its cells.
+                // A wall is visited in each of its cells.
                 if with.is_some() || !out.contains(&contact) {
                     out.push(contact);
                 }
             }
         });
         if out.len() > 1 {
-            // The order of finding depends on the grid, and that on how solids moved.
+            // The order of visits depends on the grid, and therefore on the solids' history.
             out.sort_unstable_by(|a, b| {
                 let deepest = b.depth.total_cmp(&a.depth);
                 let normals = (a.normal.x.total_cmp(&b.normal.x)).then(a.normal.y.total_cmp(&b.normal.y));
@@ -106,7 +107,8 @@ impl Space {
         nearest
     }
 
-    /// Visits what may overlap a window and shares heights with the query: walls perhaps more than once.
+    /// Visits the candidates that may overlap a window and share heights with the query; walls possibly more
+    /// than once.
     #[inline]
     fn for_each_near(&self, query: &Query, window: &Aabb, mut visit: impl FnMut(&Shape, Option<SolidId>)) {
         let mut wall = |number: u32| {
@@ -133,7 +135,8 @@ impl Space {
             self.grid.loose_solids().iter().for_each(|&number| solid(number));
             if let Some(cells) = window_cells {
                 self.grid.for_each_solid_in(cells, |number, x, y| {
-                    // A solid is listed in several cells, and met in the first that it shares with the window.
+                    // A solid is listed in several cells; it is visited in the first one shared with the
+                    // window.
                     let own = self.solids[number as usize].cells;
                     if own.is_some_and(|own| own.meets_first_at(&cells, x, y)) {
                         solid(number);
@@ -145,7 +148,7 @@ impl Space {
 }
 
 impl Shape {
-    /// The way out of another shape, as a unit vector and a depth; `None` apart.
+    /// The way out of another shape, as a unit vector and a depth; `None` without contact.
     #[inline]
     fn penetration(&self, other: &Shape) -> Option<(Vector, f64)> {
         match (self, other) {
@@ -166,7 +169,7 @@ impl Shape {
         }
     }
 
-    /// The distance to another shape; 0 in contact.
+    /// Distance to another shape; 0 in contact.
     #[inline]
     fn gap(&self, other: &Shape) -> f64 {
         match (self, other) {
@@ -181,7 +184,7 @@ impl Shape {
                 if box_out_of_box(a, b).is_some() {
                     return 0.0;
                 }
-                // The shortest way between two boxes that are apart starts at a corner of one of them.
+                // The shortest connection of two disjoint boxes starts at a corner of one of them.
                 let from = |corners: &OrientedBox, to: &OrientedBox| {
                     corners.corners().map(|c| outside(to, to.local(c)).norm_squared()).into_iter()
                 };
@@ -197,7 +200,7 @@ fn outside(shape: &OrientedBox, local: Vector) -> Vector {
     Vector::new((local.x.abs() - shape.half.x).max(0.0), (local.y.abs() - shape.half.y).max(0.0))
 }
 
-/// The way out of a box for a disc about a point of the box's frame.
+/// The way out of a box for a disc about a point in the box's frame.
 #[inline]
 fn disc_out_of_box(shape: &OrientedBox, local: Vector, radius: f64) -> Option<(Vector, f64)> {
     let out = outside(shape, local);
@@ -218,12 +221,12 @@ fn disc_out_of_box(shape: &OrientedBox, local: Vector, radius: f64) -> Option<(V
     Some((shape.turned(normal), depth))
 }
 
-/// The way out of `other` for `own`: along the axis of either box on which they overlap least.
+/// The way out of `other` for `own`: along the box axis with the smallest overlap.
 fn box_out_of_box(own: &OrientedBox, other: &OrientedBox) -> Option<(Vector, f64)> {
     let apart = own.centre - other.centre;
     let mut best: Option<(Vector, f64)> = None;
     for (face, opposite) in [(other, own), (own, other)] {
-        // The other box's half extents as the axes of this one see them.
+        // Half extents of the other box along the axes of this one.
         let (cos, sin) =
             (face.axis.dot(&opposite.axis).abs(), crate::geometry::cross(face.axis, opposite.axis).abs());
         let (h, o) = (face.half, opposite.half);

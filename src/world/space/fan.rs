@@ -3,30 +3,30 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
 use super::ray::lesser;
 use crate::geometry::{Vector, cross, math, normalize_angle};
 
-/// The largest error of [`rough_angle`], in radians, with room to spare.
+/// Upper bound of the error of [`rough_angle`] (rad).
 const ROUGHNESS: f64 = 2e-5;
 
-/// Beams that spread from one point, evenly and counter-clockwise.
+/// Beams at equal angles from one point, counter-clockwise.
 #[derive(Debug, Clone)]
 pub(super) struct Fan {
-    /// The beams' directions in their own frame, ...
+    /// Directions of the beams in their own frame ...
     own_cos: Vec<f64>,
     own_sin: Vec<f64>,
-    /// ... and as the world sees them.
+    /// ... and in the world.
     pub(super) cos: Vec<f64>,
     pub(super) sin: Vec<f64>,
-    /// The angle of the first beam in its own frame, and as the world sees it, in `-pi..=pi`.
+    /// Angle of the first beam in its own frame and in the world, in `-pi..=pi`.
     first: f64,
     base: f64,
-    /// Beams in a radian, and in a full turn.
+    /// Beams per radian and per full turn.
     per_radian: f64,
     turn: f64,
-    /// The largest error of a beam's number that is made from a rough angle.
+    /// Upper bound of the error of a beam number from a rough angle.
     margin: f64,
 }
 
-/// What an outline covers of all directions: vectors to its ends, and whether the way from one to the other turns
-/// counter-clockwise (1) or clockwise (-1).
+/// Angular extent of an outline: vectors to its ends, and whether the rotation from the first to the second
+/// is counter-clockwise (1) or clockwise (-1).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Arc {
     pub(super) from: Vector,
@@ -34,7 +34,7 @@ pub(super) struct Arc {
     pub(super) turn: f64,
 }
 
-/// A range of beams, as fractions counted from the first beam; the start is in the first turn, or little before it.
+/// An interval of fractional beam numbers; the start is in the first turn, or slightly before it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sector {
     start: f64,
@@ -42,7 +42,7 @@ pub(super) struct Sector {
 }
 
 impl Fan {
-    /// `beams` directions from `first`, `increment` radians apart, which is more than 0.
+    /// `beams` directions from `first` with a positive `increment` (rad).
     pub(super) fn new(first: f64, increment: f64, beams: usize) -> Self {
         let (own_sin, own_cos): (Vec<f64>, Vec<f64>) =
             (0..beams).map(|beam| math::sin_cos(first + increment * beam as f64)).unzip();
@@ -60,25 +60,25 @@ impl Fan {
         }
     }
 
-    /// The number of beams.
+    /// Number of beams.
     #[inline]
     pub(super) fn beams(&self) -> usize {
         self.cos.len()
     }
 
-    /// The direction of a beam, as the world sees it.
+    /// Direction of a beam in the world.
     #[inline]
     pub(super) fn direction(&self, beam: usize) -> Vector {
         Vector::new(self.cos[beam], self.sin[beam])
     }
 
-    /// The direction of a beam in the beams' own frame.
+    /// Direction of a beam in the beams' own frame.
     #[inline]
     pub(super) fn own_direction(&self, beam: usize) -> Vector {
         Vector::new(self.own_cos[beam], self.own_sin[beam])
     }
 
-    /// Turns the beams' frame to a heading in the world.
+    /// Rotates the beams' frame to a heading in the world.
     pub(super) fn turn_to(&mut self, heading: f64) {
         let (sin, cos) = math::sin_cos(heading);
         combine([(cos, &self.own_cos), (-sin, &self.own_sin)], &mut self.cos);
@@ -92,24 +92,23 @@ impl Fan {
         Sector { start: 0.0, end: self.cos.len() as f64 }
     }
 
-    /// The beams, counted from the first, between the ends of an arc of at most half a turn: a little more than all
-    /// that do lie in it.
+    /// Beams between the ends of an arc of at most half a turn; the interval is slightly too large.
     #[inline]
     pub(super) fn sector(&self, arc: &Arc) -> Sector {
         let (from, to) = (rough_angle(arc.from), rough_angle(arc.to));
-        // From end to end the way it turns, which may come out a little negative for an arc of about nothing.
+        // From end to end along its rotation; this may be slightly negative for an arc of nearly zero length.
         let sweep = arc.turn * (to - from);
         let sweep = if sweep < -1.0 { sweep + TAU } else { sweep };
         self.sector_from(from + lesser(arc.turn * sweep, 0.0), sweep.abs())
     }
 
-    /// The beams within some angle, at most a right one, of a direction: a little more than all that are.
+    /// Beams within an angle (at most a right one) of a direction; the interval is slightly too large.
     #[inline]
     pub(super) fn sector_about(&self, middle: Vector, half: f64) -> Sector {
         self.sector_from(rough_angle(middle) - half, 2.0 * half)
     }
 
-    /// The beams from a rough angle on, counter-clockwise.
+    /// Beams from a rough angle on, counter-clockwise.
     #[inline]
     fn sector_from(&self, from: f64, sweep: f64) -> Sector {
         let from = from - self.base;
@@ -118,12 +117,12 @@ impl Fan {
         Sector { start, end: (from + sweep) * self.per_radian + self.margin }
     }
 
-    /// Visits the runs of beams in a sector, first and last.
+    /// Visits the runs of beams in a sector, as first and last beam.
     #[inline]
     pub(super) fn for_each_run(&self, sector: Sector, mut visit: impl FnMut(usize, usize)) {
         let Sector { mut start, mut end } = sector;
         if end >= self.turn {
-            // It reaches over the first beam, where the fan begins, or may begin, anew.
+            // It includes the first beam, where the fan may start again.
             (start, end) = (start - self.turn, end - self.turn);
         }
         let last_beam = self.cos.len() as i32 - 1;
@@ -137,7 +136,7 @@ impl Fan {
         }
     }
 
-    /// Visits the runs of beams that lie in an arc, its ends included, given its sector.
+    /// Visits the runs of beams in an arc, including its ends, given its sector.
     #[inline]
     pub(super) fn for_each_exact_run(&self, arc: &Arc, sector: Sector, mut visit: impl FnMut(usize, usize)) {
         self.for_each_run(sector, |mut first, mut last| {
@@ -153,7 +152,7 @@ impl Fan {
         });
     }
 
-    /// Whether a beam on the arc's side lies between its ends.
+    /// Whether a beam on the arc's side is between its ends.
     #[inline]
     fn holds(&self, arc: &Arc, beam: usize) -> bool {
         let direction = self.direction(beam);
@@ -161,7 +160,7 @@ impl Fan {
     }
 }
 
-/// Adds multiples of two lists. Not inlined: so the compiler knows that the slices do not overlap.
+/// Linear combination of two lists. Not inlined, which tells the compiler that the slices do not overlap.
 #[inline(never)]
 fn combine([(a, first), (b, second)]: [(f64, &[f64]); 2], out: &mut [f64]) {
     for ((x, y), sum) in first.iter().zip(second).zip(out) {
@@ -169,18 +168,18 @@ fn combine([(a, first), (b, second)]: [(f64, &[f64]); 2], out: &mut [f64]) {
     }
 }
 
-/// The whole number next to `x`, which is below 2^31: adding 1.5 * 2^52 leaves it in the sum's last bits.
+/// The integer nearest to `x` (below 2^31): after adding 1.5 * 2^52 it is in the sum's lowest bits.
 #[inline]
 fn nearest_whole(x: f64) -> i32 {
     (x + 6_755_399_441_055_744.0).to_bits() as i32
 }
 
-/// The angle of a vector, in `-pi..=pi`, to within 2e-5 rad (the series is Abramowitz and Stegun, 4.4.47).
+/// Angle of a vector in `-pi..=pi`, accurate to 2e-5 rad (series of Abramowitz and Stegun, 4.4.47).
 #[inline]
 fn rough_angle(v: Vector) -> f64 {
     let (x, y) = (v.x.abs(), v.y.abs());
-    // From the diagonal of the quadrant, so that the series serves all of it. No branches: they would be guessed
-    // wrong half of the time.
+    // Relative to the quadrant's diagonal, so that the series covers the whole quadrant. No branches, because
+    // half of the predictions would fail.
     let q = (y - x) / (y + x + f64::MIN_POSITIVE);
     let p = q * q;
     let series = 0.180_141_0 + p * (-0.085_133_0 + p * 0.020_835_1);
@@ -215,7 +214,7 @@ mod tests {
             clockwise: bool,
             close in prop::option::of((0..500usize, 0..500usize, -4e-5..4e-5f64, -4e-5..4e-5f64)),
         ) {
-            // Either an arc at random, or one whose ends are close to beams.
+            // Either a random arc, or one with its ends close to beams.
             let (from, sweep) = close.map_or((from, sweep), |(start, run, before, behind)| {
                 let run = (run as f64).min((3.0 / increment).trunc());
                 (first + heading + increment * start as f64 + before, (increment * run + behind).max(0.0))

@@ -1,16 +1,16 @@
 use super::shape::{Block, OrientedBox};
 use crate::geometry::{Aabb, Point, Vector};
 
-/// The farthest from the origin, in metres, that cells reach. What stands beyond is tested by every question.
+/// Largest distance of cells from the origin (m). Things beyond are tested by every query.
 const FARTHEST: f64 = 1e7;
 
-/// A solid that covers more cells than this is tested by every question instead of being listed in each.
+/// Number of cells above which a solid is tested by every query instead of being listed in each cell.
 const MOST_CELLS_OF_A_SOLID: usize = 64;
 
-/// Cells along a side of a block of cells.
+/// Width of a block in cells.
 const BLOCK: usize = 8;
 
-/// A rectangle of cells, its last column and row included.
+/// A rectangle of cells, inclusive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Cells {
     pub(super) x0: i32,
@@ -25,28 +25,28 @@ impl Cells {
         (self.x1 - self.x0 + 1) as usize * (self.y1 - self.y0 + 1) as usize
     }
 
-    /// Whether this cell is the first that two overlapping rectangles share: the one where a pair is met once.
+    /// Whether this cell is the first common one of two overlapping rectangles, where the pair is visited.
     #[inline]
     pub(super) fn meets_first_at(&self, other: &Cells, x: i32, y: i32) -> bool {
         x == self.x0.max(other.x0) && y == self.y0.max(other.y0)
     }
 }
 
-/// Where the cells of a grid are.
+/// Arrangement of a grid's cells.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Lattice {
     origin: Point,
-    /// Metres from a cell to the next, and its inverse.
+    /// Cell size (m), and its inverse.
     pitch: f64,
     per_metre: f64,
     columns: i32,
     rows: i32,
-    /// Metres by which outlines are grown before their cells are looked up, more than any rounding.
+    /// Margin of outlines for cell lookups, larger than any rounding error (m).
     margin: f64,
 }
 
 impl Lattice {
-    /// Square cells over some bounds: about as many as asked for, and never more than three times as many.
+    /// Square cells over some bounds: about the requested number, and at most three times as many.
     pub(super) fn covering(bounds: Aabb, cells: usize) -> Self {
         let limit = Point::new(FARTHEST, FARTHEST);
         let (min, max) = (bounds.min.sup(&-limit).inf(&limit), bounds.max.sup(&-limit).inf(&limit));
@@ -76,7 +76,7 @@ impl Lattice {
         y as usize * self.columns as usize + x as usize
     }
 
-    /// The cells under a box, and whether the whole box lies on cells; `None` if no cell is under it.
+    /// Cells under a box, and whether the whole box is on cells; `None` if there are none.
     #[inline]
     pub(super) fn under(&self, bounds: &Aabb) -> Option<(Cells, bool)> {
         let x0 = (bounds.min.x - self.margin - self.origin.x) * self.per_metre;
@@ -97,7 +97,7 @@ impl Lattice {
         Some((cells, whole))
     }
 
-    /// Visits blocks of cells within reach of a point, with the box around each and the distance to it.
+    /// Visits blocks of cells within reach of a point, with their bounding boxes and distances.
     pub(super) fn for_each_block_near(
         &self,
         point: Point,
@@ -126,7 +126,7 @@ impl Lattice {
         let bounds = Aabb { min: shape.centre - reach, max: shape.centre + reach };
         let Some((cells, _)) = self.under(&bounds) else { return true };
         let (a, half) = (shape.axis, shape.half);
-        // The extent of the box across its middle line, along y and along x.
+        // Extent of the box across its centre line, along y and x.
         let (across_y, across_x) = (a.x.abs() * half.y, a.y.abs() * half.y);
         for y in cells.y0..=cells.y1 {
             let low = self.origin.y + f64::from(y) * self.pitch - self.margin;
@@ -153,7 +153,7 @@ impl Lattice {
         true
     }
 
-    /// Visits the cells along a ray in order, up to `limit` metres. `visit` returns the limit from there on.
+    /// Visits the cells along a ray in order, up to `limit` metres. `visit` returns the limit from then on.
     #[inline]
     pub(super) fn walk(
         &self,
@@ -166,7 +166,7 @@ impl Lattice {
         let y = Axis::new(origin.y - self.origin.y, direction.y, self.pitch, self.rows);
         let enter = x.enter.max(y.enter).max(0.0);
         let leave = x.leave.min(y.leave).min(limit);
-        // Written so that a range that is not a number ends the walk.
+        // Written so that a NaN range ends the traversal.
         if !(enter <= leave && enter.is_finite()) {
             return;
         }
@@ -197,15 +197,15 @@ impl Lattice {
     }
 }
 
-/// A ray's course along one axis of a lattice. Distances are along the ray.
+/// Motion of a ray along one axis of a lattice. Distances are along the ray.
 struct Axis {
-    /// The origin's coordinate from the lattice's border, and the ray's change of it in a metre.
+    /// The origin's coordinate relative to the lattice's border, and its change per metre.
     origin: f64,
     slope: f64,
-    /// Where the ray comes onto the cells, and where it leaves them.
+    /// Distances at which the ray enters and leaves the cells.
     enter: f64,
     leave: f64,
-    /// The next cell's offset, and the distance to it.
+    /// Offset to the next cell, and the distance to it.
     step: i32,
     stride: f64,
     pitch: f64,
@@ -229,13 +229,13 @@ impl Axis {
         Self { origin, slope, enter, leave, step, stride, pitch, cells }
     }
 
-    /// The cell in which the ray is after some distance.
+    /// Cell of the ray at a distance.
     #[inline]
     fn cell(&self, distance: f64, per_metre: f64) -> i32 {
         (((self.origin + self.slope * distance) * per_metre) as i32).clamp(0, self.cells - 1)
     }
 
-    /// The distance to where the ray leaves a cell along this axis.
+    /// Distance at which the ray leaves a cell along this axis.
     #[inline]
     fn border_after(&self, cell: i32) -> f64 {
         if self.step == 0 {
@@ -246,21 +246,21 @@ impl Axis {
     }
 }
 
-/// Cells that list the walls and solids in them.
+/// Cells with lists of the walls and solids in them.
 #[derive(Debug, Clone)]
 pub(super) struct Grid {
     pub(super) lattice: Lattice,
-    /// Where each cell's walls start in `wall_list`, and where the last one's end.
+    /// Start of each cell's walls in `wall_list`, and the end of the last one's.
     wall_starts: Vec<u32>,
     wall_list: Vec<u32>,
     solids: Vec<Vec<u32>>,
-    /// What is tested by every question, because it is not, or not wholly, on cells.
+    /// Things tested by every query, because they are not completely on cells.
     loose_walls: Vec<u32>,
     loose_solids: Vec<u32>,
 }
 
 impl Grid {
-    /// A grid over walls and the bounds of solids that are yet to be listed.
+    /// A grid over walls and the bounds of solids that are not listed yet.
     pub(super) fn new(walls: &[Block], solids: &[Aabb]) -> Self {
         let all = walls.iter().map(Block::bounds).chain(solids.iter().copied());
         let bounds = all.reduce(|a, b| a.union(&b)).unwrap_or(Aabb::new(Point::origin(), Point::origin()));
@@ -271,12 +271,13 @@ impl Grid {
             if let Some(grid) = Self::with_lattice(lattice, walls, most_entries.max(cells)) {
                 return grid;
             }
-            // Many walls cross most of the world: fewer, larger cells keep the lists in proportion to the walls.
+            // Many walls cross most of the world; fewer, larger cells keep the lists proportional to the
+            // number of walls.
             cells /= 4;
         }
     }
 
-    /// Lists the walls, unless that takes too many entries.
+    /// Lists the walls; `None` if that takes too many entries.
     fn with_lattice(lattice: Lattice, walls: &[Block], most_entries: usize) -> Option<Self> {
         let mut counts = vec![0_u32; lattice.count() + 1];
         let mut loose_walls = Vec::new();
@@ -317,7 +318,7 @@ impl Grid {
         Some(Self { lattice, wall_starts, wall_list, solids, loose_walls, loose_solids: Vec::new() })
     }
 
-    /// The number of cells and of entries in their lists.
+    /// Number of cells and of entries in their lists.
     #[cfg(test)]
     pub(super) fn size(&self) -> usize {
         let solids: usize = self.solids.iter().map(Vec::len).sum();
@@ -328,26 +329,26 @@ impl Grid {
             + self.loose_solids.len()
     }
 
-    /// The walls listed in a cell.
+    /// Walls listed in a cell.
     #[inline]
     pub(super) fn walls_in(&self, cell: usize) -> &[u32] {
         &self.wall_list[self.wall_starts[cell] as usize..self.wall_starts[cell + 1] as usize]
     }
 
-    /// The solids listed in a cell.
+    /// Solids listed in a cell.
     #[inline]
     pub(super) fn solids_in(&self, cell: usize) -> &[u32] {
         &self.solids[cell]
     }
 
-    /// The solids of some cells: a solid once for each cell that lists it.
+    /// Solids in some cells; a solid occurs once per cell that lists it.
     #[inline]
     pub(super) fn solids_of(&self, cells: Cells) -> impl Iterator<Item = &u32> {
         let row = move |y| self.lattice.index(cells.x0, y)..self.lattice.index(cells.x1, y) + 1;
         (cells.y0..=cells.y1).flat_map(move |y| self.solids[row(y)].iter().flatten())
     }
 
-    /// Visits the walls of some cells: a wall once for each cell that lists it.
+    /// Visits the walls in some cells; a wall once per cell that lists it.
     #[inline]
     pub(super) fn for_each_wall_in(&self, cells: Cells, mut visit: impl FnMut(u32)) {
         for y in cells.y0..=cells.y1 {
@@ -357,7 +358,7 @@ impl Grid {
         }
     }
 
-    /// Visits the solids of some cells, with the cell's column and row: a solid once for each cell that lists it.
+    /// Visits the solids in some cells, with the cell's column and row; a solid once per cell that lists it.
     #[inline]
     pub(super) fn for_each_solid_in(&self, cells: Cells, mut visit: impl FnMut(u32, i32, i32)) {
         for y in cells.y0..=cells.y1 {
@@ -377,7 +378,7 @@ impl Grid {
         &self.loose_solids
     }
 
-    /// The cells in which a solid with these bounds is listed; `None` if it is to be loose.
+    /// Cells in which a solid with these bounds is listed; `None` if it is to be loose.
     #[inline]
     pub(super) fn place_for(&self, bounds: &Aabb) -> Option<Cells> {
         let (cells, whole) = self.lattice.under(bounds)?;
@@ -409,14 +410,14 @@ impl Grid {
     }
 }
 
-/// Takes one entry out of a list whose order means nothing.
+/// Removes one entry from an unordered list.
 fn take(list: &mut Vec<u32>, solid: u32) {
     if let Some(at) = list.iter().position(|&other| other == solid) {
         list.swap_remove(at);
     }
 }
 
-/// The distance from a box to a point; 0 inside.
+/// Distance from a box to a point; 0 inside.
 fn distance(bounds: &Aabb, point: Point) -> f64 {
     let nearest = point.sup(&bounds.min).inf(&bounds.max);
     (nearest - point).norm()

@@ -1,4 +1,4 @@
-//! Rays in space over hills or a level floor: the ground stops them, and what stands on it has its base there.
+//! Rays in space over hills or a level floor: the ground stops them, and objects have their base on it.
 
 use super::ray::{Ray, lesser};
 use super::scanner::Scanner;
@@ -8,22 +8,22 @@ use super::store::{Placed, Space};
 use crate::geometry::{Point, Point3, Pose3, Vector, Vector3, math};
 use crate::world::HeightField;
 
-/// The least horizontal part of a ray's direction, of which the walk over the cells knows the way.
+/// Smallest horizontal component of a ray's direction for which the traversal of cells is accurate.
 const LEAST: f64 = 1e-6;
-/// The heights of a wall whose outline alone is asked for.
+/// Height range of a wall for queries about its outline only.
 const ENDLESS: Span = Span { bottom: -1e9, top: 1e9 };
 
-/// What things stand on: hills, or the level floor without any.
+/// The ground: hills, or the level floor.
 #[derive(Debug, Clone, Copy)]
 struct Ground<'a>(Option<&'a HeightField>);
 
 impl Ground<'_> {
-    /// The elevation under a point; beyond the hills, that of the floor.
+    /// Elevation at a point; beyond the hills, that of the floor.
     fn height(&self, at: Point) -> f64 {
         self.0.and_then(|hills| hills.height(at)).unwrap_or(0.0)
     }
 
-    /// The distance to where a ray first meets the ground.
+    /// Distance to the first intersection of a ray with the ground.
     fn cast_ray(&self, origin: Point3, direction: Vector3, max_range: f64) -> f64 {
         match self.0 {
             Some(hills) => hills.cast_ray(origin, direction, max_range),
@@ -34,13 +34,13 @@ impl Ground<'_> {
 }
 
 impl Space {
-    /// The distance in metres to what a ray in space meets first: the ground, a wall or a solid; infinite if there is
-    /// nothing within `max_range`.
+    /// Distance along a ray in space to the first intersection (m): with the ground, a wall or a solid;
+    /// infinite if there is none within `max_range`.
     ///
-    /// `ground` is what is under all of it, or `None` for a level floor at height 0, which stops what comes from above.
-    /// `direction` is a unit vector. Walls follow the ground: their top is at each place as high above it. A solid's
-    /// heights are above the level that [`set_level`](Space::set_level) has given it. A ray that starts in or on
-    /// something measures 0. The solid `except` is overlooked.
+    /// `ground` is the surface, or `None` for a level floor at height 0, which stops rays from above.
+    /// `direction` is a unit vector. Walls follow the ground: their top is at a constant height above it. A
+    /// solid's heights are relative to the level set by [`set_level`](Space::set_level). A ray that starts in
+    /// or on an obstacle has distance 0. The solid `except` is ignored.
     pub fn cast_ray_over<'a>(
         &self,
         ground: impl Into<Option<&'a HeightField>>,
@@ -52,12 +52,12 @@ impl Space {
         self.cast_over(Ground(ground.into()), (origin, direction), max_range, except)
     }
 
-    /// Measures the distance in metres to what each beam of a scanner hits first, and infinity where there is nothing
-    /// within the scanner's range.
+    /// Computes the distance to the first hit of each beam of a scanner (m); infinity without a hit within
+    /// the scanner's range.
     ///
-    /// `ground` is as for [`cast_ray_over`](Space::cast_ray_over). `pose` is the scanner's own in the world, and
-    /// `except` the solid that carries it. `ranges` takes one number for each beam; without room for all, the first
-    /// ones; beyond them, infinity.
+    /// `ground` is as in [`cast_ray_over`](Space::cast_ray_over). `pose` is the scanner's pose in the world,
+    /// and `except` the solid that carries it. `ranges` receives one number per beam; if it is shorter, the
+    /// first ones, and if it is longer, infinity for the rest.
     pub fn scan_over<'a>(
         &self,
         ground: impl Into<Option<&'a HeightField>>,
@@ -94,7 +94,7 @@ impl Space {
         if nearest <= max_range { nearest } else { f64::INFINITY }
     }
 
-    /// The distance on the floor to the first wall or solid within a limit; infinite if there is none.
+    /// Horizontal distance to the first wall or solid within a limit; infinite if there is none.
     fn nearest_over(
         &self,
         ground: Ground<'_>,
@@ -136,7 +136,7 @@ impl Space {
         self.solids[id.index()].level
     }
 
-    /// Puts a solid on another level: its heights are metres above that.
+    /// Puts a solid on a different level, to which its heights are relative.
     ///
     /// # Panics
     ///
@@ -146,10 +146,10 @@ impl Space {
     }
 }
 
-/// A ray in space, with distances measured on the floor.
+/// A ray in space; distances are horizontal.
 struct Slanted {
     ray: Ray,
-    /// Metres on the floor in a metre along the ray.
+    /// Horizontal distance per metre along the ray.
     run: f64,
 }
 
@@ -174,7 +174,8 @@ impl Slanted {
         }
     }
 
-    /// Where the ray meets a side of a wall, or its top, which is the ground raised by the wall's height.
+    /// Intersection of the ray with a side of a wall or its top, which is the ground raised by the wall's
+    /// height.
     fn hit_wall(&self, ground: Ground<'_>, wall: &Block, limit: f64) -> Option<f64> {
         let enter = self.ray.hit_box(&wall.shape, &ENDLESS)?;
         if enter > limit {
@@ -232,7 +233,7 @@ mod tests {
             space.cast_ray_over(&ground, Point3::new(1.0, y, 0.1 + above), direction, 20.0, None)
                 * direction.x
         };
-        // Parallel to the ground: into the wall below its top, and beyond it above.
+        // Parallel to the ground: hits the wall below its top, and passes above it.
         assert!((range(5.0, 0.1, along) - 3.995).abs() < 1e-5);
         assert_eq!(range(5.0, 0.21, along), f64::INFINITY);
         assert!((range(2.0, 0.05, along) - 1.9).abs() < 1e-5);
@@ -250,7 +251,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(crate::testing::cases(256))]
-        /// On level ground rays in space find what rays over the floor do.
+        /// On level ground, rays in space have the same hits as rays over the floor.
         #[test]
         fn on_level_ground_nothing_is_new(
             walls in prop::collection::vec((1.0..9.0f64, 1.0..9.0f64, 1.0..9.0f64, 1.0..9.0f64, 0.05..0.5f64), 0..6),
@@ -272,7 +273,7 @@ mod tests {
             prop_assert!(found == expected || (found - expected).abs() < 1e-9, "{} {}", found, expected);
         }
 
-        /// Rays over a level floor are those over level hills, whatever their direction.
+        /// Rays over a level floor and over level hills have the same hits in every direction.
         #[test]
         fn the_floor_is_as_good_as_level_hills(
             (x, y, z) in (1.0..9.0f64, 1.0..9.0f64, 0.01..0.6f64), (dx, dy, dz) in (-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64),
@@ -284,7 +285,7 @@ mod tests {
             let (origin, level) = (Point3::new(x, y, z), slope(0.0));
             let over = space.cast_ray_over(&level, origin, direction, 20.0, None);
             let found = space.cast_ray_over(None, origin, direction, 20.0, None);
-            // The hills end, the floor does not.
+            // The hills are bounded, the floor is not.
             let end = origin + direction * found.min(20.0);
             let inside = (0.0..=10.0).contains(&end.x) && (0.0..=10.0).contains(&end.y);
             prop_assert!(!inside || found == over || (found - over).abs() < 1e-9, "{} {}", found, over);

@@ -1,8 +1,8 @@
-//! The geometry of a world, indexed for the questions that a simulator asks thousands of times a second.
+//! Geometry of a world, indexed for the frequent queries of a simulator.
 //!
-//! A [`Space`] holds upright walls, which stay, and upright [`Solid`]s, which move: objects and robots alike. It
-//! answers what a ray hits, what a laser [`Scanner`] sees, what an outline touches, and how far it is from anything.
-//! It knows nothing of time, sensors' noise or forces.
+//! A [`Space`] contains upright static walls and upright moving [`Solid`]s: objects and robots. It computes
+//! ray hits, scans of a laser [`Scanner`], contacts of an outline, and distances. It does not model time,
+//! sensor noise or forces.
 //!
 //! ```
 //! use roverlab::geometry::{Point, Pose, Vector};
@@ -19,11 +19,12 @@
 //!
 //! # How it works
 //!
-//! Rays and contacts go through one uniform grid whose cells list the walls and solids in them; a ray visits cells in
-//! order until it has hit something nearer than the next cell. A level scan is drawn instead: every beam keeps the
-//! inverse of the nearest range so far, and along a straight face that inverse is linear in the beam's direction. The
-//! walls stand in small clusters that are drawn from near to far, so that what nearer walls hide is skipped unseen.
-//! Neither changes any result: a scan equals as many rays, and no answer depends on the order in which solids moved.
+//! Rays and contacts use a uniform grid whose cells list the walls and solids in them; a ray visits cells in
+//! order until it has a hit nearer than the next cell. A level scan is rasterised instead: every beam keeps
+//! the inverse of the nearest range so far, which is linear in the beam's direction along a straight face.
+//! Walls are grouped in small clusters, processed from near to far, so that hidden clusters are skipped.
+//! Neither method affects results: a scan equals the same number of rays, and no answer depends on the order
+//! in which solids moved.
 
 mod cluster;
 mod contact;

@@ -5,10 +5,10 @@ use super::ray::{greater, lesser};
 use super::shape::{OrientedBox, Shape};
 use crate::geometry::{Aabb, Point, Vector};
 
-/// The nearest thing in each beam of a fan: a z-buffer over directions.
+/// The nearest obstacle of each beam of a fan: a z-buffer over directions.
 ///
-/// It keeps inverse ranges, 0 for nothing: along a straight face they are linear in the beam's direction, so drawing
-/// a face is two products, a sum and a maximum for each beam, without a division.
+/// It stores inverse ranges, 0 for nothing. Along a straight face they are linear in the beam's direction, so
+/// drawing a face takes two products, a sum and a maximum per beam, without a division.
 #[derive(Debug, Clone)]
 pub(super) struct PolarBuffer {
     pub(super) fan: Fan,
@@ -16,14 +16,14 @@ pub(super) struct PolarBuffer {
     eye: Point,
 }
 
-/// A box as the eye sees it: in the beams of the arc, the body begins where both lines have been crossed.
+/// A box as seen from the eye: in the beams of the arc, the body begins beyond both lines.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stroke {
     arc: Arc,
     sector: Sector,
-    /// For each of two lines, the unit vector towards it by the distance to it.
+    /// For each of two lines, the unit vector towards it divided by its distance.
     lines: [Vector; 2],
-    /// Whether the eye is in the box, and the rest means nothing.
+    /// Whether the eye is in the box; then the other fields are undefined.
     pub(super) inside: bool,
 }
 
@@ -32,19 +32,19 @@ impl PolarBuffer {
         Self { inverse: vec![0.0; fan.beams()], fan, eye: Point::origin() }
     }
 
-    /// Empties the buffer and points its beams from a place in the world.
+    /// Clears the buffer and sets the position and heading of its beams.
     pub(super) fn aim(&mut self, eye: Point, heading: f64) {
         self.fan.turn_to(heading);
         self.inverse.fill(0.0);
         self.eye = eye;
     }
 
-    /// Writes the ranges of the first beams, infinite beyond `max_range`.
+    /// Writes the ranges of the first beams; infinite beyond `max_range`.
     pub(super) fn ranges(&self, max_range: f64, out: &mut [f64]) {
         let (chunks, rest) = self.inverse[..out.len()].as_chunks::<4>();
         let (ranges, last_ranges) = out.as_chunks_mut::<4>();
         for (ranges, inverses) in ranges.iter_mut().zip(chunks) {
-            // Most beams of many scans hit nothing, which takes no division to see.
+            // In many scans most beams hit nothing, which is detected without a division.
             if inverses.iter().filter(|&&inverse| inverse > 0.0).count() == 0 {
                 *ranges = [f64::INFINITY; 4];
             } else {
@@ -54,7 +54,7 @@ impl PolarBuffer {
         invert(rest, max_range, last_ranges);
     }
 
-    /// The beams that a box may be in; all of them if the eye is in the box.
+    /// Beams that may hit a box; all of them if the eye is in the box.
     #[inline]
     pub(super) fn sector_of_box(&self, bounds: &Aabb) -> Sector {
         let (min, max) = (bounds.min - self.eye, bounds.max - self.eye);
@@ -63,7 +63,7 @@ impl PolarBuffer {
         if !(right || left || above || below) {
             return self.fan.all();
         }
-        // The corners that bound the box as seen from each of its eight sides.
+        // Corners that bound the box as seen from each of its eight sides.
         let from = Vector::new(
             if above || !(below || right) { max.x } else { min.x },
             if right || (!left && above) { min.y } else { max.y },
@@ -75,7 +75,7 @@ impl PolarBuffer {
         self.fan.sector(&Arc { from, to, turn: 1.0 })
     }
 
-    /// The beams that a shape may be in, and the least distance to it; all beams and 0 if the eye may be in it.
+    /// Beams that may hit a shape, and the smallest distance to it; all beams and 0 if the eye may be in it.
     #[inline]
     pub(super) fn sector_of(&self, shape: &Shape) -> (Sector, f64) {
         let (near, sector) = match shape {
@@ -91,7 +91,7 @@ impl PolarBuffer {
         if near > 0.0 { (sector, near) } else { (self.fan.all(), 0.0) }
     }
 
-    /// Whether every beam in a sector has hit something nearer than `near` metres; never for 0 metres.
+    /// Whether every beam in a sector has a hit nearer than `near` metres; never for 0 metres.
     #[inline]
     pub(super) fn hides(&self, sector: Sector, near: f64) -> bool {
         let limit = (1.0 + 1e-9) / near;
@@ -102,7 +102,7 @@ impl PolarBuffer {
         hidden
     }
 
-    /// How the eye sees a box.
+    /// A box as seen from the eye.
     #[inline]
     pub(super) fn stroke(&self, shape: &OrientedBox) -> Stroke {
         let to_centre = shape.centre - self.eye;
@@ -110,18 +110,18 @@ impl PolarBuffer {
         let normal = Vector::new(-axis.y, axis.x);
         let (seen_along, seen_across) = (-axis.dot(&to_centre), -normal.dot(&to_centre));
         let (along, across) = (seen_along.abs() - shape.half.x, seen_across.abs() - shape.half.y);
-        // Selections instead of branches, which would be guessed wrong half of the time.
+        // Selections instead of branches, because half of the predictions would fail.
         let (sees_end, sees_side) = (select(along, 1.0, 0.0), select(across, 1.0, 0.0));
-        // From the middle towards the end and the side that face the eye.
+        // From the centre towards the end and side that face the eye.
         let (to_end, to_side) = (1.0_f64.copysign(seen_along), 1.0_f64.copysign(seen_across));
         let (end, side) = (axis * to_end, normal * to_side);
         let (e, s) = (end * shape.half.x, side * shape.half.y);
-        // From the far corner of the side to the far corner of the end, if both are seen.
+        // From the far corner of the side to the far corner of the end, if both are visible.
         let from = to_centre + s + e * (1.0 - 2.0 * sees_side);
         let to = to_centre + e + s * (1.0 - 2.0 * sees_end);
         // Seen from the left of its axis, a box's side runs counter-clockwise along the axis.
         let arc = Arc { from, to, turn: to_end * to_side };
-        // A line that is not seen is replaced by the other.
+        // An invisible line is replaced by the other.
         let per_end = end * (-1.0 / select(along, along, 1.0));
         let per_side = side * (-1.0 / select(across, across, 1.0));
         let first = per_side * sees_side + per_end * (1.0 - sees_side);
@@ -130,7 +130,7 @@ impl PolarBuffer {
         Stroke { arc, sector: self.fan.sector(&arc), lines: [first, second], inside }
     }
 
-    /// Draws a box that the eye is not in.
+    /// Draws a box that does not contain the eye.
     #[inline]
     pub(super) fn draw(&mut self, stroke: &Stroke) {
         let fan = &self.fan;
@@ -140,10 +140,10 @@ impl PolarBuffer {
         });
     }
 
-    /// The beams that a disc may be in whose middle is some distance away, more than its radius.
+    /// Beams that may hit a disc with its centre at a distance greater than its radius.
     #[inline]
     fn sector_of_disc(&self, to_centre: Vector, distance: f64, radius: f64) -> Sector {
-        // No less than the arc sine from 0 to 1, and for small discs hardly more.
+        // At least the arcsine from 0 to 1, and for small discs only slightly more.
         let sine = radius / distance;
         let half = sine + (FRAC_PI_2 - 1.0) * sine * sine * sine;
         self.fan.sector_about(to_centre, half)
@@ -156,7 +156,8 @@ impl PolarBuffer {
         if distance <= radius {
             return true;
         }
-        // Near and far distance along any beam have the same product, so the far one gives the near one's inverse.
+        // The near and far distances along any beam have the same product, so the far one gives the inverse
+        // of the near one.
         let per_product = 1.0 / ((distance - radius) * (distance + radius));
         let fan = &self.fan;
         fan.for_each_run(self.sector_of_disc(to_centre, distance, radius), |first, last| {
@@ -174,7 +175,8 @@ impl PolarBuffer {
     }
 }
 
-/// Draws the farther of two lines in some beams. Not inlined: so the compiler knows that the slices do not overlap.
+/// Draws the farther of two lines in some beams. Not inlined, which tells the compiler that the slices do not
+/// overlap.
 #[inline(never)]
 fn draw_lines(cos: &[f64], sin: &[f64], inverse: &mut [f64], [a, b]: &[Vector; 2]) {
     for ((c, s), nearest) in cos.iter().zip(sin).zip(inverse) {
@@ -183,7 +185,7 @@ fn draw_lines(cos: &[f64], sin: &[f64], inverse: &mut [f64], [a, b]: &[Vector; 2
     }
 }
 
-/// Writes inverses, infinite where they are more than a limit.
+/// Writes inverses, infinite above a limit.
 #[inline]
 fn invert(numbers: &[f64], limit: f64, out: &mut [f64]) {
     for (range, number) in out.iter_mut().zip(numbers) {
@@ -201,7 +203,7 @@ fn all_at_least(numbers: &[f64], limit: f64) -> bool {
     chunks.iter().all(clear) && rest.iter().all(|&x| x >= limit)
 }
 
-/// One number where `x` is positive, and another elsewhere.
+/// `positive` if `x` is positive, `otherwise` if not.
 #[inline]
 fn select(x: f64, positive: f64, otherwise: f64) -> f64 {
     if x > 0.0 { positive } else { otherwise }

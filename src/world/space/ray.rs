@@ -3,22 +3,22 @@ use super::solid::{SolidId, Span};
 use super::store::{Placed, Space};
 use crate::geometry::{Point, Vector, cross};
 
-/// A ray. Distances along it are measured on the floor.
+/// A ray. Distances along it are horizontal.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ray {
     pub(super) origin: Point,
-    /// The unit vector on the floor.
+    /// Horizontal unit vector.
     pub(super) direction: Vector,
-    /// The height of the origin, and its change in a metre.
+    /// Height of the origin, and its change per metre.
     pub(super) z: f64,
     pub(super) slope: f64,
 }
 
 impl Space {
-    /// The distance in metres to the first wall or solid on a level ray; infinite if there is none within `max_range`.
+    /// Distance to the first wall or solid on a level ray (m); infinite if there is none within `max_range`.
     ///
-    /// `direction` is a unit vector, and `z` the height of the ray above the floor in metres. A ray that starts in or
-    /// on something measures 0. The solid `except` is overlooked.
+    /// `direction` is a unit vector, and `z` the height of the ray above the floor (m). A ray that starts in
+    /// or on an obstacle has distance 0. The solid `except` is ignored.
     pub fn cast_ray(
         &self,
         origin: Point,
@@ -62,7 +62,7 @@ impl Space {
 }
 
 impl Ray {
-    /// The distance to a solid.
+    /// Distance to a solid.
     #[inline]
     pub(super) fn hit(&self, placed: &Placed) -> Option<f64> {
         match &placed.shape {
@@ -74,14 +74,14 @@ impl Ray {
         }
     }
 
-    /// The radius of a cone changes evenly along the ray.
+    /// The radius of a cone is linear along the ray.
     fn hit_cone(&self, centre: Point, cone: &Placed) -> Option<f64> {
         let (radius, shrinks) = (cone.radius_at(self.z), cone.taper * self.slope);
         let to_centre = centre - self.origin;
         let square = 1.0 - shrinks * shrinks;
         let middle = (self.direction.dot(&to_centre) - radius * shrinks) / square;
         let squared = middle * middle - (to_centre.norm_squared() - radius * radius) / square;
-        // A ray as steep as the cone's side, or steeper, meets no side that rays from beside it meet.
+        // A ray at least as steep as the cone's side does not hit the side that rays from beside it hit.
         if squared < 0.0 || square <= 0.0 {
             return None;
         }
@@ -105,7 +105,8 @@ impl Ray {
     pub(super) fn hit_box(&self, shape: &OrientedBox, span: &Span) -> Option<f64> {
         let to_centre = shape.centre - self.origin;
         let (along, across) = (self.direction.dot(&shape.axis), cross(shape.axis, self.direction));
-        // Whether the whole line meets the box is decided here, once, so that no rounding below lets it slip through.
+        // Whether the whole line intersects the box is decided here, once, so that later rounding cannot let
+        // it slip through.
         let aside = cross(self.direction, to_centre).abs();
         if aside > shape.half.x * across.abs() + shape.half.y * along.abs() {
             return None;
@@ -115,7 +116,7 @@ impl Ray {
         self.first_within(greater(u_in, s_in), lesser(u_out, s_out), span)
     }
 
-    /// The first distance from 0 between `enter` and `leave` at which the ray's height is in the span.
+    /// First distance from 0 between `enter` and `leave` at which the ray's height is in the span.
     #[inline]
     fn first_within(&self, enter: f64, leave: f64, span: &Span) -> Option<f64> {
         if leave < 0.0 {
@@ -127,14 +128,14 @@ impl Ray {
         }
         let middle = 0.5 * (span.bottom + span.top) - self.z;
         let (low, high) = crossing(middle, 0.5 * (span.top - span.bottom), self.slope);
-        // Rounding may part the borders of a bare line the wrong way round.
+        // Rounding may exchange the borders of a line of zero thickness.
         let leave = greater(leave, enter);
         let (enter, leave) = (greater(enter, low), lesser(leave, high));
         (enter <= leave).then_some(enter)
     }
 }
 
-/// When a point that moves from 0 at `speed` is within `half` of `middle`.
+/// Interval in which a point that moves from 0 at `speed` is within `half` of `middle`.
 #[inline]
 fn crossing(middle: f64, half: f64, speed: f64) -> (f64, f64) {
     if speed == 0.0 {
@@ -145,13 +146,13 @@ fn crossing(middle: f64, half: f64, speed: f64) -> (f64, f64) {
     (middle - half, middle + half)
 }
 
-/// The lesser of two numbers, in one instruction.
+/// Minimum of two numbers, in one instruction.
 #[inline]
 pub(super) fn lesser(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
-/// The greater of two numbers, in one instruction.
+/// Maximum of two numbers, in one instruction.
 #[inline]
 pub(super) fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }

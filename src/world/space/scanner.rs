@@ -8,10 +8,10 @@ use super::solid::SolidId;
 use super::store::Space;
 use crate::geometry::{Point, Pose, math};
 
-/// Up to so many solids are looked at one by one; more, by the cells they are in.
+/// Number of solids up to which they are tested individually; above, by their cells.
 const FEW_SOLIDS: usize = 64;
 
-/// A laser scanner's beams, worked out once, and the memory that a scan needs.
+/// Precomputed beams of a laser scanner, and the buffers of a scan.
 ///
 /// ```
 /// use roverlab::geometry::{Point, Pose};
@@ -31,21 +31,21 @@ pub struct Scanner {
     z: f64,
     pub(super) tilt: f64,
     pub(super) max_range: f64,
-    /// Whether the beams go round counter-clockwise, at most once or so: what a polar buffer can draw.
+    /// Whether the beams run counter-clockwise for at most about one turn, as a polar buffer requires.
     drawn: bool,
-    /// What may be seen; its order, nearest first: the distance's leading bits, then a place in `sights`; and which
-    /// solids are done.
+    /// Possibly visible things; their order, nearest first (leading bits of the distance, then the index in
+    /// `sights`); and flags of the processed solids.
     sights: Vec<Sight>,
     order: Vec<u64>,
     seen: Vec<bool>,
 }
 
 impl Scanner {
-    /// A scanner with `beams` beams, `angle_increment` radians apart, the first `angle_min` radians counter-clockwise
-    /// from straight ahead.
+    /// A scanner with `beams` beams, `angle_increment` radians apart, the first one `angle_min` radians
+    /// counter-clockwise from straight ahead.
     ///
-    /// It sits `z` metres above the floor. Its beams point `tilt` radians above the horizontal and reach `max_range`
-    /// metres.
+    /// Its height above the floor is `z` metres. Its beams point `tilt` radians above the horizontal and
+    /// reach `max_range` metres.
     pub fn new(
         angle_min: f64,
         angle_increment: f64,
@@ -59,24 +59,25 @@ impl Scanner {
         Self { buffer, z, tilt, max_range, drawn, sights: Vec::new(), order: Vec::new(), seen: Vec::new() }
     }
 
-    /// The number of beams.
+    /// Number of beams.
     pub fn beams(&self) -> usize {
         self.buffer.fan.beams()
     }
 
-    /// Metres that a beam reaches.
+    /// Range of a beam (m).
     pub fn max_range(&self) -> f64 {
         self.max_range
     }
 }
 
 impl Space {
-    /// Measures the distance in metres to what each beam of a scanner hits first, and infinity where there is nothing
-    /// within the scanner's range.
+    /// Computes the distance to the first hit of each beam of a scanner (m); infinity without a hit within
+    /// the scanner's range.
     ///
-    /// `pose` is the scanner's own in the world, and `except` the solid that carries it. Beams that point below the
-    /// horizontal hit the floor; those that have risen above a wall pass it over. A scanner inside something measures
-    /// 0. `ranges` takes one number for each beam; without room for all, the first ones; beyond them, infinity.
+    /// `pose` is the scanner's pose in the world, and `except` the solid that carries it. Beams that point
+    /// below the horizontal hit the floor; those that have risen above a wall pass over it. A scanner inside
+    /// an obstacle has range 0. `ranges` receives one number per beam; if it is shorter, the first ones, and
+    /// if it is longer, infinity for the rest.
     pub fn scan(&self, scanner: &mut Scanner, pose: &Pose, except: Option<SolidId>, ranges: &mut [f64]) {
         let beams = ranges.len().min(scanner.beams());
         let (ranges, beyond) = ranges.split_at_mut(beams);
@@ -91,7 +92,7 @@ impl Space {
         }
     }
 
-    /// Draws what may be seen, from near to far; true if the scanner is in something.
+    /// Draws possibly visible things from near to far; true if the scanner is in one of them.
     fn draw(&self, scanner: &mut Scanner, eye: Point, except: Option<SolidId>) -> bool {
         let Scanner { buffer, sights, order, seen, z, max_range, .. } = scanner;
         sights.clear();
@@ -141,7 +142,7 @@ impl Space {
 
     fn draw_cluster(&self, buffer: &mut PolarBuffer, number: usize, z: f64) -> bool {
         let walls = &self.walls[self.clusters.clusters[number].members()];
-        // First all strokes, then all drawing: the processor works on several strokes at a time.
+        // All strokes first, then all drawing, so that the processor works on several strokes at a time.
         let mut strokes = [None; CLUSTER];
         for (stroke, wall) in strokes.iter_mut().zip(walls.iter().filter(|wall| wall.span.contains(z))) {
             *stroke = Some(buffer.stroke(&wall.shape));
@@ -169,24 +170,24 @@ impl Space {
         }
     }
 
-    /// Draws the solids of some cells, but for those in cells that are hidden.
+    /// Draws the solids of some cells, except those in hidden cells.
     fn draw_block(&self, buffer: &mut PolarBuffer, cells: Cells, z: f64, seen: &mut [bool]) -> bool {
         self.grid.solids_of(cells).any(|&number| {
             if seen[number as usize] {
                 return false;
             }
             let shape = &self.solids[number as usize].shape;
-            // To draw a disc takes no longer than to see whether it is hidden.
+            // Drawing a disc is as fast as testing whether it is hidden.
             if matches!(shape, Shape::Box(_)) {
                 let (sector, near) = buffer.sector_of(shape);
-                // What is hidden now stays so.
+                // Hidden things stay hidden.
                 seen[number as usize] = buffer.hides(sector, near);
             }
             self.draw_solid(buffer, number, z, seen)
         })
     }
 
-    /// Casts beam by beam, whatever their tilt.
+    /// Casts the beams individually, for any tilt.
     fn cast_beams(&self, scanner: &Scanner, eye: Point, except: Option<SolidId>, ranges: &mut [f64]) {
         let (sin, cos) = math::sin_cos(scanner.tilt);
         let slope = sin / cos;
@@ -209,13 +210,13 @@ fn draw_box(buffer: &mut PolarBuffer, shape: &OrientedBox) -> bool {
     stroke.inside
 }
 
-/// Something that may be seen.
+/// A possibly visible thing.
 #[derive(Debug, Clone, Copy)]
 struct Sight {
     what: Sighted,
-    /// The beams it may be in.
+    /// Beams that may hit it.
     sector: Sector,
-    /// Metres to it, at least.
+    /// Lower bound of its distance (m).
     near: f64,
 }
 
@@ -227,7 +228,7 @@ enum Sighted {
     Block(Cells),
 }
 
-/// Sorts by distance, then by place.
+/// Sort key: by distance, then by index.
 #[inline]
 fn key(distance: f64, place: usize) -> u64 {
     u64::from((distance as f32).to_bits()) << 32 | place as u64
@@ -319,7 +320,7 @@ mod tests {
         }
     }
 
-    /// The level scan, which is drawn, and single rays find the same narrow mast above a wide foot.
+    /// The level scan, which is rasterised, and single rays hit the same narrow mast above a wide foot.
     #[test]
     fn a_mast_is_met_above_the_foot_alone() {
         let mut space = Space::new(&World::walled(4.0, 2.0).walls);
@@ -334,7 +335,7 @@ mod tests {
                 scan(&space, Scanner::new(0.0, FRAC_PI_2, 4, z, 0.0, 10.0), Pose::new(1.0, 1.0, 0.0))[0];
             assert!(near(&[ray, scan], &[expected, expected]), "{z}: {ray} {scan}");
         }
-        // Tilted by 10 degrees, from 0.1 m up and 0.95 m away.
+        // Tilted by 10 degrees, from a height of 0.1 m at a distance of 0.95 m.
         let tilt = crate::geometry::units::from_deg(10.0);
         let range = scan(&space, Scanner::new(0.0, 0.1, 1, 0.1, tilt, 10.0), Pose::new(1.0, 1.0, 0.0))[0];
         assert!((range - 0.95 / math::cos(tilt)).abs() < 1e-9, "{range}");
@@ -346,13 +347,13 @@ mod tests {
         let high = Wall { height: 1.0, ..Wall::new(Point::new(3.0, -1.0), Point::new(3.0, 1.0)) };
         let space = Space::new(&[low, high]);
         let ahead = |tilt: f64| scan(&space, Scanner::new(0.0, 0.1, 1, 0.1, tilt, 10.0), Pose::default())[0];
-        // Rises 0.03 m in 1 m: over the first wall, onto the second.
+        // Rises 0.03 m per metre: over the first wall, onto the second.
         let tilt = math::atan(0.03);
         assert!((ahead(tilt) - 2.995 / math::cos(tilt)).abs() < 1e-12);
-        // Falls 0.2 m in 1 m: onto the floor after 0.5 m.
+        // Falls 0.2 m per metre: onto the floor after 0.5 m.
         let tilt = math::atan(-0.2);
         assert!((ahead(tilt) - 0.5 / math::cos(tilt)).abs() < 1e-12);
-        // From above onto the first wall's top, half way across: 0.6 m down in 1 m from 0.72 m.
+        // From above onto the first wall's top, half-way across: 0.6 m down per metre from 0.72 m.
         let tilt = math::atan(-0.6);
         let scanner = Scanner::new(0.0, 0.1, 1, 0.72, tilt, 10.0);
         assert!((scan(&space, scanner, Pose::default())[0] - 1.0 / math::cos(tilt)).abs() < 1e-9);
@@ -394,7 +395,7 @@ mod tests {
                 let d: Vector = direction(0.5 * beam as f64) * run;
                 let at = |along: f64| filled(Point::origin() + d * along, z + rise * along);
                 let steps = (range.min(5.0) / 1e-3) as usize;
-                // Nothing before the range but for corners that are only just cut, and something right behind it.
+                // Nothing nearer than the range except barely cut corners, and something directly behind it.
                 let before = (0..steps).filter(|&step| at(1e-3 * step as f64)).count();
                 prop_assert!(before <= 1, "beam {} of {} enters something {} times before", beam, range, before);
                 let behind = [1e-9, 1e-6, 1e-5].map(|past| at(range + past));

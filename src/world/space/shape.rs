@@ -2,25 +2,26 @@ use super::solid::Span;
 use crate::geometry::{Aabb, Point, Pose, Vector, cross};
 use crate::world::Wall;
 
-/// Metres by which a wall reaches past the ends of its line, so that no ray slips through where two bare lines meet.
+/// Extension of a wall beyond the ends of its line, so that no ray slips through where two lines of zero
+/// thickness meet (m).
 const OVERLAP: f64 = 1e-12;
 
-/// A rectangle in any direction.
+/// A rectangle with any orientation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct OrientedBox {
-    /// Its middle.
+    /// Its centre.
     pub(super) centre: Point,
-    /// The unit vector along its length.
+    /// Unit vector along its length.
     pub(super) axis: Vector,
-    /// Half its extent along the axis, and half its extent across, in metres.
+    /// Half extents along and across the axis (m).
     pub(super) half: Vector,
 }
 
 impl OrientedBox {
-    /// The foot of a wall. A wall without length is a line across, of the wall's thickness.
+    /// The foot of a wall. A wall of zero length is a transverse line of the wall's thickness.
     pub(super) fn of_wall(wall: &Wall) -> Self {
         let along = wall.line.b - wall.line.a;
-        // Scaled, so that no square overflows.
+        // Scaled to avoid overflow of squares.
         let scale = along.amax();
         let (axis, length) = if scale > 0.0 && scale.is_finite() {
             let scaled = along / scale;
@@ -33,7 +34,7 @@ impl OrientedBox {
         Self { centre: wall.line.a + along * 0.5, axis, half }
     }
 
-    /// A rectangle of the frame at `pose`.
+    /// A rectangle in the frame at `pose`.
     pub(super) fn placed(rectangle: &Aabb, pose: &Pose) -> Self {
         let axis = pose.forward();
         let middle = (rectangle.min.coords + rectangle.max.coords) * 0.5;
@@ -44,14 +45,14 @@ impl OrientedBox {
         Self { centre, axis, half: rectangle.size() * 0.5 }
     }
 
-    /// A world point in the box's frame: along and across from its middle.
+    /// A world point in the box's frame: along and across, from its centre.
     #[inline]
     pub(super) fn local(&self, point: Point) -> Vector {
         let from_centre = point - self.centre;
         Vector::new(self.axis.dot(&from_centre), cross(self.axis, from_centre))
     }
 
-    /// A vector of the box's frame as the world sees it.
+    /// A vector of the box's frame in the world's frame.
     #[inline]
     pub(super) fn turned(&self, local: Vector) -> Vector {
         let a = self.axis;
@@ -65,7 +66,7 @@ impl OrientedBox {
         [(h, t), (-h, t), (-h, -t), (h, -t)].map(|(u, s)| self.centre + self.turned(Vector::new(u, s)))
     }
 
-    /// Half the extents of the axis-aligned box around it.
+    /// Half extents of its axis-aligned bounding box.
     #[inline]
     pub(super) fn reach(&self) -> Vector {
         let (a, h) = (self.axis.abs(), self.half);
@@ -73,7 +74,7 @@ impl OrientedBox {
     }
 }
 
-/// What an outline covers of the floor.
+/// Floor area of an outline.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Shape {
     Disc { centre: Point, radius: f64 },
@@ -81,7 +82,7 @@ pub(super) enum Shape {
 }
 
 impl Shape {
-    /// The axis-aligned box around it.
+    /// Axis-aligned bounding box.
     #[inline]
     pub(super) fn bounds(&self) -> Aabb {
         let (centre, reach) = match self {
@@ -92,7 +93,7 @@ impl Shape {
     }
 }
 
-/// A box between two heights: a wall, a mast.
+/// A box between two heights: a wall or a mast.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Block {
     pub(super) shape: OrientedBox,
@@ -104,7 +105,7 @@ impl Block {
         Self { shape: OrientedBox::of_wall(wall), span: Span { bottom: 0.0, top: wall.height } }
     }
 
-    /// The axis-aligned box around it.
+    /// Axis-aligned bounding box.
     pub(super) fn bounds(&self) -> Aabb {
         Shape::Box(self.shape).bounds()
     }

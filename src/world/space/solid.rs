@@ -2,35 +2,35 @@ use super::shape::{Block, OrientedBox, Shape as Placed};
 use crate::geometry::{Aabb, Point, Pose};
 use crate::world::{Footprint, Mast, Object, RobotPlacement, Shape};
 
-/// What stands upright: an outline on the floor between two heights.
+/// An upright solid: an outline on the floor between two heights.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solid {
     /// Its outline, in its own frame.
     pub outline: Footprint,
-    /// Where its frame is in the world.
+    /// Pose of its frame in the world.
     pub pose: Pose,
-    /// Metres from the floor to its foot.
+    /// Height of its foot above the floor (m).
     pub bottom: f64,
-    /// Metres from the floor to its top.
+    /// Height of its top above the floor (m).
     pub top: f64,
-    /// Metres by which a disc's radius is less, as rays meet it, for each metre above its foot.
+    /// Decrease of a disc's radius per metre above its foot, for rays.
     pub taper: f64,
-    /// What stands up from it, which rays alone meet.
+    /// Its mast, which only rays hit.
     pub mast: Option<Mast>,
 }
 
 impl Solid {
-    /// A solid of the same outline at all heights, without a mast.
+    /// A solid with the same outline at all heights, without a mast.
     pub fn new(outline: Footprint, pose: Pose, bottom: f64, top: f64) -> Self {
         Self { outline, pose, bottom, top, taper: 0.0, mast: None }
     }
 
-    /// The heights between which it stands.
+    /// Height range of the solid.
     pub fn span(&self) -> Span {
         Span { bottom: self.bottom, top: self.top }
     }
 
-    /// The mast where it is.
+    /// The mast in the world.
     pub(super) fn placed_mast(&self) -> Option<Block> {
         let Mast { outline, top } = self.mast?;
         let span = Span { bottom: self.top, top: self.bottom + top };
@@ -39,7 +39,7 @@ impl Solid {
 }
 
 impl Footprint {
-    /// The outline where `pose` puts it.
+    /// The outline at `pose`.
     #[inline]
     pub(super) fn at(&self, pose: &Pose) -> Placed {
         match self {
@@ -50,7 +50,7 @@ impl Footprint {
 }
 
 impl From<&Object> for Solid {
-    /// An object as robots meet it.
+    /// An object as an obstacle for robots.
     fn from(object: &Object) -> Self {
         let outline = match object.kind.shape {
             Shape::Cylinder { radius, .. } | Shape::Cone { radius, .. } | Shape::Sphere { radius } => {
@@ -71,7 +71,7 @@ impl From<&Object> for Solid {
 }
 
 impl From<&RobotPlacement> for Solid {
-    /// A robot as others meet it.
+    /// A robot as an obstacle for others.
     fn from(robot: &RobotPlacement) -> Self {
         let bottom = robot.elevation;
         let spec = &robot.spec;
@@ -79,12 +79,12 @@ impl From<&RobotPlacement> for Solid {
     }
 }
 
-/// Names a solid of one [`Space`](super::Space): numbers in the order of adding.
+/// Identifier of a solid in one [`Space`](super::Space): an index in the order of addition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SolidId(pub(super) u32);
 
 impl SolidId {
-    /// How many solids were added before this one.
+    /// Number of solids added before this one.
     pub fn index(self) -> usize {
         self.0 as usize
     }
@@ -93,20 +93,20 @@ impl SolidId {
 /// An interval of heights.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
-    /// Metres above the floor.
+    /// Lower end above the floor (m).
     pub bottom: f64,
-    /// Metres above the floor.
+    /// Upper end above the floor (m).
     pub top: f64,
 }
 
 impl Span {
-    /// Whether the two share more than a border: what stands on top of a thing is not beside it.
+    /// Whether the intervals share more than a border; a thing on top of another is not beside it.
     #[inline]
     pub fn overlaps(&self, other: &Span) -> bool {
         self.bottom < other.top && other.bottom < self.top
     }
 
-    /// Whether a height lies between the two, borders included.
+    /// Whether a height is in the interval, including its borders.
     #[inline]
     pub fn contains(&self, z: f64) -> bool {
         self.bottom <= z && z <= self.top

@@ -5,11 +5,11 @@ use super::solid::{Solid, SolidId, Span};
 use crate::geometry::{Aabb, Pose};
 use crate::world::Wall;
 
-/// Walls that stay and solids that move, indexed.
+/// An index of static walls and moving solids.
 ///
-/// Walls are rectangles of the wall's thickness about its line, from the floor to the wall's height; a wall of
-/// thickness 0 is a bare line. Memory and building time are in proportion to the number of walls and solids.
-/// Coordinates have to be numbers; up to some thousand kilometres they are exact enough for a result to 1 µm.
+/// Walls are rectangles of the wall's thickness about its line, from the floor to the wall's height; a wall
+/// of thickness 0 is a line. Memory and construction time are proportional to the number of walls and solids.
+/// Coordinates must be numbers; up to some thousand kilometres they give results accurate to 1 µm.
 #[derive(Debug, Clone)]
 pub struct Space {
     /// In the order of the clusters.
@@ -17,14 +17,14 @@ pub struct Space {
     pub(super) clusters: Clusters,
     pub(super) solids: Vec<Placed>,
     pub(super) grid: Grid,
-    /// The grid is made anew for this many solids, ...
+    /// The grid is rebuilt at this number of solids ...
     full_at: usize,
-    /// ... or when so many solids have left its cells.
+    /// ... or when too many solids have left its cells.
     strays: usize,
     strays_allowed: usize,
 }
 
-/// A solid, and what the index knows about it.
+/// A solid with its index data.
 #[derive(Debug, Clone)]
 pub(super) struct Placed {
     solid: Solid,
@@ -32,16 +32,16 @@ pub(super) struct Placed {
     pub(super) span: Span,
     pub(super) taper: f64,
     pub(super) mast: Option<Block>,
-    /// Metres by which hills raise it; its heights are above that.
+    /// Elevation of the ground on hills; its heights are relative to that (m).
     pub(super) level: f64,
-    /// The cells that list it; `None`: every question tests it.
+    /// Cells that list it; `None`: every query tests it.
     pub(super) cells: Option<Cells>,
-    /// It is not, or not wholly, on cells.
+    /// Whether it is not completely on cells.
     stray: bool,
 }
 
 impl Placed {
-    /// The radius of a disc as rays meet it at a height.
+    /// Radius of a disc at a height, for rays.
     #[inline]
     pub(super) fn radius_at(&self, z: f64) -> f64 {
         match self.shape {
@@ -96,7 +96,7 @@ impl Space {
         self.relist(id.0, &bounds);
     }
 
-    /// Changes the height of a solid's top. One without any height is met by nothing.
+    /// Changes the height of a solid's top. A solid of zero height has no contacts.
     ///
     /// # Panics
     ///
@@ -107,7 +107,7 @@ impl Space {
         placed.span.top = top;
     }
 
-    /// A solid, with its present pose.
+    /// A solid with its present pose.
     ///
     /// # Panics
     ///
@@ -141,7 +141,7 @@ impl Space {
         (placed.cells, placed.stray) = (cells, stray);
     }
 
-    /// Makes a grid that suits the present number and places of solids. Answers stay what they are.
+    /// Builds a grid for the present number and places of solids. Answers do not change.
     fn rebuild(&mut self) {
         let bounds: Vec<Aabb> = self.solids.iter().map(|placed| placed.shape.bounds()).collect();
         self.grid = Grid::new(&self.walls, &bounds);
@@ -150,7 +150,7 @@ impl Space {
             self.list(number as u32, bounds);
         }
         self.full_at = 2 * self.solids.len().max(8);
-        // Solids beyond the farthest cell stay strays; the next grid has to be worth its making.
+        // Solids beyond the farthest cell remain strays; the next rebuild must be worth its cost.
         self.strays_allowed = 2 * self.strays + 16 + self.solids.len() / 4;
     }
 }
@@ -169,7 +169,7 @@ mod tests {
         Solid::new(DISC, Pose::new(x, y, 0.0), 0.0, 0.2)
     }
 
-    /// Asks every question once, about a place between two things 1 m to its left and right.
+    /// Makes every query once, at a place between two things 1 m to its left and right.
     fn answers(space: &Space, x: f64, y: f64) {
         let eye = Point::new(x, y);
         for direction in [Vector::x(), -Vector::x()] {
@@ -265,7 +265,7 @@ mod tests {
 
     #[test]
     fn memory_is_in_proportion_to_walls_and_solids() {
-        // Long walls that cross everywhere, on a world of 10 km: the worst for a grid.
+        // Long crossing walls in a world of 10 km: the worst case for a grid.
         let end = |i: u32| Point::new(f64::from(i * 7919 % 10_000), f64::from(i * 104_729 % 10_000));
         let walls: Vec<Wall> = (0..4_000).map(|i| Wall::new(end(i), end(i + 1))).collect();
         let mut space = Space::new(&walls);

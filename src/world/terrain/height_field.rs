@@ -1,12 +1,13 @@
-use super::pyramid::Pyramid;
+use super::pyramid::{FIRST, Pyramid};
 use crate::ParameterError;
 use crate::geometry::{Aabb, Point, Vector, Vector3};
 use crate::parameter::require;
 
-/// A surface over a rectangle, from elevations at the crossings of a grid.
+/// A surface over a rectangle, from elevations at grid points.
 ///
-/// A cell between four samples is two triangles that meet on the diagonal from its corner of least x and y to that of
-/// greatest x and y. Columns count along x and rows along y, from the corner of least x and y.
+/// A cell between four samples is two triangles with a common diagonal from its corner with the smallest x
+/// and y to that with the largest x and y. Columns run along x and rows along y, from the corner with the
+/// smallest x and y.
 ///
 /// ```
 /// use roverlab::geometry::{Aabb, Point, Point3, Vector, Vector3};
@@ -26,15 +27,15 @@ pub struct HeightField {
     columns: usize,
     rows: usize,
     area: Aabb,
-    /// Metres from a sample to the next, and its inverse.
+    /// Distance between samples (m), and its inverse.
     pub(super) pitch: Vector,
     pub(super) per_metre: Vector,
-    /// Row by row from the lowest.
+    /// Rows from the lowest.
     heights: Vec<f32>,
     pub(super) pyramid: Pyramid,
 }
 
-/// A place in a cell: the cell, and how far in it along x and y, 0 to 1.
+/// A position in a cell: the cell, and the fractions along x and y.
 #[derive(Debug, Clone, Copy)]
 struct Spot {
     column: usize,
@@ -43,16 +44,17 @@ struct Spot {
 }
 
 impl HeightField {
-    /// The most samples along an axis.
+    /// Largest number of samples along an axis.
     pub const MAX_SAMPLES: usize = 4097;
-    /// The farthest that a corner or an elevation may be from the origin, in metres.
+    /// Largest absolute value of a coordinate or elevation (m).
     const FARTHEST: f64 = 1e6;
 
-    /// A surface from samples in metres, row by row from that of least y, whose outer ones lie on the border of
+    /// A surface from samples (m), in rows starting at the smallest y. The outer samples are on the border of
     /// `area`.
     ///
-    /// Fails with fewer than two samples or more than 4097 along an axis, another number of heights than
-    /// `columns · rows`, an area without width or height, and with numbers that are not finite or beyond 1000 km.
+    /// Fails for fewer than two or more than 4097 samples along an axis, for a number of heights other than
+    /// `columns · rows`, for an area without width or height, and for numbers that are not finite or beyond
+    /// 1000 km.
     pub fn new(columns: usize, rows: usize, area: Aabb, heights: Vec<f32>) -> Result<Self, ParameterError> {
         for (name, count) in [("terrain columns", columns), ("terrain rows", rows)] {
             require(name, count as f64, (2..=Self::MAX_SAMPLES).contains(&count), "2 to 4097")?;
@@ -76,7 +78,7 @@ impl HeightField {
         Ok(Self { columns, rows, area, pitch, per_metre, heights, pyramid })
     }
 
-    /// A surface through the values of a function at its samples.
+    /// A surface through a function's values at its samples.
     pub fn from_fn(
         columns: usize,
         rows: usize,
@@ -95,12 +97,12 @@ impl HeightField {
         Self::new(columns, rows, area, heights)
     }
 
-    /// Samples along x.
+    /// Number of samples along x.
     pub fn columns(&self) -> usize {
         self.columns
     }
 
-    /// Samples along y.
+    /// Number of samples along y.
     pub fn rows(&self) -> usize {
         self.rows
     }
@@ -110,12 +112,12 @@ impl HeightField {
         self.area
     }
 
-    /// Metres from a sample to the next along x and along y.
+    /// Distance between samples along x and y (m).
     pub fn pitch(&self) -> Vector {
         self.pitch
     }
 
-    /// The elevation of a sample in metres.
+    /// Elevation of a sample (m).
     ///
     /// # Panics
     ///
@@ -126,14 +128,53 @@ impl HeightField {
         f64::from(self.heights[row * self.columns + column])
     }
 
+    /// Samples in a metre along x and along y.
+    pub(crate) fn per_metre(&self) -> Vector {
+        self.per_metre
+    }
+
+    /// The level of the smallest block of `1 << level` cells each way that holds all cells.
+    pub(crate) fn top_level(&self) -> u32 {
+        self.pyramid.top()
+    }
+
+    /// The lowest and the highest elevation of the block of `1 << level` cells each way that holds a cell.
+    pub(crate) fn bounds(&self, level: u32, column: usize, row: usize) -> (f64, f64) {
+        let bounds = self.pyramid.block(level, column, row);
+        (f64::from(bounds.low), f64::from(bounds.high))
+    }
+
     /// The lowest elevation in metres.
     pub fn lowest(&self) -> f64 {
         f64::from(self.pyramid.whole().low)
     }
 
-    /// The highest elevation in metres.
+    /// Highest elevation (m).
     pub fn highest(&self) -> f64 {
         f64::from(self.pyramid.whole().high)
+    }
+
+    /// No place of a rectangle is higher than this; some place not much farther away may be as high. Beyond the surface
+    /// there is nothing: -∞. O(1).
+    pub fn upper_bound(&self, area: &Aabb) -> f64 {
+        let (low, high) = (area.min.sup(&self.area.min), area.max.inf(&self.area.max));
+        if !(low.x <= high.x && low.y <= high.y) {
+            return f64::NEG_INFINITY;
+        }
+        let cell = |point: Point| {
+            let place = (point - self.area.min).component_mul(&self.per_metre);
+            ((place.x as usize).min(self.columns - 2), (place.y as usize).min(self.rows - 2))
+        };
+        let ((left, below), (right, above)) = (cell(low), cell(high));
+        let size = (right - left).max(above - below).max(1);
+        let level = size.ilog2().clamp(FIRST, self.pyramid.top());
+        let mut highest = f32::NEG_INFINITY;
+        for row in (below >> level)..=(above >> level) {
+            for column in (left >> level)..=(right >> level) {
+                highest = highest.max(self.pyramid.block(level, column << level, row << level).high);
+            }
+        }
+        f64::from(highest)
     }
 
     /// The elevation at a point in metres; `None` beyond the surface.
@@ -142,20 +183,20 @@ impl HeightField {
         self.spot(point).map(|spot| self.height_at(&spot))
     }
 
-    /// Metres that the surface rises in a metre along x and along y; `None` beyond it. On an edge between two
-    /// triangles it is the gradient of one of them.
+    /// Slope along x and y (m/m); `None` beyond the surface. On an edge between two triangles it is the
+    /// gradient of one of them.
     #[inline]
     pub fn gradient(&self, point: Point) -> Option<Vector> {
         self.spot(point).map(|spot| self.gradient_at(&spot))
     }
 
-    /// The upward unit normal of the surface; `None` beyond it.
+    /// Upward unit normal of the surface; `None` beyond it.
     #[inline]
     pub fn normal(&self, point: Point) -> Option<Vector3> {
         self.gradient(point).map(|rise| Vector3::new(-rise.x, -rise.y, 1.0).normalize())
     }
 
-    /// Elevation and gradient of the triangle under a point at once.
+    /// Elevation and gradient of the triangle at a point.
     #[inline]
     pub fn height_and_gradient(&self, point: Point) -> Option<(f64, Vector)> {
         self.spot(point).map(|spot| (self.height_at(&spot), self.gradient_at(&spot)))
@@ -173,7 +214,7 @@ impl HeightField {
         Some(Spot { column, row, share })
     }
 
-    /// The elevations of a cell's corners: those of least y, then those of greatest y.
+    /// Elevations of a cell's corners: first those with the smallest y, then those with the largest.
     #[inline]
     pub(super) fn corners(&self, column: usize, row: usize) -> [f64; 4] {
         let first = row * self.columns + column;
@@ -195,7 +236,7 @@ impl HeightField {
     }
 }
 
-/// The elevation in a cell of these corners, at a share of it along x and along y.
+/// Elevation in a cell with these corners, at fractions along x and y.
 #[inline]
 pub(super) fn height_in(&[a, b, c, d]: &[f64; 4], x: f64, y: f64) -> f64 {
     if x >= y { a + (b - a) * x + (d - b) * y } else { a + (d - c) * x + (c - a) * y }
@@ -245,7 +286,7 @@ mod tests {
                     let at = area.min + area.size().component_mul(&share);
                     let at = at.inf(&area.max);
                     prop_assert!((field.height(at).unwrap() - field.sample(column, row)).abs() < 1e-9);
-                    // A little to each side there is no step.
+                    // There is no step slightly to either side.
                     for aside in [-1e-9, 1e-9] {
                         let near = Point::new((at.x + aside).clamp(area.min.x, area.max.x), at.y);
                         prop_assert!((field.height(near).unwrap() - field.sample(column, row)).abs() < 1e-7);
@@ -258,10 +299,35 @@ mod tests {
 
     #[test]
     fn a_cell_is_cut_from_least_to_greatest() {
-        // A ridge along the diagonal, which the other cut would make a valley.
+        // A ridge along the diagonal; the other diagonal would make it a valley.
         let field = HeightField::new(2, 2, area(1.0, 1.0), vec![1.0, 0.0, 0.0, 1.0]).unwrap();
         assert_eq!(field.height(Point::new(-0.5, 2.5)), Some(1.0));
         assert_eq!(field.height(Point::new(-0.5, 2.0)), Some(0.5));
+    }
+
+    #[test]
+    fn bounds_hold_for_every_place_of_a_rectangle() {
+        let mut stream = crate::random::Stream::new(5);
+        let all = area(9.0, 7.0);
+        let field = HeightField::from_fn(40, 30, all, |_| stream.between(-1.0, 1.0)).unwrap();
+        for _ in 0..300 {
+            let mut corner = || Point::new(stream.between(-2.0, 9.0), stream.between(1.0, 10.0));
+            let (a, b) = (corner(), corner());
+            let part = Aabb::new(a.inf(&b), a.sup(&b));
+            let bound = field.upper_bound(&part);
+            assert!(bound <= field.highest());
+            for _ in 0..20 {
+                let at = Point::new(
+                    stream.between(part.min.x, part.max.x),
+                    stream.between(part.min.y, part.max.y),
+                );
+                assert!(field.height(at).is_none_or(|height| height <= bound));
+            }
+        }
+        assert_eq!(
+            field.upper_bound(&Aabb::new(Point::new(20.0, 3.0), Point::new(21.0, 4.0))),
+            f64::NEG_INFINITY
+        );
     }
 
     #[test]

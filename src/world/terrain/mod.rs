@@ -1,4 +1,4 @@
-//! Hills: one surface that carries robots, stops rays and is drawn.
+//! Hills: one surface that carries robots, blocks rays and is drawn.
 
 mod height_field;
 mod pyramid;
@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 pub use height_field::HeightField;
 
-/// The hills of a world, as its file describes them.
+/// The hills of a world, as described in its file.
 ///
 /// ```
 /// use roverlab::geometry::{Aabb, Point};
@@ -23,21 +23,22 @@ pub use height_field::HeightField;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Terrain {
-    /// Metres along x that the hills cover, from x = 0.
+    /// Extent along x, from x = 0 (m).
     pub width: f64,
-    /// Metres along y that they cover, from y = 0.
+    /// Extent along y, from y = 0 (m).
     pub height: f64,
-    /// Metres above the floor of a white pixel, or of a grid's highest place; black is 0.
+    /// Height above the floor of a white pixel, or of a grid's highest point (m); black is 0.
     pub max_elevation: f64,
-    /// The file of the elevations as the world's file names it.
+    /// File of the elevations, as named in the world's file.
     pub file: PathBuf,
-    /// The surface, once a [`FileSource`](super::formats::FileSource) has found the file: reading a whole scene does
-    /// so, reading the text of a world alone does not. Beyond it there is no ground.
+    /// The surface, once a [`FileSource`](super::formats::FileSource) has found the file; this happens when a
+    /// whole scene is read, but not when only the text of a world is read. Beyond the surface there is no
+    /// ground.
     pub surface: Option<Arc<HeightField>>,
 }
 
 impl Terrain {
-    /// Hills that a program has made.
+    /// Hills made by a program.
     pub fn new(file: impl Into<PathBuf>, surface: HeightField) -> Self {
         let far = surface.area().max;
         let max_elevation = surface.highest();

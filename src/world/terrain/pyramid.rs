@@ -1,4 +1,4 @@
-/// The lowest and the highest elevation of some cells.
+/// Lowest and highest elevation of some cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Bounds {
     pub(super) low: f32,
@@ -13,10 +13,10 @@ impl Bounds {
     }
 }
 
-/// Lowest and highest elevations over blocks of cells, each level's blocks twice as wide as those of the one below:
-/// what a ray passes high above, or deep below, it need not look at.
+/// Lowest and highest elevations of blocks of cells; each level's blocks are twice as wide as those of the
+/// level below. A ray skips blocks that it passes completely above or below.
 ///
-/// The first level's blocks are four cells wide. Below that, a look at a cell's corners is as quick.
+/// The first level's blocks are four cells wide; below that, testing the cells' corners is as fast.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Pyramid {
     levels: Vec<Level>,
@@ -28,11 +28,11 @@ struct Level {
     blocks: Vec<Bounds>,
 }
 
-/// The first level's blocks are `1 << FIRST` cells wide.
+/// Blocks of the first level are `1 << FIRST` cells wide.
 pub(super) const FIRST: u32 = 2;
 
 impl Pyramid {
-    /// The pyramid over a grid of samples, row by row.
+    /// The pyramid over a grid of samples in rows.
     pub(super) fn over(columns: usize, rows: usize, heights: &[f32]) -> Self {
         let size = |samples: usize| ((samples - 2) >> FIRST) + 1;
         let mut levels = vec![Level::from_samples((size(columns), size(rows)), (columns, rows), heights)];
@@ -42,19 +42,19 @@ impl Pyramid {
         Self { levels }
     }
 
-    /// The level of the largest block, of which there is one.
+    /// Level of the largest block, which covers everything.
     pub(super) fn top(&self) -> u32 {
         self.levels.len() as u32 - 1 + FIRST
     }
 
-    /// The bounds of the block of `1 << level` cells each way that holds a cell.
+    /// Bounds of the block of `1 << level` cells in each direction that contains a cell.
     #[inline]
     pub(super) fn block(&self, level: u32, column: usize, row: usize) -> Bounds {
         let blocks = &self.levels[(level - FIRST) as usize];
         blocks.blocks[(row >> level) * blocks.columns + (column >> level)]
     }
 
-    /// The bounds of the whole grid.
+    /// Bounds of the whole grid.
     pub(super) fn whole(&self) -> Bounds {
         self.block(self.top(), 0, 0)
     }
@@ -67,7 +67,7 @@ impl Level {
         heights: &[f32],
     ) -> Self {
         let mut blocks = Vec::with_capacity(columns * rows);
-        // Samples on the border between two blocks belong to both.
+        // Samples on the border of two blocks belong to both.
         let part = |block: usize, samples: usize| (block << FIRST)..(((block + 1) << FIRST) + 1).min(samples);
         for row in 0..rows {
             for column in 0..columns {
@@ -82,7 +82,7 @@ impl Level {
         Self { columns, blocks }
     }
 
-    /// The level above, unless this one is a single block.
+    /// The level above; `None` if this one is a single block.
     fn above(&self) -> Option<Self> {
         if self.blocks.len() == 1 {
             return None;

@@ -1,4 +1,4 @@
-//! Rays against the surface: an exact walk from cell to cell, past blocks that lie wholly below or above the ray.
+//! Rays against the surface: an exact traversal of cells that skips blocks completely below or above the ray.
 
 use super::HeightField;
 use super::height_field::height_in;
@@ -6,34 +6,34 @@ use super::pyramid::FIRST;
 use crate::geometry::{Point3, Vector3};
 
 impl HeightField {
-    /// The distance in metres to where a ray first meets the surface, from either side; infinite if it does not within
-    /// `max_range`.
+    /// Distance to a ray's first intersection with the surface, from either side (m); infinite if there is
+    /// none within `max_range`.
     ///
-    /// `direction` is a unit vector. A ray that starts on the surface measures 0. Where the ray comes close to the
-    /// surface the walk looks at each cell on its way; elsewhere at blocks, so that its cost grows with the logarithm
-    /// of the field's size.
+    /// `direction` is a unit vector. A ray that starts on the surface has distance 0. Near the surface, the
+    /// traversal visits each cell; elsewhere it visits blocks, so its cost grows with the logarithm of the
+    /// field's size.
     pub fn cast_ray(&self, origin: Point3, direction: Vector3, max_range: f64) -> f64 {
         let Some(mut walk) = Walk::onto(self, origin, direction, max_range) else { return f64::INFINITY };
         walk.first_hit(self)
     }
 }
 
-/// A ray on its way over the cells. Places are in cells from the corner of least x and y; distances along the ray in
-/// metres.
+/// Traversal of cells by a ray. Positions are in cells from the corner with the smallest x and y; distances
+/// along the ray are in metres.
 struct Walk {
     x: Axis,
     y: Axis,
-    /// The origin's height, and its change in a metre.
+    /// Height of the origin, and its change per metre.
     z: f64,
     rise: f64,
-    /// How far it has come, and how far it goes.
+    /// Present and final distance.
     at: f64,
     end: f64,
     column: usize,
     row: usize,
 }
 
-/// A ray's course along one axis.
+/// Motion of a ray along one axis.
 struct Axis {
     start: f64,
     speed: f64,
@@ -46,7 +46,7 @@ impl Axis {
         Self { start, speed, inverse: 1.0 / speed, cells }
     }
 
-    /// From where to where the ray is over cells.
+    /// Interval in which the ray is over cells.
     fn span(&self) -> (f64, f64) {
         let far = self.cells as f64;
         if self.speed == 0.0 {
@@ -65,13 +65,13 @@ impl Axis {
         self.start + self.speed * distance
     }
 
-    /// The cell at a distance, at least `from` and below `to`.
+    /// Cell at a distance, at least `from` and below `to`.
     #[inline]
     fn cell(&self, distance: f64, from: usize, to: usize) -> usize {
         (self.place(distance) as usize).clamp(from, to - 1)
     }
 
-    /// The distance at which the ray leaves cells of which `from` is the first and `to` the one behind the last.
+    /// Distance at which the ray leaves the cells `from..to`.
     #[inline]
     fn leaves(&self, from: usize, to: usize) -> f64 {
         if self.speed == 0.0 {
@@ -81,7 +81,7 @@ impl Axis {
         (border as f64 - self.start) * self.inverse
     }
 
-    /// The cell beyond the border; `None` beyond the last one.
+    /// The next cell; `None` beyond the last one.
     #[inline]
     fn beyond(&self, from: usize, to: usize) -> Option<usize> {
         if self.speed > 0.0 { (to < self.cells).then_some(to) } else { from.checked_sub(1) }
@@ -89,7 +89,7 @@ impl Axis {
 }
 
 impl Walk {
-    /// A ray where it first is over cells; `None` if it never is.
+    /// The traversal at the ray's first position over cells; `None` if there is none.
     fn onto(field: &HeightField, origin: Point3, direction: Vector3, max_range: f64) -> Option<Self> {
         let start = (origin.xy() - field.area().min).component_mul(&field.per_metre);
         let speed = direction.xy().component_mul(&field.per_metre);
@@ -98,7 +98,7 @@ impl Walk {
         let ((x_in, x_out), (y_in, y_out)) = (x.span(), y.span());
         let (at, end) = (x_in.max(y_in).max(0.0), x_out.min(y_out).min(max_range));
         let numbers = origin.coords.iter().chain(&direction).all(|part| part.is_finite());
-        // Written so that a range that is not a number ends here.
+        // Written so that a NaN range ends here.
         if !(numbers && at <= end && at <= max_range && at.is_finite()) {
             return None;
         }
@@ -112,7 +112,7 @@ impl Walk {
 
     fn first_hit(&mut self, field: &HeightField) -> f64 {
         let pyramid = &field.pyramid;
-        // Above 0 while the ray is above the surface, below 0 while it is below.
+        // Positive while the ray is above the surface, negative while it is below.
         let mut side = self.clearance(field, self.at);
         if side == 0.0 {
             return self.at;
@@ -152,7 +152,7 @@ impl Walk {
             let Some(next) = next else { return f64::INFINITY };
             (self.column, self.row) = next;
             self.at = self.at.max(until);
-            // Larger blocks are worth a look only where a new one begins.
+            // Larger blocks need a test only at their start.
             while level < top {
                 let above = if level == 0 { FIRST } else { level + 1 };
                 if column >> above == self.column >> above && row >> above == self.row >> above {
@@ -163,7 +163,7 @@ impl Walk {
         }
     }
 
-    /// Metres by which the ray is above the surface at a distance, in its present cell.
+    /// Height of the ray above the surface at a distance, in its present cell (m).
     #[inline]
     fn clearance(&self, field: &HeightField, distance: f64) -> f64 {
         let corners = field.corners(self.column, self.row);
@@ -177,8 +177,8 @@ impl Walk {
         self.height(distance) - height_in(corners, x, y)
     }
 
-    /// Where the ray meets the surface between here and `until`, in its present cell. The clearance is linear in the
-    /// distance up to the cell's diagonal and behind it.
+    /// Intersection of the ray with the surface between here and `until`, in its present cell. The clearance
+    /// is linear in the distance on each side of the cell's diagonal.
     #[inline]
     fn hit_in_cell(&self, field: &HeightField, until: f64, side: &mut f64) -> Option<f64> {
         let corners = field.corners(self.column, self.row);
@@ -203,10 +203,10 @@ impl Walk {
     }
 }
 
-/// Where a clearance of this side becomes 0 that is linear between two distances.
+/// Zero of a clearance that is linear between two distances and starts on the given side.
 #[inline]
 fn crossing((from, before): (f64, f64), (to, after): (f64, f64), side: f64) -> f64 {
-    // By rounding it may have changed sides on the edge between two cells.
+    // Rounding may have changed its sign on the edge between two cells.
     if (before > 0.0) != (side > 0.0) || before == after {
         return from;
     }
@@ -233,7 +233,7 @@ mod tests {
         HeightField::from_fn(columns, rows, area, |_| stream.between(-0.5, 0.5)).unwrap()
     }
 
-    /// The nearest of the hits with each triangle, by its plane.
+    /// Nearest intersection with all triangles, by their planes.
     fn brute(field: &HeightField, origin: Point3, direction: Vector3, reach: f64) -> f64 {
         let (area, pitch) = (field.area(), field.pitch());
         let corner = |column: usize, row: usize| {
@@ -273,7 +273,7 @@ mod tests {
             (dx, dy, dz) in (-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64), flat in 0..4, reach in 0.0..8.0f64,
         ) {
             let field = hills(seed, columns, rows);
-            // Along an axis, level, or straight down as often as not.
+            // Equally often general, level, along an axis, and vertical.
             let direction = match flat { 0 => unit(dx, dy, dz), 1 => unit(dx, dy, 0.0), 2 => unit(dx, 0.0, dz), _ => unit(0.0, 0.0, dz) };
             let origin = Point3::new(x, y, z);
             let (found, expected) = (field.cast_ray(origin, direction, reach), brute(&field, origin, direction, reach));

@@ -8,7 +8,9 @@ mod cameras;
 mod driving;
 mod evolution;
 mod grids;
+mod hills;
 mod loops;
+mod marine;
 mod mazes;
 mod pictures;
 mod races;
@@ -83,6 +85,7 @@ pub(crate) fn scenarios() -> impl Iterator<Item = &'static Scenario> {
         safety::SCENARIOS,
         bugs::SCENARIOS,
         grids::SCENARIOS,
+        hills::SCENARIOS,
         scans::SCENARIOS,
         mazes::SCENARIOS,
         tracks::SCENARIOS,
@@ -90,6 +93,7 @@ pub(crate) fn scenarios() -> impl Iterator<Item = &'static Scenario> {
         vision::SCENARIOS,
         evolution::SCENARIOS,
         loops::SCENARIOS,
+        marine::SCENARIOS,
         pictures::SCENARIOS,
     ];
     wings.into_iter().flatten()

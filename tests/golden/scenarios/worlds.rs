@@ -87,7 +87,7 @@ fn generators() -> Result<String> {
 }
 
 fn note_robot(log: &mut String, spec: &RobotSpec) {
-    note(log, "robot", &(&spec.name, spec.drive, spec.motor, spec.footprint, spec.height, spec.mass));
+    note(log, "robot", &(&spec.name, &spec.drive, spec.motor, spec.footprint, spec.height, spec.mass));
     note(log, "sensors", &(&spec.psds, &spec.lidar, &spec.camera));
     note(log, "body", &spec.body);
 }

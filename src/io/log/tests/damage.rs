@@ -139,6 +139,42 @@ fn every_flipped_bit_is_found_out_or_harmless() {
     assert!(found_out > flips * 99 / 100, "{found_out} of {flips}");
 }
 
+/// The first length in a file, that of the profile's name, once said 2 GiB to be asked for.
+#[test]
+fn a_length_beyond_its_record_is_damage() {
+    let mut bytes = recorded(0.2);
+    bytes[20] ^= 0x80;
+    let first = super::reader::record_at(&bytes, mcap::MAGIC.len()).unwrap();
+    assert!(first.parse().unwrap_err().to_string().contains("at byte 8 is too short"));
+    let saved = recover(&bytes).unwrap();
+    assert!(saved.header && Log::read(saved.bytes).is_ok());
+}
+
+/// A small file may hold gigabytes of nothing.
+#[cfg(feature = "zstd")]
+#[test]
+fn a_file_that_unpacks_to_far_more_than_files_do_is_refused() {
+    let metadata = header().metadata();
+    let options = mcap::WriteOptions::new().compression(Some(mcap::Compression::Zstd)).chunk_size(None);
+    let mut file = options.create(io::Cursor::new(Vec::new())).unwrap();
+    file.write_metadata(&mcap::records::Metadata { name: "roverlab".into(), metadata }).unwrap();
+    let schema = file.add_schema("nothing", "protobuf", &[]).unwrap();
+    let channel_id = file.add_channel(schema, "/nothing", "protobuf", &BTreeMap::new()).unwrap();
+    let nothing = vec![0; 20 << 20];
+    for sequence in 0..20 {
+        let times = mcap::records::MessageHeader { channel_id, sequence, log_time: 0, publish_time: 0 };
+        file.write_to_known_channel(&times, &nothing).unwrap();
+        file.flush().unwrap();
+    }
+    file.finish().unwrap();
+    let bytes = file.into_inner().into_inner();
+    assert!(bytes.len() < 60_000, "{}", bytes.len());
+    let error = Log::read(bytes.clone()).unwrap_err().to_string();
+    assert!(error.contains("uncompressed bytes; expected at most"), "{error}");
+    let saved = recover(&bytes).unwrap();
+    assert!(saved.header && (1..20).contains(&saved.chunks), "{}", saved.chunks);
+}
+
 proptest! {
     #![proptest_config(crate::testing::cases(64))]
 

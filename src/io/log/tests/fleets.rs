@@ -65,7 +65,7 @@ fn a_troop_replays_to_the_bit() {
         .unwrap()
         .iter()
         .filter(|record| record.opcode == mcap::records::op::CHUNK)
-        .flat_map(|chunk| super::reader::inner(&chunk.body[40..]).unwrap())
+        .flat_map(|chunk| super::reader::inner(&chunk.body[40..]).map(|inner| inner.unwrap()))
         .filter(|record| record.opcode == mcap::records::op::MESSAGE)
         .map(|record| super::reader::message(record.body).unwrap().header.log_time)
         .collect();

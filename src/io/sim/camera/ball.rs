@@ -3,11 +3,11 @@ use super::light::{SUN, scaled, shade};
 use super::view::{NEAR, Place, Seen, View};
 use crate::world::Colour;
 
-/// Draws a ball, exact to the pixel, where it is nearer than what is there.
+/// Draws a ball, exact to the pixel, with the depth test.
 pub(super) fn draw_ball(canvas: &mut Canvas, view: &View, centre: Place, radius: f64, colour: Colour) {
     let centre = view.see(centre);
     let power = centre.dot(centre) - radius * radius;
-    // From within a ball, nothing of it is seen.
+    // A ball around the camera is invisible.
     if power <= 0.0 || radius <= 0.0 || view.misses(centre, radius) {
         return;
     }
@@ -25,7 +25,7 @@ pub(super) fn draw_ball(canvas: &mut Canvas, view: &View, centre: Place, radius:
             if inside < 0.0 || along <= 0.0 {
                 continue;
             }
-            // The ray goes one metre ahead for each unit, so this is the depth.
+            // The ray advances one metre of depth per unit, so this is the depth.
             let depth = (along - inside.sqrt()) / squared;
             let near = (1.0 / depth) as f32;
             if depth < NEAR || near <= canvas.nearness[start + column] {
@@ -39,11 +39,11 @@ pub(super) fn draw_ball(canvas: &mut Canvas, view: &View, centre: Place, radius:
     }
 }
 
-/// The first pixel and the one behind the last, along one side of the picture, that a ball may cover.
+/// First pixel, and the one after the last, that a ball may cover along one side of the picture.
 fn extent(aside: f64, ahead: f64, radius: f64, focal: f64, middle: f64, count: usize) -> (usize, usize) {
     let power = aside * aside + ahead * ahead - radius * radius;
     let square = ahead * ahead - radius * radius;
-    // Beside the camera, a ball's outline has no end.
+    // Beside the camera, a ball's outline is unbounded.
     if power <= 0.0 || ahead <= 0.0 || square <= 0.0 {
         return (0, count);
     }

@@ -1,17 +1,17 @@
-/// A colour as one number, `0xRRGGBB`.
+/// A colour as a number, `0xRRGGBB`.
 pub(super) type Packed = u32;
 
-/// A picture in the making: colours, and how near what they show is.
+/// A picture being drawn: colours and a depth buffer.
 #[derive(Debug, Default)]
 pub(super) struct Canvas {
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) colours: Vec<Packed>,
-    /// The inverse of the distance along the line of sight; 0 behind everything.
+    /// Inverse depth along the line of sight; 0 at infinity.
     pub(super) nearness: Vec<f32>,
 }
 
-/// The columns, from one to before the other, that a shape covers in a row.
+/// Columns of a shape in one row, as a half-open interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Span {
     pub(super) left: f64,
@@ -19,10 +19,10 @@ pub(super) struct Span {
 }
 
 impl Span {
-    /// No columns at all.
+    /// An empty interval.
     pub(super) const EMPTY: Self = Self { left: f64::INFINITY, right: f64::NEG_INFINITY };
 
-    /// The pixels whose middles are in the span.
+    /// Pixels whose centres are in the span.
     #[inline(always)]
     #[allow(clippy::inline_always, reason = "part of loops compiled for several processors")]
     fn pixels(self, width: usize) -> (usize, usize) {
@@ -30,18 +30,18 @@ impl Span {
     }
 }
 
-/// The first of `count` pixels whose middle is at `edge` or behind it.
+/// First of `count` pixels whose centre is at or beyond `edge`.
 #[inline(always)]
 #[allow(clippy::inline_always, reason = "part of loops compiled for several processors")]
 pub(super) fn first_pixel(edge: f64, count: usize) -> usize {
-    // Conversion cuts towards zero and saturates; with the clamp before it, it rounds up.
+    // The conversion truncates towards zero and saturates; with the clamp before it, it rounds up.
     let shifted = (edge - 0.5).clamp(0.0, count as f64);
     let whole = shifted as usize;
     whole + usize::from((whole as f64) < shifted)
 }
 
-/// A number that changes evenly over the picture: its value in the middle of pixel (0, 0), and its change from one
-/// column and one row to the next.
+/// A linear function on the picture: its value at the centre of pixel (0, 0) and its increments per column
+/// and row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Slope {
     pub(super) origin: f64,
@@ -58,7 +58,7 @@ impl Slope {
 }
 
 impl Canvas {
-    /// Makes the canvas as large as asked for, with nothing on it but old colours.
+    /// Sets the size of the canvas and clears the depths; colours are not cleared.
     pub(super) fn reset(&mut self, width: usize, height: usize) {
         (self.width, self.height) = (width, height);
         self.colours.resize(width * height, 0);
@@ -66,12 +66,12 @@ impl Canvas {
         self.nearness.resize(width * height, 0.0);
     }
 
-    /// Draws a flat shape in one colour where it is nearer than what is there. Its spans begin at a row.
+    /// Draws a flat shape in one colour with the depth test. Its spans begin at row `top`.
     pub(super) fn fill(&mut self, top: usize, spans: &[Span], nearness: &Slope, colour: Packed) {
         fill(self, top, spans, nearness, colour);
     }
 
-    /// Mixes a colour into what is there, wherever the shape is: what lies on the floor before anything stands on it.
+    /// Blends a colour over a shape on the floor, before anything stands on it.
     pub(super) fn tint(&mut self, top: usize, spans: &[Span], colour: Packed, alpha: u8) {
         for (row, span) in (top..).zip(spans) {
             let (from, to) = span.pixels(self.width);
@@ -81,9 +81,28 @@ impl Canvas {
             }
         }
     }
+
+    /// As [`tint`](Self::tint), but only where the shape is nearer than what is there.
+    pub(super) fn tint_seen(
+        &mut self,
+        top: usize,
+        spans: &[Span],
+        nearness: &Slope,
+        (colour, alpha): (Packed, u8),
+    ) {
+        for (row, span) in (top..).zip(spans) {
+            let (from, to) = span.pixels(self.width);
+            for column in from..to {
+                let at = row * self.width + column;
+                if nearness.at(column, row) as f32 > self.nearness[at] {
+                    self.colours[at] = mix(self.colours[at], colour, alpha);
+                }
+            }
+        }
+    }
 }
 
-/// A colour with another one laid over it.
+/// Blend of one colour over another.
 fn mix(below: Packed, above: Packed, alpha: u8) -> Packed {
     let alpha = u32::from(alpha);
     let channel = |shift: u32| {

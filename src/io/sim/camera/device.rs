@@ -4,37 +4,35 @@ use super::film::Film;
 use super::fisheye::{Fisheye, Gaze};
 use super::studio::Studio;
 use super::view::View;
-use crate::geometry::{Pose, units};
-use crate::io::sim::{NoiseModel, TICKS_PER_SECOND};
+use crate::geometry::{Point3, Pose, Pose3, units};
+use crate::io::camera::FRAME_RATE;
+use crate::io::sim::terrain::Hills;
+use crate::io::sim::{NoiseModel, SERVO_RATE, TICKS_PER_SECOND};
 use crate::io::{Error, ErrorKind, Resolution, Result};
 use crate::random::Stream;
-use crate::world::CameraSpec;
 use crate::world::space::Space;
+use crate::world::{CameraSpec, Mount};
 
 /// A robot's camera on its pan-tilt head.
 #[derive(Debug)]
 pub(in crate::io::sim) struct CameraDevice {
     spec: CameraSpec,
-    /// Metres between the world's floor and the robot's foot.
+    /// Height of the robot's foot above the world's floor (m).
     elevation: f64,
     pub(in crate::io::sim) resolution: Resolution,
     pan: Servo,
     tilt: Servo,
     film: Film,
-    /// The lens, unless the camera is a pinhole.
+    /// The lens; `None` for a pinhole camera.
     fisheye: Option<Box<Fisheye>>,
-    /// The last image, and the number of its frame.
+    /// The last image and its frame number.
     last: Option<(u64, RgbImage)>,
 }
 
-/// Images that the camera takes in a second. Who asks more often gets the same image again.
-const FRAME_RATE: f64 = 30.0;
-/// Degrees per second at which a servo turns.
-const SERVO_RATE: f64 = 30.0;
 /// Pictures of a pinhole camera grow without end towards 180 degrees.
 const WIDEST: f64 = 170.0;
 
-/// When and under what light an image is taken.
+/// Time and light of an image.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::io::sim) struct Moment<'a> {
     pub(in crate::io::sim) tick: u64,
@@ -42,7 +40,7 @@ pub(in crate::io::sim) struct Moment<'a> {
     pub(in crate::io::sim) noise: &'a NoiseModel,
 }
 
-/// A servo that turns evenly from where it was to where it was told to go.
+/// A servo that turns at a constant rate from its old position to the commanded one.
 #[derive(Debug, Clone, Copy, Default)]
 struct Servo {
     from: f64,
@@ -77,7 +75,7 @@ impl CameraDevice {
         }
     }
 
-    /// Turns the head: the first servo pans, the second one tilts. Servos count to the right and upwards.
+    /// Turns the head: servo 1 pans, servo 2 tilts. Positive positions are to the right and up.
     pub(in crate::io::sim) fn set_servo(&mut self, servo: u8, position: f64, tick: u64) -> Result<()> {
         let (head, angle) = match servo {
             1 => (&mut self.pan, -position * self.spec.max_pan),
@@ -91,12 +89,11 @@ impl CameraDevice {
         Ok(())
     }
 
-    /// The image of the present frame for the robot of an index, which is at a pose: taken when the first one
-    /// asks for it.
+    /// The image of the present frame for a robot at a pose; taken at the first request.
     pub(in crate::io::sim) fn take(
         &mut self,
         studio: &mut Studio,
-        space: &Space,
+        (space, hills): (&Space, Option<&Hills>),
         (index, pose): (usize, Pose),
         moment: Moment<'_>,
         image: &mut RgbImage,
@@ -109,13 +106,13 @@ impl CameraDevice {
             }
             _ => {}
         }
-        let gaze = self.gaze(&pose, moment.tick)?;
+        let gaze = self.gaze(&pose, hills.map(|hills| hills.pose(index)), moment.tick)?;
         let Studio { scenery, canvas, side, darkroom } = studio;
         if let Some(lens) = &mut self.fisheye {
-            lens.draw((canvas, side), scenery, &gaze, space, index)?;
+            lens.draw((canvas, side), scenery, &gaze, (space, hills), index)?;
         } else {
             let view = View::new(gaze.eye, gaze.heading, gaze.tilt, gaze.field_of_view, gaze.dimensions);
-            scenery.draw(canvas, &view, space, index)?;
+            scenery.draw(canvas, &view.rolled(gaze.roll), (space, hills), index)?;
         }
         let time = moment.tick as f64 / TICKS_PER_SECOND;
         self.film.develop(canvas, time, moment.light, moment.noise, darkroom, image);
@@ -125,7 +122,7 @@ impl CameraDevice {
         Ok(())
     }
 
-    fn gaze(&self, robot: &Pose, tick: u64) -> Result<Gaze> {
+    fn gaze(&self, robot: &Pose, on_hills: Option<Pose3>, tick: u64) -> Result<Gaze> {
         let spec = &self.spec;
         let widest = if spec.fisheye { 360.0 } else { WIDEST };
         if !(spec.field_of_view > 0.0 && spec.field_of_view <= units::from_deg(widest)) {
@@ -135,19 +132,22 @@ impl CameraDevice {
             );
             return Err(Error::new(ErrorKind::Unsupported, message));
         }
-        let mount = Pose::new(spec.mount.x, spec.mount.y, spec.mount.yaw);
-        let place = robot.compose(&mount);
-        Ok(Gaze {
-            eye: [place.x, place.y, self.elevation + spec.mount.z],
-            heading: place.heading + self.pan.angle(tick),
-            tilt: spec.tilt + self.tilt.angle(tick),
-            field_of_view: spec.field_of_view,
-            dimensions: self.resolution.dimensions(),
-        })
+        let Mount { x, y, z, yaw, .. } = spec.mount;
+        let (pan, tilt) = (self.pan.angle(tick), spec.tilt + self.tilt.angle(tick));
+        let (field_of_view, dimensions) = (spec.field_of_view, self.resolution.dimensions());
+        if let Some(robot) = on_hills {
+            let head = Pose3::from_angles(Point3::new(x, y, z), 0.0, -tilt, yaw + pan);
+            let head = robot.compose(&head);
+            let ([roll, pitch, heading], eye) = (head.roll_pitch_yaw(), head.position.into());
+            return Ok(Gaze { eye, heading, tilt: -pitch, roll, field_of_view, dimensions });
+        }
+        let place = robot.compose(&Pose::new(x, y, yaw));
+        let eye = [place.x, place.y, self.elevation + z];
+        Ok(Gaze { eye, heading: place.heading + pan, tilt, roll: 0.0, field_of_view, dimensions })
     }
 }
 
-/// Copies an image, into the memory of the other one if that is as large.
+/// Copies an image, reusing the destination's memory if the size is equal.
 fn copy(from: &RgbImage, to: &mut RgbImage) {
     if from.dimensions() == to.dimensions() {
         to.copy_from_slice(from);

@@ -1,7 +1,7 @@
 use super::canvas::{Canvas, Packed, Slope, Span};
 use super::view::{NEAR, Place, Seen, View};
 
-/// What cutting and drawing flat faces needs to remember, used again from one face to the next.
+/// Buffers for clipping and drawing flat faces.
 #[derive(Debug, Default)]
 pub(super) struct Cutter {
     seen: Vec<Seen>,
@@ -10,7 +10,7 @@ pub(super) struct Cutter {
     spans: Vec<Span>,
 }
 
-/// The plane of a face in the camera's frame: `normal . place = offset`. Seen from its front, the offset is negative.
+/// A face's plane in the camera's frame: `normal . place = offset`. From the front, the offset is negative.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Plane {
     pub(super) normal: Seen,
@@ -18,7 +18,7 @@ pub(super) struct Plane {
 }
 
 impl Plane {
-    /// The inverse of the depth over the picture.
+    /// Inverse depth over the picture.
     pub(super) fn nearness(&self, view: &View) -> Slope {
         let Seen { x, y, z } = self.normal;
         let scale = 1.0 / self.offset;
@@ -29,8 +29,8 @@ impl Plane {
 }
 
 impl Cutter {
-    /// Draws a convex face in one colour. Its corners run counter-clockwise as seen from its front; from behind it is
-    /// not there.
+    /// Draws a convex face in one colour. Its corners run counter-clockwise as seen from the front; the back
+    /// is invisible.
     pub(super) fn draw(&mut self, canvas: &mut Canvas, view: &View, corners: &[Place], colour: Packed) {
         let Some(plane) = self.look(view, corners) else { return };
         if plane.offset >= 0.0 {
@@ -41,7 +41,7 @@ impl Cutter {
         }
     }
 
-    /// As [`draw`](Self::draw), but that the face is seen from behind too.
+    /// Like [`draw`](Self::draw), with the back visible.
     pub(super) fn draw_either_side(
         &mut self,
         canvas: &mut Canvas,
@@ -53,6 +53,18 @@ impl Cutter {
             && let Some((top, spans)) = self.cut(view)
         {
             canvas.fill(top, spans, &plane.nearness(view), colour);
+        }
+    }
+
+    /// Draws how near a triangle is whose corners are in the camera's frame, where it is nearer than what is there. Its
+    /// colour is none yet.
+    pub(super) fn draw_seen(&mut self, canvas: &mut Canvas, view: &View, corners: &[Seen; 3]) {
+        self.seen.clear();
+        self.seen.extend_from_slice(corners);
+        if let Some(plane) = self.plane()
+            && let Some((top, spans)) = self.cut(view)
+        {
+            canvas.fill(top, spans, &plane.nearness(view), 0);
         }
     }
 
@@ -72,12 +84,32 @@ impl Cutter {
         }
     }
 
+    /// As [`tint`](Self::tint), but only where the face is nearer than what is there.
+    pub(super) fn tint_seen(
+        &mut self,
+        canvas: &mut Canvas,
+        view: &View,
+        corners: &[Place],
+        colour: Packed,
+        alpha: u8,
+    ) {
+        let Some(plane) = self.look(view, corners).filter(|plane| plane.offset < 0.0) else { return };
+        if let Some((top, spans)) = self.cut(view) {
+            canvas.tint_seen(top, spans, &plane.nearness(view), (colour, alpha));
+        }
+    }
+
     /// Takes a face's corners into the camera's frame. Returns its plane, if it has one that does not hold the eye.
     pub(super) fn look(&mut self, view: &View, corners: &[Place]) -> Option<Plane> {
         self.seen.clear();
         self.seen.extend(corners.iter().map(|&corner| view.see(corner)));
+        self.plane()
+    }
+
+    /// The plane of the face that is looked at, if it has one that does not hold the eye.
+    fn plane(&self) -> Option<Plane> {
         let first = *self.seen.first()?;
-        // Twice the area as a vector: faces with many corners close together lose nothing.
+        // Twice the area as a vector; accurate even for faces with many close corners.
         let mut normal = Seen { x: 0.0, y: 0.0, z: 0.0 };
         for pair in self.seen.windows(2) {
             let part = pair[0].minus(first).cross(pair[1].minus(first));
@@ -87,7 +119,7 @@ impl Cutter {
         (offset.abs() > 1e-9 * normal.norm()).then_some(Plane { normal, offset })
     }
 
-    /// The rows and columns that the face covers which was looked at last: the first row, and a span for each row.
+    /// Rows and columns of the last transformed face: the first row, and a span for each row.
     pub(super) fn cut(&mut self, view: &View) -> Option<(usize, &[Span])> {
         self.clip();
         self.corners.clear();
@@ -105,7 +137,7 @@ impl Cutter {
         self.spans.resize(bottom - top, Span::EMPTY);
         for (i, &a) in self.corners.iter().enumerate() {
             let b = self.corners[(i + 1) % self.corners.len()];
-            // The same edge has the same pixels in both faces that share it.
+            // Adjacent faces get identical pixels for their common edge.
             let (upper, lower) = if a.1 < b.1 { (a, b) } else { (b, a) };
             let slope = (lower.0 - upper.0) / (lower.1 - upper.1);
             for row in rows(upper.1)..rows(lower.1) {
@@ -118,7 +150,7 @@ impl Cutter {
         Some((top, &self.spans))
     }
 
-    /// Leaves of the face what lies ahead of the camera.
+    /// Clips the face at the near plane.
     fn clip(&mut self) {
         self.clipped.clear();
         for (i, &a) in self.seen.iter().enumerate() {

@@ -5,23 +5,23 @@ use crate::geometry::math;
 use crate::io::sim::NoiseModel;
 use crate::random::Stream;
 
-/// What makes an image of a canvas: the light, and the flaws of a real camera.
+/// Converts a canvas to an image with lighting and the errors of a real camera.
 #[derive(Debug)]
 pub(super) struct Film {
     stream: Stream,
-    /// The error of the exposure in standard deviations, and the time of the last image in seconds.
+    /// Exposure error in standard deviations, and the time of the last image (s).
     drift: f64,
     last: f64,
 }
 
-/// Seconds in which the exposure forgets its error.
+/// Correlation time of the exposure error (s).
 const DRIFT_TIME: f64 = 4.0;
-/// The width of the images for which the noise model states the blur.
+/// Image width for which the noise model specifies the blur (pixels).
 const BLUR_WIDTH: f64 = 320.0;
-/// Shot noise does not fall below that of this level.
+/// Level below which shot noise no longer decreases.
 const DARKEST: f32 = 10.0;
 
-/// Memory for images that are not finished.
+/// Buffers for unfinished images.
 #[derive(Debug, Default)]
 pub(super) struct Darkroom {
     sharp: Vec<u8>,
@@ -35,7 +35,7 @@ impl Film {
         Self { stream, drift, last: 0.0 }
     }
 
-    /// Makes an image of what is on the canvas.
+    /// Makes an image of the canvas.
     pub(super) fn develop(
         &mut self,
         canvas: &Canvas,
@@ -50,9 +50,9 @@ impl Film {
         if image.dimensions() != (width, height) {
             *image = RgbImage::new(width, height);
         }
-        // In 256ths; the brightest light that is told apart makes the darkest shade white.
+        // In 256ths; the highest distinguished gain turns the darkest shade white.
         let gain = (gain * 256.0 + 0.5).clamp(0.0, 65_535.0) as u32;
-        // A camera's noise comes before its levels are made whole, which it hides; so the rest is rounded by chance.
+        // A real camera's noise precedes quantisation and hides it; therefore levels are rounded randomly.
         let dither = (noise.shot > 0.0).then(|| self.stream.bits() as u32);
         let weights = blur_weights(noise.blur * f64::from(width) / BLUR_WIDTH);
         if weights.len() > 1 {
@@ -67,7 +67,7 @@ impl Film {
         }
     }
 
-    /// The factor by which the camera exposes too much: it wanders slowly about 1.
+    /// Factor of overexposure, which varies slowly about 1.
     fn exposure(&mut self, time: f64, sigma: f64) -> f64 {
         if sigma == 0.0 {
             return 1.0;
@@ -81,9 +81,9 @@ impl Film {
     }
 }
 
-/// The weights of a Gaussian, in 256ths, from the middle outwards; one alone if the blur is too small to see.
+/// Weights of a Gaussian in 256ths, from the centre outwards; one weight if the blur is too small to see.
 fn blur_weights(sigma: f64) -> Vec<u16> {
-    /// Pixels that a filter on the stack holds at most.
+    /// Largest number of pixels of a filter on the stack.
     const WIDEST: usize = 48;
     let variance = sigma * sigma;
     if variance < 0.004 {
@@ -91,7 +91,7 @@ fn blur_weights(sigma: f64) -> Vec<u16> {
     }
     let reach = ((3.0 * sigma).ceil() as usize).clamp(1, WIDEST);
     let tails: Vec<f64> = if sigma <= 0.7 {
-        // Three weights of this variance, which samples of the bell would not have.
+        // Three weights of exactly this variance; samples of the bell curve would deviate.
         vec![0.5 * variance]
     } else {
         let bell = |k: usize| math::exp(-0.5 * (k * k) as f64 / variance);
@@ -125,7 +125,7 @@ fn expose(colours: &[u32], gain: u32, dither: Option<u32>, image: &mut [u8]) {
     }
 }
 
-/// Blurs the sharp image: first down the columns, then along the rows. Beyond its edges an image goes on as it ends.
+/// Blurs the sharp image, columns first, then rows. Edge pixels repeat beyond the edges.
 fn blur(room: &mut Darkroom, weights: &[u16], width: usize, image: &mut [u8]) {
     let reach = weights.len() - 1;
     let row_bytes = 3 * width;
@@ -163,7 +163,7 @@ fn blur(room: &mut Darkroom, weights: &[u16], width: usize, image: &mut [u8]) {
 #[multiversion::multiversion(targets("x86_64+avx2+bmi1+bmi2", "x86_64+ssse3+sse4.1"))]
 fn add(sums: &mut [u16], values: &[u8], weight: u16) {
     for (sum, &value) in sums.iter_mut().zip(values) {
-        // Weights sum to 256 and values end at 255, so the sum with its half fits.
+        // Weights sum to 256 and values are at most 255, so the rounded sum fits.
         *sum = sum.wrapping_add(u16::from(value) * weight);
     }
 }
@@ -175,15 +175,15 @@ fn halve(sums: &[u16], out: &mut [u8]) {
     }
 }
 
-/// Adds the noise of counting photons: its standard deviation is `sigma` levels on white, and falls with the square
-/// root of the brightness.
+/// Adds photon noise: its standard deviation is `sigma` levels on white and proportional to the square root
+/// of the brightness.
 #[multiversion::multiversion(targets(
     "x86_64+avx512f+avx512bw+avx512dq+avx512vl",
     "x86_64+avx2+bmi1+bmi2",
     "x86_64+ssse3+sse4.1",
 ))]
 fn grain(image: &mut [u8], sigma: f32, seed: u32) {
-    // The standard deviation of a sum of four bytes.
+    // Standard deviation of a sum of four bytes.
     let scale = sigma / 147.800_77 / 15.968_72;
     for (i, byte) in (0_u32..).zip(image) {
         let level = f32::from(*byte);
@@ -192,7 +192,8 @@ fn grain(image: &mut [u8], sigma: f32, seed: u32) {
     }
 }
 
-/// A random number from -510 to 510, nearly normal: the sum of the four bytes of a hash, less its mean.
+/// An approximately normal random number from -510 to 510: the sum of the four bytes of a hash minus its
+/// mean.
 #[inline(always)]
 #[allow(clippy::inline_always, reason = "part of a loop compiled for several processors")]
 fn four_bytes(index: u32, seed: u32) -> i16 {
@@ -201,7 +202,7 @@ fn four_bytes(index: u32, seed: u32) -> i16 {
     sum as i16 - 510
 }
 
-/// 32 bits that look random.
+/// A 32-bit hash.
 #[inline(always)]
 #[allow(clippy::inline_always, reason = "part of a loop compiled for several processors")]
 fn hash(index: u32, seed: u32) -> u32 {
@@ -228,7 +229,7 @@ mod tests {
             let mut image = vec![level; 60_000];
             grain(&mut image, 4.0, 99);
             let (mean, deviation) = moments(image.iter().map(|&v| f64::from(v)));
-            // White is clipped on one side, and levels are whole.
+            // White is clipped on one side, and levels are integers.
             let tolerance = if level == 250 { 0.9 } else { 0.05 };
             assert!((mean - f64::from(level)).abs() < tolerance, "{level}: {mean}");
             let expected = (16.0 * share * share + 1.0 / 12.0).sqrt();
@@ -266,7 +267,7 @@ mod tests {
     fn rounding_by_chance_keeps_the_mean() {
         let colours = vec![0x14_28_50; 20_000];
         let mut image = vec![0; 3 * colours.len()];
-        // 20, 40 and 80 levels by 1.0117.
+        // 20, 40 and 80 levels times 1.0117.
         expose(&colours, 259, Some(5), &mut image);
         for (channel, level) in [20.0, 40.0, 80.0].into_iter().enumerate() {
             let (mean, _) = moments(image.iter().skip(channel).step_by(3).map(|&v| f64::from(v)));

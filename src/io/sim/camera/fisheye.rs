@@ -5,38 +5,41 @@ use super::scenery::Scenery;
 use super::view::{Place, View};
 use crate::geometry::math;
 use crate::io::Result;
+use crate::io::sim::terrain::Hills;
 use crate::world::space::Space;
 
-/// An equidistant lens: a place in the picture is as far from the middle as its angle from the line of sight
-/// says.
+/// An equidistant lens: the distance of an image point from the centre is proportional to its angle from the
+/// line of sight.
 ///
-/// Straight lines become curves in its picture, so what is to be seen is drawn on the sides of an upright
-/// cube about the camera, flat as they are, and looked at through the lens from there.
+/// Straight lines become curves, so the scene is drawn on the flat sides of an upright cube about the camera,
+/// which are then sampled through the lens.
 #[derive(Debug)]
 pub(super) struct Fisheye {
-    /// Width and height of the picture, the angle across it, and the tilt, for which the sides were worked
+    /// Width and height of the picture, the angle across it, tilt and roll, for which the sides were worked
     /// out.
-    of: (usize, usize, f64, f64),
+    of: (usize, usize, f64, f64, f64),
     /// Pixels along each edge of the cube.
     edge: usize,
-    /// For each side of the cube, the picture's pixels that show it, and those of the side that they show.
+    /// For each side of the cube, the picture's pixels that show it and the corresponding pixels of the side.
     sides: [Vec<(u32, u32)>; SIDES.len()],
 }
 
-/// The sides of the cube: how far to the left of the camera's heading each is, and how far up.
+/// Sides of the cube as angles to the left of the camera's heading and up.
 const SIDES: [(f64, f64); 6] =
     [(0.0, 0.0), (FRAC_PI_2, 0.0), (PI, 0.0), (-FRAC_PI_2, 0.0), (0.0, FRAC_PI_2), (0.0, -FRAC_PI_2)];
-/// Pixels of a side for each of the picture's that it spans in its middle.
+/// Pixels of a side per pixel of the picture at its centre.
 const FINENESS: f64 = 1.25;
-/// Pixels along an edge of a side at most.
+/// Largest number of pixels along an edge.
 const LONGEST_EDGE: f64 = 2048.0;
 
-/// Where a camera with such a lens is and looks.
+/// Position and direction of a camera with such a lens.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Gaze {
     pub(super) eye: Place,
     pub(super) heading: f64,
     pub(super) tilt: f64,
+    /// Radians by which its left side is lifted.
+    pub(super) roll: f64,
     /// Radians from the picture's left edge to its right one.
     pub(super) field_of_view: f64,
     pub(super) dimensions: (u32, u32),
@@ -44,25 +47,25 @@ pub(super) struct Gaze {
 
 impl Fisheye {
     pub(super) fn new() -> Self {
-        Self { of: (0, 0, 0.0, 0.0), edge: 0, sides: [const { Vec::new() }; SIDES.len()] }
+        Self { of: (0, 0, 0.0, 0.0, 0.0), edge: 0, sides: [const { Vec::new() }; SIDES.len()] }
     }
 
-    /// Draws what the camera on a robot sees. `side` is memory.
+    /// Draws the view of a robot's camera. `side` is a buffer.
     pub(super) fn draw(
         &mut self,
         (picture, side): (&mut Canvas, &mut Canvas),
         scenery: &mut Scenery,
         gaze: &Gaze,
-        space: &Space,
+        (space, hills): (&Space, Option<&Hills>),
         me: usize,
     ) -> Result<()> {
         let (width, height) = (gaze.dimensions.0 as usize, gaze.dimensions.1 as usize);
-        let of = (width, height, gaze.field_of_view, gaze.tilt);
+        let of = (width, height, gaze.field_of_view, gaze.tilt, gaze.roll);
         if self.of != of {
             self.work_out(of);
         }
         picture.reset(width, height);
-        // Behind the camera there is nothing but the lens.
+        // Directions beyond 180 degrees stay black.
         picture.colours.fill(0);
         for (pixels, (left, up)) in self.sides.iter().zip(SIDES) {
             if pixels.is_empty() {
@@ -70,7 +73,7 @@ impl Fisheye {
             }
             let dimensions = (self.edge as u32, self.edge as u32);
             let view = View::new(gaze.eye, gaze.heading + left, up, FRAC_PI_2, dimensions);
-            scenery.draw(side, &view, space, me)?;
+            scenery.draw(side, &view, (space, hills), me)?;
             for &(shown, from) in pixels {
                 picture.colours[shown as usize] = side.colours[from as usize];
             }
@@ -79,8 +82,9 @@ impl Fisheye {
     }
 
     /// Finds which pixel of which side each pixel of the picture shows.
-    fn work_out(&mut self, of: (usize, usize, f64, f64)) {
-        let (width, height, field_of_view, tilt) = of;
+    fn work_out(&mut self, of: (usize, usize, f64, f64, f64)) {
+        let (width, height, field_of_view, tilt, roll) = of;
+        let (sin, cos) = math::sin_cos(roll);
         let focal = width as f64 / field_of_view;
         let edge = (2.0 * FINENESS * focal).ceil().clamp(2.0, LONGEST_EDGE);
         (self.of, self.edge) = (of, edge as usize);
@@ -92,6 +96,7 @@ impl Fisheye {
             for column in 0..width {
                 let right = (column as f64 + 0.5 - 0.5 * width as f64) / focal;
                 let down = (row as f64 + 0.5 - 0.5 * height as f64) / focal;
+                let (right, down) = (right * cos - down * sin, down * cos + right * sin);
                 let Some(ray) = ray(right, down, tilt) else { continue };
                 let seen = views.map(|view| view.turned(ray));
                 let nearest =
@@ -104,8 +109,8 @@ impl Fisheye {
     }
 }
 
-/// The direction, ahead, to the left and up, of a place so many radians to the right and down in the picture
-/// of a camera that looks up by `tilt`; `None` beyond straight behind it.
+/// Direction (ahead, left, up) of a picture point at angles to the right and down, for a camera tilted up by
+/// `tilt`; `None` beyond straight behind it.
 fn ray(right: f64, down: f64, tilt: f64) -> Option<Place> {
     let angle = math::hypot(right, down);
     if angle > PI {

@@ -1,21 +1,25 @@
+use std::sync::Arc;
+
 use super::canvas::{Canvas, Packed, first_pixel};
 use super::light::{lit, scaled};
+use super::model::dimmed;
+use super::relief::{Rays, Relief};
 use super::texture::{Level, Texture, between};
 use super::view::View;
-use crate::geometry::{Aabb, Point, Vector};
-use crate::world::Colour;
+use crate::geometry::{Aabb, Point, Vector, math};
+use crate::world::{Colour, HeightField};
 
-/// The sky at the horizon: so pale that it has no hue that a program would look for.
+/// Sky at the horizon, too pale for programs that search for a hue.
 const HORIZON: Colour = Colour::from_hex(0xde_e6_ee);
-/// The sky overhead.
+/// Sky at the zenith.
 const ZENITH: Colour = Colour::from_hex(0xb9_cb_de);
-/// What lies beyond the floor.
+/// Colour beyond the floor.
 const BEYOND: Colour = Colour::from_hex(0x8c_8a_84);
-/// The mean colour of a floor without an image.
+/// Mean brightness of a floor without an image.
 const FLOOR: u32 = 196;
-/// Texels on each side of the pattern of such a floor.
+/// Side of the repeated floor pattern (texels).
 const TILE: usize = 128;
-/// Metres across such a texel.
+/// Size of a texel of the pattern (m).
 const SPECKLE: f64 = 0.008;
 
 /// Floor and sky.
@@ -23,35 +27,47 @@ const SPECKLE: f64 = 0.008;
 pub(super) struct Ground {
     floor: Aabb,
     texture: Texture,
-    /// Whether the texture is an image over the whole floor, instead of a pattern that repeats.
+    /// Whether the texture is one image over the whole floor instead of a repeated pattern.
     stretched: bool,
+    /// What is there instead of a level floor.
+    relief: Option<Relief>,
 }
 
-/// The most places of the floor that a pixel averages.
+/// Largest number of floor samples per pixel.
 const MOST_PLACES: u32 = 8;
 
-/// Where the rays of one row meet the floor: the place of its first pixel, and the steps to the next pixel
-/// and to the next row.
+/// Floor intersections of the rays of one row: the point of the first pixel, and the steps to the next pixel
+/// and row.
 struct FloorRow {
     start: Point,
     step: Vector,
     depth: Vector,
-    /// Metres of floor from one row to the next.
+    /// Distance on the floor from one row to the next (m).
     depth_of_row: f64,
 }
 
 impl Ground {
-    pub(super) fn new(floor: Aabb, image: Option<&image::RgbaImage>) -> Self {
+    pub(super) fn new(
+        floor: Aabb,
+        image: Option<&image::RgbaImage>,
+        hills: Option<Arc<HeightField>>,
+    ) -> Self {
+        let relief = hills.map(Relief::new);
         let light = Colour::from_hex(lit(Colour::WHITE, [0.0, 0.0, 1.0]));
         let stretched = image.and_then(|image| Texture::new(image, light));
         match stretched {
-            Some(texture) => Self { floor, texture, stretched: true },
-            None => Self { floor, texture: speckles(), stretched: false },
+            Some(texture) => Self { floor, texture, stretched: true, relief },
+            None => Self { floor, texture: speckles(), stretched: false, relief },
         }
     }
 
     /// Fills the canvas.
-    pub(super) fn draw(&self, canvas: &mut Canvas, view: &View) {
+    pub(super) fn draw(&mut self, canvas: &mut Canvas, view: &View) {
+        if let Some(relief) = &mut self.relief {
+            relief.draw(canvas, view);
+            self.paint_hills(canvas, view);
+            return;
+        }
         let width = canvas.width;
         for (row, pixels) in canvas.colours.chunks_exact_mut(width).enumerate() {
             match floor_row(view, row) {
@@ -59,6 +75,45 @@ impl Ground {
                 None => pixels.fill(sky(view, row)),
             }
         }
+    }
+
+    /// Gives every pixel its colour, once it is known how near the hills are there.
+    fn paint_hills(&self, canvas: &mut Canvas, view: &View) {
+        let Some(relief) = &self.relief else { return };
+        let (rays, width) = (Rays::of(view), canvas.width);
+        let beyond = lit(BEYOND, [0.0, 0.0, 1.0]);
+        for (at, (colour, &near)) in canvas.colours.iter_mut().zip(&canvas.nearness).enumerate() {
+            let ray = rays.direction(at % width, at / width);
+            *colour = if near > 0.0 {
+                let depth = 1.0 / f64::from(near);
+                let (place, pixel) = (rays.at(ray, depth), depth / view.focal);
+                dimmed(self.texel(place, pixel), relief.light(place, pixel))
+            } else if ray[2] < 0.0 {
+                beyond
+            } else {
+                sky_towards(ray[2], math::hypot(ray[0], ray[1]))
+            };
+        }
+    }
+
+    /// The colour of the floor at a place, for pixels that cover so many metres.
+    #[inline]
+    fn texel(&self, at: Point, pixel: f64) -> Packed {
+        if !self.stretched {
+            let (level, halvings) = self.texture.level(pixel / SPECKLE);
+            let texels = 1.0 / (SPECKLE * f64::from(1_u32 << halvings));
+            let mask = level.width as i64 - 1;
+            let (x, y) = ((at.x * texels).floor() as i64 & mask, (-at.y * texels).floor() as i64 & mask);
+            return level.texels[y as usize * level.width + x as usize];
+        }
+        let size = self.floor.size();
+        let (whole, _) = self.texture.level(1.0);
+        let (level, _) = self.texture.level(pixel * whole.width as f64 / size.x);
+        let u = (at.x - self.floor.min.x) / size.x * level.width as f64;
+        let v = (self.floor.max.y - at.y) / size.y * level.height as f64;
+        let mut texel = [0];
+        Run { u, v, du: 0.0, dv: 0.0 }.smooth(level, &mut texel);
+        texel[0]
     }
 
     fn draw_floor(&self, pixels: &mut [Packed], line: &FloorRow) {
@@ -76,15 +131,14 @@ impl Ground {
         }
     }
 
-    /// The image on the floor, averaged over what each pixel covers: along the row by the texture's smaller
-    /// versions, and across by several places.
+    /// The floor image averaged over each pixel: along the row by mipmaps, in depth by several samples.
     fn draw_image(&self, pixels: &mut [Packed], line: &FloorRow, from: usize) {
         let (whole, _) = self.texture.level(1.0);
         let size = self.floor.size();
         let texels = Vector::new(whole.width as f64 / size.x, whole.height as f64 / size.y);
         let (wide, deep) =
             (line.step.component_mul(&texels).norm(), line.depth.component_mul(&texels).norm());
-        // Near the camera a pixel is smaller than a texel; far away it is much deeper than wide.
+        // Near the camera a pixel is smaller than a texel; far away its depth is much larger than its width.
         let places = (deep / wide.max(1.0)).min(f64::from(MOST_PLACES)) as u32;
         let places = places.max(1).next_power_of_two();
         let (level, halvings) = self.texture.level(wide.max(deep / f64::from(places)));
@@ -99,10 +153,10 @@ impl Ground {
         Run::averaged(&runs[..places as usize], level, pixels);
     }
 
-    /// The texels along a row from a pixel on, `back` parts of a pixel's depth towards the camera.
+    /// Texels along a row from pixel `from` on, `back` of a pixel's depth towards the camera.
     fn run(&self, line: &FloorRow, from: usize, texels: Vector, back: f64) -> Run {
         let first = line.start + line.step * from as f64 + line.depth * back;
-        // The image's first row lies along the far side, at the largest y.
+        // The image's first row is at the far side, at the largest y.
         let corner = Point::new(self.floor.min.x, self.floor.max.y);
         Run {
             u: (first.x - corner.x) * texels.x,
@@ -112,7 +166,7 @@ impl Ground {
         }
     }
 
-    /// The pixels of a row that show the floor.
+    /// Pixels of a row that show the floor.
     fn on_floor(&self, line: &FloorRow, width: usize) -> (usize, usize) {
         let (mut from, mut to) = (0.0, width as f64);
         let sides = [
@@ -130,13 +184,13 @@ impl Ground {
             from = a.min(b).max(from);
             to = a.max(b).min(to);
         }
-        // Places count from the middle of the first pixel.
+        // Positions are relative to the centre of the first pixel.
         let (from, to) = (first_pixel(from + 0.5, width), first_pixel(to + 0.5, width));
         (from.min(to), to)
     }
 }
 
-/// Texels along a row: the place of the first, and the step to the next.
+/// Texels along a row: the first position and the step.
 struct Run {
     u: f64,
     v: f64,
@@ -145,8 +199,7 @@ struct Run {
 }
 
 impl Run {
-    /// Takes the colours of an image between its texels, for pixels that are smaller than these. At its edges
-    /// it goes on as it ends.
+    /// Bilinear interpolation for pixels smaller than texels. Edge texels repeat beyond the edge.
     fn smooth(&self, level: &Level, pixels: &mut [Packed]) {
         let edge = |size: usize| (size as f32 - 1.0, size as i32 - 1);
         let ((right, last_column), (bottom, last_row)) = (edge(level.width), edge(level.height));
@@ -165,14 +218,14 @@ impl Run {
         }
     }
 
-    /// Takes the means of the texels of some runs, whose number is a power of two; what rounding carries over
-    /// the image's edge takes the nearest.
+    /// Averages the texels of some runs, a power of two in number. Positions that rounding moves off the
+    /// image use the nearest texel.
     fn averaged(runs: &[Run], level: &Level, pixels: &mut [Packed]) {
         let (last_column, last_row) = (level.width as i32 - 1, level.height as i32 - 1);
         let shift = runs.len().trailing_zeros();
         let half = runs.len() as u32 / 2;
         for (i, pixel) in (0_u32..).zip(pixels) {
-            // Two channels at a time, each with room for the sum above it.
+            // Two channels at a time, each with headroom for the sum.
             let (mut ends, mut middle) = (half << 16 | half, half);
             for &Run { u, v, du, dv } in runs {
                 let x = ((u + du * f64::from(i)) as i32).clamp(0, last_column);
@@ -185,14 +238,14 @@ impl Run {
         }
     }
 
-    /// Takes texels of a pattern that repeats; its sides are powers of two.
+    /// Samples a repeated pattern whose sides are powers of two.
     fn repeated(&self, level: &Level, pixels: &mut [Packed]) {
         let side = level.width as f64;
         let home = |place: f64| place - side * (place / side).floor();
         let (u, v, du, dv) = (home(self.u) as f32, home(self.v) as f32, self.du as f32, self.dv as f32);
         let (mask, side) = (level.width as i32 - 1, level.width as i32);
         for (i, pixel) in (0_u32..).zip(pixels) {
-            // A place may be below zero: the shift makes cutting round down.
+            // Positions may be negative; the shift turns truncation into rounding down.
             let x = (u + du * i as f32 + SHIFT) as i32 & mask;
             let y = (v + dv * i as f32 + SHIFT) as i32 & mask;
             *pixel = level.texels[(y * side + x) as usize];
@@ -203,13 +256,13 @@ impl Run {
 /// More texels than a row crosses, and a multiple of every pattern's side.
 const SHIFT: f32 = 131_072.0;
 
-/// Where a row's rays meet the floor; `None` if they do not.
+/// Floor intersections of a row's rays; `None` if there are none.
 fn floor_row(view: &View, row: usize) -> Option<FloorRow> {
     let height = view.eye[2].max(1e-3);
     let meet = |row: f64| {
         let y = view.ray_y(row);
         let (ahead, up) = (view.cos + y * view.sin, view.sin - y * view.cos);
-        // At the horizon rays run along the floor for ever.
+        // Rays at the horizon never meet the floor.
         (up < -1e-4).then(|| (height / -up, ahead))
     };
     let (far, ahead) = meet(row as f64)?;
@@ -217,15 +270,19 @@ fn floor_row(view: &View, row: usize) -> Option<FloorRow> {
     let eye = Point::new(view.eye[0], view.eye[1]);
     let start = eye + (view.ahead * ahead + view.right * view.ray_x(0.0)) * far;
     let step = view.right * (far / view.focal);
-    // Straight towards the camera, without what perspective does to the sides.
+    // Straight towards the camera, without the perspective sideways component.
     let depth = view.ahead * (below - far * ahead);
     Some(FloorRow { start, step, depth, depth_of_row: (far * ahead - below).abs() })
 }
 
-/// The sky in a row.
+/// Sky colour of a row.
 fn sky(view: &View, row: usize) -> Packed {
     let y = view.ray_y(row as f64);
-    let (ahead, up) = (view.cos + y * view.sin, view.sin - y * view.cos);
+    sky_towards(view.sin - y * view.cos, view.cos + y * view.sin)
+}
+
+/// The sky in a direction.
+fn sky_towards(up: f64, ahead: f64) -> Packed {
     let share = (up.max(0.0) / (up * up + ahead * ahead).sqrt().max(1e-9)).min(1.0);
     let channel = |a: u8, b: u8| (f64::from(a) + share * (f64::from(b) - f64::from(a)) + 0.5) as u32;
     channel(HORIZON.red, ZENITH.red) << 16
@@ -233,11 +290,11 @@ fn sky(view: &View, row: usize) -> Packed {
         | channel(HORIZON.blue, ZENITH.blue)
 }
 
-/// A gray floor with darker and lighter speckles, the same everywhere and always.
+/// A gray floor with fixed darker and lighter speckles.
 fn speckles() -> Texture {
     let mut state = 0x2545_f491_u32;
     let texels = (0..TILE * TILE).map(|_| {
-        // Marsaglia's xorshift: the pattern needs to look irregular, no more.
+        // Marsaglia's xorshift; the pattern only needs to look irregular.
         state ^= state << 13;
         state ^= state >> 17;
         state ^= state << 5;

@@ -3,15 +3,15 @@ use super::face::Cutter;
 use super::light::{SUN, scaled, shade};
 use super::texture::Texture;
 use super::view::{NEAR, Place, Seen, View};
-use crate::geometry::{Pose, Vector, direction};
+use crate::geometry::{Pose, Pose3, Vector3, direction};
 use crate::world::{Colour, Face, Mesh};
 
-/// The surface of things of one kind.
+/// Surface of things of one kind.
 #[derive(Debug)]
 pub(super) struct Model {
     faces: Vec<Face>,
     coats: Vec<Coat>,
-    /// The radius of the ball about the foot that holds all.
+    /// Radius of the enclosing ball about the foot.
     reach: f64,
 }
 
@@ -21,11 +21,11 @@ enum Coat {
     Image(Texture),
 }
 
-/// Where a thing stands: its foot, and the unit vector along its heading.
+/// Where a thing stands: its foot, and the unit vectors ahead, to the left and up.
 #[derive(Debug, Clone, Copy)]
-struct Stand {
+pub(super) struct Stand {
     foot: Place,
-    forward: Vector,
+    axes: [Place; 3],
 }
 
 impl Model {
@@ -37,15 +37,8 @@ impl Model {
         Self { faces: mesh.faces.clone(), coats: coats.collect(), reach: mesh.reach() }
     }
 
-    /// Draws it at a pose, some metres above the floor, where it is nearer than what is there.
-    pub(super) fn draw(
-        &self,
-        cutter: &mut Cutter,
-        canvas: &mut Canvas,
-        view: &View,
-        (pose, z): (&Pose, f64),
-    ) {
-        let stand = Stand { foot: [pose.x, pose.y, z], forward: direction(pose.heading) };
+    /// Draws it where it stands, where it is nearer than what is there.
+    pub(super) fn draw(&self, cutter: &mut Cutter, canvas: &mut Canvas, view: &View, stand: &Stand) {
         if view.misses(view.see(stand.foot), self.reach) {
             return;
         }
@@ -66,17 +59,27 @@ impl Model {
 }
 
 impl Stand {
-    fn place(&self, [ahead, left, up]: Place) -> Place {
-        let Stand { foot, forward } = self;
-        [
-            foot[0] + forward.x * ahead - forward.y * left,
-            foot[1] + forward.y * ahead + forward.x * left,
-            foot[2] + up,
-        ]
+    /// Upright at a pose, some metres above the floor.
+    pub(super) fn upright(pose: &Pose, z: f64) -> Self {
+        let forward = direction(pose.heading);
+        let axes = [[forward.x, forward.y, 0.0], [-forward.y, forward.x, 0.0], [0.0, 0.0, 1.0]];
+        Self { foot: [pose.x, pose.y, z], axes }
+    }
+
+    /// As hills have turned it.
+    pub(super) fn slanted(pose: &Pose3) -> Self {
+        let axes = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| pose.rotate(axis).into());
+        Self { foot: pose.position.into(), axes }
+    }
+
+    /// A place of its own frame.
+    pub(super) fn place(&self, [ahead, left, up]: Place) -> Place {
+        let Self { foot, axes: [x, y, z] } = self;
+        [0, 1, 2].map(|axis| foot[axis] + x[axis] * ahead + y[axis] * left + z[axis] * up)
     }
 }
 
-/// The part of the light that the side of a triangle gives back that an eye sees.
+/// Brightness of the side of a triangle that faces the eye.
 fn brightness([a, b, c]: [Place; 3], eye: Place) -> f64 {
     let minus = |p: Place, q: Place| Seen { x: p[0] - q[0], y: p[1] - q[1], z: p[2] - q[2] };
     let normal = minus(b, a).cross(minus(c, a));
@@ -85,7 +88,7 @@ fn brightness([a, b, c]: [Place; 3], eye: Place) -> f64 {
     shade(towards * normal.dot(sun) / normal.norm().max(f64::MIN_POSITIVE))
 }
 
-/// Draws a triangle with an image on it where it is nearer than what is there.
+/// Draws a textured triangle with the depth test.
 fn draw_image(
     cutter: &mut Cutter,
     canvas: &mut Canvas,
@@ -101,7 +104,7 @@ fn draw_image(
     let (whole, _) = texture.level(0.0);
     let size = [whole.width as f64, whole.height as f64];
     let seen = corners.map(|corner| view.see(corner));
-    // Texels times nearness: what is even over the picture.
+    // Texture coordinates times inverse depth are linear in the picture.
     let texels =
         [0, 1].map(|axis| over_picture(view, &seen, image_corners.map(|c| c[axis] * size[axis]), &near));
     let light = (256.0 * light) as u32;
@@ -131,14 +134,14 @@ fn draw_image(
     }
 }
 
-/// The change over the picture of a number that changes evenly over a triangle, times the nearness.
+/// Inverse depth times a linear function on a triangle, as a function on the picture.
 fn over_picture(view: &View, [a, b, c]: &[Seen; 3], values: [f64; 3], near: &Slope) -> Slope {
     let (along, across) = (b.minus(*a), c.minus(*a));
     let normal = along.cross(across);
     let squared = normal.dot(normal);
     let (first, second) = (across.cross(normal), normal.cross(along));
     let (one, other) = ((values[1] - values[0]) / squared, (values[2] - values[0]) / squared);
-    // The change in a metre to the right, down and ahead.
+    // Gradient per metre to the right, down and ahead.
     let gradient = Seen {
         x: one * first.x + other * second.x,
         y: one * first.y + other * second.y,
@@ -155,7 +158,7 @@ fn over_picture(view: &View, [a, b, c]: &[Seen; 3], values: [f64; 3], near: &Slo
     }
 }
 
-/// Texels from a pixel to the next one, along the row or across, whichever are more.
+/// Texels from a pixel to the next along the row or column, whichever is larger.
 fn step(place: impl Fn(usize, usize) -> [f64; 2], column: usize, row: usize) -> f64 {
     let here = place(column, row);
     let beside = |there: [f64; 2]| (there[0] - here[0]).abs().max((there[1] - here[1]).abs());
@@ -163,7 +166,7 @@ fn step(place: impl Fn(usize, usize) -> [f64; 2], column: usize, row: usize) -> 
 }
 
 /// A colour in 256ths of the light.
-fn dimmed(colour: Packed, light: u32) -> Packed {
+pub(super) fn dimmed(colour: Packed, light: u32) -> Packed {
     let part = |mask: Packed| (((colour & mask) * light) >> 8) & mask;
     part(0xff_00_ff) | part(0xff00)
 }

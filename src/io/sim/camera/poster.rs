@@ -5,23 +5,30 @@ use super::view::{NEAR, Place, View};
 use crate::geometry::direction;
 use crate::world::{Billboard, Colour};
 
-/// The back of a billboard.
+/// Colour of a billboard's back.
 const BACK: Colour = Colour::from_hex(0x80_80_80);
-/// Texels at least this opaque are seen.
+/// Smallest visible opacity of a texel.
 const OPAQUE: u8 = 128;
 
-/// Draws a picture on a board where it is nearer than what is there.
-pub(super) fn draw_poster(cutter: &mut Cutter, canvas: &mut Canvas, view: &View, board: &Billboard) {
+/// Draws a picture on a board, which stands on ground of some level, where it is nearer than what is there.
+pub(super) fn draw_poster(
+    cutter: &mut Cutter,
+    canvas: &mut Canvas,
+    view: &View,
+    board: &Billboard,
+    level: f64,
+) {
     let (columns, rows) = board.image.dimensions();
     if columns == 0 || rows == 0 {
         return;
     }
     let facing = direction(board.pose.heading);
-    // From the board's left to its right as seen by who stands before it.
+    // From the board's left to its right, as seen from the front.
     let across = [-facing.y * board.width, facing.x * board.width, 0.0];
-    let top = board.elevation + board.height;
+    let foot = level + board.elevation;
+    let top = foot + board.height;
     let corner: Place = [board.pose.x - 0.5 * across[0], board.pose.y - 0.5 * across[1], top];
-    let below = |place: Place| [place[0], place[1], board.elevation];
+    let below = |place: Place| [place[0], place[1], foot];
     let beside = [corner[0] + across[0], corner[1] + across[1], top];
     let Some(plane) = cutter.look(view, &[corner, below(corner), below(beside), beside]) else { return };
     let Some((first_row, spans)) = cutter.cut(view) else { return };

@@ -4,30 +4,37 @@ use super::ball::draw_ball;
 use super::canvas::Canvas;
 use super::face::Cutter;
 use super::ground::Ground;
-use super::model::Model;
+use super::model::{Model, Stand};
 use super::poster::draw_poster;
+use super::slanted::{Piece, draw_block, pieces};
 use super::solids::{Carpenter, Standing};
 use super::view::View;
 use crate::geometry::{Aabb, Point, Pose, Vector, direction};
+use crate::io::sim::terrain::Hills;
 use crate::io::{Error, ErrorKind, Result};
 use crate::world::space::{SolidId, Space};
 use crate::world::{
-    Billboard, Colour, Footprint, Marker, Mast, Mesh, Object, RobotPlacement, Scene, Shape, Texture, Wall,
+    Billboard, Colour, Footprint, HeightField, Marker, Mast, Mesh, Object, RobotPlacement, Scene, Shape,
+    Texture, Wall,
 };
 
-/// All that a camera may see of a scene.
+/// Everything visible in a scene.
 #[derive(Debug)]
 pub(super) struct Scenery {
     floor: Aabb,
-    /// The image on the floor.
+    /// The floor's image.
     floor_texture: Option<Texture>,
-    /// Floor and sky, once something is to be seen.
+    /// Floor and sky; `None` before the first picture.
     ground: Option<Ground>,
+    /// The hills that are the ground, if it has any.
+    hills: Option<Arc<HeightField>>,
     walls: Vec<([Point; 4], Standing)>,
+    /// The same on hills, in pieces that follow the ground.
+    pieces: Vec<Piece>,
     markers: Vec<Marker>,
     billboards: Vec<Billboard>,
     things: Vec<Thing>,
-    /// The surfaces of things, each once, and the models of them once something is to be seen.
+    /// Distinct surfaces of things, and their models after the first picture.
     meshes: Vec<Arc<Mesh>>,
     models: Vec<Model>,
     robots: Vec<Thing>,
@@ -35,7 +42,7 @@ pub(super) struct Scenery {
     cutter: Cutter,
 }
 
-/// Something whose place the space knows.
+/// A thing whose pose is in the space.
 #[derive(Debug)]
 struct Thing {
     solid: SolidId,
@@ -43,7 +50,7 @@ struct Thing {
     height: f64,
     colour: Colour,
     mast: Option<Mast>,
-    /// The index of its surface, if that is not its form's.
+    /// Index of its surface, if it differs from the form.
     model: Option<usize>,
 }
 
@@ -51,12 +58,12 @@ struct Thing {
 enum Form {
     Ball(f64),
     Cylinder(f64),
-    /// The radii of its foot and its top.
+    /// Radii of foot and top.
     Cone(f64, f64),
     Cuboid(Aabb),
 }
 
-/// Robots are told apart by their colours: the n-th takes the n-th, in a circle.
+/// Colours that distinguish robots, assigned cyclically.
 const ROBOTS: [Colour; 5] = [
     Colour::from_hex(0x2f_6d_b5),
     Colour::from_hex(0x2d_9b_6b),
@@ -64,15 +71,19 @@ const ROBOTS: [Colour; 5] = [
     Colour::from_hex(0xb8_8a_1e),
     Colour::from_hex(0x3a_9f_c4),
 ];
-/// The lower part of a robot, with its wheels, and its share of the height.
+/// Colour of a robot's lower part with the wheels, and its fraction of the height.
 const CHASSIS: (Colour, f64) = (Colour::from_hex(0x2a_2a_2e), 0.4);
+/// The plate in the middle of a robot's front.
+const FRONT_PLATE: Colour = Colour::from_hex(0xf2_f2_f2);
+/// Corners of a round robot that leans.
+const ROUND: usize = 24;
 /// Between which shares of its height a robot's front is.
 const FRONT: (f64, f64) = (0.5, 0.92);
-/// Metres from a marker's middle to its rim.
+/// Radius of a marker (m).
 const MARKER: f64 = 0.010;
 
 impl Scenery {
-    /// What is seen of a scene whose objects and robots are solids of a space.
+    /// The visible part of a scene; `objects` and `robots` are its solids in the space.
     pub(super) fn new(scene: &Scene, objects: &[SolidId], robots: &[SolidId]) -> Self {
         let world = &scene.world;
         let robots = robots.iter().zip(&scene.robots).enumerate();
@@ -86,7 +97,9 @@ impl Scenery {
             floor: world.floor,
             floor_texture: world.floor_texture.clone(),
             ground: None,
+            hills: world.terrain.as_ref().and_then(|terrain| terrain.surface.clone()),
             walls: world.walls.iter().map(wall).collect(),
+            pieces: Vec::new(),
             markers: world.markers.clone(),
             billboards: world.billboards.clone(),
             things,
@@ -99,41 +112,63 @@ impl Scenery {
     }
 
     /// Draws what a camera sees that sits on a robot.
-    pub(super) fn draw(&mut self, canvas: &mut Canvas, view: &View, space: &Space, me: usize) -> Result<()> {
+    pub(super) fn draw(
+        &mut self,
+        canvas: &mut Canvas,
+        view: &View,
+        (space, hills): (&Space, Option<&Hills>),
+        me: usize,
+    ) -> Result<()> {
         canvas.reset(view.width, view.height);
         if self.ground.is_none() {
             let image = self.floor_texture.as_ref().map(pixels).transpose()?;
-            self.ground = Some(Ground::new(self.floor, image));
+            self.ground = Some(Ground::new(self.floor, image, self.hills.clone()));
+            if let Some(hills) = &self.hills {
+                self.pieces = self.walls.iter().flat_map(|wall| pieces(hills, wall)).collect();
+            }
             self.models = self.meshes.iter().map(|mesh| Model::new(mesh)).collect();
         }
-        if let Some(ground) = &self.ground {
+        if let Some(ground) = &mut self.ground {
             ground.draw(canvas, view);
         }
         for marker in &self.markers {
             let Marker { position, colour, alpha } = *marker;
-            self.carpenter.spot(canvas, view, position, MARKER, colour, alpha);
+            let on_hills = hills.map(|hills| hills.ground_level(position));
+            self.carpenter.spot(canvas, view, (position, on_hills), MARKER, (colour, alpha));
         }
-        for (corners, body) in &self.walls {
-            self.carpenter.prism(canvas, view, corners, *body);
+        if hills.is_none() {
+            for (corners, body) in &self.walls {
+                self.carpenter.prism(canvas, view, corners, *body);
+            }
         }
+        self.pieces.iter().for_each(|piece| piece.draw(&mut self.cutter, canvas, view));
         for thing in &self.things {
             let solid = space.solid(thing.solid);
             match thing.model.and_then(|model| self.models.get(model)) {
-                // What has fallen is not seen.
+                // Fallen things are not drawn.
                 _ if solid.top <= solid.bottom => {}
-                Some(model) => model.draw(&mut self.cutter, canvas, view, (&solid.pose, solid.bottom)),
+                Some(model) => {
+                    let stand = Stand::upright(&solid.pose, foot(space, thing.solid));
+                    model.draw(&mut self.cutter, canvas, view, &stand);
+                }
                 None => thing.draw(&mut self.carpenter, canvas, view, space),
             }
         }
-        for (_, robot) in self.robots.iter().enumerate().filter(|&(index, _)| index != me) {
+        for (index, robot) in self.robots.iter().enumerate().filter(|&(index, _)| index != me) {
             let solid = space.solid(robot.solid);
+            let stand = match hills {
+                Some(hills) => Stand::slanted(&hills.pose(index)),
+                None => Stand::upright(&solid.pose, solid.bottom),
+            };
             match robot.model.and_then(|model| self.models.get(model)) {
-                Some(model) => model.draw(&mut self.cutter, canvas, view, (&solid.pose, solid.bottom)),
+                Some(model) => model.draw(&mut self.cutter, canvas, view, &stand),
+                None if hills.is_some() => robot.draw_slanted(&mut self.cutter, canvas, view, &stand),
                 None => robot.draw_robot(&mut self.carpenter, canvas, view, space),
             }
         }
         for board in &self.billboards {
-            draw_poster(&mut self.cutter, canvas, view, board);
+            let level = hills.map_or(0.0, |hills| hills.ground_level(board.pose.position()));
+            draw_poster(&mut self.cutter, canvas, view, board, level);
         }
         Ok(())
     }
@@ -142,7 +177,8 @@ impl Scenery {
 impl Thing {
     fn draw(&self, carpenter: &mut Carpenter, canvas: &mut Canvas, view: &View, space: &Space) {
         let solid = space.solid(self.solid);
-        let whole = Standing { bottom: solid.bottom, top: solid.bottom + self.height, colour: self.colour };
+        let bottom = foot(space, self.solid);
+        let whole = Standing { bottom, top: bottom + self.height, colour: self.colour };
         self.draw_part(carpenter, canvas, view, &solid.pose, whole);
     }
 
@@ -153,9 +189,9 @@ impl Thing {
         let upper = Standing { bottom: waist, top: solid.bottom + self.height, colour: self.colour };
         self.draw_part(carpenter, canvas, view, &solid.pose, lower);
         self.draw_part(carpenter, canvas, view, &solid.pose, upper);
-        // A white front and a dark back, so that one sees which way it looks, and that it turns.
+        // A white front and a dark back show a robot's heading and rotation.
         let (low, high) = (solid.bottom + FRONT.0 * self.height, solid.bottom + FRONT.1 * self.height);
-        for (plate, colour) in self.plates().into_iter().zip([Colour::from_hex(0xf2_f2_f2), CHASSIS.0]) {
+        for (plate, colour) in self.plates().into_iter().zip([FRONT_PLATE, CHASSIS.0]) {
             let part = Self { form: Form::Cuboid(plate), ..*self };
             let body = Standing { bottom: low, top: high, colour };
             part.draw_part(carpenter, canvas, view, &solid.pose, body);
@@ -164,6 +200,32 @@ impl Thing {
             let mast = Self { form: Form::Cuboid(outline), ..*self };
             let body = Standing { bottom: solid.top, top: solid.bottom + top, colour: CHASSIS.0 };
             mast.draw_part(carpenter, canvas, view, &solid.pose, body);
+        }
+    }
+
+    /// A robot on hills, which leans as they do.
+    fn draw_slanted(&self, cutter: &mut Cutter, canvas: &mut Canvas, view: &View, stand: &Stand) {
+        let outline = |form: Form| match form {
+            Form::Ball(radius) | Form::Cylinder(radius) | Form::Cone(radius, _) => {
+                let step = std::f64::consts::TAU / ROUND as f64;
+                (0..ROUND).map(|corner| Point::from(direction(step * corner as f64) * radius)).collect()
+            }
+            Form::Cuboid(Aabb { min, max }) => {
+                vec![min, Point::new(max.x, min.y), max, Point::new(min.x, max.y)]
+            }
+        };
+        let whole = outline(self.form);
+        let waist = CHASSIS.1 * self.height;
+        let mut block = |outline: &[Point], bottom: f64, top: f64, colour: Colour| {
+            draw_block(cutter, canvas, view, (stand, outline), Standing { bottom, top, colour });
+        };
+        block(&whole, 0.0, waist, CHASSIS.0);
+        block(&whole, waist, self.height, self.colour);
+        for (plate, colour) in self.plates().into_iter().zip([FRONT_PLATE, CHASSIS.0]) {
+            block(&outline(Form::Cuboid(plate)), FRONT.0 * self.height, FRONT.1 * self.height, colour);
+        }
+        if let Some(Mast { outline: mast, top }) = self.mast {
+            block(&outline(Form::Cuboid(mast)), self.height, top, CHASSIS.0);
         }
     }
 
@@ -215,6 +277,11 @@ fn wall(wall: &Wall) -> ([Point; 4], Standing) {
     ([a - half, b - half, b + half, a + half], body)
 }
 
+/// Metres from the floor to a solid's foot.
+fn foot(space: &Space, solid: SolidId) -> f64 {
+    space.solid(solid).bottom + space.level(solid)
+}
+
 fn thing(solid: SolidId, object: &Object, meshes: &mut Vec<Arc<Mesh>>) -> Thing {
     let kind = &object.kind;
     let form = match kind.shape {
@@ -230,7 +297,7 @@ fn thing(solid: SolidId, object: &Object, meshes: &mut Vec<Arc<Mesh>>) -> Thing 
     Thing { solid, form, height: kind.shape.height(), colour: kind.colour, mast: None, model }
 }
 
-/// The number of a surface, which has one as soon as somebody asks for it.
+/// Index of a surface in `meshes`, where it is added if missing.
 fn number(mesh: &Arc<Mesh>, meshes: &mut Vec<Arc<Mesh>>) -> usize {
     meshes.iter().position(|known| Arc::ptr_eq(known, mesh)).unwrap_or_else(|| {
         meshes.push(Arc::clone(mesh));
@@ -248,7 +315,7 @@ fn robot(index: usize, solid: SolidId, placed: &RobotPlacement, meshes: &mut Vec
     Thing { solid, form, height: placed.spec.height, colour, mast: placed.spec.mast, model }
 }
 
-/// The pixels of the floor's image, which have been read with the world's file.
+/// Pixels of the floor's image, which were read with the world's file.
 fn pixels(texture: &Texture) -> Result<&image::RgbaImage> {
     texture.image.as_deref().ok_or_else(|| {
         let message = format!("the floor's image {} has not been read", texture.file.display());

@@ -5,7 +5,7 @@ use super::view::{Place, View};
 use crate::geometry::{Point, Vector, math};
 use crate::world::Colour;
 
-/// Between which heights something stands, and its colour.
+/// Height range and colour.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Standing {
     pub(super) bottom: f64,
@@ -13,10 +13,12 @@ pub(super) struct Standing {
     pub(super) colour: Colour,
 }
 
+/// Metres by which what lies on hills is above the middle of its place, so that slopes do not bury it.
+const ABOVE: f64 = 0.004;
 /// Most facets on the side of a cylinder that the camera sees.
 const MAX_FACETS: usize = 32;
 
-/// Draws upright things with flat tops.
+/// Draws upright solids with flat tops.
 #[derive(Debug, Default)]
 pub(super) struct Carpenter {
     cutter: Cutter,
@@ -25,7 +27,7 @@ pub(super) struct Carpenter {
 }
 
 impl Carpenter {
-    /// An upright prism whose corners run counter-clockwise as seen from above.
+    /// An upright prism; its corners run counter-clockwise as seen from above.
     pub(super) fn prism(&mut self, canvas: &mut Canvas, view: &View, corners: &[Point], body: Standing) {
         if is_out_of_sight(view, corners, body) {
             return;
@@ -40,8 +42,8 @@ impl Carpenter {
         self.lid(canvas, view, body);
     }
 
-    /// An upright cylinder. Its outline in the picture is exact at the sides: the facets begin and end where the lines
-    /// of sight touch it.
+    /// An upright cylinder. Its lateral outline is exact: the facets begin and end at the tangents from the
+    /// eye.
     pub(super) fn cylinder(
         &mut self,
         canvas: &mut Canvas,
@@ -57,7 +59,7 @@ impl Carpenter {
         if view.misses(view.see(middle), reach) {
             return;
         }
-        // From above or below a cylinder, only its lid is seen.
+        // From straight above or below, only the lid is visible.
         let beside = distance > radius;
         let half = if beside { math::acos(radius / distance) } else { std::f64::consts::FRAC_PI_2 };
         let pixels = view.focal * radius / (distance - radius).max(radius);
@@ -117,24 +119,28 @@ impl Carpenter {
         self.lid(canvas, view, body);
     }
 
-    /// A disc on the floor.
+    /// A disc on the floor, or on hills at some height.
     pub(super) fn spot(
         &mut self,
         canvas: &mut Canvas,
         view: &View,
-        centre: Point,
+        (centre, on_hills): (Point, Option<f64>),
         radius: f64,
-        colour: Colour,
-        alpha: u8,
+        (colour, alpha): (Colour, u8),
     ) {
-        /// Corners of the polygon that stands for a disc.
+        /// Number of corners of a disc's polygon.
         const CORNERS: usize = 24;
         self.outline.clear();
         let step = std::f64::consts::TAU / CORNERS as f64;
         arc(&mut self.outline, centre, Vector::new(radius, 0.0), step, CORNERS);
         self.lid.clear();
-        self.lid.extend(self.outline.iter().map(|p| [p.x, p.y, 0.0]));
-        self.cutter.tint(canvas, view, &self.lid, packed(colour), alpha);
+        let height = on_hills.map_or(0.0, |height| height + ABOVE);
+        self.lid.extend(self.outline.iter().map(|p| [p.x, p.y, height]));
+        if on_hills.is_some() {
+            self.cutter.tint_seen(canvas, view, &self.lid, packed(colour), alpha);
+        } else {
+            self.cutter.tint(canvas, view, &self.lid, packed(colour), alpha);
+        }
     }
 
     fn side(&mut self, canvas: &mut Canvas, view: &View, a: Point, b: Point, body: Standing) {
@@ -149,7 +155,7 @@ impl Carpenter {
         self.cutter.draw(canvas, view, &corners, lit(body.colour, normal));
     }
 
-    /// The top or the bottom of the present outline, whichever the camera can see.
+    /// The top or bottom of the present outline, whichever is visible.
     fn lid(&mut self, canvas: &mut Canvas, view: &View, body: Standing) {
         self.lid.clear();
         let normal = if view.eye[2] > body.top {
@@ -175,7 +181,7 @@ fn is_out_of_sight(view: &View, corners: &[Point], body: Standing) -> bool {
     view.misses(view.see([middle.x, middle.y, 0.5 * (body.bottom + body.top)]), radius)
 }
 
-/// Points on a circle, from one counter-clockwise, `steps` of them.
+/// `steps` points on a circle, counter-clockwise.
 fn arc(points: &mut Vec<Point>, centre: Point, mut offset: Vector, step: f64, steps: usize) {
     let (sin, cos) = math::sin_cos(step);
     for _ in 0..steps {

@@ -4,18 +4,18 @@ use super::scenery::Scenery;
 use crate::world::Scene;
 use crate::world::space::SolidId;
 
-/// What all cameras of a simulation share: the scene to be seen, and memory for one picture.
+/// Shared by all cameras of a simulation: the visible scene, and buffers for one picture.
 #[derive(Debug)]
 pub(in crate::io::sim) struct Studio {
     pub(super) scenery: Scenery,
     pub(super) canvas: Canvas,
-    /// One side of what surrounds a fisheye.
+    /// One side of a fisheye's cube.
     pub(super) side: Canvas,
     pub(super) darkroom: Darkroom,
 }
 
 impl Studio {
-    /// The studio of a scene whose objects and robots are these solids.
+    /// The studio of a scene; `objects` and `robots` are its solids.
     pub(in crate::io::sim) fn new(scene: &Scene, objects: &[SolidId], robots: &[SolidId]) -> Self {
         Self {
             scenery: Scenery::new(scene, objects, robots),

@@ -3,19 +3,19 @@ use image::RgbaImage;
 use super::canvas::Packed;
 use crate::world::Colour;
 
-/// A texel: a colour, and in the bits above it how opaque it is, 0 to 255.
+/// A texel: a colour, with the opacity (0 to 255) in the bits above.
 pub(super) type Texel = u32;
 
-/// Texels at least this opaque are seen.
+/// Smallest visible opacity.
 const OPAQUE: Texel = 128;
 
-/// A picture for a surface, beside smaller versions of itself for looking at it from afar.
+/// A surface image with mipmaps.
 #[derive(Debug, Clone)]
 pub(super) struct Texture {
     levels: Vec<Level>,
 }
 
-/// One version of a texture.
+/// One mipmap level of a texture.
 #[derive(Debug, Clone)]
 pub(super) struct Level {
     pub(super) width: usize,
@@ -24,8 +24,7 @@ pub(super) struct Level {
 }
 
 impl Texture {
-    /// A texture of an image, whose channels are multiplied by those of a colour. `None` for an image without
-    /// pixels.
+    /// The texture of an image, with its channels multiplied by those of a colour. `None` for an empty image.
     pub(super) fn new(image: &RgbaImage, colour: Colour) -> Option<Self> {
         let by = [colour.red, colour.green, colour.blue].map(u32::from);
         let part = |value: u8, by: u32| (u32::from(value) * by + 127) / 255;
@@ -46,7 +45,7 @@ impl Texture {
         Self { levels }
     }
 
-    /// The version to look at when a pixel covers so many texels of the largest one, and how often it was halved.
+    /// The level for a pixel that covers this number of full-size texels, and its number of halvings.
     pub(super) fn level(&self, texels_per_pixel: f64) -> (&Level, u32) {
         let mut halvings = 0;
         let mut size = texels_per_pixel;
@@ -59,8 +58,8 @@ impl Texture {
 }
 
 impl Level {
-    /// The colour at a place in texels from the upper left corner, between the four texels whose middles are
-    /// next to it; `None` where it is more transparent than not. The picture repeats beyond its edges.
+    /// Bilinear colour at a position in texels from the upper left corner; `None` where it is mostly
+    /// transparent. The image repeats beyond its edges.
     pub(super) fn smooth(&self, u: f32, v: f32) -> Option<Packed> {
         let (u, v) = (u - 0.5, v - 0.5);
         let (left, above) = (u.floor(), v.floor());
@@ -77,7 +76,7 @@ impl Level {
         (texel >> 24 >= OPAQUE).then_some(texel & 0xff_ff_ff)
     }
 
-    /// Half as wide and half as high, each texel the mean of four.
+    /// The image at half size; each texel is the mean of four.
     fn halved(&self) -> Option<Self> {
         if self.width == 1 && self.height == 1 {
             return None;
@@ -104,11 +103,11 @@ fn mean(texels: [Texel; 4]) -> Texel {
     channel(24) | channel(16) | channel(8) | channel(0)
 }
 
-/// A texel between two: `share` 256ths of the way from the first to the second.
+/// Interpolates between two texels: `share` 256ths of the way from the first to the second.
 #[inline]
 pub(super) fn between(a: Texel, b: Texel, share: u32) -> Texel {
-    // Two channels at a time, each with room for the product above it.
-    /// Every other byte of a pixel, so that two channels are mixed at a time.
+    // Two channels at a time, each with headroom for the product.
+    /// Mask of every other byte of a pixel.
     const HALF: u32 = 0x00ff_00ff;
     let mixed = |a: u32, b: u32| ((a & HALF) * (256 - share) + (b & HALF) * share) >> 8 & HALF;
     mixed(a >> 8, b >> 8) << 8 | mixed(a, b)
@@ -151,7 +150,7 @@ mod tests {
         let at = |u, v| level.smooth(u, v).unwrap().to_be_bytes();
         assert_eq!(at(1.5, 0.5), [0, 80, 0, 0]);
         assert_eq!(at(2.0, 1.0), [0, 120, 50, 0]);
-        // Beyond the right edge it begins anew.
+        // The image repeats beyond the right edge.
         assert_eq!(at(4.0, 0.5), [0, 120, 0, 0]);
         assert_eq!(at(-2.5, 2.5), [0, 80, 0, 0]);
     }

@@ -1,28 +1,30 @@
 use crate::geometry::{Vector, direction, math};
 
-/// A place in three dimensions: metres along x, y and upwards.
+/// A point in space: x, y and height (m).
 pub(super) type Place = [f64; 3];
 
-/// Nothing nearer than this many metres is drawn.
+/// Distance of the near plane (m).
 pub(super) const NEAR: f64 = 0.002;
 
-/// A pinhole camera that does not roll: how places in the world fall onto the columns and rows of its picture.
+/// A pinhole camera: how places in the world fall onto the columns and rows of its picture.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct View {
     pub(super) eye: Place,
-    /// The level unit vectors ahead and to the right.
+    /// Horizontal unit vectors ahead and to the right.
     pub(super) ahead: Vector,
     pub(super) right: Vector,
-    /// Sine and cosine of the angle above the horizontal.
+    /// Sine and cosine of the elevation angle.
     pub(super) sin: f64,
     pub(super) cos: f64,
+    /// Sine and cosine of the angle by which its left side is lifted about the line of sight.
+    roll: (f64, f64),
     /// Pixels that one metre covers at a distance of one metre.
     pub(super) focal: f64,
     pub(super) width: usize,
     pub(super) height: usize,
 }
 
-/// A place as the camera sees it: metres to the right, downwards, and ahead along the line of sight.
+/// A point in the camera's frame: metres to the right, down, and ahead along the line of sight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Seen {
     pub(super) x: f64,
@@ -53,7 +55,7 @@ impl Seen {
 }
 
 impl View {
-    /// A camera at a place that looks along a heading and some radians above the horizontal.
+    /// A camera at a point with a heading and an elevation angle (rad).
     pub(super) fn new(
         eye: Place,
         heading: f64,
@@ -70,41 +72,51 @@ impl View {
             right: Vector::new(ahead.y, -ahead.x),
             sin,
             cos,
+            roll: (0.0, 1.0),
             focal,
             width: width as usize,
             height: height as usize,
         }
     }
 
+    /// The camera with its left side lifted by some radians.
+    pub(super) fn rolled(self, roll: f64) -> Self {
+        Self { roll: math::sin_cos(roll), ..self }
+    }
+
     /// A direction of the world in the camera's frame.
     pub(super) fn turned(&self, [x, y, up]: Place) -> Seen {
         let level = Vector::new(x, y);
         let (ahead, right) = (level.dot(&self.ahead), level.dot(&self.right));
-        Seen { x: right, y: ahead * self.sin - up * self.cos, z: ahead * self.cos + up * self.sin }
+        let down = ahead * self.sin - up * self.cos;
+        let (sin, cos) = self.roll;
+        let (x, y) =
+            if sin == 0.0 { (right, down) } else { (right * cos + down * sin, down * cos - right * sin) };
+        Seen { x, y, z: ahead * self.cos + up * self.sin }
     }
 
-    /// A place of the world in the camera's frame.
+    /// A point of the world in the camera's frame.
     pub(super) fn see(&self, [x, y, z]: Place) -> Seen {
         self.turned([x - self.eye[0], y - self.eye[1], z - self.eye[2]])
     }
 
-    /// Column and row at which a place ahead of the camera appears; pixel (0, 0) reaches from 0 to 1.
+    /// Column and row of a point ahead of the camera; pixel (0, 0) covers 0 to 1.
     pub(super) fn project(&self, seen: Seen) -> (f64, f64) {
         let scale = self.focal / seen.z;
         (0.5 * self.width as f64 + scale * seen.x, 0.5 * self.height as f64 + scale * seen.y)
     }
 
-    /// How far to the right, for each metre ahead, the middle of a column is.
+    /// Offset to the right per metre ahead, at the centre of a column.
     pub(super) fn ray_x(&self, column: f64) -> f64 {
         (column + 0.5 - 0.5 * self.width as f64) / self.focal
     }
 
-    /// How far down, for each metre ahead, the middle of a row is.
+    /// Offset down per metre ahead, at the centre of a row.
     pub(super) fn ray_y(&self, row: f64) -> f64 {
         (row + 0.5 - 0.5 * self.height as f64) / self.focal
     }
 
-    /// Whether nothing of a ball can appear in the picture.
+    /// Whether no part of a ball can appear in the picture.
     pub(super) fn misses(&self, centre: Seen, radius: f64) -> bool {
         if centre.z + radius < NEAR {
             return true;

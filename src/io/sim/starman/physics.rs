@@ -16,29 +16,29 @@ use super::spec::StarmanSpec;
 use crate::geometry::{math, units};
 use crate::io::sim::lockstep::Ticking;
 
-/// Where a Starman's parts are, in the upright plane: x along the floor, y up.
+/// Positions of a Starman's parts in the vertical plane: x along the floor, y up.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StarmanPosture {
-    /// The middle of the body: along the floor and above it, in metres.
+    /// Middle of the body: position along the floor and height (m).
     pub body: (f64, f64),
-    /// How far the body has rolled, in radians, counter-clockwise.
+    /// Roll angle of the body, counter-clockwise (rad).
     pub roll: f64,
-    /// The angle of each limb from its middle position, in radians.
+    /// Angle of each limb from its middle position (rad).
     pub limbs: [f64; LIMBS],
-    /// Each limb's hinge and tip.
+    /// Hinge and tip of each limb.
     pub segments: [[(f64, f64); 2]; LIMBS],
 }
 
-/// What only the simulator knows of a Starman.
+/// Ground truth of a Starman.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StarmanTruth {
-    /// Where its parts are.
+    /// Positions of its parts.
     pub posture: StarmanPosture,
-    /// The widest gap of a hinge, in metres: 0 with a perfect solver.
+    /// Widest gap of a hinge (m); 0 with a perfect solver.
     pub hinge_gap: f64,
-    /// Kinetic and potential energy, in joules, the latter above a body whose middle lies on the floor.
+    /// Kinetic and potential energy (J); the latter is zero for a body with its middle on the floor.
     pub energy: f64,
-    /// Steps of the physics so far.
+    /// Physics steps so far.
     pub steps: u64,
 }
 
@@ -54,29 +54,29 @@ pub(super) struct Figure {
 
 struct Limb {
     part: RigidBodyHandle,
-    /// The direction of its middle position, in the body's frame.
+    /// Direction of its middle position in the body's frame.
     middle: Rotation,
     joint: ImpulseJointHandle,
     servo: Servo,
 }
 
-/// The swing of a servo that is pushed off its angle, in 1/s. Much stiffer, and two limbs that stand on the
-/// floor press against each other so hard that which of them slips depends on the time step.
+/// Natural frequency of a displaced servo (1/s). With much stiffer servos, two supporting limbs press against
+/// each other so hard that the time step decides which of them slips.
 const SERVO_FREQUENCY: f64 = 25.0;
-/// How far, in radians, a limb may be thrown within a step by what it meets there.
+/// Largest angle by which a contact may throw a limb within a step (rad).
 const LIMIT_MARGIN: f64 = 0.05;
 
 impl Figure {
-    /// A figure that stands on two limbs, the first one up.
+    /// A figure that stands on two limbs, with the first one up.
     pub(super) fn new(spec: &StarmanSpec) -> Self {
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::new(0.0, -units::GRAVITY);
         let settings = &mut world.integration_parameters;
         settings.dt = spec.time_step;
-        // Tolerances of the solver are fractions of this length.
+        // Solver tolerances are fractions of this length.
         settings.length_unit = spec.body_radius;
-        // Two passes of four sweeps with friction in each: the cheapest with which limbs that should stick do not
-        // creep, so that a gait goes as far with half the time step.
+        // Two passes of four sweeps with friction in each: the cheapest setting without creeping limbs, so
+        // that a gait covers the same distance with half the time step.
         settings.num_solver_iterations = 2;
         settings.num_internal_pgs_iterations = 4;
         settings.friction_in_bias_pass = true;
@@ -90,12 +90,12 @@ impl Figure {
         Self { world, body, limbs, spec: *spec, powered: true, steps: 0 }
     }
 
-    /// Tells a servo where to go, from -1 to 1.
+    /// Sets the target of a servo, from -1 to 1.
     pub(super) fn send(&mut self, limb: usize, position: f64) {
         self.limbs[limb].servo.send(position * self.spec.servo_range);
     }
 
-    /// Switches the servos on or off; off, the limbs swing freely within their limits.
+    /// Switches the servos on or off; when off, the limbs swing freely within their limits.
     #[cfg(test)]
     pub(super) fn power(&mut self, on: bool) {
         self.powered = on;
@@ -105,7 +105,7 @@ impl Figure {
     fn step(&mut self) {
         let spec = &self.spec;
         let stiffness = (TAU * SERVO_FREQUENCY) * (TAU * SERVO_FREQUENCY);
-        // Critical: it comes back without a swing.
+        // Critical damping: no overshoot.
         let damping = 2.0 * TAU * SERVO_FREQUENCY;
         for limb in &mut self.limbs {
             let (angle, rate) = limb.servo.advance(spec.servo_speed, spec.time_step);
@@ -120,12 +120,12 @@ impl Figure {
         self.steps += 1;
     }
 
-    /// How far the middle of the body is along the floor.
+    /// Position of the body's middle along the floor.
     pub(super) fn travelled(&self) -> f64 {
         self.world.bodies[self.body].translation().x
     }
 
-    /// How fast that moves along the floor, in metres per second.
+    /// Speed of the body's middle along the floor (m/s).
     pub(super) fn speed(&self) -> f64 {
         self.world.bodies[self.body].linvel().x
     }
@@ -187,13 +187,13 @@ impl Ticking for Figure {
     }
 }
 
-/// Whether a limb may reach its limit within a step. The engine solves a limit that is far away all the same, which takes
-/// a ninth of its time.
+/// Whether a limb may reach its limit within a step. Distant limits are left out, because the engine would
+/// spend a ninth of its time on them.
 fn nears_limit(bodies: &RigidBodySet, body: RigidBodyHandle, limb: &Limb, spec: &StarmanSpec) -> bool {
     let (body, part) = (&bodies[body], &bodies[limb.part]);
     let angle = (body.rotation() * limb.middle).inverse() * *part.rotation();
     let reach = (part.angvel() - body.angvel()).abs() * spec.time_step;
-    // A sine grows by less than its angle, so this errs on the side of a limit too many.
+    // The sine grows less than the angle, so this check is conservative.
     angle.im.abs() + reach + LIMIT_MARGIN > math::sin(spec.servo_range)
 }
 
@@ -206,28 +206,28 @@ impl fmt::Debug for Figure {
     }
 }
 
-/// The collision group of the floor.
+/// Collision group of the floor.
 const FLOOR: Group = Group::GROUP_1;
-/// The collision group of the parts of a robot, which do not meet each other.
+/// Collision group of a robot's parts, which do not collide with each other.
 const PART: Group = Group::GROUP_2;
 
-/// Parts touch the floor only: the servos' range keeps the limbs apart.
+/// Parts collide with the floor only; the servos' range keeps the limbs apart.
 fn groups(of: Group, with: Group) -> InteractionGroups {
     InteractionGroups::new(of, with, InteractionTestMode::And)
 }
 
-/// The direction of a limb's middle position: the first one up, the others clockwise.
+/// Direction of a limb's middle position: the first one up, the others clockwise.
 fn spread(limb: usize) -> f64 {
     FRAC_PI_2 - TAU * limb as f64 / LIMBS as f64
 }
 
-/// A limb's hinge in the body's frame.
+/// Hinge of a limb in the body's frame.
 fn rim(spec: &StarmanSpec, limb: usize) -> Vector {
     let (sin, cos) = math::sin_cos(spread(limb));
     Vector::new(spec.body_radius * cos, spec.body_radius * sin)
 }
 
-/// The height of the body's middle while the tips of the two lower limbs touch the floor.
+/// Height of the body's middle while the tips of the two lower limbs touch the floor.
 fn standing_height(spec: &StarmanSpec) -> f64 {
     -(spec.body_radius + spec.limb_length) * math::sin(spread(2)) + spec.limb_radius
 }
@@ -253,7 +253,7 @@ fn attach(
         .motor_model(MotorModel::AccelerationBased)
         .limits([-spec.servo_range, spec.servo_range])
         .build();
-    // Angles count from the limb's own direction.
+    // Angles are relative to the limb's own direction.
     let middle = Rotation::new(spread(limb));
     hinge.data.local_frame1.rotation = middle;
     let joint = world.insert_impulse_joint(body, part, hinge);
@@ -315,7 +315,7 @@ mod tests {
         }
     }
 
-    /// The energy at the start, the least afterwards, and the most that it ever rose again, while it collapses.
+    /// During a collapse: the energy at the start, its minimum afterwards, and its largest rise.
     fn collapse(time_step: f64) -> (f64, f64, f64) {
         let mut figure = Figure::new(&StarmanSpec { time_step, ..StarmanSpec::book() });
         figure.power(false);
@@ -329,7 +329,7 @@ mod tests {
         (begin, least, rise)
     }
 
-    /// What rises again was stored in contacts and limits, which give way a little.
+    /// The rise was stored in slightly compliant contacts and limits.
     #[test]
     fn energy_does_not_grow_without_the_servos() {
         for time_step in [0.010, 0.005, 0.00125] {

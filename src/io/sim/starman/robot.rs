@@ -12,31 +12,31 @@ use crate::io::delegate::{
 use crate::io::sim::Lcd;
 use crate::io::sim::lockstep::{Lockstep, Program};
 use crate::io::{
-    Attitude, Camera, Clock, DistanceSensors, Drive, Encoders, Error, ErrorKind, Inertial, Keys, Lidar,
-    Manoeuvres, Motors, Odometry, Radio, Servos, StallDetector,
+    Attitude, Camera, Clock, DepthSensor, DistanceSensors, Drive, Encoders, Error, ErrorKind, Inertial, Keys,
+    Lidar, Manoeuvres, Motors, Odometry, Radio, Servos, StallDetector,
 };
 
-/// A simulated Starman, in virtual time.
+/// A simulated Starman in virtual time.
 ///
-/// Its servos 1 to 5 swing the limbs, the first one up, the others clockwise. [`Odometry::pose`] tells how far
-/// it has come along the floor; it has no wheels, no distance sensors and no camera. The display works, and key
-/// presses can be scheduled.
+/// Servos 1 to 5 move the limbs: the first one is up, the others follow clockwise. [`Odometry::pose`] is its
+/// position along the floor. It has no wheels, distance sensors or camera. The display works, and key presses
+/// can be scheduled.
 #[derive(Debug, Delegate)]
 #[delegate(crate::io::Display, target = "lcd")]
 pub struct Starman {
     program: Program<Figure>,
     lcd: Lcd,
-    /// What odometry adds to the place along the floor.
+    /// Offset of the odometry from the position along the floor.
     origin: Pose,
-    /// Key presses to come, the earliest first.
+    /// Scheduled key presses, earliest first.
     keys: Vec<(f64, Key)>,
 }
 
-/// Seconds that a call takes by the robot's clock, so that a loop without a pause lets the world move.
+/// Duration of a call on the robot's clock (s), so that time passes in a loop without a pause.
 const CALL: f64 = 1e-4;
 
 impl Starman {
-    /// A Starman that stands in its initial position. Fails when the specification is out of range.
+    /// A Starman in its initial standing position. Fails for a specification out of range.
     pub fn new(spec: &StarmanSpec) -> Result<Self> {
         spec.validate()?;
         let world = Arc::new(Lockstep::new(Figure::new(spec), spec.time_step, 1));
@@ -48,23 +48,23 @@ impl Starman {
         })
     }
 
-    /// Schedules key presses, at seconds by the robot's clock.
+    /// Schedules key presses, in seconds on the robot's clock.
     pub fn press_keys(&mut self, presses: impl IntoIterator<Item = (f64, Key)>) {
         self.keys.extend(presses);
         self.keys.sort_by(|a, b| a.0.total_cmp(&b.0));
     }
 
-    /// What only the simulator knows; no behaviour has it.
+    /// Ground truth, which behaviours cannot access.
     pub fn truth(&self) -> StarmanTruth {
         self.program.shared().lock().world.truth()
     }
 
-    /// What its display shows.
+    /// Content of its display.
     pub fn display(&self) -> &Lcd {
         &self.lcd
     }
 
-    /// Asks the figure for something after the time that a call takes.
+    /// Makes a request to the figure after the duration of a call.
     fn call<T>(&mut self, ask: impl FnOnce(&mut Figure) -> Result<T>) -> Result<T> {
         self.program.charge();
         self.program.look(|figure, _| ask(figure))
@@ -143,7 +143,7 @@ impl Keys for Starman {
     }
 }
 
-/// Capabilities that it is asked for as a full robot, and lacks.
+/// Capabilities of a full robot that it lacks.
 macro_rules! lacks {
     ($what:literal $capability:ident { $( fn $name:ident($($arg:ident: $type:ty),*) -> $result:ty; )* }) => {
         impl $capability for Starman {
@@ -164,6 +164,7 @@ signatures! { Radio => lacks!("radio") }
 signatures! { Motors => lacks!("motors") }
 signatures! { Encoders => lacks!("encoders") }
 signatures! { Inertial => lacks!("inertial unit") }
+signatures! { DepthSensor => lacks!("depth sensor") }
 
 #[cfg(test)]
 mod tests {
@@ -174,7 +175,7 @@ mod tests {
         Starman::new(&StarmanSpec::default()).unwrap()
     }
 
-    /// Where the book's shuffle takes the robot: one of the limbs that it stands on goes forth and back.
+    /// Path of the robot in the book's shuffle: one of the supporting limbs swings forth and back.
     fn shuffle(position: f64) -> Vec<f64> {
         let mut starman = starman();
         starman.wait(2.0).unwrap();
@@ -196,7 +197,7 @@ mod tests {
         assert!(places.windows(2).all(|pair| pair[1] < pair[0]), "always to the same side: {places:?}");
     }
 
-    /// The book's program for its keys: one chooses the limb, two others move it.
+    /// The book's program for its keys: one selects the limb, two others move it.
     fn move_limbs(robot: &mut impl RobotIo) -> Result<[f64; LIMBS]> {
         let (mut positions, mut limb) = ([0.0; LIMBS], 0);
         robot.set_menu(["Leg+", "+", "-", "END"])?;

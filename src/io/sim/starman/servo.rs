@@ -1,9 +1,9 @@
-/// A servo's own idea of where it is: it moves towards what it was told, at its speed.
+/// Setpoint of a servo, which moves towards its target at the servo's speed.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Servo {
-    /// Where it was told to go, in radians.
+    /// Target angle (rad).
     target: f64,
-    /// Where it has got to.
+    /// Present angle (rad).
     angle: f64,
 }
 
@@ -12,7 +12,7 @@ impl Servo {
         self.target = target;
     }
 
-    /// Lets time pass; the angle to hold afterwards and the rate to hold it at.
+    /// Advances the time; returns the angle and rate to hold afterwards.
     pub(super) fn advance(&mut self, speed: f64, seconds: f64) -> (f64, f64) {
         let reach = speed * seconds;
         let step = (self.target - self.angle).clamp(-reach, reach);

@@ -2,35 +2,36 @@ use crate::ParameterError;
 use crate::parameter::{require, require_positive};
 use std::f64::consts::PI;
 
-/// What a Starman is made of. Lengths in metres, masses in kilograms, angles in radians.
+/// Dimensions and servos of a Starman. Lengths in metres, masses in kilograms, angles in radians.
 ///
-/// The book gives the form, the servos' range and their speed; sizes and masses are of a robot that could be built.
+/// The form and the servos' range and speed are from the book; sizes and masses are those of a robot that
+/// could be built.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StarmanSpec {
-    /// The radius of the body; the limbs' hinges sit on its rim, a fifth of a turn apart.
+    /// Radius of the body; the limbs' hinges are on its rim, a fifth of a turn apart.
     pub body_radius: f64,
-    /// The mass of the body.
+    /// Mass of the body.
     pub body_mass: f64,
-    /// From a limb's hinge to its tip.
+    /// Distance from a limb's hinge to its tip.
     pub limb_length: f64,
     /// Half the width of a limb, whose ends are round.
     pub limb_radius: f64,
-    /// The mass of a limb.
+    /// Mass of a limb.
     pub limb_mass: f64,
-    /// The coefficient of friction between a limb and the floor.
+    /// Coefficient of friction between limbs and floor.
     pub friction: f64,
-    /// How far a limb swings to either side.
+    /// Swing of a limb to either side.
     pub servo_range: f64,
-    /// How fast, per second.
+    /// Servo speed per second.
     pub servo_speed: f64,
-    /// The greatest torque of a servo, in newton metres.
+    /// Largest torque of a servo (N m).
     pub servo_torque: f64,
-    /// Seconds that the physics advances at a time.
+    /// Time step of the physics (s).
     pub time_step: f64,
 }
 
 impl StarmanSpec {
-    /// The book's robot: servos of 30 degrees to either side and 30 degrees a second.
+    /// The book's robot: servos of 30 degrees to either side and 30 degrees per second.
     pub fn book() -> Self {
         let degree = PI / 180.0;
         Self {
@@ -47,15 +48,15 @@ impl StarmanSpec {
         }
     }
 
-    /// The figure as it was first described, in a plane and weightless of any hardware: limbs that are as long as the
-    /// body is wide and snap to their angles (A. Fukunaga et al., "Motion-Synthesis Techniques for 2D Articulated
-    /// Figures", Harvard TR-05-94, 1994).
+    /// The original figure, without regard to hardware: limbs as long as the body is wide, which snap to
+    /// their angles (A. Fukunaga et al., "Motion-Synthesis Techniques for 2D Articulated Figures", Harvard
+    /// TR-05-94, 1994).
     pub fn planar() -> Self {
         let book = Self::book();
         Self { limb_length: 2.0 * book.body_radius, servo_speed: 12.0 * book.servo_speed, ..book }
     }
 
-    /// Fails with the name of what is out of range.
+    /// Fails with the name of a value out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         let all = [
             ("body radius", self.body_radius),
@@ -70,7 +71,8 @@ impl StarmanSpec {
             ("time step", self.time_step),
         ];
         all.into_iter().try_for_each(|(name, value)| require_positive(name, value))?;
-        // Further, and neighbours would cross; coarser, and the solver cannot hold the hinges.
+        // With a wider range, neighbours would cross; with a larger time step, the solver cannot hold the
+        // hinges.
         require("servo range", self.servo_range, self.servo_range <= PI / 5.0, "at most a tenth of a turn")?;
         require("time step", self.time_step, self.time_step <= 0.02, "at most 0.02 s")
     }

@@ -1,18 +1,29 @@
 use std::sync::Arc;
 
-use super::{Mishap, RigidBody, Undercarriage, Watch};
-use crate::geometry::{Point, Pose, Pose3, angle_difference};
+use super::{RigidBody, Undercarriage, Watch};
+use crate::geometry::{Aabb, Point, Point3, Pose, Pose3, Vector, angle_difference};
 use crate::io::sim::TICK;
 use crate::io::sim::body::Body;
+use crate::io::sim::marine::{Swimmer, Waters};
+use crate::io::sim::movable::Movable;
+use crate::io::{Mishap, Result};
 use crate::kinematics::{PlanarMotion, PlanarTwist};
 use crate::world::space::Space;
-use crate::world::{HeightField, RobotPlacement, World};
+use crate::world::{DriveSpec, HeightField, RobotPlacement, World};
 
-/// The ground of a world with hills, and how its robots are on it.
+/// The ground of a world with hills, the water over it, and how robots are on the one and in the other.
 #[derive(Debug)]
 pub(in crate::io::sim) struct Hills {
     ground: Arc<HeightField>,
-    riders: Vec<Rider>,
+    waters: Waters,
+    movers: Vec<Mover>,
+}
+
+/// A robot on hills, or in water.
+#[derive(Debug)]
+enum Mover {
+    Riding(Box<Rider>),
+    Swimming(Box<Swimmer>),
 }
 
 /// A robot on hills.
@@ -23,25 +34,47 @@ struct Rider {
     watch: Watch,
 }
 
-/// A body whose outline something has moved aside by more than this, in metres or radians, was in its way.
+/// Displacement of an outline above which an obstacle was in its way (m or rad).
 const MOVED_ASIDE: f64 = 1e-9;
-/// Metres or radians that are no motion.
+/// Motion that counts as rest (m or rad).
 const STILL: f64 = 1e-11;
-/// A robot less than this above the ground stands on it.
+/// Height above the ground up to which a robot counts as standing (m).
 const STANDING: f64 = 2e-3;
 
 impl Hills {
-    /// The hills of a world, if it has any.
-    pub(in crate::io::sim) fn of(world: &World, robots: &[RobotPlacement]) -> Option<Box<Self>> {
-        let ground = Arc::clone(world.terrain.as_ref()?.surface.as_ref()?);
-        let riders = robots.iter().map(|robot| {
-            let carriage = Undercarriage::of(&robot.spec);
-            let body = standing(&ground, &carriage, robot.pose, robot.elevation);
-            let watch = Watch::new(robot.spec.height, world.water_level);
-            Rider { carriage, body, watch }
-        });
-        let riders = riders.collect();
-        Some(Box::new(Self { ground, riders }))
+    /// The hills of a world, if it has any; for craft, a level floor does as well.
+    pub(in crate::io::sim) fn of(
+        world: &World,
+        robots: &[RobotPlacement],
+        bodies: &mut [Body],
+        seed: u64,
+    ) -> Result<Option<Box<Self>>> {
+        world.water.validate()?;
+        let surface = world.terrain.as_ref().and_then(|terrain| terrain.surface.clone());
+        let craft = bodies.iter_mut().any(|body| body.drive.craft_mut().is_some());
+        let ground = match surface {
+            Some(surface) => surface,
+            None if craft => Arc::new(level_floor(world)?),
+            None => return Ok(None),
+        };
+        let waters = Waters::of(world, seed);
+        let mut hills = Self { ground, waters, movers: Vec::new() };
+        for (robot, body) in robots.iter().zip(bodies) {
+            hills.movers.push(hills.mover(robot, body, world.water_level));
+        }
+        Ok(Some(Box::new(hills)))
+    }
+
+    fn mover(&self, robot: &RobotPlacement, body: &mut Body, water_level: Option<f64>) -> Mover {
+        if let (DriveSpec::Craft(spec), Some(drive)) = (&robot.spec.drive, body.drive.craft_mut()) {
+            let mut swimmer = Swimmer::new(drive.craft().clone(), spec.windage());
+            swimmer.place(&self.ground, &self.waters, robot.pose, robot.elevation);
+            return Mover::Swimming(Box::new(swimmer));
+        }
+        let carriage = Undercarriage::of(&robot.spec);
+        let body = standing(&self.ground, &carriage, robot.pose, robot.elevation);
+        let watch = Watch::new(robot.spec.height, water_level);
+        Mover::Riding(Box::new(Rider { carriage, body, watch }))
     }
 
     /// Their surface.
@@ -49,37 +82,71 @@ impl Hills {
         &self.ground
     }
 
-    /// Where a robot is in space.
+    /// Pose of a robot in space.
     pub(in crate::io::sim) fn pose(&self, robot: usize) -> Pose3 {
-        let rider = &self.riders[robot];
-        rider.body.pose(&rider.carriage)
+        self.movers[robot].pose()
     }
 
-    /// What has become of a robot that can drive no more.
+    /// Metres of water above a place so many metres above a robot's origin.
+    pub(in crate::io::sim) fn depth(&self, robot: usize, up: f64, time: f64) -> f64 {
+        let place = self.pose(robot).to_world(Point3::new(0.0, 0.0, up));
+        (self.waters.surface(place.xy(), time) - place.z).max(0.0)
+    }
+
+    /// Mishap of a robot that can no longer drive.
     pub(in crate::io::sim) fn mishap(&self, robot: usize) -> Option<Mishap> {
-        self.riders[robot].watch.mishap()
+        match &self.movers[robot] {
+            Mover::Riding(rider) => rider.watch.mishap(),
+            Mover::Swimming(swimmer) => swimmer.is_broken().then_some(Mishap::Broken),
+        }
     }
 
     /// The elevation of the ground under a point; beyond the hills, that of the floor.
-    pub(in crate::io::sim) fn level(&self, point: Point) -> f64 {
+    pub(in crate::io::sim) fn ground_level(&self, point: Point) -> f64 {
         self.ground.height(point).unwrap_or(0.0)
     }
 
-    /// Puts a robot on the ground, or so many metres above it.
+    /// The elevation on which an object stands at a point: the ground, or the water if it floats.
+    pub(in crate::io::sim) fn level(&self, point: Point, object: &Movable) -> f64 {
+        let ground = self.ground_level(point);
+        let draught = object.draught(self.waters.density());
+        draught.map_or(ground, |draught| ground.max(self.waters.level() - draught))
+    }
+
+    /// Puts a robot on the ground or in the water, or so many metres above the ground.
     pub(in crate::io::sim) fn place(&mut self, robot: usize, pose: Pose, elevation: f64) {
-        let rider = &mut self.riders[robot];
-        rider.body = standing(&self.ground, &rider.carriage, pose, elevation);
-        rider.watch.forget();
+        match &mut self.movers[robot] {
+            Mover::Riding(rider) => {
+                rider.body = standing(&self.ground, &rider.carriage, pose, elevation);
+                rider.watch.forget();
+            }
+            Mover::Swimming(swimmer) => swimmer.place(&self.ground, &self.waters, pose, elevation),
+        }
     }
 
     /// Lets all robots move for a tick, and puts how their frames move over the plane in place of how their wheels
     /// turned. Returns whether any moves.
-    pub(in crate::io::sim) fn ride(&mut self, bodies: &[Body], motions: &mut [PlanarMotion]) -> bool {
+    pub(in crate::io::sim) fn ride(
+        &mut self,
+        bodies: &mut [Body],
+        motions: &mut [PlanarMotion],
+        time: f64,
+    ) -> bool {
         let mut moving = false;
-        for ((rider, body), motion) in self.riders.iter_mut().zip(bodies).zip(motions) {
-            let drive = if rider.watch.is_over() { PlanarTwist::STOP } else { speed(*motion) };
-            rider.step(&self.ground, &drive);
-            let there = rider.body.pose(&rider.carriage).pose();
+        for ((mover, body), motion) in self.movers.iter_mut().zip(bodies).zip(motions) {
+            match mover {
+                Mover::Riding(rider) => {
+                    let drive = if rider.watch.is_over() { PlanarTwist::STOP } else { speed(*motion) };
+                    rider.step(&self.ground, &drive);
+                }
+                Mover::Swimming(swimmer) => {
+                    let Some(drive) = body.drive.craft_mut() else { continue };
+                    if let Some(place) = swimmer.step(&self.ground, &self.waters, drive, time) {
+                        body.touch.count(place);
+                    }
+                }
+            }
+            let there = mover.pose().pose();
             let motionless = body.pose().distance_to(there.position()) < STILL;
             let turned = angle_difference(there.heading, body.pose().heading).abs();
             *motion = if motionless && turned < STILL {
@@ -92,15 +159,18 @@ impl Hills {
         moving
     }
 
-    /// Takes notice of what was in the robots' way, and puts their solids where they are.
+    /// Takes obstacles in the robots' way into account, and updates the robots' solids.
     pub(in crate::io::sim) fn yield_to(&mut self, bodies: &mut [Body], space: &mut Space) {
-        for (rider, body) in self.riders.iter_mut().zip(bodies) {
-            let pose = rider.body.pose(&rider.carriage);
+        for (mover, body) in self.movers.iter_mut().zip(bodies) {
+            let pose = mover.pose();
             let (there, moved) = (body.pose(), pose.pose());
             let aside = there.position() - moved.position();
             let turned = angle_difference(there.heading, moved.heading);
             if aside.norm().max(turned.abs()) > MOVED_ASIDE {
-                rider.body.shove(aside, turned, TICK);
+                match mover {
+                    Mover::Riding(rider) => rider.body.shove(aside, turned, TICK),
+                    Mover::Swimming(swimmer) => swimmer.shove(aside, turned),
+                }
             }
             let above = pose.position.z - self.ground.height(there.position()).unwrap_or(0.0);
             let above = if above > STANDING { above } else { 0.0 };
@@ -110,6 +180,22 @@ impl Hills {
             space.set_level(body.solid, level);
         }
     }
+}
+
+impl Mover {
+    fn pose(&self) -> Pose3 {
+        match self {
+            Self::Riding(rider) => rider.body.pose(&rider.carriage),
+            Self::Swimming(swimmer) => swimmer.pose(),
+        }
+    }
+}
+
+/// The floor of a world as hills, and a little around it.
+fn level_floor(world: &World) -> Result<HeightField> {
+    let (bounds, margin) = (world.bounds(), Vector::repeat(1.0));
+    let area = Aabb::new(bounds.min - margin, bounds.max + margin);
+    Ok(HeightField::from_fn(2, 2, area, |_| 0.0)?)
 }
 
 impl Rider {
@@ -122,7 +208,7 @@ impl Rider {
     }
 }
 
-/// A body at rest on the ground, or above it.
+/// A body at rest on the ground or above it.
 fn standing(ground: &HeightField, carriage: &Undercarriage, pose: Pose, elevation: f64) -> RigidBody {
     if elevation <= 0.0 && ground.height(pose.position()).is_some() {
         return RigidBody::resting(ground, carriage, pose, TICK);

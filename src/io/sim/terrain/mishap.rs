@@ -1,34 +1,10 @@
 use super::RigidBody;
 use super::undercarriage::GRAVITY;
 use crate::geometry::Pose3;
+use crate::io::Mishap;
 use crate::io::sim::TICK;
 use crate::kinematics::PlanarTwist;
 use crate::world::HeightField;
-
-/// What becomes of a robot on hills that drives no more, or in vain.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Mishap {
-    /// It lies on its side or on its back.
-    Tipped,
-    /// It fell by more than its own height, or off the world.
-    Fell,
-    /// Its wheels have turned for two seconds and moved it next to nothing. It is over when it moves again.
-    Stuck,
-    /// The middle of its mass is below the water's surface.
-    Drowned,
-}
-
-impl std::fmt::Display for Mishap {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Tipped => "tipped over",
-            Self::Fell => "fell",
-            Self::Stuck => "stuck",
-            Self::Drowned => "drowned",
-        })
-    }
-}
 
 /// Who watches a robot for mishaps.
 #[derive(Debug, Clone)]
@@ -36,23 +12,24 @@ pub(super) struct Watch {
     height: f64,
     water_level: Option<f64>,
     mishap: Option<Mishap>,
-    /// Where the middle of its mass was when the ground carried it last.
+    /// Height of its centre of mass when the ground last carried it.
     left_ground: f64,
-    /// How far the wheels would have moved it, and did, in the present look.
+    /// Motion of the wheels and of the robot in the present observation.
     wished: f64,
     moved: f64,
     ticks: u32,
     gone: bool,
 }
 
-/// The cosine of the angle to the vertical beyond which a robot lies: 70 degrees.
+/// Cosine of the angle to the vertical beyond which a robot lies: 70 degrees.
 const LYING: f64 = 0.342;
-/// Ticks of a look for robots that are stuck, and the share of its way that one makes which is not.
+/// Ticks of an observation for stuck robots, and the smallest fraction of its way that a robot makes if it is
+/// not stuck.
 const LOOK: u32 = 200;
 const PROGRESS: f64 = 0.1;
-/// What a robot's wheels must have turned for it to be stuck, in metres or radians times a radius.
+/// Smallest motion of the wheels of a stuck robot (m, or rad times a radius).
 const LEAST_WISH: f64 = 0.02;
-/// Metres below the lowest place of the ground at which a robot is off the world.
+/// Depth below the lowest point of the ground at which a robot is off the world (m).
 const OFF_THE_WORLD: f64 = 1.0;
 
 impl Watch {
@@ -73,7 +50,7 @@ impl Watch {
         self.mishap
     }
 
-    /// Whether the robot drives no more.
+    /// Whether the robot can no longer drive.
     pub(super) fn is_over(&self) -> bool {
         matches!(self.mishap, Some(Mishap::Tipped | Mishap::Fell | Mishap::Drowned))
     }
@@ -83,17 +60,17 @@ impl Watch {
         self.gone
     }
 
-    /// Begins anew: a hand has put the robot somewhere else.
+    /// Restarts after the robot was placed elsewhere.
     pub(super) fn forget(&mut self) {
         *self = Self::new(self.height, self.water_level);
     }
 
-    /// Looks at a robot after a tick.
+    /// Observes a robot after a tick.
     pub(super) fn look(&mut self, body: &RigidBody, pose: &Pose3, ground: &HeightField, drive: &PlanarTwist) {
         let middle = body.middle().z;
         self.gone = middle < ground.lowest() - OFF_THE_WORLD;
         if self.falls(body) {
-            // Over an edge a robot tips first.
+            // A robot tips over an edge before it falls.
             self.mishap = Some(Mishap::Fell);
         } else if !self.is_over() {
             self.mishap = self.verdict(body, pose, drive);
@@ -103,8 +80,8 @@ impl Watch {
         }
     }
 
-    /// Whether it has fallen off the world, or by more than its height. Falling so far takes a speed, which tells a
-    /// fall from a slope that drops away under the wheels.
+    /// Whether it has fallen off the world, or by more than its height. The required speed distinguishes a
+    /// fall from driving down a slope.
     fn falls(&self, body: &RigidBody) -> bool {
         let fast = -body.velocity().z > 0.7 * (2.0 * GRAVITY * self.height).sqrt();
         self.gone || (self.left_ground - body.middle().z > self.height && fast)

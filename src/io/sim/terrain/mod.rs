@@ -1,22 +1,23 @@
-//! How robots drive, slide, tip and fall on hills.
+//! Driving, sliding, tipping and falling of robots on hills.
 //!
 //! # The model
 //!
-//! A robot is one rigid body on *feet*: points of its wheels, castors or tracks, and the corners of its outline. Each
-//! foot that meets the ground is carried by the triangle under it and held by Coulomb friction, which works against
-//! the speed at which the foot slides: that of the body less that of the wheel's rim or of the track's belt. A foot's
-//! ground is stiff, not rigid, so that loads have one distribution: the body sinks in by a tenth of a millimetre.
+//! A robot is one rigid body on *feet*: points of its wheels, castors or tracks, and the corners of its
+//! outline. Each foot in contact is supported by the triangle under it and held by Coulomb friction against
+//! its sliding speed, the difference between the speed of the body and that of the wheel rim or track belt.
+//! The ground at a foot is stiff rather than rigid, which makes the distribution of loads unique: the body
+//! sinks in by a tenth of a millimetre.
 //!
-//! In each tick the speeds are found with which the body ends on the ground, not in it, and no friction is beyond its
-//! limit (time stepping after Moreau; projected Gauss-Seidel with warm starts). From these alone follow resting
-//! attitudes, loads, slip under a drive, sliding and skidding, high-centring, tipping over, free fall and impacts
-//! without bounce. Drives turn their wheels as on level ground, so encoders and odometry drift as they slip.
+//! In each tick, speeds are computed such that the body ends on the ground, not in it, and no friction
+//! exceeds its limit (Moreau time stepping; projected Gauss-Seidel with warm starts). Resting attitudes,
+//! loads, slip under drive, sliding and skidding, high-centring, tipping, free fall and inelastic impacts
+//! follow from that. Drives turn their wheels as on level ground, so encoders and odometry drift with slip.
 //!
-//! # Where it does not hold
+//! # Limits of the model
 //!
-//! Motors are as strong as the friction. Nothing bounces, no suspension gives way, and the ground is never soft. The
-//! body turns as a ball of its mean radius of gyration, without precession. Feet do not know of edges of the ground
-//! between them. Air and water do not carry it.
+//! Motors are as strong as friction. There is no restitution and no suspension, and the ground is never soft.
+//! The body rotates like a ball of its mean radius of gyration, without precession. Feet do not detect ground
+//! edges between them. Air and water exert no forces.
 
 mod hills;
 mod mishap;
@@ -24,8 +25,6 @@ mod rigid_body;
 #[cfg(test)]
 mod tests;
 mod undercarriage;
-
-pub use mishap::Mishap;
 
 pub(super) use hills::Hills;
 use mishap::Watch;

@@ -5,56 +5,56 @@ use crate::geometry::{Point3, Pose, Pose3, Vector3, math};
 use crate::kinematics::PlanarTwist;
 use crate::world::HeightField;
 
-/// A robot's body of mass 1 on its feet.
+/// A robot's body with mass 1 on its feet.
 #[derive(Debug, Clone)]
 pub(super) struct RigidBody {
-    /// The middle of the mass, and how the body is turned.
+    /// Centre of mass and attitude of the body.
     place: Point3,
     attitude: UnitQuaternion<f64>,
     velocity: Vector3,
-    /// Radians per second about each axis of the world.
+    /// Angular velocity about each axis of the world (rad/s).
     spin: Vector3,
-    /// Each foot's impulse in the last tick: along the ground's normal, and along two tangents.
+    /// Impulse of each foot in the last tick: along the ground's normal and two tangents.
     impulses: Vec<Vector3>,
     contacts: Vec<Contact>,
-    /// Whether the last tick did not move it.
+    /// Whether it did not move in the last tick.
     asleep: bool,
 }
 
-/// A foot on the ground, or about to be.
+/// A foot on the ground, or about to reach it.
 #[derive(Debug, Clone)]
 struct Contact {
     foot: usize,
-    /// From the middle of the mass.
+    /// Vector from the centre of mass.
     arm: Vector3,
-    /// Metres above the ground at the tick's begin.
+    /// Height above the ground at the start of the tick (m).
     gap: f64,
     normal: Vector3,
-    /// The directions in which it is held, and the rim's speeds along them.
+    /// Directions in which it is held, and the rim's speeds along them.
     tangents: [Vector3; 2],
     held: usize,
     rim: [f64; 2],
-    /// Impulses along the normal and the tangents, and how much of a speed each takes for one.
+    /// Impulses along the normal and tangents, and the impulse's speed change along each.
     impulse: Vector3,
     effort: Vector3,
 }
 
-/// Looks at the ground in a tick: where the first says that feet will be, the second looks.
+/// Ground checks per tick: the second one uses the positions of the feet predicted by the first.
 const LOOKS: usize = 2;
-/// Rounds over all contacts, at most, and the change of an impulse below which they end, in m/s.
+/// Largest number of rounds over all contacts, and the impulse change below which they end (m/s).
 const MOST_ROUNDS: usize = 60;
 const SETTLED: f64 = 1e-10;
-/// Feet of a body at rest that are higher than this are not looked at further.
+/// Height above which feet of a body at rest are not considered (m).
 const MARGIN: f64 = 5e-3;
-/// A foot that would end this deep looks where it comes into the ground.
+/// Depth of a foot above which its point of entry into the ground is computed (m).
 const DEEP: f64 = 1.5e-3;
-/// The energy of motion, in J for a kilogram, of a body that stands: 10 µm/s.
+/// Kinetic energy of a body at rest (J/kg): 10 µm/s.
 const ASLEEP: f64 = 5e-11;
-/// The speed at which a body that was put into the ground comes out of it, in m/s.
+/// Speed at which a body placed in the ground leaves it (m/s).
 const EMERGING: f64 = 0.25;
 
 impl RigidBody {
-    /// A body at rest, its robot's frame at a pose.
+    /// A body at rest with its robot's frame at a pose.
     pub(super) fn new(carriage: &Undercarriage, pose: &Pose3) -> Self {
         Self {
             place: pose.to_world(Point3::from(carriage.centre)),
@@ -67,37 +67,37 @@ impl RigidBody {
         }
     }
 
-    /// The pose of the robot's frame.
+    /// Pose of the robot's frame.
     pub(super) fn pose(&self, carriage: &Undercarriage) -> Pose3 {
         Pose3::new(self.place - self.attitude * carriage.centre, self.attitude)
     }
 
-    /// The middle of the mass.
+    /// Centre of mass.
     pub(super) fn middle(&self) -> Point3 {
         self.place
     }
 
-    /// Metres per second of the middle of the mass.
+    /// Velocity of the centre of mass (m/s).
     pub(super) fn velocity(&self) -> Vector3 {
         self.velocity
     }
 
-    /// Radians per second about each axis of the world.
+    /// Angular velocity about each axis of the world (rad/s).
     pub(super) fn spin(&self) -> Vector3 {
         self.spin
     }
 
-    /// Whether it stands and nothing but a drive would move it.
+    /// Whether it is at rest and only a drive can move it.
     pub(super) fn is_asleep(&self) -> bool {
         self.asleep
     }
 
-    /// Whether a foot carried it in the last tick.
+    /// Whether a foot supported it in the last tick.
     pub(super) fn is_carried(&self) -> bool {
         self.impulses.iter().any(|impulse| impulse.x > 0.0)
     }
 
-    /// Energy for a kilogram, in J, above that of rest at height 0.
+    /// Energy above that at rest at height 0 (J/kg).
     pub(super) fn energy(&self, carriage: &Undercarriage) -> f64 {
         GRAVITY * self.place.z + self.kinetic(carriage)
     }
@@ -106,8 +106,8 @@ impl RigidBody {
         0.5 * (self.velocity.norm_squared() + carriage.gyration * self.spin.norm_squared())
     }
 
-    /// Moves the body for `tick` seconds, while its drive turns wheels so that they would move it at a speed on
-    /// level ground.
+    /// Moves the body for `tick` seconds. `drive` is the speed at which its wheels would move it on level
+    /// ground.
     pub(super) fn step(
         &mut self,
         ground: &HeightField,
@@ -136,8 +136,8 @@ impl RigidBody {
         self.attitude = UnitQuaternion::new_normalize((turn(spin * tick) * self.attitude).into_inner());
     }
 
-    /// Slows the body down if it has come to more energy without a motor, because the ground has an edge of which the
-    /// tick does not know. Returns whether it may be where it is.
+    /// Slows the body down if its energy has increased without a motor, because of a ground edge unknown to
+    /// the tick. Returns whether its position is valid.
     fn keeps_energy(&mut self, before: f64, carriage: &Undercarriage) -> bool {
         let (more, kinetic) = (self.energy(carriage) - before, self.kinetic(carriage));
         if more <= 0.0 {
@@ -149,7 +149,7 @@ impl RigidBody {
         kinetic >= more
     }
 
-    /// Finds the feet that meet the ground in this tick if the body moves at about these speeds.
+    /// Finds the feet that meet the ground in this tick if the body moves at approximately these speeds.
     fn look(
         &mut self,
         ground: &HeightField,
@@ -158,7 +158,7 @@ impl RigidBody {
         (velocity, spin): (Vector3, Vector3),
         tick: f64,
     ) {
-        // Arms and rims point as they do in the middle of the tick, so that an arc is one.
+        // Arms and rims are taken at the middle of the tick, so that arcs are exact.
         let middle = turn(spin * (0.5 * tick)) * self.attitude;
         let forward = middle * Vector3::x();
         // A body that hits the ground on one side turns its other side towards it within the tick.
@@ -191,7 +191,7 @@ impl RigidBody {
         }
     }
 
-    /// The speeds at the tick's end, from those without the ground.
+    /// Speeds at the end of the tick from those without the ground.
     fn solve(
         &mut self,
         carriage: &Undercarriage,
@@ -229,7 +229,8 @@ impl RigidBody {
         (velocity, spin)
     }
 
-    /// Moves the body aside, as something in the way of its outline does, and takes the speed that led it there.
+    /// Displaces the body like an obstacle in the way of its outline, and removes the speed in that
+    /// direction.
     pub(super) fn shove(&mut self, aside: crate::geometry::Vector, turned: f64, tick: f64) {
         let way = Vector3::new(aside.x, aside.y, 0.0);
         self.place += way;
@@ -239,8 +240,8 @@ impl RigidBody {
         self.spin.z += turned / tick;
     }
 
-    /// A body that rests on the ground, its robot's frame at a pose in the plane. Beyond the ground it begins level, at height 0,
-    /// and falls.
+    /// A body at rest on the ground with its robot's frame at a pose in the plane. Beyond the ground it
+    /// starts level, at height 0, and falls.
     pub(super) fn resting(ground: &HeightField, carriage: &Undercarriage, pose: Pose, tick: f64) -> Self {
         let (level, slope) = ground.height_and_gradient(pose.position()).unwrap_or_default();
         let forward = Vector3::new(pose.forward().x, pose.forward().y, slope.dot(&pose.forward()));
@@ -272,15 +273,21 @@ impl RigidBody {
     }
 }
 
-/// Ticks in which a body comes to rest where it is put, at most, and the share of its speed that each leaves it.
+/// Largest number of ticks in which a placed body comes to rest, and the fraction of its speed that remains
+/// after each.
 const MOST_SETTLING: u32 = 400;
 const CALMING: f64 = 0.8;
 
-/// The normal of the ground where a foot comes to on its way, and the foot's distance from that plane at its start;
+/// Normal of the ground where a foot arrives on its way, and the foot's initial distance from that plane;
 /// `None` beyond the ground.
+///
+/// It goes through the ground's place at the end, but lies as the ground does in the middle of the way: as arms and
+/// rims do, so that halving the tick quarters the error and does not halve it.
 fn plane(ground: &HeightField, start: Point3, way: Vector3) -> Option<(Vector3, f64)> {
     let at = |end: Point3| {
         let (level, slope) = ground.height_and_gradient(end.xy())?;
+        let middle = ground.gradient(nalgebra::center(&start, &end).xy());
+        let slope = middle.unwrap_or(slope);
         let normal = Vector3::new(-slope.x, -slope.y, 1.0).normalize();
         let below = start.z - level - slope.dot(&(start.xy() - end.xy()));
         Some((normal, below * normal.z))
@@ -289,7 +296,7 @@ fn plane(ground: &HeightField, start: Point3, way: Vector3) -> Option<(Vector3, 
     if gap + normal.dot(&way) > -DEEP {
         return Some((normal, gap));
     }
-    // Under the end there may be the ground behind a face that the foot runs into.
+    // The ground under the end point may be behind a face that the foot runs into.
     let clear = ground.height(start.xy()).map_or(0.0, |level| start.z - level);
     let length = way.norm();
     if clear < -DEEP || length == 0.0 {
@@ -301,7 +308,7 @@ fn plane(ground: &HeightField, start: Point3, way: Vector3) -> Option<(Vector3, 
     if hit.is_finite() { at(lifted + direction * (hit + 1e-9)) } else { Some((normal, gap)) }
 }
 
-/// The rotation by a vector's length about it.
+/// Rotation about a vector by its length.
 fn turn(by: Vector3) -> UnitQuaternion<f64> {
     let angle = by.norm();
     if angle == 0.0 {
@@ -313,10 +320,10 @@ fn turn(by: Vector3) -> UnitQuaternion<f64> {
 }
 
 impl Contact {
-    /// Finds the directions in which a foot holds on, and how fast its rim moves along them.
+    /// Determines the directions in which a foot is held, and the rim's speeds along them.
     fn hold(&mut self, grip: Grip, forward: Vector3, drive: &PlanarTwist) {
         let along = forward - self.normal * forward.dot(&self.normal);
-        // With the robot's nose along the normal, any direction is as good.
+        // If the robot's nose points along the normal, any direction is valid.
         let along = along.try_normalize(1e-9).unwrap_or_else(|| {
             Vector3::z().cross(&self.normal).try_normalize(1e-9).unwrap_or_else(Vector3::x)
         });
@@ -341,7 +348,7 @@ impl Contact {
         }
     }
 
-    /// How much of a speed at the foot an impulse of 1 gives, along the normal and the tangents.
+    /// Speed change at the foot per unit impulse, along the normal and tangents.
     fn weigh(&mut self, gyration: f64) {
         let effort = |axis: &Vector3| 1.0 + self.arm.cross(axis).norm_squared() / gyration;
         self.effort =
@@ -359,7 +366,7 @@ impl Contact {
         self.normal * self.impulse.x + self.tangents[0] * self.impulse.y + self.tangents[1] * self.impulse.z
     }
 
-    /// Presses the foot against the ground as hard as its speed asks for; returns the change of the impulse.
+    /// Applies the normal force required by the foot's speed; returns the change of the impulse.
     #[inline]
     fn press(&mut self, moving: &Vector3, softness: f64, tick: f64) -> f64 {
         let missing = -(self.normal.dot(moving) + self.gap / tick + softness * self.impulse.x);
@@ -369,7 +376,7 @@ impl Contact {
         change
     }
 
-    /// Rubs the foot along the ground as its sliding asks for, within friction's limit; returns the change of the
+    /// Applies the friction required by the foot's sliding, up to its limit; returns the change of the
     /// impulse.
     #[inline]
     fn rub(&mut self, moving: &Vector3, friction: f64) -> Vector3 {

@@ -1,64 +1,63 @@
 use std::f64::consts::FRAC_PI_4;
 
+pub(in crate::io::sim) use crate::geometry::units::GRAVITY;
 use crate::geometry::{Vector, Vector3, direction, math, units};
 use crate::kinematics::{PlanarTwist, Tracked};
 use crate::world::{DriveSpec, Footprint, RobotSpec};
 
-/// What of a robot meets the ground, and how.
+/// Parts of a robot that can touch the ground, and their friction.
 #[derive(Debug, Clone)]
 pub(super) struct Undercarriage {
-    /// The middle of the mass in the robot's frame, whose origin is on the ground under the driven axle.
+    /// Centre of mass in the robot's frame, whose origin is on the ground under the driven axle.
     pub(super) centre: Vector3,
-    /// The square of the mean radius of gyration, in m².
+    /// Square of the mean radius of gyration (m²).
     pub(super) gyration: f64,
     pub(super) feet: Vec<Foot>,
-    /// Metres by which a foot sinks in for an acceleration of the body, in s².
+    /// Sinking of a foot per acceleration of the body (s²).
     pub(super) softness: f64,
-    /// The coefficient of friction.
+    /// Coefficient of friction.
     pub(super) friction: f64,
 }
 
-/// A point that may meet the ground.
+/// A point that may touch the ground.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Foot {
-    /// Where it is, from the middle of the mass.
+    /// Position relative to the centre of mass.
     pub(super) place: Vector3,
     pub(super) grip: Grip,
 }
 
-/// How a foot holds on to the ground.
+/// Directions of a foot's friction.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Grip {
-    /// A part of a driven wheel or belt: forward as its axle does, and not sideways. The axle's place from the robot's
-    /// origin.
+    /// A part of a driven wheel or belt, which moves forwards with its axle and not sideways; with the axle's
+    /// position from the robot's origin.
     Driven(Vector),
-    /// A wheel that rolls freely the way its axle moves, and does not slide across it.
+    /// A wheel that rolls freely along its axle's motion, and does not slide sideways.
     Rolling(Vector),
-    /// A Mecanum wheel, which holds along the axle of its roller alone: the wheel's place, and that axle.
+    /// A Mecanum wheel, which is held only along its roller's axis: the wheel's position and that axis.
     Roller(Vector, Vector),
-    /// The body itself, which does not move against itself.
+    /// The body itself.
     Body,
-    /// A castor, which rolls any way.
+    /// A castor, which rolls in any direction.
     Free,
 }
 
-/// Metres by which a body sinks in that stands on all its wheels.
+/// Sinking of a body on all its wheels (m).
 const SAG: f64 = 1e-4;
-/// Metres per second squared.
-pub(in crate::io::sim) const GRAVITY: f64 = 9.81;
-/// The angles from straight down, in degrees, of the points of a wheel that may meet the ground.
+/// Angles from straight down of the points of a wheel that may touch the ground (degrees).
 const RIM: [f64; 5] = [-60.0, -30.0, 0.0, 30.0, 60.0];
-/// The share of the way from the axle to the castor at which the mass has its middle.
+/// Position of the centre of mass between axle and castor, as a fraction.
 const BETWEEN: f64 = 0.3;
-/// The height of the middle of the mass as a share of the robot's.
+/// Height of the centre of mass, as a fraction of the robot's.
 const MIDDLE: f64 = 0.4;
 
 impl Undercarriage {
-    /// The undercarriage of a robot as its description has it.
+    /// The undercarriage from a robot's description.
     ///
-    /// A drive of two wheels stands on a castor as well, at the farther end of the outline. What the description
-    /// leaves open is assumed: without a place the middle of the mass lies at two fifths of the height, near the driven axle, or
-    /// between the axles.
+    /// A two-wheeled drive also stands on a castor at the farther end of the outline. Defaults replace
+    /// missing data: the centre of mass is at two fifths of the height, near the driven axle or between the
+    /// axles.
     pub(super) fn of(spec: &RobotSpec) -> Self {
         let (back, front) = ends(&spec.footprint);
         let mut feet = Vec::new();
@@ -93,13 +92,14 @@ impl Undercarriage {
                 }
                 (4, 0.0)
             }
+            DriveSpec::Craft(_) => (0, 0.0),
         };
         feet.extend(chassis(spec, ahead));
         let centre = stated_centre(spec).unwrap_or(Vector3::new(ahead, 0.0, MIDDLE * spec.height));
         Self::new(feet, centre, gyration(spec), wheels, spec.friction)
     }
 
-    /// An undercarriage of feet whose places are from the robot's origin.
+    /// An undercarriage of feet at positions relative to the robot's origin.
     pub(super) fn new(
         mut feet: Vec<Foot>,
         centre: Vector3,
@@ -115,7 +115,7 @@ impl Undercarriage {
 }
 
 impl Grip {
-    /// Forward and sideways speed of the rim or belt that a drive turns so that its robot would move at a speed.
+    /// Forward and lateral speed of the rim or belt for a speed commanded to the drive.
     #[inline]
     pub(super) fn rim_speed(&self, drive: &PlanarTwist) -> Vector {
         match self {
@@ -127,7 +127,7 @@ impl Grip {
     }
 }
 
-/// The points of a wheel's rim that may meet the ground.
+/// Points of a wheel's rim that may touch the ground.
 fn wheel(feet: &mut Vec<Foot>, axle: Vector, radius: f64, grip: Grip) {
     feet.extend(RIM.map(|degrees| {
         let (sin, cos) = math::sin_cos(units::from_deg(degrees));
@@ -135,11 +135,11 @@ fn wheel(feet: &mut Vec<Foot>, axle: Vector, radius: f64, grip: Grip) {
     }));
 }
 
-/// The points of belts that may meet the ground: below, and on their way up to the wheels at their ends.
+/// Points of belts that may touch the ground: below, and on the rise towards the wheels at their ends.
 fn belts(feet: &mut Vec<Foot>, drive: Tracked, radius: f64) {
     let half = 0.5 * drive.equivalent().track;
     for side in [1.0, -1.0] {
-        // A belt's speed is that of the wheel of the equivalent drive.
+        // A belt's speed is that of the equivalent drive's wheel.
         let grip = Grip::Driven(Vector::new(0.0, side * half));
         let below = drive.places(side).map(|place| Vector3::new(place.x, place.y, 0.0));
         feet.extend(below.map(|place| Foot { place, grip }));
@@ -154,14 +154,14 @@ fn belts(feet: &mut Vec<Foot>, drive: Tracked, radius: f64) {
     }
 }
 
-/// The middle of the mass that a description states. Its place is from the origin of the robot's model.
+/// Centre of mass stated in a description, relative to the origin of the robot's model.
 fn stated_centre(spec: &RobotSpec) -> Option<Vector3> {
     let ([x, y, z], [ahead, up]) = (spec.body.mass_centre.map(|c| c * spec.body.scale), spec.body.axle);
     let centre = Vector3::new(x - ahead, y, z - up + 0.5 * wheel_diameter(spec));
     (spec.body.mass_centre != [0.0; 3] && centre.z > 0.0).then_some(centre)
 }
 
-/// The outline's ends along x.
+/// Ends of the outline along x.
 fn ends(footprint: &Footprint) -> (f64, f64) {
     match footprint {
         Footprint::Disc { radius } => (-radius, *radius),
@@ -169,7 +169,7 @@ fn ends(footprint: &Footprint) -> (f64, f64) {
     }
 }
 
-/// Corners of the outline, at its top and as high as the axle, and the belly, half as high.
+/// Corners of the outline, at its top and at the axle's height, and the belly at half that height.
 fn chassis(spec: &RobotSpec, belly: f64) -> Vec<Foot> {
     let axle = (0.5 * wheel_diameter(spec)).min(0.5 * spec.height);
     let outline: Vec<Vector> = match spec.footprint {
@@ -194,10 +194,11 @@ fn wheel_diameter(spec: &RobotSpec) -> f64 {
         | DriveSpec::Ackermann { wheel_diameter, .. }
         | DriveSpec::Tracked { wheel_diameter, .. }
         | DriveSpec::Omni { wheel_diameter, .. } => wheel_diameter,
+        DriveSpec::Craft(_) => 0.0,
     }
 }
 
-/// The square of the mean radius of gyration of a block as large as the robot.
+/// Square of the mean radius of gyration of a block of the robot's size.
 fn gyration(spec: &RobotSpec) -> f64 {
     let size = match spec.footprint {
         Footprint::Disc { radius } => Vector::new(1.7 * radius, 1.7 * radius),

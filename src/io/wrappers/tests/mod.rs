@@ -33,6 +33,7 @@ fn busy_robot() -> MockRobot {
         .with_encoder(1, Script::function(|time| Ok((1000.0 * time) as i64)))
         .with_attitude(Script::function(|time| Ok(Attitude { roll: 0.1 * time, pitch: -0.2, yaw: time })))
         .with_turn_rates(Script::function(|time| Ok(Vector3::new(time, 0.5, -time))))
+        .with_depth(Script::function(|time| Ok(0.5 + 0.1 * time)))
         .with_acceleration(Script::function(|time| Ok(Vector3::new(0.1, time, 9.81))))
         .with_keys([(0.0, Key::Key1), (0.4, Key::Key3), (1.0, Key::Key4)])
         .with_touches([(0.2, (3, 4))])
@@ -40,7 +41,7 @@ fn busy_robot() -> MockRobot {
         .with_ideal_drive()
 }
 
-const CALLS: u8 = 43;
+const CALLS: u8 = 44;
 
 /// Makes one of all possible calls and returns its answer.
 fn call(robot: &mut (impl RobotIo + ?Sized), number: u8) -> String {
@@ -89,8 +90,9 @@ fn call(robot: &mut (impl RobotIo + ?Sized), number: u8) -> String {
         38 => format!("{:?} {:?}", robot.set_motor(1, 0.5), robot.set_servo(1, -0.5)),
         39 => format!("{:?} {:?}", robot.encoder(1), robot.reset_encoder(1)),
         40 => format!("{:?} {:?}", robot.set_resolution(Resolution::Vga), robot.resolution()),
-        41 => format!("{:?} {:?} {:?}", robot.attitude(), robot.turn_rates(), robot.acceleration()),
-        _ => format!("{:?}", robot.image()),
+        42 => format!("{:?}", robot.depth()),
+        41 => format!("{:?}", robot.image()),
+        _ => format!("{:?} {:?} {:?}", robot.attitude(), robot.turn_rates(), robot.acceleration()),
     }
 }
 

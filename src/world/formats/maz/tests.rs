@@ -41,7 +41,7 @@ fn letters_stand_in_cells_and_capitals_on_walls() {
     assert_eq!(bottom, [segment(0.0, 0.0, 0.36, 0.0), segment(0.72, 0.0, 1.08, 0.0)]);
 }
 
-/// As people draw by hand: a row that is shifted by a column from some place on.
+/// As in hand-drawn files: from some point on, a row is shifted by a column.
 #[test]
 fn bars_and_letters_count_in_any_column() {
     let bars = world(" _ _ _\n|  _ _|\n|_ __|\n1000\n");

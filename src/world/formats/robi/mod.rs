@@ -2,59 +2,74 @@
 //!
 //! | line | meaning |
 //! |---|---|
+//! | `drive AUV_DRIVE`, `BOAT_DRIVE` | a craft in water, underwater or on the surface: names of our own |
 //! | `drive DIFFERENTIAL_DRIVE`, `ACKERMANN_DRIVE`, `OMNI_DRIVE`, `TRACKED_DRIVE` | how it moves; `TRACK_DRIVE` and `CHAIN_DRIVE` are tracked too, other names are read as differential |
-//! | `name NAME` | by which scenes place it; the file's name without it |
-//! | `model FILE [X Y Z RX RY RZ]` | the 3D model that cameras see, and how it is shifted and turned |
-//! | `collider box SX SY SZ X Y Z`, `sphere R X Y Z`, `capsule R H X Y Z` | solid parts: sizes, then middle |
-//! | `mass KG X Y Z` | its mass and the middle of it, which counts on hills unless it is 0 0 0 |
+//! | `name NAME` | name for scenes; default: the name of the file |
+//! | `model FILE [X Y Z RX RY RZ]` | 3D model for cameras, with its offset and rotation |
+//! | `collider box SX SY SZ X Y Z`, `sphere R X Y Z`, `capsule R H X Y Z` | solid parts: sizes, then centre |
+//! | `mass KG X Y Z` | mass and its centre, which is used on hills unless it is 0 0 0 |
 //! | `axis UP FORWARD` | the driven axle |
 //! | `axel drive UP FORWARD`, `axel turn UP FORWARD` | the driven and the steered axle |
 //! | `wheel [drive\|turn] DIAMETER DEG_PER_S TICKS HALF_TRACK` | the wheels |
 //! | `psd ID NAME X Y Z R1 R2 R3`, `psd NAME ID X Y Z R`, `psd NAME ID X Y Z R1 R2 R3` | a distance sensor |
 //! | `camera X Y Z PAN TILT MAX_PAN MAX_TILT` | the camera |
-//! | `fisheye DEG` | its lens is equidistant and sees so much from left to right |
+//! | `fisheye DEG` | equidistant lens with this horizontal field of view |
 //! | `lidar [X Y Z R1 R2 R3] RANGE TILT POINTS`, `lidar RANGE POINTS TILT`, `lidar POINTS TILT` | the scanner |
 //!
-//! The model's axes point right, up and forward. Sensors and footprint of a [`RobotSpec`](crate::world::RobotSpec)
-//! are about the middle of the driven axle, whose place in the model is in
-//! [`Body::axle`](crate::world::Body::axle); heights are those of the model. The footprint follows from the colliders
-//! by the rule of [`Body::footprint`](crate::world::Body::footprint); without colliders it is a disc that reaches a
-//! wheel's radius beyond the wheels.
+//! The model's axes point right, up and forwards. Sensors and footprint of a
+//! [`RobotSpec`](crate::world::RobotSpec) are relative to the middle of the driven axle, whose position in
+//! the model is [`Body::axle`](crate::world::Body::axle); heights are those of the model. The footprint
+//! follows from the colliders by the rule of [`Body::footprint`](crate::world::Body::footprint); without
+//! colliders it is a disc that extends a wheel's radius beyond the wheels.
 //!
-//! # Where a sensor sits
+//! # Poses of sensors
 //!
-//! The files in use disagree about the columns of `psd`, `lidar` and `camera`. This reader takes them as follows.
+//! Existing files disagree about the columns of `psd`, `lidar` and `camera`. This reader interprets them as
+//! follows.
 //!
-//! * `psd NAME ID X Y Z` and one or three rotations: forward, left, up; one rotation is to the left.
-//! * `psd ID NAME X Y Z R1 R2 R3`: R1 turns the sensor down, so that one with 90 looks straight down. Of R2 and R3 one
-//!   turns it aside; the other would turn a single ray about itself and is 0 in all files in use. If R3 is the one in
-//!   any sensor of the file, the columns are side, forward, up, and turns are clockwise; otherwise they are forward,
-//!   left, up, and turns are to the left. A sensor called FRONT with X = 0 in a file without any such turn has the
-//!   former columns.
-//! * A name that says left (LEFT, or L among the letters F, B, R, L as in `PSD_FL`) makes side and yaw left, one that
-//!   says right makes them right.
-//! * `lidar` of nine numbers has the columns of the file's `psd` lines that begin with a number, and forward, left, up
-//!   without any. All three rotations turn its plane: down in front, aside, and about the forward axis, which lifts its
-//!   left side if the columns are forward, left, up, and its right side otherwise. Roll comes first, then pitch, then
-//!   yaw. The tilt is the angle of each beam above that plane.
+//! * `psd NAME ID X Y Z` and one or three rotations: forward, left, up; a single rotation is to the left.
+//! * `psd ID NAME X Y Z R1 R2 R3`: R1 turns the sensor down; 90 is straight down. One of R2 and R3 turns it
+//!   sideways; the other one would rotate a single ray about itself and is 0 in all existing files. If any
+//!   sensor of the file is turned sideways by R3, the columns are side, forward, up, and turns are clockwise;
+//!   otherwise they are forward, left, up, and turns are to the left. Without any such turn, a sensor called
+//!   FRONT with X = 0 implies the former columns.
+//! * A name that indicates left (LEFT, or L among the letters F, B, R, L as in `PSD_FL`) makes side and yaw
+//!   left; one that indicates right makes them right.
+//! * `lidar` with nine numbers has the columns of the file's `psd` lines that begin with a number; without
+//!   such lines, forward, left, up. All three rotations turn its plane: down in front, sideways, and about
+//!   the forward axis, which raises its left side with the columns forward, left, up, and its right side
+//!   otherwise. The order is roll, pitch, yaw. The tilt is the angle of each beam above that plane.
 //! * `camera`: forward, left, up, unless X is 0 and Y is not; then Y is forward.
+//!
+//! # Craft without lines of their own
+//!
+//! What a craft's file does not say follows from its mass and its colliders: these are the hull, scaled so that an underwater
+//! craft has 2 % of its volume in reserve and a boat floats at least half out of the water; inertia, added mass and damping are
+//! those of [`CraftSpec::of_hull`](crate::kinematics::marine::CraftSpec::of_hull); an underwater craft has four thrusters as
+//! Mako has them (1 left, 2 front, 3 right, 4 back), a boat two at its stern (1 left, 2 right), each pushing 1 N for a kilogram.
 //!
 //! # Lines of our own
 //!
-//! EyeSim skips keywords that it does not know, so a description can say here what EyeSim's formats cannot:
+//! EyeSim skips unknown keywords, so a description can contain data here that EyeSim's formats cannot
+//! express:
 //!
 //! | line | meaning |
 //! |---|---|
 //! | `motor LAG ACCELERATION` | seconds, and millimetres per second squared |
-//! | `steering DEG` | the largest steering angle; 30 without it |
+//! | `steering DEG` | largest steering angle; default 30 |
 //! | `dynamics MASS GYRATION GRIP STIFFNESS BALANCE BRAKE STEERING` | a fast car's mass and tyres: [`CarDynamics`](crate::world::CarDynamics), in millimetres, their products with 1/s², and degrees per second |
 //! | `tracks LENGTH WIDTH` | a tracked robot's belts: their length on the ground, and their width |
+//! | `thruster ID NAME X Y Z DX DY DZ FORCE [BACK]` | a craft's thruster: place, direction (both forward, left, up), newtons forward and backward; BACK is 0.7 of FORCE without it |
+//! | `hull box SX SY SZ X Y Z`, `hull capsule R LENGTH X Y Z [x\|y\|z]`, `hull ellipsoid A B C X Y Z` | what displaces water: sizes (or half axes), then middle, forward, left, up |
+//! | `damping` and 12 numbers | a craft's linear damping in surge, sway, heave, roll, pitch, yaw, then its quadratic damping: N s/m and so on |
+//! | `added_mass` and 6 numbers | kg and kg m² |
+//! | `inertia IXX IYY IZZ IXY IXZ IYZ` | a craft's inertia about the middle of its mass, in kg m² |
 //! | `friction MU` | the coefficient of friction on hills; 0.8 without it |
 //! | `outline disc R HEIGHT`, `outline rectangle BACK RIGHT FRONT LEFT HEIGHT` | footprint about the driven axle |
-//! | `mast BACK RIGHT FRONT LEFT HEIGHT` | a narrow part that stands up above the rest, which rays meet |
-//! | `psd_range MM` | how far the `psd` of the line before sees |
-//! | `lidar_range MM` | how far the lidar sees |
-//! | `inertial` and 3, 6 or 9 channels | an inertial unit: which channels of `ANALOGRead` tell roll, pitch and yaw, the turn rates, and the accelerations, each about or along forward, left, up: [`InertialSpec`](crate::world::InertialSpec); 0 0 0 for what it does not measure |
+//! | `mast BACK RIGHT FRONT LEFT HEIGHT` | a narrow part above the rest, for rays |
+//! | `psd_range MM` | range of the preceding `psd` |
+//! | `lidar_range MM` | range of the lidar |
+//! | `inertial` and 3, 6 or 9 channels | an inertial unit: channels of `ANALOGRead` for roll, pitch and yaw, turn rates, and accelerations, in the order forward, left, up: [`InertialSpec`](crate::world::InertialSpec); 0 0 0 for missing measurements |
 //! | `camera_view DEG` | the camera's horizontal field of view |
 //!
 //! ```
@@ -66,6 +81,7 @@
 //! # Ok::<(), roverlab::world::formats::FormatError>(())
 //! ```
 
+mod craft;
 mod mounts;
 mod parts;
 mod read;

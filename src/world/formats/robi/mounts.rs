@@ -1,4 +1,4 @@
-//! Where sensors sit: the rules that reconcile the files in use.
+//! Poses of sensors: rules that reconcile existing files.
 
 use super::super::error::FormatError;
 use super::super::lexer::Line;
@@ -6,7 +6,7 @@ use crate::geometry::units;
 use crate::world::Mount;
 use crate::world::formats::args::Args;
 
-/// What the first three and the rotation columns of a sensor mean.
+/// Meaning of the first three columns and of the rotation columns of a sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Columns {
     /// Forward, left, up; angles to the left.
@@ -15,7 +15,7 @@ pub(super) enum Columns {
     SideForwardUp,
 }
 
-/// A sensor's numbers as they stand in the file: metres and degrees.
+/// A sensor's numbers as in the file: metres and degrees.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Raw {
     pub(super) place: [f64; 3],
@@ -41,7 +41,8 @@ impl Raw {
         Ok([length("x")?, length("y")?, length("z")?])
     }
 
-    /// The pose about the driven axle, `ahead` metres before the model's origin, of a sensor of some name.
+    /// Pose relative to the driven axle, which is `ahead` metres before the model's origin, of a sensor with
+    /// a name.
     pub(super) fn mount(&self, columns: Columns, name: &str, ahead: f64) -> Mount {
         let ([a, b, z], [down, second, third]) = (self.place, self.rotation);
         let (forward, aside, turn, roll) = match columns {
@@ -54,14 +55,14 @@ impl Raw {
             None => (aside, turn),
         };
         let [roll, pitch, yaw] = [roll, down, yaw].map(|turn| {
-            // A turn of nothing has no direction, and half a turn has one only.
+            // A turn of zero has no sign, and a half turn has only one representation.
             units::from_deg(if turn == -180.0 { 180.0 } else { turn + 0.0 })
         });
         Mount { x: forward - ahead, y, z, roll, pitch, yaw }
     }
 
-    /// Which of its last two rotations turns a sensor of one ray aside, if one alone is not zero: the other one would
-    /// turn it about its line of sight.
+    /// The one of the last two rotations that turns a single-ray sensor sideways, if exactly one of them is
+    /// not zero; the other would rotate it about its line of sight.
     fn yaw_column(&self) -> Option<usize> {
         match (self.rotation[1] != 0.0, self.rotation[2] != 0.0) {
             (true, false) => Some(1),
@@ -71,7 +72,7 @@ impl Raw {
     }
 }
 
-/// The columns of a file whose distance sensors have these names and numbers.
+/// Columns of a file whose distance sensors have these names and numbers.
 pub(super) fn columns<'n>(sensors: &(impl Iterator<Item = (&'n str, Raw)> + Clone)) -> Columns {
     let says = |column| sensors.clone().any(|(_, raw)| raw.yaw_column() == Some(column));
     let ahead = |(name, raw): (&str, Raw)| {
@@ -85,7 +86,8 @@ pub(super) fn columns<'n>(sensors: &(impl Iterator<Item = (&'n str, Raw)> + Clon
     }
 }
 
-/// A camera's place: forward, left, up, unless it sits at x = 0 beside the middle, which no camera does.
+/// Position of a camera: forward, left, up; except for x = 0 with a sideways offset, where no camera is
+/// mounted.
 pub(super) fn camera_place([a, b, z]: [f64; 3], ahead: f64) -> Mount {
     let (forward, left) = if a == 0.0 && b != 0.0 { (b, 0.0) } else { (a, b) };
     Mount { x: forward - ahead, y: left, z, ..Mount::default() }
@@ -97,7 +99,7 @@ pub(super) enum Side {
     Right,
 }
 
-/// The side that a sensor's name speaks of.
+/// Side indicated by a sensor's name.
 pub(super) fn side(name: &str) -> Option<Side> {
     let name = name.to_ascii_uppercase();
     let parts = || name.split(|c: char| !c.is_ascii_alphabetic());
@@ -112,7 +114,7 @@ pub(super) fn side(name: &str) -> Option<Side> {
     }
 }
 
-/// Whether a `psd` line begins with the number, and not with the name.
+/// Whether a `psd` line begins with the number rather than the name.
 pub(super) fn number_first(line: &Line<'_>) -> bool {
     Args::after_keyword(line).numbers_ahead() > 0
 }

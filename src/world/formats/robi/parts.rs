@@ -1,4 +1,4 @@
-//! The lines of a robot's solid and wheels.
+//! Lines about a robot's solid and wheels.
 
 use super::super::args::Args;
 use super::super::error::FormatError;
@@ -89,7 +89,7 @@ pub(super) fn mast(line: &Line<'_>, args: &mut Args<'_, '_>) -> Result<Mast, For
     Ok(Mast { outline: rectangle(line, args, "mast")?, top: args.positive_size("the mast's height")? })
 }
 
-/// Back, right, front and left side of something.
+/// Back, right, front and left side of a rectangle.
 fn rectangle(line: &Line<'_>, args: &mut Args<'_, '_>, what: &str) -> Result<Aabb, FormatError> {
     let first = line.words.len() - args.left();
     let mut side = |which: &str| args.length(&format!("the {what}'s {which} side"));
@@ -103,7 +103,7 @@ fn rectangle(line: &Line<'_>, args: &mut Args<'_, '_>, what: &str) -> Result<Aab
     Ok(Aabb::new(Point::new(back, right), Point::new(front, left)))
 }
 
-/// An `inertial` line: three channels for each thing that the unit may measure.
+/// An `inertial` line: three channels for each possible measurement.
 pub(super) fn inertial(line: &Line<'_>, args: &mut Args<'_, '_>) -> Result<InertialSpec, FormatError> {
     let numbers = args.left();
     if ![3, 6, 9].contains(&numbers) {

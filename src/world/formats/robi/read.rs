@@ -9,22 +9,23 @@ use super::super::limits::{MAX_METRES, MAX_PARTS};
 use super::super::model;
 use super::super::number::MILLI;
 use super::super::source::{Files, check_length};
+use super::craft::CraftLines;
 use super::mounts::{self, Columns, Raw};
 use super::parts::{self, Wheel};
 use crate::geometry::{math, units};
 use crate::world::formats::{number, stem};
 use crate::world::{
-    Body, CameraSpec, CarDynamics, DriveSpec, Footprint, InertialSpec, LidarSpec, Mast, Mesh, Mount, PsdSpec,
-    RobotSpec,
+    Body, CameraSpec, CarDynamics, DepthSensorSpec, DriveSpec, Footprint, InertialSpec, LidarSpec, Mast,
+    Mesh, Mount, PsdSpec, RobotSpec,
 };
 
-/// The largest steering angle of cars that state none, in radians: 30 degrees.
+/// Default steering limit of cars (rad): 30 degrees.
 pub(super) const DEFAULT_STEERING: f64 = std::f64::consts::FRAC_PI_6;
-/// The height of robots without colliders, in metres.
+/// Height of robots without colliders (m).
 const DEFAULT_HEIGHT: f64 = 0.1;
 
-/// Reads a robot, without its 3D model: [`load_robot`](crate::world::formats::load_robot) and scripts read that too. A
-/// `drive` line is required.
+/// Reads a robot without its 3D model; [`load_robot`](crate::world::formats::load_robot) and scripts also
+/// read the model. A `drive` line is required.
 pub fn parse(text: &str, file: &str) -> Result<Parsed<RobotSpec>, FormatError> {
     let (mut parsed, model_at) = read(text, file)?;
     let mut notes = Notes::new(file);
@@ -51,8 +52,9 @@ pub(in crate::world::formats) fn parse_with_model(
     Ok(notes.finish(spec))
 }
 
-/// A model where its robot has it, about the middle of the driven axle. As in EyeSim, it is turned about its axes that
-/// point forward, right and up, one after the other; positive turns are to the left, downwards and to the right.
+/// A model at its pose on the robot, relative to the middle of the driven axle. As in EyeSim, it is rotated
+/// in sequence about its forward, right and up axes; positive turns are to the left, downwards and to the
+/// right.
 fn placed(mut mesh: Mesh, body: &Body) -> Mesh {
     let [right, up, ahead] = body.model_offset;
     let [(sin_x, cos_x), (sin_y, cos_y), (sin_z, cos_z)] = body.model_rotation.map(math::sin_cos);
@@ -66,7 +68,7 @@ fn placed(mut mesh: Mesh, body: &Body) -> Mesh {
     mesh
 }
 
-/// Reads a robot, and tells where it names its model.
+/// Reads a robot; also returns the location of its model's name.
 fn read(text: &str, file: &str) -> Result<(Parsed<RobotSpec>, Option<Location>), FormatError> {
     check_length(text, file)?;
     let mut reader = Reader::new(file);
@@ -85,6 +87,8 @@ enum Drive {
     Ackermann,
     Tracked,
     Omni,
+    Submarine,
+    Boat,
 }
 
 /// A `psd` line.
@@ -92,7 +96,7 @@ struct Psd {
     id: u8,
     name: String,
     raw: Raw,
-    /// Whether its columns are those of the file, and not fixed by its form.
+    /// Whether its columns are those of the file instead of being fixed by its form.
     shared: bool,
     max_range: f64,
 }
@@ -102,9 +106,10 @@ struct Reader<'f> {
     drive: Option<Drive>,
     wheel: Option<Wheel>,
     turn_axle: Option<f64>,
-    /// Length and width of belts.
+    /// Length and width of the belts.
     tracks: Option<[f64; 2]>,
     steering: f64,
+    craft: CraftLines,
     dynamics: Option<CarDynamics>,
     psds: Vec<Psd>,
     lidar_mount: Option<Raw>,
@@ -125,6 +130,7 @@ impl<'f> Reader<'f> {
             psds: Vec::new(),
             lidar: None,
             camera: None,
+            depth_sensor: None,
             inertial: InertialSpec::default(),
             mast: None,
             ..RobotSpec::s4()
@@ -136,6 +142,7 @@ impl<'f> Reader<'f> {
             turn_axle: None,
             tracks: None,
             steering: DEFAULT_STEERING,
+            craft: CraftLines::default(),
             dynamics: None,
             psds: Vec::new(),
             lidar_mount: None,
@@ -192,7 +199,7 @@ impl<'f> Reader<'f> {
         Ok(())
     }
 
-    /// Lines that EyeSim does not know. Returns whether the keyword is one.
+    /// Lines unknown to EyeSim. Returns whether the keyword is one of them.
     fn own_line(
         &mut self,
         keyword: &str,
@@ -216,6 +223,11 @@ impl<'f> Reader<'f> {
             "friction" => {
                 self.spec.friction = args.plain("the coefficient of friction", 0.0..=1e9)?;
             }
+            "depth_sensor" => {
+                let channel = args.count("the depth sensor's channel", 1..=255)? as u8;
+                let z = if args.left() > 0 { args.length("the depth sensor's height")? } else { 0.0 };
+                self.spec.depth_sensor = Some(DepthSensorSpec { channel, z });
+            }
             "inertial" => self.spec.inertial = parts::inertial(line, args)?,
             "dynamics" => self.dynamics = Some(parts::dynamics(args)?),
             "outline" => self.outline = Some(parts::outline(line, args)?),
@@ -230,18 +242,20 @@ impl<'f> Reader<'f> {
                 let angle = args.degrees("the camera's angle", f64::MIN_POSITIVE..=360.0)?;
                 self.camera_view = Some((units::from_deg(angle), false));
             }
-            _ => return Ok(false),
+            _ => return self.craft.line(keyword, line, args),
         }
         Ok(true)
     }
 
     fn drive(&mut self, line: &Line<'_>, args: &mut Args<'_, '_>) -> Result<(), FormatError> {
         let name = args.word("the name of a drive")?.text;
-        // Further words are of no consequence.
+        // Further words are ignored.
         self.drive = Some(match name.to_ascii_uppercase().as_str() {
             "DIFFERENTIAL_DRIVE" => Drive::Differential,
             "ACKERMANN_DRIVE" => Drive::Ackermann,
             "OMNI_DRIVE" => Drive::Omni,
+            "AUV_DRIVE" => Drive::Submarine,
+            "BOAT_DRIVE" => Drive::Boat,
             "TRACKED_DRIVE" | "TRACK_DRIVE" | "CHAIN_DRIVE" => Drive::Tracked,
             _ => {
                 let message = format!("unknown drive {}; read as DIFFERENTIAL_DRIVE", shown(name));
@@ -283,7 +297,7 @@ impl<'f> Reader<'f> {
             args.word("`drive` or `turn`")?;
         }
         let wheel = Wheel::read(args)?;
-        // Steered wheels only roll along: they count if there are no others.
+        // Steered wheels only roll, so they are used only if there are no others.
         if first != "turn" || self.wheel.is_none() {
             self.wheel = Some(wheel);
         }
@@ -368,7 +382,7 @@ impl<'f> Reader<'f> {
         self.place_sensors();
         self.place_footprint(drive);
         self.place_mast()?;
-        // Wheels, outline and axle may each be within their limits, and what comes of them not.
+        // Wheels, outline and axle may each be within their limits, but not their combination.
         let reach = self.spec.footprint.bounding_radius() + self.spec.body.axle[0].abs();
         if reach > 0.5 * MAX_METRES {
             let found = format!("a robot that reaches {} mm from its middle", number::print(reach, MILLI));
@@ -379,6 +393,12 @@ impl<'f> Reader<'f> {
     }
 
     fn drive_spec(&mut self, drive: Drive) -> Result<DriveSpec, FormatError> {
+        if matches!(drive, Drive::Submarine | Drive::Boat) {
+            self.spec.body.turn_axle_height = 0.0;
+            let lines = std::mem::take(&mut self.craft);
+            let craft = lines.finish(drive == Drive::Boat, &self.spec, &mut self.notes)?;
+            return Ok(DriveSpec::Craft(Arc::new(craft)));
+        }
         let wheel = self.wheel.unwrap_or_else(|| {
             self.notes.warn(Location::START, "no `wheel` line; the wheels of an S4 are taken");
             Wheel { diameter: 0.054, max_speed: units::from_deg(3600.0), ticks: 1100.0, track: 0.090 }
@@ -386,7 +406,7 @@ impl<'f> Reader<'f> {
         let Wheel { diameter: wheel_diameter, max_speed: max_wheel_speed, ticks: ticks_per_turn, track } =
             wheel;
         if drive == Drive::Differential {
-            // Nothing steers.
+            // Nothing is steered.
             self.spec.body.turn_axle_height = 0.0;
             return Ok(DriveSpec::Differential { wheel_diameter, track, max_wheel_speed, ticks_per_turn });
         }
@@ -432,7 +452,7 @@ impl<'f> Reader<'f> {
         })
     }
 
-    /// Length and width of belts.
+    /// Length and width of the belts.
     fn belts(&mut self, track: f64) -> Result<[f64; 2], FormatError> {
         let [length, width] = self.tracks.unwrap_or_else(|| {
             let message = "no `tracks` line; the belts are half as long again as they are apart";
@@ -484,6 +504,7 @@ impl<'f> Reader<'f> {
             | DriveSpec::Ackermann { wheel_diameter, track, .. }
             | DriveSpec::Tracked { wheel_diameter, track, .. }
             | DriveSpec::Omni { wheel_diameter, track, .. } => 0.5 * (track + wheel_diameter),
+            DriveSpec::Craft(ref craft) => CraftLines::radius(craft),
         };
         let fallback = (Footprint::Disc { radius: wheels }, DEFAULT_HEIGHT);
         (self.spec.footprint, self.spec.height) = self.outline.take().or(derived).unwrap_or(fallback);
@@ -502,7 +523,7 @@ impl<'f> Reader<'f> {
     }
 }
 
-/// Whether footprint and height say all about the colliders.
+/// Whether footprint and height describe the colliders completely.
 fn says_all(body: &Body, footprint: &Footprint, height: f64) -> bool {
     *body.colliders == [body.collider_of_footprint(footprint, height)]
 }

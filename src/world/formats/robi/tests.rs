@@ -60,10 +60,10 @@ fn a_whole_description() {
     );
 }
 
-/// A triangle whose corners are the model's origin, 100 mm to the right of it, and 200 mm up and 400 mm ahead.
+/// A triangle with corners at the model's origin, 100 mm to the right of it, and 200 mm up and 400 mm ahead.
 const TRIANGLE: &str = "v 0 0 0\nv -0.1 0 0\nv 0 0.2 0.4\nf 1 2 3\n";
 
-/// The corners of a robot's model: ahead of the driven axle, to its left and up, in millimetres.
+/// Corners of a robot's model: ahead of the driven axle, to its left and up (mm).
 fn corners(model: &str) -> [[f64; 3]; 3] {
     let mut files = MemoryFiles([("bot.obj".into(), TRIANGLE.into())].into());
     let text = format!("{DRIVE}axis 20 10\n{model}\n");
@@ -100,7 +100,7 @@ fn a_model_that_is_missing_is_named_at_its_place() {
     assert!(parsed.warnings[0].to_string().starts_with(message), "{}", parsed.warnings[0]);
 }
 
-/// The four files in use that contradict one another about the columns all describe the same kind of robot.
+/// The four contradictory kinds of existing files all describe the same kind of robot.
 #[test]
 fn distance_sensors_of_all_files_in_use() {
     let old = "psd PSD_FRONT 1 60 20 30 0\npsd PSD_LEFT 2 56 45 30 90\npsd PSD_RIGHT 3 56 -45 30 -90";
@@ -130,7 +130,7 @@ fn distance_sensors_of_all_files_in_use() {
     assert_eq!(psds("psd 1 PSD_FRONT 0 60 30 0 0 0"), [(1, 60.0, 0.0, 30.0, 0.0)]);
 }
 
-/// All three rotations of a sensor, in the columns of either kind of file: those of the other sensors tell.
+/// All three rotations of a sensor, with both kinds of columns, which are determined by the other sensors.
 #[test]
 fn sensors_turn_about_all_axes() {
     let turns = |lines: &str| {
@@ -360,12 +360,13 @@ prop_compose! {
         let footprint = if disc { Footprint::Disc { radius: outline.0 } } else { Footprint::Rectangle(rectangle) };
         let motor = MotorSpec { time_constant: motor.0, max_acceleration: motor.1 };
         let model = Some(r"m\a b.obj".into());
+        let depth_sensor = None;
         let inertial = InertialSpec {
             attitude: tilts.then_some([1, 2, 3]),
             turn_rates: rates.then_some([6, 5, 4]),
             acceleration: pulls.then_some([200, 8, 255]),
         };
-        RobotSpec { name, drive, motor, footprint, height, mast: None, mass, friction, psds, lidar, camera, inertial, model, mesh: None, body }
+        RobotSpec { name, drive, motor, footprint, height, mast: None, mass, friction, psds, lidar, camera, depth_sensor, inertial, model, mesh: None, body }
     }
 }
 

@@ -9,10 +9,10 @@ use crate::world::{
     CameraSpec, CarDynamics, Collider, DriveSpec, Footprint, InertialSpec, MotorSpec, PsdSpec, RobotSpec,
 };
 
-/// Writes a robot, so that [`parse`](super::parse) gives it back.
+/// Writes a robot in a form that [`parse`](super::parse) reads back.
 ///
-/// Sensors are written with the columns forward, left, up. A sensor on the other side than its name says comes back
-/// on the side of its name.
+/// Sensors are written with the columns forward, left, up. A sensor whose side contradicts its name is read
+/// back on the side of its name.
 pub fn print(spec: &RobotSpec) -> String {
     lexer::written(|text| write_spec(text, spec))
 }
@@ -23,6 +23,8 @@ fn write_spec(text: &mut String, spec: &RobotSpec) -> Result {
         DriveSpec::Ackermann { .. } => "ACKERMANN_DRIVE",
         DriveSpec::Tracked { .. } => "TRACKED_DRIVE",
         DriveSpec::Omni { .. } => "OMNI_DRIVE",
+        // What tells boats from underwater craft stands in its lines.
+        DriveSpec::Craft(_) => "AUV_DRIVE",
     };
     writeln!(text, "drive {drive}\nname {}", quote(&spec.name))?;
     write_model(text, spec)?;
@@ -37,6 +39,9 @@ fn write_spec(text: &mut String, spec: &RobotSpec) -> Result {
     spec.psds.iter().try_for_each(|psd| write_psd(text, psd, spec.body.axle[0]))?;
     write_lidar(text, spec)?;
     spec.camera.iter().try_for_each(|camera| write_camera(text, camera, spec.body.axle[0]))?;
+    if let Some(sensor) = &spec.depth_sensor {
+        writeln!(text, "depth_sensor {} {}", sensor.channel, millimetres(sensor.z))?;
+    }
     write_inertial(text, &spec.inertial)
 }
 
@@ -66,6 +71,10 @@ fn write_drive(text: &mut String, spec: &RobotSpec) -> Result {
         writeln!(text, "axel drive {up} {ahead}\naxel turn {turn_up} {turn}")
     };
     match spec.drive {
+        DriveSpec::Craft(ref craft) => {
+            writeln!(text, "axis {up} {ahead}")?;
+            super::craft::write(text, craft)
+        }
         DriveSpec::Differential { wheel_diameter, track, max_wheel_speed, ticks_per_turn } => {
             writeln!(text, "axis {up} {ahead}")?;
             write_wheel(text, "", [wheel_diameter, max_wheel_speed, ticks_per_turn, track])
@@ -170,7 +179,8 @@ fn write_psd(text: &mut String, psd: &PsdSpec, ahead: f64) -> Result {
     let forward = undo_shift(psd.mount.x, ahead);
     let place = [forward, psd.mount.y, psd.mount.z].map(millimetres).join(" ");
     let (name, turns) = (quote(&psd.name), [psd.mount.pitch, psd.mount.yaw].map(degrees).join(" "));
-    // A sensor beside the axle that looks ahead would pass for one of the other columns; the older form has one meaning.
+    // A sensor beside the axle that faces forwards would be taken for one with the other columns; the older
+    // form is unambiguous.
     if forward == 0.0 && psd.mount.y != 0.0 && psd.name.to_ascii_uppercase().contains("FRONT") {
         writeln!(text, "psd {name} {} {place} {turns} 0", psd.id)?;
     } else {
@@ -198,7 +208,7 @@ fn write_lidar(text: &mut String, spec: &RobotSpec) -> Result {
 fn write_camera(text: &mut String, camera: &CameraSpec, ahead: f64) -> Result {
     let mount = &camera.mount;
     let forward = undo_shift(mount.x, ahead);
-    // At exactly 0 the second column would pass for the first.
+    // At exactly 0, the second column would be taken for the first.
     let forward = if forward == 0.0 && mount.y != 0.0 { f64::MIN_POSITIVE } else { forward };
     let place = [forward, mount.y, mount.z].map(millimetres).join(" ");
     let angles = [mount.yaw, camera.tilt, camera.max_pan, camera.max_tilt].map(degrees).join(" ");

@@ -7,42 +7,41 @@ use super::super::source::{Files, SourceFile, decode, missing, stem};
 use super::super::{esobj, robi};
 use crate::world::{ObjectKind, RobotSpec};
 
-/// The robots whose names no file can take.
+/// Robots whose names files cannot redefine.
 const RESERVED: [&str; 3] = ["S4", "LabBot", "Omni"];
 
-/// What becomes of a file that is missing or broken.
+/// Workaround for a missing or broken file, in messages.
 const ELSE_INSTEAD: &str = "something else takes its place";
 
-/// What a script knows by name: what its files describe, and what is built in.
+/// Robots and objects known to a script: from its files and built in.
 #[derive(Default)]
 pub(super) struct Definitions {
     robots: Vec<Definition<RobotSpec>>,
     objects: Vec<Definition<ObjectKind>>,
-    /// What is built in, once it is used.
+    /// Built-in things that have been used.
     built_in_robots: Vec<Arc<RobotSpec>>,
     built_in_objects: Vec<Arc<ObjectKind>>,
-    /// Files that are missing or broken, in whose place stands something under a name that the script has yet
-    /// to say.
+    /// Missing or broken files; substitutes are created under names that appear later in the script.
     missing: Vec<Missing>,
 }
 
-/// Something that a file makes known.
+/// A definition from a file.
 struct Definition<T> {
-    /// The file's name without folder and ending.
+    /// Name of the file without folder and extension.
     file: String,
     value: Arc<T>,
 }
 
 struct Missing {
-    /// As the script names it.
+    /// File name as in the script.
     reference: String,
     is_robot: bool,
-    /// Whether something built in has its name, and so takes other names only if they are like it.
+    /// Whether a built-in thing has its name; it then substitutes only for similar names.
     built_in: bool,
 }
 
 impl Definitions {
-    /// Takes what the file of a robot describes.
+    /// Adds the robot of a file.
     pub(super) fn robot_in(
         &mut self,
         file: &str,
@@ -70,7 +69,7 @@ impl Definitions {
         Ok(())
     }
 
-    /// Takes what the file of an object describes.
+    /// Adds the object of a file.
     pub(super) fn object_in(
         &mut self,
         file: &str,
@@ -92,7 +91,7 @@ impl Definitions {
         Ok(())
     }
 
-    /// The name and the text of a file; `None` if it does not exist and something else takes its place.
+    /// Name and text of a file; `None` if it does not exist and a substitute is used.
     fn text(
         &mut self,
         (file, at): (&str, Location),
@@ -123,8 +122,8 @@ impl Definitions {
         Ok(Some((name, text)))
     }
 
-    /// Gives a name that nothing has to something in the place of a missing file: of the one that is called
-    /// most like it, or else of the first one.
+    /// Assigns an undefined name to a substitute for a missing file: the one with the most similar name,
+    /// otherwise the first one.
     pub(super) fn stand_in_for(&mut self, name: &str, at: Location, notes: &mut Notes<'_>) {
         let fitness = |missing: &Missing| {
             let likeness = likeness(&stem(&missing.reference), name);
@@ -169,7 +168,7 @@ impl Definitions {
     }
 }
 
-/// The one thing for all who use it.
+/// One shared instance for all users.
 fn built_in<T>(
     known: &mut Vec<Arc<T>>,
     make: impl Fn() -> Option<T>,
@@ -186,7 +185,7 @@ fn is_reserved(name: &str) -> bool {
     RESERVED.iter().any(|reserved| reserved.eq_ignore_ascii_case(name))
 }
 
-/// How much a file's name is like another name: 2 if their letters and digits are the same, 1 if one holds
+/// Similarity of a file's name and another name: 2 if their letters and digits are equal, 1 if one contains
 /// the other.
 fn likeness(file: &str, name: &str) -> u8 {
     let plain = |text: &str| text.to_ascii_lowercase().replace(|c: char| !c.is_ascii_alphanumeric(), "");
@@ -194,7 +193,7 @@ fn likeness(file: &str, name: &str) -> u8 {
     if file == name { 2 } else { u8::from(file.contains(&name) || name.contains(&file)) }
 }
 
-/// A robot that drives as one from such a file would.
+/// A robot with the drive suggested by the file's path.
 fn robot_like(reference: &str) -> RobotSpec {
     let reference = reference.to_ascii_lowercase();
     let says = |words: &[&str]| words.iter().any(|word| reference.contains(word));
@@ -207,7 +206,7 @@ fn robot_like(reference: &str) -> RobotSpec {
     }
 }
 
-/// The last definition that states a name, or else the last whose file is called so.
+/// The last definition with a stated name, otherwise the last one with that file name.
 fn find<T>(definitions: &[Definition<T>], name: &str, stated: impl Fn(&T) -> &str) -> Option<Arc<T>> {
     let named = |what: &str| what.eq_ignore_ascii_case(name);
     let by_name = definitions.iter().rev().find(|definition| named(stated(&definition.value)));

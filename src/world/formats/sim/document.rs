@@ -7,13 +7,14 @@ use crate::world::{Marker, Object, Scene, Settings};
 pub struct SimFile {
     /// Its lines, without comments and blank lines.
     pub statements: Vec<Statement>,
-    /// Where the file name or the placed thing of each statement stands; shorter for scripts that were not read.
+    /// Location of the file name or placed thing of each statement; shorter for scripts that were not read
+    /// from text.
     pub(super) places: Vec<Location>,
-    /// Why a line of an unknown word could not be read, if the word turns out to be known.
+    /// Errors of lines with unknown words, in case the words become known.
     pub(super) broken: Vec<(usize, FormatError)>,
 }
 
-/// Where the statements stand does not count.
+/// Equality ignores the locations.
 impl PartialEq for SimFile {
     fn eq(&self, other: &Self) -> bool {
         self.statements == other.statements
@@ -23,52 +24,52 @@ impl PartialEq for SimFile {
 /// A line of a simulation script.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Statement {
-    /// `world`: the file of the environment.
+    /// `world`: file of the environment.
     World(String),
     /// `settings`.
     Settings(Settings),
-    /// `robot`: the file of a robot.
+    /// `robot`: file of a robot.
     Robot(String),
-    /// `object`: the file of an object.
+    /// `object`: file of an object.
     Object(String),
-    /// A robot or an object by its name.
+    /// A robot or object, placed by name.
     Place {
         /// Its name.
         name: String,
-        /// Where it starts.
+        /// Its start position.
         at: Position,
-        /// The program of a robot, as written.
+        /// Program of a robot, as written.
         program: Option<String>,
     },
     /// `marker`.
     Marker(Marker),
-    /// A line that begins with an unknown word and is no placement, as written, without its comment.
+    /// A line that begins with an unknown word and is not a placement, as written, without its comment.
     Unknown(String),
 }
 
-/// Where a simulation script places something.
+/// Position of a placed thing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Position {
     /// At a pose.
     Pose {
         /// The pose.
         pose: Pose,
-        /// Metres above the floor, if written.
+        /// Height above the floor, if given (m).
         elevation: Option<f64>,
     },
-    /// At each such letter of a maze.
+    /// At each occurrence of a letter in a maze.
     Letter {
-        /// The letter, whose case does not matter.
+        /// The letter, case-insensitive.
         letter: char,
-        /// The heading in radians, if written.
+        /// Heading (rad), if given.
         heading: Option<f64>,
     },
 }
 
 impl SimFile {
-    /// The script of a scene whose world is in some file.
+    /// The script of a scene whose world is in a file.
     ///
-    /// Robots and objects that not every script knows need `robot` and `object` lines, which the caller adds.
+    /// Robots and objects that are not built in need `robot` and `object` lines, which the caller adds.
     pub fn for_scene(scene: &Scene, world: &str) -> Self {
         let pose = |pose, elevation| {
             let elevation = if elevation == 0.0 { None } else { Some(elevation) };

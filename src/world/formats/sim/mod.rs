@@ -3,29 +3,28 @@
 //! | line | meaning |
 //! |---|---|
 //! | `world FILE` | a `.wld` or `.maz`, or the `.yaml` of a ROS map; without it, a box of 2000 by 2000 mm |
-//! | `settings [VIS] [TRACE]` | what to show |
-//! | `robot FILE`, `robi FILE` | makes a `.robi` known |
-//! | `object FILE`, `obj FILE` | makes an `.esObj` known |
+//! | `world FILE` | `.wld`, `.maz`, or the `.yaml` of a ROS map; default: a box of 2000 by 2000 mm |
+//! | `settings [VIS] [TRACE]` | display options |
+//! | `robot FILE`, `robi FILE` | defines the robot of a `.robi` |
+//! | `object FILE`, `obj FILE` | defines the object of an `.esObj` |
 //! | `ROBOT X Y [Z] PHI [PROGRAM]` | places a robot; PHI counter-clockwise from the x axis |
 //! | `ROBOT LETTER [PHI] [PROGRAM]` | places one at each such letter of the maze |
 //! | `OBJECT X Y [Z] PHI` | places an object |
-//! | `marker X Y [R G B [A]]` | a mark on the floor |
 //!
 //! The robots of [`RobotSpec::PREDEFINED`](crate::world::RobotSpec::PREDEFINED) and the objects of
-//! [`ObjectKind::PREDEFINED`](crate::world::ObjectKind::PREDEFINED) are always known, and stand in for files
-//! of their names that do not exist, as the worlds of [`World::PREDEFINED`](crate::world::World::PREDEFINED)
-//! do; the names `S4`, `LabBot` and `Omni` are reserved. Names are those that the files state or the files'
-//! own names, in any case. Lines of EyeSim 6 and lines that begin with an unknown word are skipped with a
-//! warning.
+//! [`ObjectKind::PREDEFINED`](crate::world::ObjectKind::PREDEFINED) are always known, and replace missing
+//! files of their names, as do the worlds of [`World::PREDEFINED`](crate::world::World::PREDEFINED). The
+//! names `S4`, `LabBot` and `Omni` are reserved. Names are those stated in the files or the files' own names,
+//! case-insensitive. Lines of EyeSim 6 and lines that begin with an unknown word are skipped with a warning.
 //!
-//! A robot at a letter without PHI heads where the letter says (see [`maz`](super::maz)). Letters that say nothing
-//! mean a random heading: it is drawn from a stream of random numbers with a fixed seed, so that it is the same each
-//! time; [`SimFile::resolve`] takes another seed.
+//! A robot at a letter without PHI has the letter's heading (see [`maz`](super::maz)). Other letters imply a
+//! random heading from a stream with a fixed seed, which makes it repeatable; [`SimFile::resolve`] accepts
+//! another seed.
 //!
-//! [`parse`] fails at the first line that makes no sense; [`parse_tolerantly`] warns of it and goes on, as EyeSim does.
+//! [`parse`] fails at the first invalid line; [`parse_tolerantly`] warns and continues, like EyeSim.
 //!
-//! [`SimFile`] is the script as written; [`Scene`](crate::world::Scene) is what it describes, with the files that it
-//! names.
+//! [`SimFile`] is the script as written; [`Scene`](crate::world::Scene) is the described scene, including the
+//! files that it names.
 //!
 //! ```
 //! use roverlab::world::formats::{MemoryFiles, sim};

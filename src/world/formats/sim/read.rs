@@ -8,9 +8,9 @@ use super::document::{Position, SimFile, Statement};
 use crate::geometry::{Point, Pose};
 use crate::world::{Colour, Marker, ObjectKind, RobotSpec, Settings};
 
-/// What becomes of a line that makes no sense.
+/// Workaround for an invalid line, in messages.
 pub(super) const SKIPPED: &str = "the line is skipped";
-/// The colour of marks that state none.
+/// Default colour of marks.
 const MARKER_COLOUR: Colour = Colour::RED;
 
 /// Reads a script without the files that it names.
@@ -18,7 +18,7 @@ pub fn parse_document(text: &str, file: &str) -> Result<Parsed<SimFile>, FormatE
     read(text, file, false)
 }
 
-/// Reads a script, and skips the lines that make no sense if that is wished.
+/// Reads a script; `tolerant` skips invalid lines.
 pub(super) fn read(text: &str, file: &str, tolerant: bool) -> Result<Parsed<SimFile>, FormatError> {
     check_length(text, file)?;
     let mut reader = Reader { script: SimFile::default(), notes: Notes::new(file) };
@@ -95,7 +95,7 @@ impl Reader<'_> {
     }
 }
 
-/// What to write in place of a line of EyeSim 6.
+/// Replacement for a line of EyeSim 6.
 fn legacy(keyword: &str, line: &Line<'_>) -> Option<&'static str> {
     let is_number = |index: usize| line.words.get(index).is_some_and(|w| number::parse(w.text, 0).is_some());
     match keyword {

@@ -13,10 +13,10 @@ use crate::geometry::{Point, Pose, units};
 use crate::random::Stream;
 use crate::world::{Object, Place, RobotPlacement, RobotSpec, Scene, World};
 
-/// The seed of random headings unless another is given.
+/// Default seed of random headings.
 pub const HEADING_SEED: u64 = 0;
 
-/// Metres from edge to edge of the world of scripts that name none.
+/// Side of the default world (m).
 const DEFAULT_WORLD: f64 = 2.0;
 
 /// Reads a script and all files that it names.
@@ -24,11 +24,15 @@ pub fn parse(text: &str, file: &str, files: &mut dyn FileSource) -> Result<Parse
     parse_with(text, file, &mut Files::new(files, false))
 }
 
-/// Reads a script as a simulator does that has nobody to ask, and warns of what it gets over: lines that make
-/// no sense, and whose files cannot be read, are skipped; in the place of a robot or an object whose file is
-/// missing stands another one, under the name by which the script places it; in the place of a world that
-/// cannot be read stands a box of 2000 by 2000 mm, or of what all that is placed needs; a robot at a letter
-/// that the world lacks stands at some place of its own. Fails for a text that is too long alone.
+/// Reads a script as a non-interactive simulator needs it, with warnings and workarounds:
+///
+/// - Invalid lines and lines with unreadable files are skipped.
+/// - A robot or object whose file is missing is replaced by another one, under the name by which the script
+///   places it.
+/// - An unreadable world is replaced by a box of 2000 by 2000 mm, or larger if the placed things need it.
+/// - A robot at a letter that the world lacks gets a place of its own.
+///
+/// Fails only if the text is too long.
 pub fn parse_tolerantly(
     text: &str,
     file: &str,
@@ -51,8 +55,8 @@ pub(in crate::world::formats) fn parse_with(
 }
 
 impl SimFile {
-    /// The scene that the script describes, with the files that it names. `file` is the script's own name, from which
-    /// others are looked up; `seed` is that of headings that the script leaves open.
+    /// The scene described by the script, including the files that it names. `file` is the script's own name,
+    /// to which others are relative; `seed` is that of unspecified headings.
     pub fn resolve(
         &self,
         file: &str,
@@ -91,17 +95,17 @@ impl SimFile {
     }
 }
 
-/// Metres from the farthest thing to the wall of a box that stands for a world.
+/// Distance from the farthest thing to the wall of a substitute box (m).
 const MARGIN: f64 = 1.0;
-/// Metres of the longest wall of such a box.
+/// Longest wall of a substitute box (m).
 const LARGEST_BOX: f64 = 100.0;
 
-/// Metres between robots at letters that the world lacks.
+/// Distance between robots at letters that the world lacks (m).
 const STRAY_DISTANCE: f64 = 0.5;
-/// How many of them stand in a row.
+/// Number of them per row.
 const STRAYS_IN_A_ROW: u32 = 3;
 
-/// Where a robot stands whose letter the world lacks.
+/// Place of a robot whose letter the world lacks.
 fn stray_place(number: u32) -> Point {
     let (row, column) = (number / STRAYS_IN_A_ROW, number % STRAYS_IN_A_ROW);
     Point::new(STRAY_DISTANCE * f64::from(column + 1), STRAY_DISTANCE * f64::from(row + 1))
@@ -111,15 +115,15 @@ struct Resolver<'a> {
     script: &'a SimFile,
     notes: Notes<'a>,
     definitions: Definitions,
-    /// The places of each letter, in lower case, in the order of the maze.
+    /// Places of each letter, in lower case, in the order of the maze.
     letters: BTreeMap<char, Vec<Place>>,
     scene: Scene,
     headings: Stream,
-    /// Robots so far that stand at letters which the world lacks; none if that is an error, as all others are.
+    /// Number of robots so far at letters that the world lacks; `None` if that is an error, like all others.
     strays: Option<u32>,
 }
 
-/// What is placed, in a box that holds it.
+/// A box that contains all placed things.
 fn box_around(scene: &Scene) -> World {
     let robots = scene.robots.iter().map(|robot| robot.pose.position());
     let objects = scene.world.objects.iter().map(|object| object.pose.position());
@@ -131,7 +135,7 @@ fn box_around(scene: &Scene) -> World {
 }
 
 impl Resolver<'_> {
-    /// Hands an error on, or makes a warning of it.
+    /// Passes an error on, or converts it to a warning.
     fn get_over(&mut self, result: Result<(), FormatError>, instead: &str) -> Result<(), FormatError> {
         match result {
             Err(error) if self.strays.is_some() => {

@@ -5,7 +5,7 @@ use super::super::number::{self, degrees, millimetres};
 use super::document::{Position, SimFile, Statement};
 use crate::world::Marker;
 
-/// Writes a script, so that [`parse_document`](super::parse_document) gives it back.
+/// Writes a script in a form that [`parse_document`](super::parse_document) reads back.
 pub fn print(script: &SimFile) -> String {
     lexer::written(|text| script.statements.iter().try_for_each(|statement| write_statement(text, statement)))
 }
@@ -58,7 +58,7 @@ fn write_marker(text: &mut String, marker: &Marker) -> Result {
     writeln!(text)
 }
 
-/// A program in quotes if it would pass for a coordinate.
+/// A program name, in quotes if it could be read as a coordinate.
 fn not_a_number(program: &str) -> String {
     if number::parse(program, 0).is_some() { format!("\"{program}\"") } else { quote(program) }
 }

@@ -1,4 +1,4 @@
-//! Scenes whose pictures are known by geometry.
+//! Scenes whose pictures are known from geometry.
 
 mod surfaces;
 
@@ -15,7 +15,7 @@ use crate::world::{
     Billboard, Colour, Marker, Object, ObjectKind, RobotPlacement, RobotSpec, Scene, Shape, Wall, World,
 };
 
-/// The height of the S4's camera above the floor, and how far ahead of its middle it is.
+/// Height of the S4's camera above the floor, and its distance ahead of the robot's middle.
 const HEIGHT: f64 = 0.060;
 const AHEAD: f64 = 0.062;
 
@@ -23,7 +23,7 @@ fn object(shape: Shape, colour: Colour, x: f64, y: f64) -> Object {
     Object::new(Arc::new(ObjectKind::new("thing", shape, colour)), Pose::new(x, y, 0.0))
 }
 
-/// A floor of 8 m by 8 m with an S4 in its middle that looks along x.
+/// A floor of 8 m by 8 m with an S4 in the middle, facing along x.
 fn scene() -> Scene {
     Scene::with_robot(World::empty(8.0, 8.0), RobotSpec::s4(), Pose::new(4.0, 4.0, 0.0))
 }
@@ -38,7 +38,7 @@ fn picture(scene: &Scene) -> RgbImage {
     picture_with(scene, SimOptions::ideal(), Resolution::Qvga)
 }
 
-/// Columns and rows from the first to the last pixel that `is_it`.
+/// Columns and rows of the first and last pixel for which `is_it`.
 fn extent(image: &RgbImage, is_it: impl Fn([u8; 3]) -> bool) -> Option<[u32; 4]> {
     let hits: Vec<_> =
         image.enumerate_pixels().filter(|(_, _, p)| is_it(p.0)).map(|(x, y, _)| (x, y)).collect();
@@ -51,14 +51,14 @@ fn is_red([r, g, b]: [u8; 3]) -> bool {
     r > 60 && g < 10 && b < 10
 }
 
-/// Pixels that a metre covers at a distance of a metre, in QVGA.
+/// Pixels per metre at a distance of one metre, in QVGA.
 fn focal() -> f64 {
     160.0 / math::tan(0.5 * FRAC_PI_3)
 }
 
 fn assert_extent(found: Option<[u32; 4]>, expected: [f64; 4]) {
     let found = found.expect("something to be seen").map(f64::from);
-    // The first pixel whose middle is behind an edge, and the last one before it.
+    // First pixel whose centre is beyond an edge, and the last one before it.
     let expected = [expected[0], expected[1] - 1.0, expected[2], expected[3] - 1.0];
     for (found, expected) in found.into_iter().zip(expected) {
         assert!((found - expected).abs() <= 0.5 + 0.3, "found {found}, expected {expected}");
@@ -73,11 +73,11 @@ fn a_can_stands_where_it_is_projected() {
         let can =
             object(Shape::Cylinder { radius, height }, Colour::RED, 4.0 + AHEAD + distance, 4.0 - aside);
         scene.world.objects.push(can);
-        // The lines of sight that touch it, to either side of its middle.
+        // The tangents on both sides of its middle.
         let away = math::hypot(distance, aside);
         let (middle, half) = (math::atan2(aside, distance), math::asin(radius / away));
         let column = |angle: f64| 160.0 + focal() * math::tan(angle);
-        // The nearest points of its foot and of its top's rim, straight ahead of the camera.
+        // The nearest points of its foot and its top's rim.
         let near = distance - radius;
         let row = |z: f64, depth: f64| 120.0 + focal() * (HEIGHT - z) / depth;
         let expected = [column(middle - half), column(middle + half), row(height, near), row(0.0, near)];
@@ -122,7 +122,7 @@ fn a_wall_and_a_box_have_straight_edges_at_their_places() {
     assert_extent(extent(&picture(&scene), is_red), expected);
 }
 
-/// The first row of the floor in the middle column.
+/// First row of the floor in the middle column.
 fn horizon(image: &RgbImage) -> u32 {
     let sky = |p: &Rgb<u8>| p.0[2] > p.0[0];
     (0..image.height()).find(|&y| !sky(image.get_pixel(image.width() / 2, y))).unwrap()
@@ -134,7 +134,7 @@ fn the_horizon_lies_in_the_middle_and_moves_with_the_tilt() {
     assert_eq!(horizon(&picture(&scene)), 120);
     let mut robot = Simulation::new(&scene, SimOptions::ideal()).unwrap().robot(0).unwrap();
     robot.set_resolution(Resolution::Qvga).unwrap();
-    // A ninth of the way up is 10 degrees: the horizon comes lower.
+    // Position 1/9 is 10 degrees up; the horizon moves down.
     robot.set_servo(2, 1.0 / 9.0).unwrap();
     robot.wait(1.0).unwrap();
     let expected = 120.0 + focal() * math::tan(units::from_deg(10.0));
@@ -168,7 +168,7 @@ fn what_is_nearer_hides_what_is_behind() {
     let mut wall = Wall::new(Point::new(5.0, 3.0), Point::new(5.0, 5.0));
     wall.height = 0.05;
     scene.world.walls.push(wall);
-    // The wall is lower than the eye: the can's upper part looks over it.
+    // The wall is lower than the eye, so the can's upper part is visible over it.
     let image = picture(&scene);
     let [_, _, top, bottom] = extent(&image, is_red).unwrap();
     assert!(top < 120 && (120..126).contains(&bottom), "{top} {bottom}");
@@ -242,7 +242,7 @@ fn a_billboard_shows_its_picture_upright_and_unmirrored() {
     assert_extent(green, [column(0.0), column(0.2), row(0.4), row(middle)]);
     let blue = extent(&image, |p| p[2] > 60 && p[0] < 10);
     assert_extent(blue, [column(-0.2), column(0.0), row(middle), row(0.0)]);
-    // From behind it is gray.
+    // Its back is gray.
     scene.world.billboards[0].pose.heading = 0.0;
     assert!(extent(&picture(&scene), is_red).is_none());
 }
@@ -254,7 +254,7 @@ fn between_frames_the_image_stays() {
     let mut robot = Simulation::new(&scene, options).unwrap().robot(0).unwrap();
     robot.set_speed(crate::geometry::Twist::new(0.0, 1.0)).unwrap();
     let mut images = Vec::new();
-    // 300 ms in steps of a tick: nine frames.
+    // 300 ms in steps of one tick: nine frames.
     for _ in 0..30 {
         images.push(robot.image().unwrap());
         robot.wait(0.01).unwrap();
@@ -347,7 +347,7 @@ fn what_cannot_be_drawn_is_an_error_with_its_name() {
     assert!(Simulation::new(&scene(), options).unwrap_err().to_string().starts_with("light is NaN"));
 }
 
-/// A scene with something of everything.
+/// A scene with all kinds of objects.
 fn busy_scene(heading: f64) -> Scene {
     let mut scene = Scene::with_robot(World::walled(4.0, 3.0), RobotSpec::s4(), Pose::new(1.0, 1.0, heading));
     for (i, name) in ["can", "soccer", "golf", "crate"].into_iter().enumerate() {
@@ -361,7 +361,7 @@ fn busy_scene(heading: f64) -> Scene {
     scene
 }
 
-/// The FNV-1a digest of bytes.
+/// FNV-1a digest of bytes.
 fn digest(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
@@ -374,14 +374,14 @@ fn the_same_seed_gives_the_same_bytes() {
     assert_eq!(take(1), take(1));
     assert_ne!(take(1), take(2));
     let clean = picture_with(&busy_scene(0.7), SimOptions::ideal(), Resolution::Qvga);
-    // Fixed, so that other platforms and processors can be compared with this one.
+    // Fixed values, to compare other platforms and processors with this one.
     assert_eq!((digest(&clean), digest(&take(1))), (0x7169_edf6_2411_872c, 0x884e_13bb_ee03_99df));
 }
 
 proptest! {
     #![proptest_config(crate::testing::cases(64))]
 
-    /// Whatever stands wherever, also across the lens, a picture comes out, and from outside of everything the floor
+    /// For any arrangement, even across the lens, a picture results; from outside of all objects, the floor
     /// begins below the sky.
     #[test]
     fn no_scene_is_too_odd(

@@ -1,4 +1,4 @@
-//! Images on floors, 3D models, and what a fisheye makes of them.
+//! Floor images, 3D models and fisheye pictures.
 
 use super::*;
 use crate::world::{Face, Material, Mesh, Texture};
@@ -16,7 +16,7 @@ fn on_a_floor(columns: u32, colour: impl Fn(u32, u32) -> [u8; 3]) -> Scene {
 
 #[test]
 fn a_floor_has_no_stairs_near_the_camera() {
-    // One red half and one white: the border runs ahead of the robot, and a texel is 80 mm wide.
+    // One half red, one white: the border runs ahead of the robot; a texel is 80 mm wide.
     let scene = on_a_floor(100, |_, y| if y < 50 { [255, 0, 0] } else { [255; 3] });
     let image = picture(&scene);
     let row: Vec<i32> = (0..320).map(|x| i32::from(image.get_pixel(x, 230)[1])).collect();
@@ -27,7 +27,7 @@ fn a_floor_has_no_stairs_near_the_camera() {
 
 #[test]
 fn a_floor_far_away_is_the_mean_of_what_a_pixel_covers() {
-    // Stripes across the way, each of 20 mm: far away they are gray.
+    // Transverse stripes of 20 mm, gray far away.
     let scene = on_a_floor(400, |x, _| if x % 2 == 0 { [255; 3] } else { [0; 3] });
     let image = picture(&scene);
     for y in 126..132 {
@@ -40,12 +40,13 @@ fn a_floor_far_away_is_the_mean_of_what_a_pixel_covers() {
     assert!(near.iter().max() > Some(&200) && near.iter().min() < Some(&30), "{near:?}");
 }
 
-/// A line along the robot's way, 20 mm wide, seen from 60 mm up, where a pixel is much deeper than wide.
+/// A line 20 mm wide along the robot's way, seen from a height of 60 mm, where pixels are much deeper than
+/// wide.
 #[test]
 fn a_line_ahead_stays_sharp_far_away() {
     let scene = on_a_floor(1600, |_, y| if (798..802).contains(&y) { [255; 3] } else { [0; 3] });
     let image = picture(&scene);
-    // One metre and two metres away, where a pixel is 4 and 7 mm wide, and 60 and 230 mm deep.
+    // At one and two metres, a pixel is 4 and 7 mm wide, and 60 and 230 mm deep.
     for (y, least, reach) in [(136, 200, 5), (128, 90, 6)] {
         let row: Vec<u8> = (0..320).map(|x| image.get_pixel(x, y)[0]).collect();
         assert!(row[159..161].iter().all(|&level| level > least), "{row:?}");
@@ -63,7 +64,7 @@ fn a_sign_shows_its_picture_to_those_who_come_along_its_heading() {
     };
     let red = |[r, g, b]: [u8; 3]| r > 90 && g < 60 && b < 60;
     let image = seen(0.0);
-    // The plate is 130 mm wide and high and ends 430 mm above the floor.
+    // The plate is 130 mm wide and high; its upper edge is at 430 mm.
     let depth = 1.0 - AHEAD;
     let row = |z: f64| 120.0 + focal() * (HEIGHT - z) / depth;
     let half = focal() * 0.065 / depth;
@@ -88,7 +89,7 @@ fn a_model_is_drawn_where_its_corners_are() {
         image_corners: [[0.0; 2]; 3],
         material: 0,
     };
-    // Seen from before and from behind.
+    // Visible from both sides.
     let faces = vec![face([0, 1, 2]), face([3, 2, 0])];
     let mesh = Mesh { materials: vec![Material { colour: Colour::RED, image: None }], faces };
     let shape = Shape::Sphere { radius: 0.01 };
@@ -153,10 +154,10 @@ fn a_fisheye_measures_angles() {
         let found = 0.5 * f64::from(left + right + 1);
         assert!((found - expected).abs() <= 1.0, "{degrees}: {found}, {expected}");
         assert!((f64::from(top + bottom + 1) - 240.0).abs() <= 2.0, "{degrees}: {top} {bottom}");
-        // A ball of 4.3 degrees is as large in the corner of the eye as in the middle.
+        // A ball of 4.3 degrees is as large at the edge as in the middle.
         assert!((f64::from(right - left + 1) - 7.64).abs() <= 1.5, "{degrees}: {left} {right}");
     }
-    // The horizon of a camera that looks up by 30 degrees lies 30 degrees lower.
+    // The horizon of a camera tilted up by 30 degrees is 30 degrees lower.
     let mut robot = Simulation::new(&scene, SimOptions::ideal()).unwrap().robot(0).unwrap();
     robot.set_resolution(Resolution::Qvga).unwrap();
     robot.set_servo(2, 1.0 / 3.0).unwrap();

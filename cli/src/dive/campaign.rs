@@ -1,0 +1,88 @@
+use roverlab::geometry::{Vector, direction, units};
+use roverlab::random::Stream;
+use serde_json::json;
+
+use super::{Args, Dived, Plan, SETTLING, dive};
+use crate::common::{Failure, Outcome, Progress, Report, rounded};
+
+/// Depths between which a dive leads (m), and how far.
+const DEPTHS: [f64; 2] = [0.25, 1.45];
+const STEPS: [f64; 2] = [0.2, 1.2];
+/// How far the model is off, and the fastest current (m/s).
+const MASS: f64 = 0.05;
+const THRUST: f64 = 0.10;
+const CURRENT: f64 = 0.1;
+/// The heading's most root mean square over all dives, in degrees: half of it is the compass's own.
+const HEADING: f64 = 1.0;
+const LISTED: usize = 10;
+
+/// A dive of the campaign.
+fn plan(args: &Args, seed: u64) -> Plan {
+    let mut stream = Stream::new(seed).child("dives", 0);
+    let step = stream.between(STEPS[0], STEPS[1]);
+    let shallow = stream.between(DEPTHS[0], DEPTHS[1] - step);
+    let down = stream.between(-1.0, 1.0) > 0.0;
+    let (start, depth) = if down { (shallow, shallow + step) } else { (shallow + step, shallow) };
+    let current: Vector = direction(stream.between(-3.1, 3.1)) * stream.between(0.0, CURRENT);
+    Plan {
+        noise: args.noise,
+        seed,
+        start: Some(start),
+        depth,
+        mass: 1.0 + stream.between(-MASS, MASS),
+        thrust: 1.0 + stream.between(-THRUST, THRUST),
+        current,
+    }
+}
+
+/// Work of the campaign.
+pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
+    let (mut dives, mut amiss): (Vec<Dived>, Vec<u64>) = (Vec::new(), Vec::new());
+    let mut progress = Progress::start();
+    for index in 0..args.runs {
+        progress.show(|| format!("dive: {index} of {} dives", args.runs));
+        let seed = args.common.seed.wrapping_add(index);
+        let mut done = dive(&plan(args, seed))?;
+        done.trail.clear();
+        if !done.is_good() {
+            amiss.push(seed);
+        }
+        dives.push(done);
+    }
+    let worst = |of: &dyn Fn(&Dived) -> f64| dives.iter().map(of).fold(0.0, f64::max);
+    let latest = worst(&|done| done.settle.unwrap_or(f64::INFINITY));
+    let overshoot = worst(&|done| done.overshoot);
+    let squares: f64 = dives.iter().map(|done| done.heading_rms * done.heading_rms).sum();
+    let heading = (squares / dives.len().max(1) as f64).sqrt();
+    let least = dives.iter().map(|done| done.within).fold(1.0, f64::min);
+    let contacts: u32 = dives.iter().map(|done| done.contacts).sum();
+    let good = args.runs - amiss.len() as u64;
+    if !args.common.json {
+        println!(
+            "dives    good  contacts  latest to settle  overshoot  least within 10 mm  heading\n\
+             {:>5}  {good:>6}  {contacts:>8}  {latest:>14.1} s  {:>6.1} mm  {:>16.1} %  {:>4.2} deg\n\
+             good: settles within {SETTLING} s, at most 50 mm beyond, then within 10 mm for 95 %, no contact; heading\n\
+             within {HEADING} degree in the root mean square of all",
+            args.runs,
+            units::to_mm(overshoot),
+            100.0 * least,
+            units::to_deg(heading),
+        );
+        if !amiss.is_empty() {
+            println!("  amiss with seeds {:?}", &amiss[..amiss.len().min(LISTED)]);
+        }
+    }
+    let all_good = amiss.is_empty() && heading <= units::from_deg(HEADING);
+    let outcome = if all_good { Outcome::verdict("passed") } else { Outcome::failure("wrong") };
+    let row = json!({
+        "runs": args.runs,
+        "good": good,
+        "contacts": contacts,
+        "latest_settle_s": if latest.is_finite() { Some(rounded(latest)) } else { None },
+        "most_overshoot_mm": rounded(units::to_mm(overshoot)),
+        "least_within_10mm_percent": rounded(100.0 * least),
+        "heading_rms_deg": rounded(units::to_deg(heading)),
+        "amiss": &amiss[..amiss.len().min(LISTED)],
+    });
+    Ok(Report { collisions: Some(contacts.into()), ..Report::new(outcome) }.table("rows", vec![row]))
+}

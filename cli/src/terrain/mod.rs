@@ -1,0 +1,124 @@
+//! What the commands on hills share: the world with a robot in it, and what was true on the way.
+
+use std::sync::Arc;
+
+use roverlab::geometry::{Pose, units};
+use roverlab::io::{Mishap, TruthInSpace};
+use roverlab::nav::elevation::{Climber, ElevationMap};
+use roverlab::world::generate::Relief;
+use roverlab::world::{HeightField, RobotSpec, Scene};
+
+use crate::common::{CommonArgs, Failure, StandIn, rounded};
+use crate::driving::Run;
+
+/// A robot on hills.
+#[derive(Debug, Clone)]
+pub(crate) struct Hike {
+    pub(crate) scene: Scene,
+    pub(crate) ground: Arc<HeightField>,
+}
+
+impl Hike {
+    /// The scene that the options describe, or the command's own; a robot of this kind drives where the world has none.
+    pub(crate) fn of(
+        common: &CommonArgs,
+        spec: &RobotSpec,
+        own: impl FnOnce() -> Scene,
+    ) -> Result<Self, Failure> {
+        let stand_in = StandIn { spec: Arc::new(spec.clone()), suits: |_| true };
+        let scene = common.placed_of(&stand_in, own)?;
+        let surface = scene.world.terrain.as_ref().and_then(|terrain| terrain.surface.clone());
+        let name = common.world.as_ref().map_or(String::new(), |file| format!("{}: ", file.display()));
+        let Some(ground) = surface else {
+            let line = "`terrain WIDTH HEIGHT TOP FILE`";
+            return Err(Failure::input(format!("{name}found a world without hills; expected a line {line}")));
+        };
+        if ground.height(scene.robots[0].pose.position()).is_none() {
+            return Err(Failure::input(format!(
+                "{name}found a start beyond the hills; expected one on them"
+            )));
+        }
+        Ok(Self { scene, ground })
+    }
+
+    /// Generated hills with a robot on them.
+    pub(crate) fn generated(made: Relief, spec: RobotSpec) -> Self {
+        let scene = Scene::with_robot(made.world, spec, made.start);
+        let surface = scene.world.terrain.as_ref().and_then(|terrain| terrain.surface.clone());
+        Self { ground: surface.expect("generated hills have a surface"), scene }
+    }
+
+    pub(crate) fn spec(&self) -> &RobotSpec {
+        &self.scene.robots[0].spec
+    }
+
+    pub(crate) fn start(&self) -> Pose {
+        self.scene.robots[0].pose
+    }
+
+    /// The elevation of the start.
+    pub(crate) fn start_height(&self) -> f64 {
+        self.ground.height(self.start().position()).unwrap_or(0.0)
+    }
+
+    /// The map for a climber.
+    pub(crate) fn map(&self, climber: &Climber) -> Result<ElevationMap, Failure> {
+        ElevationMap::new(&self.ground, climber).map_err(Failure::input)
+    }
+}
+
+/// What was true in a run on hills.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Ride {
+    pub(crate) end: TruthInSpace,
+    /// Radians.
+    pub(crate) max_tilt: f64,
+    /// How far the robot moved otherwise than its wheels said, as a share of the way by them.
+    pub(crate) slip: f64,
+}
+
+impl Ride {
+    pub(crate) fn of<T>(run: &Run<T>) -> Option<Self> {
+        let end = *run.in_space.last()?;
+        let max_tilt = run.in_space.iter().map(|space| space.pose.tilt()).fold(0.0, f64::max);
+        let wheels: Vec<_> = run.odometry_path.iter().skip(1).map(|(_, place)| *place).collect();
+        let (mut slid, mut driven) = (0.0, 0.0);
+        for (true_pair, wheel_pair) in run.in_space.windows(2).zip(wheels.windows(2)) {
+            let moved = (true_pair[1].pose.position - true_pair[0].pose.position).norm();
+            let turned = (wheel_pair[1] - wheel_pair[0]).norm();
+            slid += (moved - turned).abs();
+            driven += turned;
+        }
+        Some(Self { end, max_tilt, slip: slid / f64::max(driven, 1e-3) })
+    }
+
+    pub(crate) fn height(&self) -> f64 {
+        self.end.pose.position.z
+    }
+}
+
+/// A mishap as outcomes name it.
+pub(crate) fn word(mishap: Mishap) -> &'static str {
+    match mishap {
+        Mishap::Tipped => "tipped",
+        Mishap::Fell => "fell",
+        Mishap::Drowned => "drowned",
+        _ => "stuck",
+    }
+}
+
+/// An angle as fields show it.
+pub(crate) fn degrees(radians: f64) -> f64 {
+    (units::to_deg(radians) * 100.0).round() / 100.0
+}
+
+/// A share as fields show it.
+pub(crate) fn percent(share: f64) -> f64 {
+    rounded((share * 10_000.0).round() / 100.0)
+}
+
+/// The middle one of some numbers; 0 of none.
+pub(crate) fn median(mut numbers: Vec<f64>) -> f64 {
+    numbers.sort_by(f64::total_cmp);
+    numbers.get(numbers.len() / 2).copied().unwrap_or(0.0)
+}

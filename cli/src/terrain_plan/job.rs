@@ -1,0 +1,123 @@
+use std::sync::Arc;
+
+use roverlab::geometry::{Point, units};
+use roverlab::nav::elevation::{ElevationMap, ElevationPath, ElevationPlanner};
+use roverlab::nav::grid::PlanError;
+use roverlab::picture::{Mark, Picture, Style};
+use roverlab::random::Stream;
+use roverlab::world::generate::{ReliefKind, ReliefOptions, relief};
+use roverlab::world::{HeightField, World, formats};
+
+use super::Args;
+use super::args::{Planner, refused};
+use super::campaign::campaign;
+use crate::common::{Failure, Outcome, Report, Stopwatch, millimetres, rounded};
+use crate::terrain::{degrees, percent};
+
+/// The work of the command.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    if args.campaign {
+        return campaign(args);
+    }
+    args.plain.check_picture()?;
+    let (world, start) = hills(args)?;
+    let ground = surface(&world).ok_or_else(|| {
+        Failure::input("found a world without hills; expected a line `terrain WIDTH HEIGHT TOP FILE`")
+    })?;
+    let stopwatch = Stopwatch::start();
+    let map = ElevationMap::new(&ground, &args.climber()).map_err(refused)?;
+    let top = map.highest_reachable(start).ok_or_else(|| {
+        Failure::input("found a start too steep or too near to the border; expected gentle ground")
+    })?;
+    let goal = args.goal.unwrap_or(top.xy());
+    let objective = args.cost.objective(&args.robot);
+    let mut planner = match args.planner {
+        Planner::Dijkstra => ElevationPlanner::dijkstra(&map, objective),
+        Planner::Astar | Planner::AnyAngle => ElevationPlanner::astar(&map, objective),
+    }
+    .map_err(refused)?;
+    let prepared = stopwatch.seconds();
+    let path = plan(&mut planner, args.planner, start, goal);
+    let planned = stopwatch.seconds() - prepared;
+    let back = plan(&mut planner, args.planner, goal, start).ok();
+    let report = match &path {
+        Ok(path) => found(args, path, back.as_ref()),
+        Err(PlanError::Unreachable { .. } | PlanError::Blocked { .. }) => {
+            Report::new(Outcome::verdict("unreachable"))
+        }
+        Err(error) => return Err(Failure::input(format!("--goal: {error}"))),
+    };
+    let open = map.open().count_free() as f64 / (ground.columns() * ground.rows()) as f64;
+    let report = report
+        .field("samples", [ground.columns(), ground.rows()])
+        .field("open_percent", percent(open))
+        .field("highest_reachable_mm", millimetres(top.z))
+        .field("slope_limit_deg", degrees(args.climber().slope))
+        .timing("prepare_ms", 1000.0 * prepared)
+        .timing("plan_ms", 1000.0 * planned);
+    Ok(args.plain.draw(report, "terrain_plan.svg", || picture(&world, args, path.as_ref().ok(), start, goal)))
+}
+
+/// The world, and where the way begins.
+fn hills(args: &Args) -> Result<(World, Point), Failure> {
+    let Some(file) = &args.world else {
+        let options = ReliefOptions::of(ReliefKind::Range);
+        let made = relief(&mut Stream::new(args.plain.seed), &options).map_err(refused)?;
+        return Ok((made.world, args.start.unwrap_or(made.start).position()));
+    };
+    let scene = formats::load_scene(file).map_err(Failure::input)?.value;
+    let own = scene.robots.first().map(|robot| robot.pose).or(scene.world.start);
+    let start = args.start.or(own).ok_or_else(|| {
+        Failure::input(format!(
+            "{}: found no start; expected --start X,Y,DEG or a robot in a .sim",
+            file.display()
+        ))
+    })?;
+    Ok((scene.world, start.position()))
+}
+
+pub(super) fn surface(world: &World) -> Option<Arc<HeightField>> {
+    world.terrain.as_ref().and_then(|terrain| terrain.surface.clone())
+}
+
+pub(super) fn plan(
+    planner: &mut ElevationPlanner<'_>,
+    how: Planner,
+    start: Point,
+    goal: Point,
+) -> Result<ElevationPath, PlanError> {
+    match how {
+        Planner::Dijkstra | Planner::Astar => planner.plan(start, goal),
+        Planner::AnyAngle => planner.plan_any_angle(start, goal),
+    }
+}
+
+fn found(args: &Args, path: &ElevationPath, back: Option<&ElevationPath>) -> Report {
+    let (factor, unit) = args.cost.unit(&args.robot);
+    let steps = || path.points.windows(2).map(|pair| pair[1] - pair[0]);
+    let climb: f64 = steps().map(|step| step.z.max(0.0)).sum();
+    Report::new(Outcome::verdict("found"))
+        .field("cost", rounded(factor * path.cost))
+        .field("unit", unit)
+        .field("cost_back", back.map(|back| rounded(factor * back.cost)))
+        .field("length_mm", millimetres(steps().map(|step| step.norm()).sum()))
+        .field("climb_mm", millimetres(climb))
+        .field("turns", path.points.len())
+        .field("expanded", path.statistics.expanded)
+}
+
+fn picture(world: &World, args: &Args, path: Option<&ElevationPath>, start: Point, goal: Point) -> Picture {
+    let mut picture = Picture::new(world);
+    let (factor, unit) = args.cost.unit(&args.robot);
+    let title = match path {
+        Some(path) => format!("A way over hills: {:.0} {unit}", factor * path.cost),
+        None => "No way over the hills".to_owned(),
+    };
+    let limit = units::to_deg(args.climber().slope);
+    picture.title(title).caption(format!("{}, slopes up to {limit:.0} degrees", args.robot.name));
+    if let Some(path) = path {
+        picture.line(path.points.iter().map(|point| point.xy()), Style::plan().width(3.0));
+    }
+    picture.mark(Mark::Start, start).mark(Mark::Goal, goal);
+    picture
+}

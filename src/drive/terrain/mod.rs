@@ -1,0 +1,7 @@
+//! Driving on hills (book, section 7.4): the steepest way up.
+
+mod ascent;
+mod slope_sensor;
+
+pub use ascent::{Ascent, AscentObservation, AscentOutcome, AscentParameters};
+pub use slope_sensor::SlopeSensor;

@@ -1,0 +1,9 @@
+use super::Result;
+
+/// A pressure sensor that tells how deep under water the robot is.
+#[auto_impl::auto_impl(&mut, Box)]
+#[ambassador::delegatable_trait]
+pub trait DepthSensor {
+    /// Metres from the surface down to the sensor; 0 out of the water. Fails on a robot without one.
+    fn depth(&mut self) -> Result<f64>;
+}

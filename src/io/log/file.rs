@@ -1,0 +1,222 @@
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, BufWriter, Read, Write};
+use std::path::{Path, PathBuf};
+
+/// The file of a recording, which belongs to one recorder at a time.
+///
+/// A new file is written in place, so that [`recover`](super::recover) finds in it what was recorded until a crash. In the place
+/// of an older recording the new one comes by [`complete`](Self::complete): until then it is beside it, under the name with a dot
+/// before it and `.part` behind it. Who wants to record to the same name meanwhile gets an error.
+///
+/// ```
+/// use std::io::Write;
+/// use roverlab::io::log::{Header, LogFile, LogWriter};
+///
+/// # fn main() -> std::io::Result<()> {
+/// let path = std::env::temp_dir().join(format!("log-file-{}.mcap", std::process::id()));
+/// for _ in 0..2 {
+///     let writer = LogWriter::new(LogFile::create(&path)?, &Header::new("nothing", [""; 0]))?;
+///     assert!(LogFile::create(&path).is_err(), "somebody records to it");
+///     writer.finish()?.complete()?;
+/// }
+/// std::fs::write(&path, "a letter")?;
+/// assert!(LogFile::create(&path).is_err(), "it is no recording");
+/// LogFile::replace(&path)?.write_all(b"whatever")?;
+/// # std::fs::remove_file(&path)
+/// # }
+/// ```
+#[derive(Debug)]
+pub struct LogFile {
+    file: BufWriter<File>,
+    /// Where it is written, and the name that it gets.
+    aside: Option<(PathBuf, PathBuf)>,
+    /// The file that has the name until then, which tells others that somebody records.
+    _name: File,
+    sync: bool,
+}
+
+/// Bytes that are written at a time.
+const BUFFER: usize = 1 << 16;
+
+impl LogFile {
+    /// A file of this name. Fails if there is one already that is no recording, or if somebody records to it.
+    pub fn create(path: impl AsRef<Path>) -> io::Result<Self> {
+        Self::open(path.as_ref(), false)
+    }
+
+    /// A file of this name, in the place of any other. Fails if somebody records to it.
+    pub fn replace(path: impl AsRef<Path>) -> io::Result<Self> {
+        Self::open(path.as_ref(), true)
+    }
+
+    /// Waits at the end of each chunk until it is on the disk, where it stays if the machine stops.
+    #[must_use]
+    pub fn synced(self) -> Self {
+        Self { sync: true, ..self }
+    }
+
+    fn open(path: &Path, any: bool) -> io::Result<Self> {
+        // What a link leads to is replaced, not the link.
+        let path = &fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let named = claimed(path)?;
+        let is_file = named.metadata()?.is_file();
+        if !is_file || named.metadata()?.len() == 0 {
+            let file = BufWriter::with_capacity(BUFFER, named.try_clone()?);
+            return Ok(Self { file, aside: None, _name: named, sync: false });
+        }
+        let part = aside(path);
+        if !any {
+            is_recording(&named)?;
+            File::open(&part).map_or(Ok(()), |file| is_recording(&file))?;
+        }
+        let file = BufWriter::with_capacity(BUFFER, File::create(&part)?);
+        Ok(Self { file, aside: Some((part, path.to_owned())), _name: named, sync: false })
+    }
+
+    /// Ends the file, and gives it its name.
+    pub fn complete(mut self) -> io::Result<()> {
+        self.flush()?;
+        match &self.aside {
+            Some((part, name)) => fs::rename(part, name),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Write for LogFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    /// Comes at the end of each chunk.
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()?;
+        if self.sync { self.file.get_ref().sync_data() } else { Ok(()) }
+    }
+}
+
+/// The file of a name, new or as it is, which nobody else writes.
+fn claimed(path: &Path) -> io::Result<File> {
+    loop {
+        let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
+        match file.try_lock() {
+            // Devices may have no locks.
+            Err(TryLockError::Error(_)) if !file.metadata()?.is_file() => return Ok(file),
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => {
+                let message = "found somebody who records to it; expected nobody";
+                return Err(io::Error::new(io::ErrorKind::ResourceBusy, message));
+            }
+            Err(TryLockError::Error(error)) => return Err(error),
+        }
+        // Whoever had it may have put another one in its place meanwhile.
+        if has_name(&file, path)? {
+            return Ok(file);
+        }
+    }
+}
+
+#[cfg(unix)]
+fn has_name(file: &File, path: &Path) -> io::Result<bool> {
+    use std::os::unix::fs::MetadataExt;
+    let own = file.metadata()?;
+    Ok(fs::metadata(path).is_ok_and(|named| (named.dev(), named.ino()) == (own.dev(), own.ino())))
+}
+
+#[cfg(not(unix))]
+fn has_name(_: &File, path: &Path) -> io::Result<bool> {
+    fs::exists(path)
+}
+
+/// Where a file is written whose name an older one has.
+fn aside(path: &Path) -> PathBuf {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    path.with_file_name(format!(".{name}.part"))
+}
+
+/// Fails if a file is no recording, nor the beginning of one.
+fn is_recording(file: &File) -> io::Result<()> {
+    let mut begins = Vec::new();
+    file.take(mcap::MAGIC.len() as u64).read_to_end(&mut begins)?;
+    if mcap::MAGIC.starts_with(&begins) {
+        return Ok(());
+    }
+    let message = "found a file that is no recording; expected one, or a new name";
+    Err(io::Error::new(io::ErrorKind::AlreadyExists, message))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn path(name: &str) -> PathBuf {
+        let path = std::env::temp_dir().join(format!("roverlab-log-file-{}-{name}", std::process::id()));
+        let _ = (fs::remove_file(&path), fs::remove_file(aside(&path)));
+        path
+    }
+
+    fn written(path: &Path, bytes: &[u8]) -> io::Result<LogFile> {
+        let mut file = LogFile::create(path)?;
+        file.write_all(bytes)?;
+        file.flush()?;
+        Ok(file)
+    }
+
+    #[test]
+    fn a_new_file_is_written_in_place_and_an_old_one_stays_until_the_end() {
+        let path = path("old");
+        let old = written(&path, mcap::MAGIC).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), mcap::MAGIC);
+        assert_eq!(LogFile::create(&path).unwrap_err().kind(), io::ErrorKind::ResourceBusy);
+        assert_eq!(LogFile::replace(&path).unwrap_err().kind(), io::ErrorKind::ResourceBusy);
+        old.complete().unwrap();
+        let new = written(&path, b"new").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), mcap::MAGIC);
+        assert_eq!(LogFile::create(&path).unwrap_err().kind(), io::ErrorKind::ResourceBusy);
+        new.synced().complete().unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"new");
+        assert!(!aside(&path).exists());
+        fs::remove_file(path).unwrap();
+    }
+
+    #[test]
+    fn what_is_no_recording_stays() {
+        let path = path("letter");
+        fs::write(&path, "a letter").unwrap();
+        assert_eq!(LogFile::create(&path).unwrap_err().kind(), io::ErrorKind::AlreadyExists);
+        assert_eq!(fs::read(&path).unwrap(), b"a letter");
+        fs::write(&path, &mcap::MAGIC[..3]).unwrap();
+        fs::write(aside(&path), "another letter").unwrap();
+        assert_eq!(LogFile::create(&path).unwrap_err().kind(), io::ErrorKind::AlreadyExists);
+        assert_eq!(fs::read(aside(&path)).unwrap(), b"another letter");
+        let mut file = LogFile::replace(&path).unwrap();
+        file.write_all(b"whatever").unwrap();
+        file.complete().unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"whatever");
+        fs::remove_file(path).unwrap();
+    }
+
+    /// Of several recorders that begin at the same moment, one gets the file, and the others hear that.
+    #[test]
+    fn one_of_several_recorders_gets_the_file() {
+        let path = path("several");
+        for round in 0..50 {
+            let all = std::sync::Barrier::new(4);
+            let files: Vec<_> = std::thread::scope(|scope| {
+                let threads = [(); 4].map(|()| {
+                    scope.spawn(|| {
+                        all.wait();
+                        LogFile::create(&path)
+                    })
+                });
+                threads.map(|thread| thread.join().unwrap()).into_iter().filter_map(Result::ok).collect()
+            });
+            assert_eq!(files.len(), 1, "round {round}");
+            for mut file in files {
+                file.write_all(mcap::MAGIC).unwrap();
+                file.complete().unwrap();
+            }
+        }
+        fs::remove_file(path).unwrap();
+    }
+}

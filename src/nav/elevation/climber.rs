@@ -1,0 +1,65 @@
+use std::f64::consts::FRAC_PI_2;
+
+use crate::ParameterError;
+use crate::geometry::math;
+use crate::parameter::{require, require_not_negative, require_positive};
+use crate::world::{DriveSpec, RobotSpec};
+
+/// The ground on which a robot can stand and turn, whichever way it looks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Climber {
+    /// The steepest slope in radians, measured over the robot's size.
+    pub slope: f64,
+    /// The highest step in metres, anywhere under the robot.
+    pub step: f64,
+    /// Metres from the robot's middle that count as under it.
+    pub radius: f64,
+}
+
+/// The share of the slope on which it would slip or tip that a robot is trusted with.
+const TRUSTED: f64 = 0.7;
+/// The share of a wheel's radius that it climbs as a step.
+const CLIMBED: f64 = 0.6;
+/// The height of the middle of the mass as a share of the robot's, and the share of the way from the axle to the castor,
+/// as the simulator assumes them.
+const MIDDLE: f64 = 0.4;
+const BETWEEN: f64 = 0.3;
+
+impl Climber {
+    /// What a robot can do by its friction, its wheels or belts and the height of its mass: seven tenths of the slope on which it
+    /// would slip or tip over.
+    pub fn of(spec: &RobotSpec) -> Self {
+        let reach = spec.footprint.bounding_radius();
+        let (wheel_diameter, support) = match spec.drive {
+            DriveSpec::Differential { wheel_diameter, track, .. } => {
+                (wheel_diameter, (BETWEEN * reach).min(0.5 * track))
+            }
+            DriveSpec::Tracked { wheel_diameter, track, length, .. } => {
+                (wheel_diameter, 0.5 * track.min(length))
+            }
+            DriveSpec::Ackermann { wheel_diameter, track, wheelbase, .. }
+            | DriveSpec::Omni { wheel_diameter, track, wheelbase, .. } => {
+                (wheel_diameter, 0.5 * track.min(wheelbase))
+            }
+            // Craft climb nothing.
+            DriveSpec::Craft(_) => (0.0, 0.0),
+        };
+        let (tips, slips) = (math::atan2(support, MIDDLE * spec.height), math::atan(spec.friction));
+        let (slope, step) = (TRUSTED * tips.min(slips), 0.5 * CLIMBED * wheel_diameter);
+        Self { slope, step, radius: reach }
+    }
+
+    /// The same with a slope limit of its own, in radians.
+    #[must_use]
+    pub fn with_slope(self, slope: f64) -> Self {
+        Self { slope, ..self }
+    }
+
+    /// Fails with the name of the parameter that is out of range.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        let steep = self.slope > 0.0 && self.slope < FRAC_PI_2;
+        require("slope", self.slope, steep, "more than 0 and less than a right angle")?;
+        require_not_negative("step", self.step)?;
+        require_positive("radius", self.radius)
+    }
+}

@@ -1,0 +1,105 @@
+use super::costs::{GroundCosts, Objective};
+use super::map::ElevationMap;
+use super::straight::straightened;
+use crate::ParameterError;
+use crate::geometry::{Point, Point3};
+use crate::nav::grid::{End, GridPath, GridPlanner, GridSearch, PlanError, SearchStatistics};
+use crate::world::{BitGrid, GridCell};
+
+/// A way over hills.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ElevationPath {
+    /// Where it begins, turns and ends, on the ground, in metres.
+    pub points: Vec<Point3>,
+    /// What it costs, in the unit of its [`Objective`].
+    pub cost: f64,
+    /// What the search did.
+    pub statistics: SearchStatistics,
+}
+
+/// Plans on an [`ElevationMap`], from sample to sample by Dijkstra's algorithm or A\*, or in any direction.
+///
+/// The ways of the first two cost the same; A\*'s bound is the cost on level ground. Those in any direction are A\*'s with
+/// every part made straight that is cheaper so, and never cost more.
+///
+/// ```
+/// use roverlab::geometry::{Aabb, Point};
+/// use roverlab::nav::elevation::{Climber, ElevationMap, ElevationPlanner, Objective};
+/// use roverlab::world::HeightField;
+///
+/// // A ridge across the way, lower at one end.
+/// let area = Aabb::new(Point::origin(), Point::new(4.0, 4.0));
+/// let ridge = HeightField::from_fn(81, 81, area, |at| 0.07 * at.y * (-8.0 * (at.x - 2.0).powi(2)).exp())?;
+/// let map = ElevationMap::new(&ridge, &Climber { slope: 0.4, step: 0.02, radius: 0.15 })?;
+/// let (start, goal) = (Point::new(0.5, 3.0), Point::new(3.5, 3.0));
+/// let mut by_length = ElevationPlanner::astar(&map, Objective::Length)?;
+/// let mut by_energy = ElevationPlanner::astar(&map, Objective::Energy { resistance: 0.05 })?;
+/// let top = |path: Vec<roverlab::geometry::Point3>| path.iter().map(|point| point.z).fold(0.0, f64::max);
+/// let (over, around) = (by_length.plan_any_angle(start, goal)?, by_energy.plan_any_angle(start, goal)?);
+/// assert!(top(over.points) > 2.0 * top(around.points));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct ElevationPlanner<'m> {
+    map: &'m ElevationMap,
+    costs: GroundCosts,
+    search: GridSearch<GroundCosts>,
+}
+
+impl<'m> ElevationPlanner<'m> {
+    /// Dijkstra's algorithm.
+    pub fn dijkstra(map: &'m ElevationMap, objective: Objective) -> Result<Self, ParameterError> {
+        Self::new(map, objective, GridSearch::dijkstra_by)
+    }
+
+    /// A\*.
+    pub fn astar(map: &'m ElevationMap, objective: Objective) -> Result<Self, ParameterError> {
+        Self::new(map, objective, GridSearch::astar_by)
+    }
+
+    fn new(
+        map: &'m ElevationMap,
+        objective: Objective,
+        search: fn(&BitGrid, GroundCosts) -> GridSearch<GroundCosts>,
+    ) -> Result<Self, ParameterError> {
+        objective.validate()?;
+        let costs = GroundCosts::new(map.field(), objective);
+        Ok(Self { map, search: search(map.open(), costs.clone()), costs })
+    }
+
+    /// The cheapest way between the samples nearest to two places, from sample to sample.
+    pub fn plan(&mut self, start: Point, goal: Point) -> Result<ElevationPath, PlanError> {
+        let path = self.search(start, goal)?;
+        let points = cells(&path).map(|cell| self.map.point(cell)).collect();
+        Ok(ElevationPath { points, cost: path.cost * self.costs.unit, statistics: path.statistics })
+    }
+
+    /// A way in any direction, which costs no more than that from sample to sample.
+    pub fn plan_any_angle(&mut self, start: Point, goal: Point) -> Result<ElevationPath, PlanError> {
+        let path = self.search(start, goal)?;
+        let cells: Vec<GridCell> = cells(&path).collect();
+        let (chain, cost) = straightened(&self.costs, self.map.open(), &cells);
+        let points = chain.into_iter().map(|cell| self.map.point(cell)).collect();
+        Ok(ElevationPath { points, cost, statistics: path.statistics })
+    }
+
+    fn search(&mut self, start: Point, goal: Point) -> Result<GridPath, PlanError> {
+        let (start, goal) = (cell_of(self.map, End::Start, start)?, cell_of(self.map, End::Goal, goal)?);
+        self.search.plan(start, goal)
+    }
+}
+
+/// The sample nearest to an end of a way.
+pub(super) fn cell_of(map: &ElevationMap, end: End, place: Point) -> Result<GridCell, PlanError> {
+    let field = map.field();
+    map.cell_at(place).ok_or_else(|| {
+        let at = (place - field.area().min).component_div(&field.pitch());
+        let cell = GridCell::new(at.x.max(0.0) as usize, at.y.max(0.0) as usize);
+        PlanError::Outside { end, cell, width: field.columns(), height: field.rows() }
+    })
+}
+
+/// The cells of a path that goes from cell to cell.
+pub(super) fn cells(path: &GridPath) -> impl Iterator<Item = GridCell> + '_ {
+    path.points.iter().filter_map(|&point| GridCell::at(point))
+}

@@ -1,0 +1,109 @@
+use crate::ParameterError;
+use crate::geometry::{Aabb, Point, Pose, Pose3};
+use crate::kinematics::Tracked;
+use crate::nav::elevation::Climber;
+use crate::parameter::{require, require_finite, require_not_negative, require_positive};
+use crate::world::{DriveSpec, RobotSpec};
+
+/// The parameters of a [`SummitSearch`](super::SummitSearch).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SummitParameters {
+    /// The ground on which the robot trusts itself.
+    pub climber: Climber,
+    /// Where the lidar sits.
+    pub lidar: Pose3,
+    /// Metres that a turn of one radian on the spot takes it downhill for a slope of 1; 0 for wheels.
+    pub slide: f64,
+    /// Metres per second.
+    pub speed: f64,
+    /// Radians per second.
+    pub turn_rate: f64,
+    /// Metres from one look around to the next.
+    pub stride: f64,
+    /// Metres across a cell of the map.
+    pub resolution: f64,
+    /// Metres from the start along both axes to which the map, and so the search, reaches.
+    pub extent: f64,
+    /// Metres by which a place has to be higher to be worth a way.
+    pub tolerance: f64,
+    /// The elevation above the start, in metres, below which the robot does not go, such as that of water.
+    pub lowest: Option<f64>,
+    /// The area that the robot does not leave, if it has been told of one.
+    pub fence: Option<Fence>,
+    /// Seconds from one step to the next.
+    pub period: f64,
+}
+
+/// An area along the axes of a world, and where in it a robot starts that counts from there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fence {
+    /// The area in the world.
+    pub area: Aabb,
+    /// Where the robot starts.
+    pub start: Pose,
+}
+
+impl Fence {
+    /// Whether a place, as the robot counts, is inside.
+    pub fn holds(&self, place: Point) -> bool {
+        self.area.contains(self.start.to_world(place))
+    }
+}
+
+/// The most cells of a map along an axis.
+const MOST_CELLS: f64 = 2000.0;
+
+impl SummitParameters {
+    /// Those for a robot; `None` without a lidar.
+    pub fn of(spec: &RobotSpec) -> Option<Self> {
+        let mount = spec.lidar?.mount;
+        let slide = match spec.drive {
+            DriveSpec::Tracked { track, length, width, .. } => {
+                Tracked { track, length, width }.downhill_drift() / spec.friction.max(0.1)
+            }
+            _ => 0.0,
+        };
+        Some(Self {
+            climber: Climber::of(spec),
+            lidar: mount.frame(),
+            slide,
+            speed: 0.15_f64.min(0.5 * spec.drive.top_speed()),
+            turn_rate: 0.8,
+            stride: 0.8,
+            resolution: 0.05,
+            extent: 7.0,
+            tolerance: 0.01,
+            lowest: None,
+            fence: None,
+            period: 0.05,
+        })
+    }
+
+    /// Fails with the name of the parameter that is out of range.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        self.climber.validate()?;
+        let slope = self.climber.slope;
+        require("slope", slope, slope < 1.4, "less than 1.4 rad")?;
+        let at = self.lidar.position;
+        require("lidar height", at.z, self.lidar.is_finite() && at.z > 0.0, "more than 0")?;
+        require_not_negative("slide", self.slide)?;
+        require_positive("speed", self.speed)?;
+        require_positive("turn rate", self.turn_rate)?;
+        require_positive("stride", self.stride)?;
+        require_positive("resolution", self.resolution)?;
+        require_positive("tolerance", self.tolerance)?;
+        require_positive("control period", self.period)?;
+        require_positive("extent", self.extent)?;
+        let cells = 2.0 * self.extent / self.resolution;
+        let good = (8.0..=MOST_CELLS).contains(&cells);
+        require("extent", self.extent, good, "4 to 1000 times the resolution")?;
+        if let Some(Fence { area, start }) = self.fence {
+            let size = area.size();
+            for (name, side) in [("fence along x", size.x), ("fence along y", size.y)] {
+                require_positive(name, side)?;
+            }
+            require("start in the fence", start.x, start.is_finite(), "a finite pose")?;
+        }
+        require_finite("lowest elevation", self.lowest.unwrap_or(0.0))
+    }
+}

@@ -1,0 +1,326 @@
+use super::parameters::SummitParameters;
+use super::sweep::Beam;
+use crate::geometry::{Aabb, Point, Point3, Vector, math};
+use crate::nav::elevation::{Climber, ElevationMap};
+use crate::nav::grid::GridComponents;
+use crate::world::{BitGrid, GridCell, HeightField};
+
+/// What has been seen of the ground: the elevation of cells that beams met, and of all cells the most that it can be, as beams
+/// passed over them.
+#[derive(Debug, Clone)]
+pub(super) struct SightMap {
+    side: usize,
+    resolution: f64,
+    extent: f64,
+    /// The weight of what was measured, and its mean.
+    seen: Vec<(f64, f64)>,
+    ceilings: Vec<f64>,
+    /// Cells on which the robot has found that it cannot stand.
+    shunned: Vec<bool>,
+}
+
+/// Two beams above each other that meet the ground less than this many metres apart show what is between.
+const GAP: f64 = 0.35;
+/// The weight of what is between.
+const BETWEEN: f64 = 0.05;
+/// Metres at which a measurement weighs half.
+const FAR: f64 = 1.0;
+/// Metres beyond the last return that a beam shows to be no ground.
+const REACH: f64 = 9.5;
+/// The weight from which a cell is known well enough to compare with.
+const KNOWN: f64 = 0.15;
+
+/// The map as the robot plans on it.
+#[derive(Debug)]
+pub(super) struct Chart {
+    pub(super) elevation: ElevationMap,
+    /// Where the robot can drive for all that it knows.
+    pub(super) safe: BitGrid,
+    /// Where it could drive at best.
+    pub(super) perhaps: BitGrid,
+    /// The elevation of each cell, or the most that it can be where the robot can drive.
+    pub(super) potential: Vec<f64>,
+}
+
+/// Elevations of all cells, which of them are known, and how many cells the others are away from such.
+struct Filled {
+    heights: Vec<f32>,
+    known: Vec<bool>,
+    away: Vec<u16>,
+}
+
+/// Radians and metres by which slopes and steps of the map may be wrong.
+const MEASURED: f64 = 0.06;
+const NOISE: f64 = 0.01;
+/// Square metres of a patch that is worth a look.
+const PATCH: f64 = 0.04;
+/// Metres below what a slope could lead to that are a drop, and metres that the robot keeps from one beside its own size.
+const DROP: f64 = 0.04;
+const CAUTION: f64 = 0.2;
+
+impl SightMap {
+    pub(super) fn new(resolution: f64, extent: f64) -> Self {
+        let side = (2.0 * extent / resolution).round() as usize + 1;
+        Self {
+            side,
+            resolution,
+            extent,
+            seen: vec![(0.0, 0.0); side * side],
+            ceilings: vec![f64::INFINITY; side * side],
+            shunned: vec![false; side * side],
+        }
+    }
+
+    pub(super) fn cell_at(&self, place: Point) -> Option<GridCell> {
+        let at = (place + Vector::new(self.extent, self.extent)).coords / self.resolution;
+        let last = (self.side - 1) as f64 + 0.5;
+        let inside = at.x >= -0.5 && at.y >= -0.5 && at.x < last && at.y < last;
+        inside.then(|| GridCell::new(at.x.round() as usize, at.y.round() as usize))
+    }
+
+    pub(super) fn place(&self, cell: GridCell) -> Point {
+        let at = |index: usize| index as f64 * self.resolution - self.extent;
+        Point::new(at(cell.column), at(cell.row))
+    }
+
+    fn index(&self, place: Point) -> Option<usize> {
+        self.cell_at(place).map(|cell| self.index_of(cell))
+    }
+
+    pub(super) fn index_of(&self, cell: GridCell) -> usize {
+        cell.row * self.side + cell.column
+    }
+
+    /// The elevation of a cell, if it has been seen.
+    pub(super) fn height(&self, index: usize) -> Option<f64> {
+        let (weight, height) = self.seen[index];
+        (weight > 0.0).then_some(height)
+    }
+
+    /// Elevation and gradient at a place all around which the ground has been seen.
+    pub(super) fn surface(&self, place: Point) -> Option<(f64, Vector)> {
+        let cell = self.cell_at(place)?;
+        let inside = |at: usize| at > 0 && at + 1 < self.side;
+        if !inside(cell.column) || !inside(cell.row) {
+            return None;
+        }
+        let index = self.index_of(cell);
+        let known = |index: usize| (self.seen[index].0 >= KNOWN).then(|| self.seen[index].1);
+        let (middle, width) = (known(index)?, 2.0 * self.resolution);
+        let rise = Vector::new(
+            (known(index + 1)? - known(index - 1)?) / width,
+            (known(index + self.side)? - known(index - self.side)?) / width,
+        );
+        Some((middle + rise.dot(&(place - self.place(cell))), rise))
+    }
+
+    /// Forgets all that was seen.
+    pub(super) fn clear(&mut self) {
+        *self = Self::new(self.resolution, self.extent);
+    }
+
+    /// Takes in the beams of one azimuth, from the lowest tilt up.
+    pub(super) fn add_fan(&mut self, beams: impl Iterator<Item = Beam>) {
+        let mut before: Option<Point3> = None;
+        for beam in beams {
+            let end = beam.end();
+            self.lower_ceilings(&beam);
+            if let Some(end) = end {
+                let away = (end - beam.origin).norm();
+                self.measure(end.xy(), end.z, 1.0 / (1.0 + (away / FAR) * (away / FAR)));
+                if let Some(before) = before {
+                    self.bridge(before, end);
+                }
+            }
+            before = end;
+        }
+    }
+
+    fn measure(&mut self, place: Point, height: f64, weight: f64) {
+        if let Some(index) = self.index(place) {
+            let (known, mean) = self.seen[index];
+            let sum = known + weight;
+            self.seen[index] = (sum, mean + (height - mean) * weight / sum);
+        }
+    }
+
+    /// What lies between two ends is as high as the line between them, as long as nothing better is known.
+    fn bridge(&mut self, from: Point3, to: Point3) {
+        let way = to - from;
+        let run = way.xy().norm();
+        if run > GAP {
+            return;
+        }
+        let parts = (run / self.resolution).ceil();
+        for part in 1..parts as usize {
+            let at = from + way * (part as f64 / parts);
+            if self.index(at.xy()).is_some_and(|index| self.seen[index].0 < BETWEEN) {
+                self.measure(at.xy(), at.z, BETWEEN);
+            }
+        }
+    }
+
+    fn lower_ceilings(&mut self, beam: &Beam) {
+        let run = beam.direction.xy().norm();
+        if run < 1e-6 {
+            return;
+        }
+        let length = if beam.range.is_finite() { beam.range * run - self.resolution } else { REACH * run };
+        let (ahead, slope) = (beam.direction.xy() / run, beam.direction.z / run);
+        for step in 0..(length / self.resolution).max(0.0) as usize {
+            let away = step as f64 * self.resolution;
+            let Some(index) = self.index(beam.origin.xy() + ahead * away) else { return };
+            // The beam is lowest in the cell at one of its edges.
+            let height = beam.origin.z + slope * away + 0.5 * slope.abs() * self.resolution;
+            self.ceilings[index] = self.ceilings[index].min(height);
+        }
+    }
+
+    /// The ground under a robot that stands.
+    pub(super) fn stand(&mut self, place: Point, elevation: f64) {
+        self.measure(place, elevation, 1.0);
+    }
+
+    /// Notes that the robot cannot stand around a place.
+    pub(super) fn shun(&mut self, place: Point, radius: f64) {
+        for index in 0..self.seen.len() {
+            let cell = GridCell::new(index % self.side, index / self.side);
+            self.shunned[index] |= (self.place(cell) - place).norm() <= radius;
+        }
+    }
+
+    /// Where the robot can drive, and where it perhaps can.
+    pub(super) fn chart(&self, parameters: &SummitParameters) -> Chart {
+        // Ground that is just gentle enough may seem steeper than it is.
+        let climber = &Climber {
+            slope: parameters.climber.slope + MEASURED,
+            step: parameters.climber.step + NOISE,
+            ..parameters.climber
+        };
+        let lowest = parameters.lowest.unwrap_or(f64::NEG_INFINITY);
+        let Filled { heights, known, away } = self.filled();
+        let corner = Point::new(self.extent, self.extent);
+        let area = Aabb::new(-corner, corner);
+        let field = HeightField::new(self.side, self.side, area, heights).expect("a map of finite heights");
+        let elevation = ElevationMap::new(&field, climber).expect("parameters that have been checked");
+        let reach = (climber.radius / self.resolution).round() as usize;
+        let covered = eroded(&known, self.side, reach + 1);
+        let grid = |is_free: &dyn Fn(usize) -> bool| {
+            let side = self.side;
+            BitGrid::from_fn(side, side, |x, y| is_free(y * side + x)).expect("a map's cells")
+        };
+        let dry = |index: usize| !known[index] || f64::from(field_height(&field, index)) >= lowest;
+        let open = |index: usize| {
+            let cell = GridCell::new(index % self.side, index / self.side);
+            elevation.open().is_free(cell) && dry(index) && !self.shunned[index]
+        };
+        // What lies lower than a slope could lead to that the robot can drive.
+        let steepest = math::tan(climber.slope) * self.resolution;
+        let drops = |index: usize| {
+            let least = f64::from(field_height(&field, index)) - steepest * f64::from(away[index]) - DROP;
+            !known[index] && self.ceilings[index] < least
+        };
+        let fenced = |index: usize| {
+            let place = self.place(GridCell::new(index % self.side, index / self.side));
+            parameters.fence.is_none_or(|fence| fence.holds(place))
+        };
+        let holds: Vec<bool> = (0..known.len()).map(|index| fenced(index) && !drops(index)).collect();
+        let far_from_drops = eroded(&holds, self.side, reach + (CAUTION / self.resolution).round() as usize);
+        let safe = grid(&|index| covered[index] && far_from_drops[index] && open(index));
+        let perhaps = grid(&|index| !self.shunned[index] && holds[index] && (!covered[index] || open(index)));
+        let potential = (0..known.len()).map(|index| {
+            let slope = f64::from(field_height(&field, index)) + steepest * f64::from(away[index]) + DROP;
+            self.height(index).unwrap_or_else(|| self.ceilings[index].min(slope))
+        });
+        Chart { elevation, safe, perhaps, potential: potential.collect() }
+    }
+
+    /// Elevations of all cells, and which of them have been seen or lie in small gaps between such. Where nothing is known, the
+    /// ground goes on as it is at the nearest known place.
+    fn filled(&self) -> Filled {
+        let mut known: Vec<bool> = self.seen.iter().map(|(weight, _)| *weight > 0.0).collect();
+        let mut heights: Vec<f32> = self.seen.iter().map(|(_, height)| *height as f32).collect();
+        let mut filled = known.clone();
+        let mut edge: Vec<usize> = (0..filled.len()).filter(|&index| filled[index]).collect();
+        let mut away = vec![0; filled.len()];
+        for round in 1.. {
+            let mut next: Vec<usize> = edge
+                .iter()
+                .flat_map(|&index| self.neighbours(index))
+                .filter(|&index| !filled[index])
+                .collect();
+            next.sort_unstable();
+            next.dedup();
+            if next.is_empty() {
+                break;
+            }
+            let values: Vec<(usize, f32, usize)> = next
+                .iter()
+                .map(|&index| {
+                    let around: Vec<usize> = self.neighbours(index).filter(|&near| filled[near]).collect();
+                    let sum: f32 = around.iter().map(|&near| heights[near]).sum();
+                    (index, sum / around.len() as f32, around.len())
+                })
+                .collect();
+            for &(index, height, around) in &values {
+                (heights[index], filled[index], away[index]) = (height, true, round);
+                // A gap of a cell or two is no gap.
+                known[index] |= round <= 2 && around >= 5;
+            }
+            edge = next;
+        }
+        Filled { heights, known, away }
+    }
+
+    fn neighbours(&self, index: usize) -> impl Iterator<Item = usize> + use<> {
+        let (side, column, row) = (self.side, index % self.side, index / self.side);
+        let rows = row.saturating_sub(1)..(row + 2).min(side);
+        rows.flat_map(move |y| (column.saturating_sub(1)..(column + 2).min(side)).map(move |x| y * side + x))
+            .filter(move |&near| near != index)
+    }
+
+    /// The cells that may be higher than a level and may be reached from a cell, in patches that are worth a look.
+    pub(super) fn higher(&self, chart: &Chart, from: GridCell, level: f64) -> Vec<Vec<GridCell>> {
+        let perhaps = GridComponents::new(&chart.perhaps);
+        let safe = GridComponents::new(&chart.safe);
+        let is_higher = |index: usize| {
+            let cell = GridCell::new(index % self.side, index / self.side);
+            chart.potential[index] > level && perhaps.connected(from, cell) && !safe.connected(from, cell)
+        };
+        let side = self.side;
+        let cells = BitGrid::from_fn(side, side, |x, y| is_higher(y * side + x)).expect("a map's cells");
+        let patches = GridComponents::new(&cells);
+        let sizes = patches.sizes();
+        let least = (PATCH / (self.resolution * self.resolution)) as usize;
+        let mut list = vec![Vec::new(); patches.count()];
+        for cell in cells.free_cells() {
+            if let Some(patch) = patches.region(cell).filter(|&patch| sizes[patch] >= least) {
+                list[patch].push(cell);
+            }
+        }
+        list.retain(|patch| !patch.is_empty());
+        list
+    }
+}
+
+fn field_height(field: &HeightField, index: usize) -> f32 {
+    field.sample(index % field.columns(), index / field.columns()) as f32
+}
+
+/// Which cells have only flagged ones within a reach along both axes.
+fn eroded(flags: &[bool], side: usize, reach: usize) -> Vec<bool> {
+    let along = |flags: &[bool], stride: usize, other: usize| {
+        let mut kept = vec![false; flags.len()];
+        for line in 0..side {
+            let mut run = 0;
+            for at in 0..side {
+                run = if flags[line * other + at * stride] { run + 1 } else { 0 };
+                if run > 2 * reach {
+                    kept[line * other + (at - reach) * stride] = true;
+                }
+            }
+        }
+        kept
+    };
+    along(&along(flags, 1, side), side, 1)
+}

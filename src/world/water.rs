@@ -1,0 +1,105 @@
+use crate::ParameterError;
+use crate::geometry::Vector;
+use crate::parameter::{require, require_finite, require_not_negative, require_positive};
+
+/// The water of a world: what fills it up to [`World::water_level`](super::World::water_level).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Water {
+    /// Kilograms in a cubic metre.
+    pub density: f64,
+    /// Metres below the surface, and the speed of the current there in m/s along x and y. Between two depths it changes
+    /// evenly; above the first and below the last it stays.
+    pub current: Vec<(f64, Vector)>,
+    /// Waves on its surface.
+    pub waves: Option<Waves>,
+    /// The speed of the wind, in m/s along x and y.
+    pub wind: Vector,
+}
+
+/// Waves of small height on deep water.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Waves {
+    /// Metres from trough to crest: of regular waves, or of the highest third of irregular ones.
+    pub height: f64,
+    /// Seconds from crest to crest: of regular waves, or of those with the most energy.
+    pub period: f64,
+    /// The direction in which they run, in radians counter-clockwise from the x axis.
+    pub direction: f64,
+    /// Whether they have the spectrum of the North Sea (JONSWAP) instead of a single frequency.
+    pub irregular: bool,
+}
+
+impl Default for Water {
+    /// Fresh water that stands still.
+    fn default() -> Self {
+        Self { density: 1000.0, current: Vec::new(), waves: None, wind: Vector::zeros() }
+    }
+}
+
+impl Water {
+    /// The densest water, in kg/m³: the Dead Sea has 1240.
+    pub const DENSEST: f64 = 2000.0;
+    /// The fastest current and wind, in m/s.
+    pub const FASTEST: f64 = 100.0;
+
+    /// The current so many metres below the surface.
+    ///
+    /// ```
+    /// use roverlab::geometry::Vector;
+    /// use roverlab::world::Water;
+    /// let layers = vec![(0.0, Vector::new(0.2, 0.0)), (2.0, Vector::zeros())];
+    /// let water = Water { current: layers, ..Water::default() };
+    /// assert_eq!(water.current_at(0.5), Vector::new(0.15, 0.0));
+    /// assert_eq!((water.current_at(-1.0).x, water.current_at(9.0).x), (0.2, 0.0));
+    /// ```
+    pub fn current_at(&self, depth: f64) -> Vector {
+        let Some(below) = self.current.iter().position(|layer| layer.0 > depth) else {
+            return self.current.last().map_or_else(Vector::zeros, |layer| layer.1);
+        };
+        let Some(above) = below.checked_sub(1) else { return self.current[0].1 };
+        let ((top, upper), (bottom, lower)) = (self.current[above], self.current[below]);
+        upper + (lower - upper) * ((depth - top) / (bottom - top))
+    }
+
+    /// Fails with the name of a number that no water has.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        require_positive("water's density", self.density)?;
+        let light = self.density <= Self::DENSEST;
+        require("water's density", self.density, light, "at most 2000 kg/m³")?;
+        let slow = |name: &'static str, speed: Vector| {
+            let fast = speed.x.abs().max(speed.y.abs());
+            require(name, fast, fast <= Self::FASTEST, "at most 100 m/s")
+        };
+        slow("wind", self.wind)?;
+        let mut before = f64::NEG_INFINITY;
+        for &(depth, speed) in &self.current {
+            require_finite("current's depth", depth)?;
+            require("current's depth", depth, depth > before, "more than that of the layer above")?;
+            before = depth;
+            slow("current", speed)?;
+        }
+        self.waves.as_ref().map_or(Ok(()), Waves::validate)
+    }
+}
+
+impl Waves {
+    fn validate(&self) -> Result<(), ParameterError> {
+        require_not_negative("waves' height", self.height)?;
+        require_finite("waves' direction", self.direction)?;
+        let period = self.period;
+        require("waves' period", period, (0.5..=30.0).contains(&period), "0.5 to 30 s")?;
+        // Higher waves break.
+        let most = 0.1 * self.length();
+        require(
+            "waves' height",
+            self.height,
+            self.height <= most,
+            format!("at most a tenth of their length, {most} m"),
+        )
+    }
+
+    /// Metres from crest to crest on deep water.
+    pub fn length(&self) -> f64 {
+        9.81 * self.period * self.period / std::f64::consts::TAU
+    }
+}
