@@ -262,9 +262,9 @@ fn picture(plan: &Plan, done: &Dived) -> Picture {
     above.mark(Mark::Start, Point::new(2.0, 1.5));
     let mut side = Picture::new(&World::empty(6.0, 3.0));
     // Twenty seconds are 1.4 m, and the pool's depth 2.4 m.
-    side.title("From the side: depth over 80 s, and the depth asked for");
+    side.title("From the side, over 80 s");
     let at = |time: f64, depth: f64| Point::new(0.2 + 5.6 * time / 80.0, 2.7 - 2.4 * depth / pool::LEVEL);
-    side.line([at(0.0, 0.0), at(80.0, 0.0)], Style::new(Colour::from_hex(0x20_70_c0)).labelled("surface"));
+    side.line([at(0.0, 0.0), at(80.0, 0.0)], Style::new(Colour::from_hex(0x70_c0_d8)).labelled("surface"));
     side.line(
         [at(0.0, pool::LEVEL), at(80.0, pool::LEVEL)],
         Style::new(Colour::from_hex(0x60_50_40)).labelled("floor"),
