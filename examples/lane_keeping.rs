@@ -12,12 +12,12 @@ use roverlab::io::control::{Behaviour, Senses, run, until};
 use roverlab::io::sim::{SimOptions, SimRobot, Simulation};
 use roverlab::picture::{Picture, Style};
 use roverlab::vision::lane_markings::RoadModel;
-use roverlab::world::road::{Appearance, Course, CourseOptions, generate};
+use roverlab::world::road::{Appearance, RoadCourse, RoadCourseOptions, generate};
 use roverlab::world::{RobotSpec, Scene, World};
 
 /// Lets a behaviour drive for half a minute, or until it has to be taken over. Returns its score and its way.
 fn drive<B>(
-    course: &Course,
+    course: &RoadCourse,
     keeper: &mut B,
 ) -> Result<(FreeDriveScore, Vec<Point>), Box<dyn std::error::Error>>
 where
@@ -40,7 +40,7 @@ where
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let course = generate(3, &CourseOptions::default())?;
+    let course = generate(3, &RoadCourseOptions::default())?;
     let camera = RobotSpec::road_car().camera.as_ref().ok_or("a car without a camera")?.into();
     let mut keeper = LaneKeeper::new(camera, RoadModel::default(), LaneKeeperParameters::default())?;
     let (ours, way) = drive(&course, &mut keeper)?;

@@ -11,11 +11,11 @@ use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::{Camera, Clock, Resolution};
 use roverlab::random::Stream;
 use roverlab::vision::lane_markings::{RoadCamera, RoadModel};
-use roverlab::world::road::{Appearance, Course, CourseOptions, generate};
+use roverlab::world::road::{Appearance, RoadCourse, RoadCourseOptions, generate};
 use roverlab::world::{RobotSpec, Scene};
 
 /// A course with worn paint and patches of light, and a car at its start in a light of 50 to 150 %.
-fn simulation(course: &Course, seed: u64, pixel: f64) -> Simulation {
+fn simulation(course: &RoadCourse, seed: u64, pixel: f64) -> Simulation {
     let mut random = Stream::new(seed);
     let look = Appearance { pixel, wear: random.between(0.0, 0.35), glare: random.below(6), seed };
     let scene = Scene::with_robot(course.world(&look).unwrap(), RobotSpec::road_car(), course.start());
@@ -43,7 +43,7 @@ impl Errors {
 
     /// Carries a car along a course, aside of the lane's middle and askew, and compares what it sees in the next metre.
     fn look(&mut self, seed: u64, pixel: f64, most: usize) {
-        let course = generate(seed, &CourseOptions::default()).unwrap();
+        let course = generate(seed, &RoadCourseOptions::default()).unwrap();
         let simulation = simulation(&course, seed, pixel);
         let (mut car, truth) = (simulation.robot(0).unwrap(), simulation.truth());
         car.set_resolution(Resolution::Qvga).unwrap();
@@ -103,7 +103,7 @@ fn the_lane_is_where_it_is_seen() {
 
 /// Drives for some seconds, or until the car has to be taken over.
 fn drive(seed: u64, seconds: f64) -> FreeDriveScore {
-    let course = generate(seed, &CourseOptions::default()).unwrap();
+    let course = generate(seed, &RoadCourseOptions::default()).unwrap();
     let simulation = simulation(&course, seed, 0.002);
     let (mut car, truth) = (simulation.robot(0).unwrap(), simulation.truth());
     let mut keeper =
@@ -116,7 +116,7 @@ fn drive(seed: u64, seconds: f64) -> FreeDriveScore {
 
 #[test]
 fn a_gap_of_a_metre_and_a_blackout_are_driven_through_by_odometry() {
-    let course = generate(2, &CourseOptions::default()).unwrap();
+    let course = generate(2, &RoadCourseOptions::default()).unwrap();
     let simulation = simulation(&course, 2, 0.004);
     let (mut car, truth) = (simulation.robot(0).unwrap(), simulation.truth());
     let mut keeper =
@@ -169,7 +169,7 @@ mod campaigns {
     }
 
     /// The book's loop at a scale of about 2:1 as its published picture shows it: the middle of the road.
-    fn loop_of_the_book() -> Course {
+    fn loop_of_the_book() -> RoadCourse {
         let line = vec![
             Element::straight(0.7880),
             Element::arc(0.3938, -2.3664),
@@ -186,7 +186,7 @@ mod campaigns {
             Element::straight(0.7880),
         ];
         let line = Alignment::new(Pose::new(1.4540, 0.4570, -3.1446), line);
-        Course {
+        RoadCourse {
             traffic: Traffic::Left,
             size: 0.471,
             line,

@@ -1,7 +1,7 @@
 use proptest::prelude::*;
 
 use crate::random::Stream;
-use crate::world::road::{Course, CourseOptions, Traffic, generate};
+use crate::world::road::{RoadCourse, RoadCourseOptions, Traffic, generate};
 
 /// Closed courses by the rules of the CAuDri-Challenge, of either traffic, in the rules' size or half of it, with or without
 /// gaps, crossings and crosswalks.
@@ -15,18 +15,18 @@ use crate::world::road::{Course, CourseOptions, Traffic, generate};
 ///     Ok(())
 /// }).unwrap();
 /// ```
-pub fn courses() -> impl Strategy<Value = Course> {
+pub fn courses() -> impl Strategy<Value = RoadCourse> {
     any::<u64>().prop_filter_map("options that no course meets", |seed| {
         let mut random = Stream::new(seed).child("course options", 0);
         let traffic = if random.chance(0.5) { Traffic::Right } else { Traffic::Left };
         let size = if random.chance(0.5) { 1.0 } else { 0.5 };
-        let options = CourseOptions {
+        let options = RoadCourseOptions {
             traffic,
             size,
             gaps: random.between(0.0, 0.3),
             crossings: random.uniform(),
             zebras: random.uniform(),
-            ..CourseOptions::default()
+            ..RoadCourseOptions::default()
         };
         generate(seed, &options).ok()
     })

@@ -5,7 +5,7 @@ use std::path::Path;
 use roverlab::io::sim::SimOptions;
 use roverlab::random::Stream;
 use roverlab::world::formats::course;
-use roverlab::world::road::{Appearance, Course, CourseOptions, generate};
+use roverlab::world::road::{Appearance, RoadCourse, RoadCourseOptions, generate};
 use roverlab::world::{RobotSpec, Scene};
 
 use super::Args;
@@ -15,7 +15,7 @@ use crate::common::Failure;
 #[derive(Debug, Clone)]
 pub(super) struct Setting {
     pub(super) name: String,
-    pub(super) course: Course,
+    pub(super) course: RoadCourse,
     pub(super) look: Appearance,
     pub(super) light: f64,
     pub(super) seed: u64,
@@ -83,6 +83,6 @@ impl Setting {
     }
 }
 
-fn generated(seed: u64) -> Result<Course, Failure> {
-    generate(seed, &CourseOptions::default()).map_err(Failure::input)
+fn generated(seed: u64) -> Result<RoadCourse, Failure> {
+    generate(seed, &RoadCourseOptions::default()).map_err(Failure::input)
 }

@@ -11,7 +11,7 @@ use roverlab::io::sim::RobotTruth;
 use roverlab::io::{self, Clock, Drive as _};
 use roverlab::vision::lane_markings::{RoadCamera, RoadModel};
 use roverlab::world::RobotSpec;
-use roverlab::world::road::{Course, Traffic};
+use roverlab::world::road::{RoadCourse, Traffic};
 
 use super::course::Setting;
 use super::{Args, Driver, rules};
@@ -47,7 +47,7 @@ pub(super) fn drive(args: &Args, setting: &Setting, stage: &Stage) -> Result<Dri
             let defaults = LaneKeeperParameters::default();
             let parameters = LaneKeeperParameters { speed: args.speed.unwrap_or(defaults.speed), ..defaults };
             let left_hand = setting.course.traffic == Traffic::Left;
-            let Course { size, line_width, .. } = setting.course;
+            let RoadCourse { size, line_width, .. } = setting.course;
             let road = RoadModel { size, line_width, left_hand };
             let mut keeper = LaneKeeper::new(camera, road, parameters).map_err(Failure::input)?;
             watch.keep(&mut car, &mut keeper, seconds, LaneKeeper::forget)

@@ -6,7 +6,7 @@ use crate::geometry::{Pose, Twist, angle_difference, math};
 use crate::io::control::{Behaviour, Decision, Senses};
 use crate::io::{self, Camera, Odometry, Resolution};
 use crate::parameter::require_positive;
-use crate::vision::lane_markings::{LaneEstimate, LaneFinder, RoadCamera, RoadModel};
+use crate::vision::lane_markings::{LaneEstimate, LaneMarkingFinder, RoadCamera, RoadModel};
 use crate::vision::{GrayView, GrayViewMut, GrayWeights, ImageError, RgbView, gray_into};
 
 /// Parameters of a [`LaneKeeper`].
@@ -61,7 +61,7 @@ impl LaneKeeperParameters {
 #[derive(Debug, Clone)]
 pub struct LaneKeeper {
     parameters: LaneKeeperParameters,
-    finder: LaneFinder,
+    finder: LaneMarkingFinder,
     gray: Vec<u8>,
     /// Odometry at the last image.
     before: Option<Pose>,
@@ -81,7 +81,7 @@ impl LaneKeeper {
         parameters: LaneKeeperParameters,
     ) -> Result<Self, ParameterError> {
         parameters.validate()?;
-        let finder = LaneFinder::new(camera, road)?;
+        let finder = LaneMarkingFinder::new(camera, road)?;
         Ok(Self { parameters, finder, gray: Vec::new(), before: None, lane: None })
     }
 
@@ -91,7 +91,7 @@ impl LaneKeeper {
     }
 
     /// The finder, with the points of the last image.
-    pub fn finder(&self) -> &LaneFinder {
+    pub fn finder(&self) -> &LaneMarkingFinder {
         &self.finder
     }
 

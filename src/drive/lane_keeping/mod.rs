@@ -1,6 +1,6 @@
 //! Keeping the lane by what a camera sees (book, section 13.3).
 //!
-//! [`LaneKeeper`] steers by the road that [`LaneFinder`](crate::vision::lane_markings::LaneFinder) fits to the markings: ahead
+//! [`LaneKeeper`] steers by the road that [`LaneMarkingFinder`](crate::vision::lane_markings::LaneMarkingFinder) fits to the markings: ahead
 //! by the lane's curvature, back by offset and heading, and as fast as grip, bends and sight allow. [`BookLaneKeeper`] is the
 //! book's pipeline as printed: edges by Canny, lines by Hough, and a proportional controller.
 //!
@@ -10,11 +10,11 @@
 //! use roverlab::io::control::run;
 //! use roverlab::io::sim::{SimOptions, Simulation};
 //! use roverlab::vision::lane_markings::RoadModel;
-//! use roverlab::world::road::{Appearance, CourseOptions, generate};
+//! use roverlab::world::road::{Appearance, RoadCourseOptions, generate};
 //! use roverlab::world::{RobotSpec, Scene};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! let course = generate(2, &CourseOptions::default())?;
+//! let course = generate(2, &RoadCourseOptions::default())?;
 //! let world = course.world(&Appearance { pixel: 0.004, ..Appearance::default() })?;
 //! let spec = RobotSpec::road_car();
 //! let scene = Scene::with_robot(world, spec.clone(), course.start());

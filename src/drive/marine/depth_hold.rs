@@ -1,6 +1,6 @@
 use crate::ParameterError;
 use crate::geometry::{Vector3, math};
-use crate::kinematics::marine::{Craft, Motion};
+use crate::kinematics::marine::{Craft, CraftMotion};
 use crate::parameter::{require_not_negative, require_positive};
 
 /// Parameters of [`DepthHold`].
@@ -101,7 +101,7 @@ impl DepthHold {
     }
 
     fn drag(&self, down: f64) -> f64 {
-        let motion = Motion { linear: Vector3::z() * down, angular: Vector3::zeros() };
+        let motion = CraftMotion { linear: Vector3::z() * down, angular: Vector3::zeros() };
         self.craft.drag(&motion).force.z
     }
 

@@ -1,5 +1,5 @@
 use crate::geometry::{Point, Pose};
-use crate::world::road::{Course, LanePose};
+use crate::world::road::{LanePose, RoadCourse};
 use crate::world::{DriveSpec, RobotSpec};
 
 /// The rules of Free Drive that are open in their text, or differ from release to release.
@@ -73,7 +73,7 @@ impl FreeDriveScore {
 /// The referee of Free Drive: sees the true pose of a car on a course, and never tells it.
 #[derive(Debug, Clone)]
 pub struct FreeDrive {
-    course: Course,
+    course: RoadCourse,
     rules: FreeDriveRules,
     /// Where the wheels touch the ground, in the car's frame, and its middle.
     wheels: [Point; 4],
@@ -91,7 +91,7 @@ const STANDS: f64 = 0.02;
 
 impl FreeDrive {
     /// A referee for a car that starts at the beginning of a course.
-    pub fn new(course: Course, car: &RobotSpec, rules: FreeDriveRules) -> Self {
+    pub fn new(course: RoadCourse, car: &RobotSpec, rules: FreeDriveRules) -> Self {
         let (length, track) = match car.drive {
             DriveSpec::Ackermann { wheelbase, track, .. } | DriveSpec::Omni { wheelbase, track, .. } => {
                 (wheelbase, track)

@@ -83,7 +83,7 @@ impl Allocation {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{CraftSpec, CraftState, Water};
+    use super::super::{CraftSpec, CraftState, LocalWater};
     use super::*;
     use crate::geometry::{Point3, Pose3, Vector3};
     use proptest::prelude::*;
@@ -103,9 +103,9 @@ mod tests {
             let mut state = CraftState::at_rest(&craft, &Pose3::from_angles(Point3::new(0.0, 0.0, -9.0), 0.0, 0.0, 0.0));
             let mut wished = state;
             state.shafts = commands;
-            craft.advance(&mut state, &commands, &Water::still(0.0));
+            craft.advance(&mut state, &commands, &LocalWater::still(0.0));
             let part = Wrench { force: wish.force * share, moment: wish.moment * share };
-            craft.advance_under(&mut wished, &[], &Water::still(0.0), |_| part);
+            craft.advance_under(&mut wished, &[], &LocalWater::still(0.0), |_| part);
             prop_assert!((state.velocity.linear - wished.velocity.linear).norm() < 1e-6);
             prop_assert!((state.velocity.angular - wished.velocity.angular).norm() < 1e-6);
         }

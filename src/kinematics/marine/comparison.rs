@@ -6,7 +6,7 @@
 use std::f64::consts::PI;
 
 use super::craft::{split, stack};
-use super::{Craft, CraftSpec, GRAVITY, HullPart, Motion, Thruster, Wrench};
+use super::{Craft, CraftMotion, CraftSpec, GRAVITY, HullPart, Thruster, Wrench};
 use crate::ParameterError;
 use crate::geometry::{Point3, Vector3, math};
 
@@ -88,7 +88,12 @@ impl Remus100 {
 
     /// All forces except weight, buoyancy, inertia and the body's damping, from the motion through the water
     /// and the speed over ground (m/s). Controls: rudder and stern planes (rad), propeller (turns/s).
-    pub fn forces(&self, through_water: &Motion, speed: f64, [rudder, stern, turns]: [f64; 3]) -> Wrench {
+    pub fn forces(
+        &self,
+        through_water: &CraftMotion,
+        speed: f64,
+        [rudder, stern, turns]: [f64; 3],
+    ) -> Wrench {
         let flow = over(through_water.linear);
         let (fins, propeller) = (fins(&flow, rudder, stern), propeller(speed, turns));
         let mut force = fins.force + propeller.force + lift_and_drag(&flow);
@@ -250,7 +255,7 @@ impl Otter {
 
     /// All forces except thrust, inertia and damping, from the motion through the water, the height above
     /// rest (m), and roll and pitch (rad).
-    pub fn forces(&self, through_water: &Motion, height: f64, [roll, pitch]: [f64; 2]) -> Wrench {
+    pub fn forces(&self, through_water: &CraftMotion, height: f64, [roll, pitch]: [f64; 2]) -> Wrench {
         let (pitch, depth) = (-pitch, -height);
         let [heave, rolling, pitching] = self.springs;
         let up = heave * (depth - Self::FLOATS_AT * pitch);
@@ -280,10 +285,10 @@ fn springs(density: f64, volume: f64, draught: f64, centre: f64) -> [f64; 3] {
         .map(|value| density * GRAVITY * value)
 }
 
-impl Motion {
+impl CraftMotion {
     /// The motion after some time (s) at a constant acceleration.
     #[must_use]
-    pub fn after(&self, acceleration: &Motion, seconds: f64) -> Self {
+    pub fn after(&self, acceleration: &CraftMotion, seconds: f64) -> Self {
         let moved =
             stack(&self.linear, &self.angular) + stack(&acceleration.linear, &acceleration.angular) * seconds;
         let (linear, angular) = split(&moved);

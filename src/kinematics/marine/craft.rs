@@ -7,7 +7,7 @@ use crate::parameter::{require, require_positive};
 
 /// A speed through space: of a craft in its own frame, at the middle of its hull's volume.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Motion {
+pub struct CraftMotion {
     /// Metres per second.
     pub linear: Vector3,
     /// Radians per second about each axis.
@@ -23,7 +23,7 @@ pub struct Wrench {
     pub moment: Vector3,
 }
 
-impl Motion {
+impl CraftMotion {
     /// Rest.
     pub const STILL: Self =
         Self { linear: Vector3::new(0.0, 0.0, 0.0), angular: Vector3::new(0.0, 0.0, 0.0) };
@@ -49,7 +49,7 @@ impl std::ops::Add for Wrench {
 
 /// The water around a craft.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Water {
+pub struct LocalWater {
     /// Kilograms in a cubic metre.
     pub density: f64,
     /// Metres of the surface above the world's origin, straight above the craft; without water, -∞.
@@ -60,7 +60,7 @@ pub struct Water {
     pub velocity: Vector3,
 }
 
-impl Water {
+impl LocalWater {
     /// Fresh water that stands at a level.
     pub fn still(level: f64) -> Self {
         Self { density: 1000.0, level, slope: Vector::zeros(), velocity: Vector3::zeros() }
@@ -203,10 +203,10 @@ impl Craft {
 
     /// The motion after an impulse in N s at a place of the craft, in its frame.
     #[must_use]
-    pub fn struck(&self, velocity: &Motion, place: &Vector3, impulse: &Vector3) -> Motion {
+    pub fn struck(&self, velocity: &CraftMotion, place: &Vector3, impulse: &Vector3) -> CraftMotion {
         let change = self.wet.inverse * stack(impulse, &place.cross(impulse));
         let (linear, angular) = split(&change);
-        Motion { linear: velocity.linear + linear, angular: velocity.angular + angular }
+        CraftMotion { linear: velocity.linear + linear, angular: velocity.angular + angular }
     }
 
     /// Newtons by which buoyancy exceeds the weight when all of the hull is under water.
@@ -215,34 +215,34 @@ impl Craft {
     }
 
     /// The forces that drive it at one axis at a time to a steady speed through the water, damping's: N and N m.
-    pub fn drag(&self, through_water: &Motion) -> Wrench {
+    pub fn drag(&self, through_water: &CraftMotion) -> Wrench {
         let speed = stack(&through_water.linear, &through_water.angular);
         split(&self.damping(&speed)).into()
     }
 
     /// The acceleration of a craft under water, through the water, by a force and a moment besides those of inertia
     /// and damping. A current turns with the craft's frame in addition.
-    pub fn response(&self, through_water: &Motion, wrench: &Wrench) -> Motion {
+    pub fn response(&self, through_water: &CraftMotion, wrench: &Wrench) -> CraftMotion {
         let speed = stack(&through_water.linear, &through_water.angular);
         let force = stack(&wrench.force, &wrench.moment);
         let (linear, angular) = split(&self.accelerate(&self.wet, &speed, 1.0, &force));
-        Motion { linear, angular }
+        CraftMotion { linear, angular }
     }
 
     /// Weight and buoyancy; nothing of a craft without a hull.
-    pub fn restoring(&self, state: &CraftState, water: &Water) -> Wrench {
+    pub fn restoring(&self, state: &CraftState, water: &LocalWater) -> Wrench {
         self.restoring_at(&state.position, &state.attitude.to_rotation_matrix(), water).0
     }
 
     /// The water that a craft displaces, about the middle of its hull's volume.
-    pub fn displaced(&self, state: &CraftState, water: &Water) -> Displaced {
+    pub fn displaced(&self, state: &CraftState, water: &LocalWater) -> Displaced {
         let attitude = state.attitude.to_rotation_matrix();
         self.displaced_at(&state.position, &attitude, water)
     }
 
     /// Joules of motion, weight and buoyancy in still water, above those of rest at the surface with no water
     /// displaced. Damping lets it fall, and nothing but a thruster or moving water lets it rise.
-    pub fn energy(&self, state: &CraftState, water: &Water) -> f64 {
+    pub fn energy(&self, state: &CraftState, water: &LocalWater) -> f64 {
         let kinetic = self.kinetic(state, water);
         let height = |place: Vector3| (state.position + state.attitude * place).z;
         let weight = self.mass * GRAVITY * height(self.mass_centre);
@@ -255,13 +255,13 @@ impl Craft {
         kinetic + weight + water.density * GRAVITY * displaced.volume * raised
     }
 
-    pub(super) fn kinetic(&self, state: &CraftState, water: &Water) -> f64 {
+    pub(super) fn kinetic(&self, state: &CraftState, water: &LocalWater) -> f64 {
         let speed = stack(&state.velocity.linear, &state.velocity.angular);
         0.5 * speed.dot(&(self.inertia_in(water).matrix * speed))
     }
 
     /// Whether the surface may cross the hull.
-    pub(super) fn is_at_surface(&self, state: &CraftState, water: &Water) -> bool {
+    pub(super) fn is_at_surface(&self, state: &CraftState, water: &LocalWater) -> bool {
         (water.level - state.position.z).abs()
             < self.reach * (1.0 + water.slope.x.abs() + water.slope.y.abs())
     }
@@ -270,7 +270,7 @@ impl Craft {
         &self,
         position: &Point3,
         attitude: &Rotation3<f64>,
-        water: &Water,
+        water: &LocalWater,
     ) -> Displaced {
         let depth = water.level - position.z;
         let steep = 1.0 + water.slope.x.abs() + water.slope.y.abs();
@@ -287,7 +287,12 @@ impl Craft {
 
     /// Weight and buoyancy, and how much of the hull is under water. A craft without a hull has neither.
     #[inline]
-    fn restoring_at(&self, position: &Point3, attitude: &Rotation3<f64>, water: &Water) -> (Wrench, f64) {
+    fn restoring_at(
+        &self,
+        position: &Point3,
+        attitude: &Rotation3<f64>,
+        water: &LocalWater,
+    ) -> (Wrench, f64) {
         if self.hull.is_empty() {
             return (Wrench::NONE, 0.0);
         }
@@ -313,7 +318,7 @@ impl Craft {
         attitude: &Rotation3<f64>,
         speed: &Vector6<f64>,
         wrench: &Vector6<f64>,
-        water: &Water,
+        water: &LocalWater,
     ) -> Vector6<f64> {
         let (restoring, volume) = self.restoring_at(position, attitude, water);
         let current = attitude.inverse() * water.velocity;
@@ -335,7 +340,7 @@ impl Craft {
         if volume >= most || most == 0.0 { 1.0 } else { volume / most }
     }
 
-    fn inertia_in(&self, water: &Water) -> &Inertia {
+    fn inertia_in(&self, water: &LocalWater) -> &Inertia {
         if water.level == f64::NEG_INFINITY { &self.dry } else { &self.wet }
     }
 

@@ -1,7 +1,7 @@
 use nalgebra::{Quaternion, UnitQuaternion, Vector6};
 
 use super::craft::{split, stack};
-use super::{Craft, MAX_THRUSTERS, Motion, Thruster, Water, Wrench};
+use super::{Craft, CraftMotion, LocalWater, MAX_THRUSTERS, Thruster, Wrench};
 use crate::geometry::{Point3, Pose3, Vector3};
 
 /// Where a craft is, how it moves and how its thrusters turn.
@@ -12,7 +12,7 @@ pub struct CraftState {
     /// How its frame is turned in the world's.
     pub attitude: UnitQuaternion<f64>,
     /// The speed over ground of that middle, in the craft's own frame.
-    pub velocity: Motion,
+    pub velocity: CraftMotion,
     /// The speed of each thruster, as a share of its full speed.
     pub shafts: [f64; MAX_THRUSTERS],
 }
@@ -23,7 +23,7 @@ impl CraftState {
         Self {
             position: pose.to_world(craft.middle()),
             attitude: pose.attitude,
-            velocity: Motion::STILL,
+            velocity: CraftMotion::STILL,
             shafts: [0.0; MAX_THRUSTERS],
         }
     }
@@ -51,7 +51,7 @@ struct Flow {
 
 impl Craft {
     /// Moves a craft by one step. Commands are shares of each thruster's full speed, -1 to 1; those that are missing are 0.
-    pub fn advance(&self, state: &mut CraftState, commands: &[f64], water: &Water) {
+    pub fn advance(&self, state: &mut CraftState, commands: &[f64], water: &LocalWater) {
         let wrench = self.thrust(state, commands, water);
         let by_itself = wrench == Vector6::zeros() && water.velocity == Vector3::zeros();
         if !(by_itself && self.is_at_surface(state, water)) {
@@ -65,7 +65,7 @@ impl Craft {
 
     /// Takes energy from the motion to which a craft has come without a thruster, because an edge of its hull came to
     /// the surface within the step.
-    fn give_back(&self, state: &mut CraftState, more: f64, water: &Water) {
+    fn give_back(&self, state: &mut CraftState, more: f64, water: &LocalWater) {
         let kinetic = self.kinetic(state, water);
         if more > 0.0 && kinetic > 0.0 {
             let left = (1.0 - more / kinetic).max(0.0).sqrt();
@@ -79,7 +79,7 @@ impl Craft {
         &self,
         state: &mut CraftState,
         commands: &[f64],
-        water: &Water,
+        water: &LocalWater,
         forces: impl Fn(&CraftState) -> Wrench,
     ) {
         let thrust = self.thrust(state, commands, water);
@@ -89,7 +89,7 @@ impl Craft {
             let there = CraftState {
                 position: Point3::from(at.position),
                 attitude: UnitQuaternion::new_normalize(at.attitude),
-                velocity: Motion { linear, angular },
+                velocity: CraftMotion { linear, angular },
                 shafts,
             };
             let wrench = forces(&there);
@@ -98,7 +98,7 @@ impl Craft {
     }
 
     #[inline]
-    fn advance_by(&self, state: &mut CraftState, water: &Water, forces: impl Fn(&Flow) -> Vector6<f64>) {
+    fn advance_by(&self, state: &mut CraftState, water: &LocalWater, forces: impl Fn(&Flow) -> Vector6<f64>) {
         let start = Flow {
             position: state.position.coords,
             attitude: state.attitude.into_inner(),
@@ -118,11 +118,11 @@ impl Craft {
         state.position = Point3::from(end.position);
         state.attitude = UnitQuaternion::new_normalize(end.attitude);
         let (linear, angular) = split(&end.speed);
-        state.velocity = Motion { linear, angular };
+        state.velocity = CraftMotion { linear, angular };
     }
 
     /// Lets the thrusters follow their commands for a step, and returns their force in the middle of it.
-    fn thrust(&self, state: &mut CraftState, commands: &[f64], water: &Water) -> Vector6<f64> {
+    fn thrust(&self, state: &mut CraftState, commands: &[f64], water: &LocalWater) -> Vector6<f64> {
         let mut sum = Vector6::zeros();
         for (number, thruster) in self.thrusters.iter().enumerate() {
             let command = commands.get(number).map_or(0.0, |command| command.clamp(-1.0, 1.0));
@@ -142,7 +142,7 @@ impl Craft {
     }
 
     #[inline]
-    fn flow(&self, at: &Flow, forces: &impl Fn(&Flow) -> Vector6<f64>, water: &Water) -> Flow {
+    fn flow(&self, at: &Flow, forces: &impl Fn(&Flow) -> Vector6<f64>, water: &LocalWater) -> Flow {
         let attitude = UnitQuaternion::new_normalize(at.attitude);
         let rotation = attitude.to_rotation_matrix();
         let (linear, angular) = split(&at.speed);

@@ -16,7 +16,7 @@
 //! its added mass, and its damping fades with what of its hull is wet. The water is not moved by the craft. A
 //! current is the same all along the hull, and a wave is a plane across it.
 //!
-//! Reference: T. I. Fossen, *Handbook of Marine Craft Hydrodynamics and Motion Control*, second edition, 2021.
+//! Reference: T. I. Fossen, *Handbook of Marine Craft Hydrodynamics and CraftMotion Control*, second edition, 2021.
 
 mod allocation;
 mod capsule;
@@ -32,7 +32,7 @@ mod tests;
 
 pub use allocation::{Allocated, Allocation};
 pub use comparison::{Otter, Remus100};
-pub use craft::{Craft, Motion, Water, Wrench};
+pub use craft::{Craft, CraftMotion, LocalWater, Wrench};
 pub use hull::{Displaced, HullPart};
 pub use integrate::CraftState;
 pub use spec::{CraftSpec, Thruster};

@@ -10,16 +10,16 @@ use crate::parameter::{require, require_finite, require_not_negative};
 ///
 /// ```
 /// use roverlab::geometry::{Point3, Vector3};
-/// use roverlab::kinematics::marine::{Craft, CraftSpec, CraftState, HullPart, Water};
+/// use roverlab::kinematics::marine::{Craft, CraftSpec, CraftState, HullPart, LocalWater};
 ///
 /// // A buoy of 10 kg, half as heavy as the water in its place.
 /// let ball = HullPart::Ellipsoid { half_axes: Vector3::repeat(0.168), centre: Point3::origin() };
 /// let buoy = Craft::new(&CraftSpec::of_hull(10.0, Point3::new(0.0, 0.0, -0.05), vec![ball]), 0.01)?;
 /// let mut state = CraftState::at_rest(&buoy, &Default::default());
 /// for _ in 0..3000 {
-///     buoy.advance(&mut state, &[], &Water::still(0.0));
+///     buoy.advance(&mut state, &[], &LocalWater::still(0.0));
 /// }
-/// let (centre, displaced) = (state.pose(&buoy).position, buoy.displaced(&state, &Water::still(0.0)));
+/// let (centre, displaced) = (state.pose(&buoy).position, buoy.displaced(&state, &LocalWater::still(0.0)));
 /// assert!((displaced.volume - 0.010).abs() < 1e-5 && centre.z.abs() < 0.01);
 /// # Ok::<(), roverlab::ParameterError>(())
 /// ```

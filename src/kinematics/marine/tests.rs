@@ -10,7 +10,7 @@ fn floating(craft: &Craft, height: f64) -> CraftState {
     CraftState::at_rest(craft, &Pose3::from_angles(Point3::new(0.0, 0.0, height), 0.0, 0.0, 0.0))
 }
 
-fn run(craft: &Craft, state: &mut CraftState, commands: &[f64], water: &Water, seconds: f64) {
+fn run(craft: &Craft, state: &mut CraftState, commands: &[f64], water: &LocalWater, seconds: f64) {
     for _ in 0..(seconds / craft.step()) as u32 {
         craft.advance(state, commands, water);
     }
@@ -28,7 +28,7 @@ fn terminal(linear: f64, quadratic: f64, force: f64) -> f64 {
 #[test]
 fn speeds_come_to_where_damping_equals_the_force() {
     let (spec, craft) = (CraftSpec::mako(), mako());
-    let deep = Water::still(100.0);
+    let deep = LocalWater::still(100.0);
     let mut state = floating(&craft, 0.0);
     run(&craft, &mut state, &[], &deep, 40.0);
     let rise = state.attitude * state.velocity.linear;
@@ -52,7 +52,7 @@ fn speeds_come_to_where_damping_equals_the_force() {
 #[test]
 fn a_current_carries_what_drifts() {
     let craft = mako();
-    let water = Water { velocity: Vector3::new(0.3, -0.2, 0.0), ..Water::still(100.0) };
+    let water = LocalWater { velocity: Vector3::new(0.3, -0.2, 0.0), ..LocalWater::still(100.0) };
     let mut state = floating(&craft, 0.0);
     run(&craft, &mut state, &[], &water, 150.0);
     let drift = state.attitude * state.velocity.linear;
@@ -63,7 +63,7 @@ fn a_current_carries_what_drifts() {
 #[test]
 fn draught_and_heel_are_those_of_archimedes() {
     let raft = Craft::new(&CraftSpec::solar_raft(), 0.01).unwrap();
-    let still = Water::still(0.0);
+    let still = LocalWater::still(0.0);
     let mut state = floating(&raft, -0.05);
     run(&raft, &mut state, &[], &still, 200.0);
     near(raft.displaced(&state, &still).volume, 0.020);
@@ -105,7 +105,7 @@ fn heave_and_roll_have_the_periods_of_their_springs() {
     // Let it roll about its centre of mass.
     spec.added_mass[1] = 0.0;
     let craft = Craft::new(&spec, 0.005).unwrap();
-    let still = Water::still(0.0);
+    let still = LocalWater::still(0.0);
     let tau = std::f64::consts::TAU;
     let heave = (1000.0 * GRAVITY * length * width / (spec.mass + spec.added_mass[2])).sqrt();
     let mut state = floating(&craft, 0.01);
@@ -124,7 +124,7 @@ fn period(craft: &Craft, state: &mut CraftState, of: impl Fn(&CraftState) -> f64
     let (mut crossings, mut first, mut last) = (0, 0.0, 0.0);
     let mut before = of(state);
     for step in 1..100_000 {
-        craft.advance(state, &[], &Water::still(0.0));
+        craft.advance(state, &[], &LocalWater::still(0.0));
         let now = of(state);
         if before < 0.0 && now >= 0.0 {
             last = (f64::from(step) - now / (now - before)) * craft.step();
@@ -153,8 +153,8 @@ fn energy_falls(starts: u32, seconds: f64, seed: u64) {
         let pose = Pose3::from_angles(Point3::new(0.0, 0.0, depth), roll, pitch, yaw);
         let mut state = CraftState::at_rest(craft, &pose);
         let mut draw = |most: f64| Vector3::from_fn(|_, _| stream.between(-most, most));
-        state.velocity = Motion { linear: draw(1.5), angular: draw(2.0) };
-        let still = Water::still(0.0);
+        state.velocity = CraftMotion { linear: draw(1.5), angular: draw(2.0) };
+        let still = LocalWater::still(0.0);
         let mut before = craft.energy(&state, &still);
         for step in 0..(seconds / craft.step()) as u32 {
             craft.advance(&mut state, &[], &still);
@@ -178,7 +178,7 @@ fn energy_never_rises_by_itself() {
 fn thrusters_lag_are_weaker_backwards_and_draw_air() {
     let craft = mako();
     let mut state = floating(&craft, -5.0);
-    run(&craft, &mut state, &[1.0, 0.0, -1.0, 0.0], &Water::still(0.0), 0.2);
+    run(&craft, &mut state, &[1.0, 0.0, -1.0, 0.0], &LocalWater::still(0.0), 0.2);
     assert!((state.shafts[0] - (1.0 - math::exp(-1.0))).abs() < 1e-9, "{:?}", state.shafts);
     assert!(
         state.velocity.angular.z < 0.0 && state.velocity.linear.x > 0.0,
@@ -186,7 +186,7 @@ fn thrusters_lag_are_weaker_backwards_and_draw_air() {
     );
     // In air there is no thrust.
     let mut state = floating(&craft, 5.0);
-    run(&craft, &mut state, &[1.0, 0.0, 1.0, 0.0], &Water::still(0.0), 0.2);
+    run(&craft, &mut state, &[1.0, 0.0, 1.0, 0.0], &LocalWater::still(0.0), 0.2);
     assert_eq!(state.velocity.linear.x, 0.0);
     assert!((state.velocity.linear.z / (-GRAVITY * 0.2) - 1.0).abs() < 0.7, "{:?}", state.velocity);
 }
@@ -198,8 +198,8 @@ fn half_the_step_is_a_sixteenth_of_the_error() {
         let mut state =
             CraftState::at_rest(&craft, &Pose3::from_angles(Point3::new(0.0, 0.0, -9.0), 0.3, 0.4, 0.1));
         state.velocity =
-            Motion { linear: Vector3::new(1.0, 0.4, -0.3), angular: Vector3::new(0.5, 0.2, 0.4) };
-        run(&craft, &mut state, &[], &Water::still(0.0), 2.0);
+            CraftMotion { linear: Vector3::new(1.0, 0.4, -0.3), angular: Vector3::new(0.5, 0.2, 0.4) };
+        run(&craft, &mut state, &[], &LocalWater::still(0.0), 2.0);
         state.position
     };
     let best = end(0.00125);

@@ -23,14 +23,14 @@ pub trait StepCosts {
 /// Steps cost their length.
 ///
 /// ```
-/// use roverlab::nav::grid::{StepCosts, Uniform};
+/// use roverlab::nav::grid::{StepCosts, UniformCost};
 /// use roverlab::world::GridCell;
-/// assert_eq!(Uniform.cost(GridCell::new(0, 0), GridCell::new(1, 0)), 1.0);
+/// assert_eq!(UniformCost.cost(GridCell::new(0, 0), GridCell::new(1, 0)), 1.0);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Uniform;
+pub struct UniformCost;
 
-impl StepCosts for Uniform {
+impl StepCosts for UniformCost {
     fn cost(&self, from: GridCell, to: GridCell) -> f64 {
         if from.column != to.column && from.row != to.row { SQRT_2 } else { 1.0 }
     }

@@ -2,7 +2,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::components::GridComponents;
-use super::cost::{StepCosts, Uniform, in_cells, octile, of_step};
+use super::cost::{StepCosts, UniformCost, in_cells, octile, of_step};
 use super::path::{End, GridPath, PlanError, SearchStatistics};
 use crate::world::{BitGrid, GridCell};
 
@@ -29,7 +29,7 @@ use crate::world::{BitGrid, GridCell};
 /// # Ok::<(), roverlab::world::BitGridError>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct DStarLite<C = Uniform> {
+pub struct DStarLite<C = UniformCost> {
     costs: C,
     grid: BitGrid,
     robot: GridCell,
@@ -66,7 +66,7 @@ impl DStarLite {
     /// Creates a planner for a map, the robot's cell and the goal. The goal may be blocked now and become
     /// free later. Fails for an empty map and for cells outside it.
     pub fn new(grid: &BitGrid, robot: GridCell, goal: GridCell) -> Result<Self, PlanError> {
-        Self::by(grid, Uniform, robot, goal)
+        Self::by(grid, UniformCost, robot, goal)
     }
 }
 

@@ -36,7 +36,7 @@ mod tests;
 
 pub use any_angle::{AnyAngle, LazyThetaStar};
 pub use components::GridComponents;
-pub use cost::{StepCosts, Uniform};
+pub use cost::{StepCosts, UniformCost};
 pub use distance::DistanceField;
 pub use dstar_lite::DStarLite;
 pub use inflate::inflated;

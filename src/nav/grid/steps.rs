@@ -1,7 +1,7 @@
 use crate::world::{BitGrid, GridCell};
 
 use super::components::GridComponents;
-use super::cost::{self, StepCosts, Uniform};
+use super::cost::{self, StepCosts, UniformCost};
 use super::path::{GridPath, GridPlanner, PlanError, SearchStatistics, check};
 use super::queue::BucketQueue;
 
@@ -28,7 +28,7 @@ use super::queue::BucketQueue;
 /// # Ok::<(), roverlab::world::BitGridError>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct GridSearch<C = Uniform> {
+pub struct GridSearch<C = UniformCost> {
     costs: C,
     grid: BitGrid,
     components: GridComponents,
@@ -85,12 +85,12 @@ const ROWS: [isize; 8] = [0, 1, 0, -1, 1, 1, -1, -1];
 impl GridSearch {
     /// Dijkstra's algorithm, which ends as soon as the goal is settled.
     pub fn dijkstra(grid: &BitGrid) -> Self {
-        Self::new(grid, Uniform, false)
+        Self::new(grid, UniformCost, false)
     }
 
     /// A\*.
     pub fn astar(grid: &BitGrid) -> Self {
-        Self::new(grid, Uniform, true)
+        Self::new(grid, UniformCost, true)
     }
 }
 

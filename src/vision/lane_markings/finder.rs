@@ -72,18 +72,18 @@ impl LaneEstimate {
 /// Finds the lane in images, and tracks it while the car drives.
 ///
 /// ```
-/// use roverlab::vision::lane_markings::{LaneFinder, RoadCamera, RoadModel};
+/// use roverlab::vision::lane_markings::{LaneMarkingFinder, RoadCamera, RoadModel};
 /// use roverlab::vision::GrayView;
 ///
 /// let camera = RoadCamera { field_of_view: 1.6, fisheye: false, tilt: -0.4, height: 0.25, ahead: 0.06 };
-/// let mut finder = LaneFinder::new(camera, RoadModel::default())?;
+/// let mut finder = LaneMarkingFinder::new(camera, RoadModel::default())?;
 /// let image = vec![40; 320 * 240];
 /// let lane = finder.see(GrayView::new(&image, 320, 240)?, (0.0, 0.0));
 /// assert_eq!(lane.support, 0.0, "nothing is to be seen");
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct LaneFinder {
+pub struct LaneMarkingFinder {
     road_model: RoadModel,
     filter: MarkingFilter,
     /// The camera in the rules' size.
@@ -104,7 +104,7 @@ const BLIND: f64 = 1.6;
 const TRACKED: f64 = 0.05;
 const SOUGHT: f64 = 0.08;
 
-impl LaneFinder {
+impl LaneMarkingFinder {
     /// A finder for a camera. Fails where camera or road make no sense.
     pub fn new(camera: RoadCamera, road_model: RoadModel) -> Result<Self, ParameterError> {
         let size = road_model.size;

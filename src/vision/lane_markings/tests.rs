@@ -39,7 +39,7 @@ fn road(camera: &RoadCamera, (offset, heading, bend): (f64, f64, f64), lines: &[
 }
 
 fn look(camera: RoadCamera, image: &[u8], frames: usize) -> LaneEstimate {
-    let mut finder = LaneFinder::new(camera, RoadModel::default()).unwrap();
+    let mut finder = LaneMarkingFinder::new(camera, RoadModel::default()).unwrap();
     let view = || GrayView::new(image, 320, 240).unwrap();
     (1..frames).for_each(|_| drop(finder.see(view(), (0.0, 0.0))));
     finder.see(view(), (0.0, 0.0))
@@ -98,7 +98,7 @@ fn what_is_wider_than_a_line_or_not_bright_is_none() {
 fn a_road_that_is_gone_is_lost_after_a_gap_and_found_again() {
     let image = road(&pinhole(), (0.0, 0.0, 0.0), &[0.42, 0.0, -0.42], 0.0);
     let blank = vec![40_u8; 320 * 240];
-    let mut finder = LaneFinder::new(pinhole(), RoadModel::default()).unwrap();
+    let mut finder = LaneMarkingFinder::new(pinhole(), RoadModel::default()).unwrap();
     let mut see = |image: &[u8]| finder.see(GrayView::new(image, 320, 240).unwrap(), (0.1, 0.0));
     assert!(!see(&image).lost);
     let lost = (0..30).map(|_| see(&blank)).position(|lane| lane.lost);
@@ -108,10 +108,10 @@ fn a_road_that_is_gone_is_lost_after_a_gap_and_found_again() {
 
 #[test]
 fn nonsense_is_refused_by_name() {
-    let name = |camera| LaneFinder::new(camera, RoadModel::default()).unwrap_err().name().to_owned();
+    let name = |camera| LaneMarkingFinder::new(camera, RoadModel::default()).unwrap_err().name().to_owned();
     assert_eq!(name(RoadCamera { height: 0.0, ..pinhole() }), "camera height");
     assert_eq!(name(RoadCamera { field_of_view: f64::NAN, ..pinhole() }), "field of view");
     assert_eq!(name(RoadCamera { tilt: 2.0, ..pinhole() }), "camera tilt");
     let size = RoadModel { size: 0.0, ..RoadModel::default() };
-    assert_eq!(LaneFinder::new(pinhole(), size).unwrap_err().name(), "size of the road");
+    assert_eq!(LaneMarkingFinder::new(pinhole(), size).unwrap_err().name(), "size of the road");
 }

@@ -8,7 +8,8 @@ use super::lexer::{self, Line as Words, shown};
 use super::number::{degrees, millimetres};
 use crate::geometry::{Pose, units};
 use crate::world::road::{
-    Alignment, Centre, Course, Crossing, Direction, Element, Line, Mark, MarkKind, RightOfWay, Traffic,
+    Alignment, Centre, Crossing, Element, Line, RightOfWay, RoadCourse, RoadMark, RoadMarkKind, RoadSide,
+    Traffic,
 };
 
 /// Largest length for which a road is computed, if only to report its error (m).
@@ -30,7 +31,7 @@ const KEYWORDS: &str = "a statement of a course: traffic, scale, lane, line, sta
 /// assert!(course::print(&course).contains("zebra"));
 /// # Ok::<(), roverlab::world::formats::FormatError>(())
 /// ```
-pub fn parse(text: &str, file: &str) -> Result<Course, FormatError> {
+pub fn parse(text: &str, file: &str) -> Result<RoadCourse, FormatError> {
     let mut draft = Draft::default();
     let mut is_first = true;
     for (number, text) in lexer::numbered(text) {
@@ -48,7 +49,7 @@ pub fn parse(text: &str, file: &str) -> Result<Course, FormatError> {
 }
 
 /// Writes a course in the form that [`parse`] reads.
-pub fn print(course: &Course) -> String {
+pub fn print(course: &RoadCourse) -> String {
     let mut text = String::from("course 1\n");
     let mm = |metres: f64| millimetres(metres / course.size);
     let side = if course.traffic == Traffic::Left { "left" } else { "right" };
@@ -104,13 +105,13 @@ fn degrees_of(radians: f64) -> String {
     format!("{}", units::to_deg(radians))
 }
 
-fn shown_mark(kind: &MarkKind, mm: &impl Fn(f64) -> String) -> String {
-    let side = |side: Direction| name_of(&SIDES, side);
+fn shown_mark(kind: &RoadMarkKind, mm: &impl Fn(f64) -> String) -> String {
+    let side = |side: RoadSide| name_of(&SIDES, side);
     match *kind {
-        MarkKind::Start => "start-line".into(),
-        MarkKind::Gap(line, long) => format!("gap {} {}", name_of(&LINES, line), mm(long)),
-        MarkKind::SideRoad(at, long) => format!("side-road {} {}", side(at), mm(long)),
-        MarkKind::Crossing(Crossing { angle, arms, right_of_way }) => {
+        RoadMarkKind::Start => "start-line".into(),
+        RoadMarkKind::Gap(line, long) => format!("gap {} {}", name_of(&LINES, line), mm(long)),
+        RoadMarkKind::SideRoad(at, long) => format!("side-road {} {}", side(at), mm(long)),
+        RoadMarkKind::Crossing(Crossing { angle, arms, right_of_way }) => {
             let which = match arms.map(|arm| arm > 0.0) {
                 [true, true] => "both",
                 [true, false] => "left",
@@ -120,14 +121,16 @@ fn shown_mark(kind: &MarkKind, mm: &impl Fn(f64) -> String) -> String {
             let who = name_of(&RIGHTS, right_of_way);
             format!("crossing {} {which} {} {who}", degrees(angle), mm(arms[0].max(arms[1])))
         }
-        MarkKind::StopLine => "stop-line".into(),
-        MarkKind::GiveWayLine => "give-way-line".into(),
-        MarkKind::Zebra => "zebra".into(),
-        MarkKind::Barred(at, long, wide) => format!("barred {} {} {}", side(at), mm(long), mm(wide)),
-        MarkKind::Arrow(to) => format!("arrow {}", side(to)),
-        MarkKind::Speed(value, struck) => format!("speed{} {value}", if struck { "-end" } else { "" }),
-        MarkKind::Parking(at, long) => format!("parking {} {}", side(at), mm(long)),
-        MarkKind::Artefact(left, long, wide) => format!("artefact {} {} {}", mm(left), mm(long), mm(wide)),
+        RoadMarkKind::StopLine => "stop-line".into(),
+        RoadMarkKind::GiveWayLine => "give-way-line".into(),
+        RoadMarkKind::Zebra => "zebra".into(),
+        RoadMarkKind::Barred(at, long, wide) => format!("barred {} {} {}", side(at), mm(long), mm(wide)),
+        RoadMarkKind::Arrow(to) => format!("arrow {}", side(to)),
+        RoadMarkKind::Speed(value, struck) => format!("speed{} {value}", if struck { "-end" } else { "" }),
+        RoadMarkKind::Parking(at, long) => format!("parking {} {}", side(at), mm(long)),
+        RoadMarkKind::Artefact(left, long, wide) => {
+            format!("artefact {} {} {}", mm(left), mm(long), mm(wide))
+        }
     }
 }
 
@@ -138,7 +141,7 @@ const CENTRES: [(&str, Centre); 4] = [
     ("solid-right", Centre::SolidRight),
 ];
 const LINES: [(&str, Line); 3] = [("left", Line::Left), ("centre", Line::Centre), ("right", Line::Right)];
-const SIDES: [(&str, Direction); 2] = [("left", Direction::Left), ("right", Direction::Right)];
+const SIDES: [(&str, RoadSide); 2] = [("left", RoadSide::Left), ("right", RoadSide::Right)];
 const TRAFFIC: [(&str, Traffic); 2] = [("right", Traffic::Right), ("left", Traffic::Left)];
 const ARMS: [(&str, [f64; 2]); 4] =
     [("both", [1.0, 1.0]), ("left", [1.0, 0.0]), ("right", [0.0, 1.0]), ("none", [0.0, 0.0])];
@@ -194,7 +197,7 @@ struct Draft {
     start: Pose,
     elements: Vec<Element>,
     centre: Vec<(f64, Centre)>,
-    marks: Vec<Mark>,
+    marks: Vec<RoadMark>,
     length: f64,
 }
 
@@ -219,7 +222,7 @@ impl Draft {
         let mut args = Args::after_keyword(line);
         if !(self.of_all(line, &mut args)? || self.section(line, &mut args)?) {
             let kind = mark(line, &mut args)?;
-            self.marks.push(Mark { at: self.length, kind });
+            self.marks.push(RoadMark { at: self.length, kind });
         }
         end(line, &args)?;
         if self.elements.len() + self.marks.len() + self.centre.len() > MOST {
@@ -276,12 +279,12 @@ impl Draft {
     }
 
     /// The course at its own scale.
-    fn finish(self, file: &str) -> Result<Course, FormatError> {
+    fn finish(self, file: &str) -> Result<RoadCourse, FormatError> {
         let wrong = |found: &str, expected: &str| FormatError::new(file, Location::START, found, expected);
         if self.length > LONGEST {
             return Err(wrong(&format!("a road of {:.1} m", self.length), "a road of at most 500 m"));
         }
-        let course = Course {
+        let course = RoadCourse {
             traffic: self.traffic,
             size: 1.0,
             line: Alignment::new(self.start, self.elements),
@@ -300,29 +303,29 @@ impl Draft {
 }
 
 /// Reads a mark at the present place.
-fn mark(line: &Words<'_>, args: &mut Args<'_, '_>) -> Result<MarkKind, FormatError> {
+fn mark(line: &Words<'_>, args: &mut Args<'_, '_>) -> Result<RoadMarkKind, FormatError> {
     Ok(match line.words[0].text {
-        "start-line" => MarkKind::Start,
-        "gap" => MarkKind::Gap(choice(line, args, &LINES)?, args.positive_size("the length")?),
-        "side-road" => MarkKind::SideRoad(choice(line, args, &SIDES)?, args.positive_size("the length")?),
-        "crossing" => MarkKind::Crossing(crossing(line, args)?),
-        "stop-line" => MarkKind::StopLine,
-        "give-way-line" => MarkKind::GiveWayLine,
-        "zebra" => MarkKind::Zebra,
+        "start-line" => RoadMarkKind::Start,
+        "gap" => RoadMarkKind::Gap(choice(line, args, &LINES)?, args.positive_size("the length")?),
+        "side-road" => RoadMarkKind::SideRoad(choice(line, args, &SIDES)?, args.positive_size("the length")?),
+        "crossing" => RoadMarkKind::Crossing(crossing(line, args)?),
+        "stop-line" => RoadMarkKind::StopLine,
+        "give-way-line" => RoadMarkKind::GiveWayLine,
+        "zebra" => RoadMarkKind::Zebra,
         "barred" => {
             let (side, long) = (choice(line, args, &SIDES)?, args.positive_size("the length")?);
-            MarkKind::Barred(side, long, args.positive_size("the width")?)
+            RoadMarkKind::Barred(side, long, args.positive_size("the width")?)
         }
-        "arrow" => MarkKind::Arrow(choice(line, args, &SIDES)?),
+        "arrow" => RoadMarkKind::Arrow(choice(line, args, &SIDES)?),
         "speed" | "speed-end" => {
             let value = args.count("the speed", 0..=99)? as u8;
-            MarkKind::Speed(value, line.words[0].text == "speed-end")
+            RoadMarkKind::Speed(value, line.words[0].text == "speed-end")
         }
-        "parking" => MarkKind::Parking(choice(line, args, &SIDES)?, args.positive_size("the length")?),
+        "parking" => RoadMarkKind::Parking(choice(line, args, &SIDES)?, args.positive_size("the length")?),
         "artefact" => {
             let left = args.length("metres to the left")?;
             let long = args.positive_size("the length")?;
-            MarkKind::Artefact(left, long, args.positive_size("the width")?)
+            RoadMarkKind::Artefact(left, long, args.positive_size("the width")?)
         }
         _ => return Err(FormatError::new(line.file, line.location(0), shown(line.words[0].text), KEYWORDS)),
     })

@@ -60,7 +60,7 @@ impl Element {
 
 /// A point on a line: pose and curvature.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Station {
+pub struct AlignmentStation {
     /// Position and direction of the line.
     pub pose: Pose,
     /// Curvature, positive to the left (1/m).
@@ -72,7 +72,7 @@ pub struct Station {
 pub struct Alignment {
     elements: Vec<Element>,
     /// Evenly spaced; the first one follows the last one.
-    stations: Vec<Station>,
+    stations: Vec<AlignmentStation>,
     length: f64,
     gap: Pose,
 }
@@ -123,7 +123,7 @@ impl Alignment {
                 along = due;
                 let heading = normalize_angle(pose.heading + element.turned(along));
                 let pose = Pose::new(place.x, place.y, heading);
-                self.stations.push(Station { pose, curvature: element.curvature_at(along) });
+                self.stations.push(AlignmentStation { pose, curvature: element.curvature_at(along) });
                 next += 1;
             }
             place += element.chord(pose.heading, along, element.length - along);
@@ -144,7 +144,7 @@ impl Alignment {
     }
 
     /// Its stations, evenly spaced by at most 20 mm.
-    pub fn stations(&self) -> &[Station] {
+    pub fn stations(&self) -> &[AlignmentStation] {
         &self.stations
     }
 
@@ -155,7 +155,7 @@ impl Alignment {
     }
 
     /// The station at a distance along it (m), over any number of rounds.
-    pub fn at(&self, along: f64) -> Station {
+    pub fn at(&self, along: f64) -> AlignmentStation {
         let count = self.stations.len();
         let place = along.rem_euclid(self.length) / self.length * count as f64;
         let index = (place as usize).min(count - 1);
@@ -164,7 +164,7 @@ impl Alignment {
         let between = |a: f64, b: f64| a + share * (b - a);
         let turn = angle_difference(b.pose.heading, a.pose.heading);
         let heading = normalize_angle(a.pose.heading + share * turn);
-        Station {
+        AlignmentStation {
             pose: Pose::new(between(a.pose.x, b.pose.x), between(a.pose.y, b.pose.y), heading),
             curvature: between(a.curvature, b.curvature),
         }

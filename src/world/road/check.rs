@@ -1,6 +1,6 @@
 //! What makes a course one of the rules.
 
-use super::course::{Course, CourseError, MarkKind};
+use super::course::{CourseError, RoadCourse, RoadMarkKind};
 use super::crossings;
 use crate::geometry::{math, units};
 
@@ -17,7 +17,7 @@ const CLOSING: (f64, f64) = (0.10, 0.0524);
 /// Marks at most.
 const MARKS: usize = 10_000;
 
-impl Course {
+impl RoadCourse {
     /// Fails unless the road is closed, nowhere too tight, and crosses itself at crossings alone, and lanes and marks are as the
     /// rules say.
     pub fn check(&self) -> Result<(), CourseError> {
@@ -36,7 +36,7 @@ impl Course {
         if !within(LINES, self.line_width) {
             let [least, most] = LINES.map(|width| width * size);
             let expected = format!("{least} to {most} m");
-            return Err(CourseError::Mark { name: "a line's width", value: self.line_width, expected });
+            return Err(CourseError::RoadMark { name: "a line's width", value: self.line_width, expected });
         }
         self.check_closed()?;
         self.check_bends()?;
@@ -70,7 +70,7 @@ impl Course {
     fn check_marks(&self) -> Result<(), CourseError> {
         let length = self.line.length();
         let wrong = |name, value, expected: &str| {
-            Err(CourseError::Mark { name, value, expected: expected.to_owned() })
+            Err(CourseError::RoadMark { name, value, expected: expected.to_owned() })
         };
         if self.marks.len() > MARKS {
             return wrong("a number of marks", self.marks.len() as f64, "at most 10000 marks");
@@ -80,9 +80,9 @@ impl Course {
                 return wrong("a mark's place", mark.at, "a place on the road");
             }
             let long = match mark.kind {
-                MarkKind::Gap(_, long) | MarkKind::SideRoad(_, long) => long,
-                MarkKind::Barred(_, long, _) | MarkKind::Parking(_, long) => long,
-                MarkKind::Artefact(_, long, _) => long,
+                RoadMarkKind::Gap(_, long) | RoadMarkKind::SideRoad(_, long) => long,
+                RoadMarkKind::Barred(_, long, _) | RoadMarkKind::Parking(_, long) => long,
+                RoadMarkKind::Artefact(_, long, _) => long,
                 _ => continue,
             };
             if !(long > 0.0 && long <= 0.5 * length) {

@@ -5,7 +5,7 @@ use crate::parameter::debug_as_sentence;
 /// A closed two-lane road, one lane per direction, with its markings. Cars drive in the direction of its
 /// line.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Course {
+pub struct RoadCourse {
     /// Side of the road on which cars drive.
     pub traffic: Traffic,
     /// Metres of the course per metre of the rules: 0.5 at a scale of 2:1.
@@ -19,7 +19,7 @@ pub struct Course {
     /// Start of each kind of centre marking along the line (m). Before the first one, the last one applies.
     pub centre: Vec<(f64, Centre)>,
     /// Other markings, and gaps in markings.
-    pub marks: Vec<Mark>,
+    pub marks: Vec<RoadMark>,
 }
 
 /// Side of a road on which cars drive.
@@ -60,18 +60,18 @@ pub enum Centre {
 /// To the left or to the right.
 ///
 /// ```
-/// use roverlab::world::road::Direction;
-/// assert_eq!([Direction::Left.sign(), Direction::Right.sign()], [1.0, -1.0]);
+/// use roverlab::world::road::RoadSide;
+/// assert_eq!([RoadSide::Left.sign(), RoadSide::Right.sign()], [1.0, -1.0]);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Direction {
+pub enum RoadSide {
     /// Left.
     Left,
     /// Right.
     Right,
 }
 
-impl Direction {
+impl RoadSide {
     /// 1 to the left, -1 to the right.
     pub fn sign(self) -> f64 {
         match self {
@@ -83,24 +83,24 @@ impl Direction {
 
 /// A marking on the road, or a gap in one, at a place along its line.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Mark {
+pub struct RoadMark {
     /// Its start along the line (m); for a crossing, its middle.
     pub at: f64,
     /// Its kind.
-    pub kind: MarkKind,
+    pub kind: RoadMarkKind,
 }
 
-/// Kinds of a [`Mark`]. Lengths are metres along the road at the scale of the course; unstated sizes are
+/// Kinds of a [`RoadMark`]. Lengths are metres along the road at the scale of the course; unstated sizes are
 /// those of the rules.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
-pub enum MarkKind {
+pub enum RoadMarkKind {
     /// The chequered line across the road where laps start.
     Start,
     /// A gap of a length in a line.
     Gap(Line, f64),
     /// The edge at a side road: short dashes over a length.
-    SideRoad(Direction, f64),
+    SideRoad(RoadSide, f64),
     /// A crossing with another road, or with another part of this one.
     Crossing(Crossing),
     /// A stop line across the own lane, which ends here.
@@ -110,19 +110,19 @@ pub enum MarkKind {
     /// A crosswalk: stripes of 400 mm along the road across both lanes.
     Zebra,
     /// A closed area at an edge of the road: its length along the edge and its width.
-    Barred(Direction, f64, f64),
+    Barred(RoadSide, f64, f64),
     /// An arrow on the own lane.
-    Arrow(Direction),
+    Arrow(RoadSide),
     /// The number of a speed limit on the own lane, at most two digits; `true` strikes it out.
     Speed(u8, bool),
     /// A parking area of a length beside an edge: parallel to the road on the right, perpendicular on the
     /// left.
-    Parking(Direction, f64),
+    Parking(RoadSide, f64),
     /// A patch beside the road that is not a marking: distance to the left of the line, length and width (m).
     Artefact(f64, f64, f64),
 }
 
-impl MarkKind {
+impl RoadMarkKind {
     /// The same with every length times a factor.
     fn scaled(self, factor: f64) -> Self {
         match self {
@@ -245,7 +245,7 @@ pub enum CourseError {
     },
     /// The place or size of a mark is invalid.
     #[error("{name} of {value} m; expected {expected}")]
-    Mark {
+    RoadMark {
         /// Name of the invalid value.
         name: &'static str,
         /// The value.
@@ -272,7 +272,7 @@ debug_as_sentence!(CourseError);
 /// Distance from the outer edges of markings to the edge of the floor (m).
 const MARGIN: f64 = 0.5;
 
-impl Course {
+impl RoadCourse {
     /// A road with a dashed centre line and no other marks. Fails as [`check`](Self::check) does.
     pub fn new(line: Alignment) -> Result<Self, CourseError> {
         let course = Self::new_unchecked(line);
@@ -301,7 +301,9 @@ impl Course {
             lane_width: self.lane_width * factor,
             line_width: self.line_width * factor,
             centre: self.centre.into_iter().map(|(at, kind)| (at * factor, kind)).collect(),
-            marks: marks.map(|mark| Mark { at: mark.at * factor, kind: mark.kind.scaled(factor) }).collect(),
+            marks: marks
+                .map(|mark| RoadMark { at: mark.at * factor, kind: mark.kind.scaled(factor) })
+                .collect(),
             ..self
         }
     }
@@ -365,7 +367,7 @@ impl Course {
     /// The crossings with their places.
     pub fn crossings(&self) -> impl Iterator<Item = (f64, Crossing)> {
         self.marks.iter().filter_map(|mark| match mark.kind {
-            MarkKind::Crossing(crossing) => Some((mark.at, crossing)),
+            RoadMarkKind::Crossing(crossing) => Some((mark.at, crossing)),
             _ => None,
         })
     }
@@ -378,7 +380,7 @@ impl Course {
     /// Bounding box of the floor.
     pub fn floor(&self) -> Aabb {
         let reach = self.edge() + (MARGIN + 0.5) * self.size;
-        let around = |station: &super::Station| station.pose.position();
+        let around = |station: &super::AlignmentStation| station.pose.position();
         let road = Aabb::around(self.line.stations().iter().map(around));
         let mut floor = road.unwrap_or(Aabb::new(Point::origin(), Point::origin())).inflated(reach);
         for (at, crossing) in self.crossings() {

@@ -1,6 +1,6 @@
 //! Crossings of a road with itself.
 
-use super::course::{Course, CourseError};
+use super::course::{CourseError, RoadCourse};
 use crate::geometry::Point;
 
 /// Smallest distance between the outer edges of adjacent parts of a road (m).
@@ -13,7 +13,7 @@ const AROUND: f64 = 2.0;
 const TOGETHER: f64 = 0.15;
 
 /// Fails where a road crosses or nearly crosses itself without a crossing.
-pub(super) fn check(course: &Course) -> Result<(), CourseError> {
+pub(super) fn check(course: &RoadCourse) -> Result<(), CourseError> {
     let line = &course.line;
     let size = course.size;
     let count = (line.length() / (STRIDE * size)).ceil() as usize;
@@ -47,7 +47,7 @@ pub(super) fn check(course: &Course) -> Result<(), CourseError> {
 }
 
 /// Pairs of crossing marks that are the same crossing.
-pub(super) fn shared_crossings(course: &Course) -> Vec<(f64, f64)> {
+pub(super) fn shared_crossings(course: &RoadCourse) -> Vec<(f64, f64)> {
     let middles: Vec<(f64, Point)> =
         course.crossings().map(|(at, _)| (at, course.line.at(at).pose.position())).collect();
     let mut pairs = Vec::new();

@@ -1,13 +1,13 @@
 use super::alignment::{Alignment, Element};
 use super::course::{
-    Centre, Course, CourseError, Crossing, Direction, Line, Mark, MarkKind, RightOfWay, Traffic,
+    Centre, CourseError, Crossing, Line, RightOfWay, RoadCourse, RoadMark, RoadMarkKind, RoadSide, Traffic,
 };
 use crate::geometry::{Point, Pose, Vector, angle_difference, cross, direction, math};
 use crate::random::Stream;
 
 /// Options of a generated course. Lengths are those of the rules, before scaling.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CourseOptions {
+pub struct RoadCourseOptions {
     /// Side of the road on which cars drive.
     pub traffic: Traffic,
     /// Metres of the course per metre of the rules.
@@ -26,7 +26,7 @@ pub struct CourseOptions {
     pub artefacts: f64,
 }
 
-impl Default for CourseOptions {
+impl Default for RoadCourseOptions {
     /// The options of Free Drive: all kinds of lines, gaps up to 1 m, crossings and side roads, and patches
     /// beside the road.
     fn default() -> Self {
@@ -47,7 +47,7 @@ impl Default for CourseOptions {
 /// and options give bit-identical courses. One in three is a figure of eight.
 ///
 /// Fails if the options are contradictory, so that no course is found.
-pub fn generate(seed: u64, options: &CourseOptions) -> Result<Course, CourseError> {
+pub fn generate(seed: u64, options: &RoadCourseOptions) -> Result<RoadCourse, CourseError> {
     let mut last = None;
     for attempt in 0..ATTEMPTS {
         let mut random = Stream::new(seed).child("course", attempt);
@@ -75,7 +75,10 @@ struct Bend {
     tangent: f64,
 }
 
-fn attempt_course(random: &mut Stream, options: &CourseOptions) -> Option<Result<Course, CourseError>> {
+fn attempt_course(
+    random: &mut Stream,
+    options: &RoadCourseOptions,
+) -> Option<Result<RoadCourse, CourseError>> {
     let lane = random.between(options.lane_width[0], options.lane_width[1]);
     let least = INNER + lane + 0.03;
     let eight = random.chance(0.33);
@@ -170,12 +173,13 @@ fn bend(turn: f64, least: f64, random: &mut Stream) -> Bend {
 /// The course with its markings.
 fn finished(
     random: &mut Stream,
-    options: &CourseOptions,
+    options: &RoadCourseOptions,
     lane: f64,
     (start, elements): (Pose, Vec<Element>),
-) -> Result<Course, CourseError> {
+) -> Result<RoadCourse, CourseError> {
     let line = Alignment::new(start, elements);
-    let mut course = Course { lane_width: lane, traffic: options.traffic, ..Course::new_unchecked(line) };
+    let mut course =
+        RoadCourse { lane_width: lane, traffic: options.traffic, ..RoadCourse::new_unchecked(line) };
     Marker { random, options, course: &mut course, taken: vec![(-1.2, 0.3)] }.mark();
     let course = course.scaled(options.size);
     course.check().map(|()| course)
@@ -184,15 +188,15 @@ fn finished(
 /// Puts markings on a course at the scale of the rules.
 struct Marker<'c> {
     random: &'c mut Stream,
-    options: &'c CourseOptions,
-    course: &'c mut Course,
+    options: &'c RoadCourseOptions,
+    course: &'c mut RoadCourse,
     /// Occupied intervals along the road (m).
     taken: Vec<(f64, f64)>,
 }
 
 impl Marker<'_> {
     fn mark(&mut self) {
-        self.put(0.0, MarkKind::Start);
+        self.put(0.0, RoadMarkKind::Start);
         self.own_crossing();
         self.straights();
         self.centre_line();
@@ -201,8 +205,8 @@ impl Marker<'_> {
         self.course.marks.sort_by(|a, b| a.at.total_cmp(&b.at));
     }
 
-    fn put(&mut self, at: f64, kind: MarkKind) {
-        self.course.marks.push(Mark { at, kind });
+    fn put(&mut self, at: f64, kind: RoadMarkKind) {
+        self.course.marks.push(RoadMark { at, kind });
     }
 
     /// Occupies a part of the road if it is free.
@@ -243,7 +247,7 @@ impl Marker<'_> {
         ] {
             self.taken.push((at - 1.3, at + 1.3));
             let angle = turn(at, other);
-            self.put(at, MarkKind::Crossing(Crossing { angle, arms: [0.0; 2], right_of_way }));
+            self.put(at, RoadMarkKind::Crossing(Crossing { angle, arms: [0.0; 2], right_of_way }));
         }
     }
 
@@ -263,19 +267,19 @@ impl Marker<'_> {
                     let arms = [[0.8, 0.8], [0.8, 0.0], [0.0, 0.8]][self.random.below(3)];
                     let right_of_way =
                         [RightOfWay::Priority, RightOfWay::Stop, RightOfWay::GiveWay][self.random.below(3)];
-                    self.put(middle, MarkKind::Crossing(Crossing { angle, arms, right_of_way }));
+                    self.put(middle, RoadMarkKind::Crossing(Crossing { angle, arms, right_of_way }));
                 } else if self.take(middle - 0.5, middle + 0.5) {
-                    let side = [Direction::Left, Direction::Right][self.random.below(2)];
-                    self.put(middle - 0.45, MarkKind::SideRoad(side, 0.9));
+                    let side = [RoadSide::Left, RoadSide::Right][self.random.below(2)];
+                    self.put(middle - 0.45, RoadMarkKind::SideRoad(side, 0.9));
                 }
             } else if self.random.chance(self.options.zebras) && self.take(middle - 0.7, middle + 0.7) {
-                self.put(middle - 0.2, MarkKind::Zebra);
+                self.put(middle - 0.2, RoadMarkKind::Zebra);
             } else if self.random.chance(0.3 * self.options.crossings)
                 && self.take(middle - 0.3, middle + 0.5)
             {
                 let value = 10 * (1 + self.random.below(8)) as u8;
                 let struck = self.random.chance(0.5);
-                self.put(middle, MarkKind::Speed(value, struck));
+                self.put(middle, RoadMarkKind::Speed(value, struck));
             }
         }
     }
@@ -313,9 +317,9 @@ impl Marker<'_> {
             let long = self.random.between(0.2, 1.0) * self.options.longest_gap;
             if long > 0.0 && self.take(at - 0.5, at + long + 0.5) {
                 let first = self.random.below(3);
-                self.put(at, MarkKind::Gap(lines[first], long));
+                self.put(at, RoadMarkKind::Gap(lines[first], long));
                 if self.random.chance(0.25) {
-                    self.put(at, MarkKind::Gap(lines[(first + 1) % 3], long));
+                    self.put(at, RoadMarkKind::Gap(lines[(first + 1) % 3], long));
                 }
             }
         }
@@ -336,7 +340,7 @@ impl Marker<'_> {
                 .crossings()
                 .any(|(middle, _)| (self.course.line.at(middle).pose.position() - place).norm() < 2.2);
             if aside.abs() > reach && !near_crossing {
-                self.put(at, MarkKind::Artefact(left, long, wide));
+                self.put(at, RoadMarkKind::Artefact(left, long, wide));
             }
         }
     }

@@ -1,15 +1,15 @@
 //! Roads for model cars (book, chapter 13): closed two-lane courses by the rules of the CAuDri-Challenge, the
 //! successor of the Carolo-Cup.
 //!
-//! The centre line of a road is an [`Alignment`] of straights, arcs and clothoids. A [`Course`] adds the
+//! The centre line of a road is an [`Alignment`] of straights, arcs and clothoids. A [`RoadCourse`] adds the
 //! markings, locates a car in its lane, and is drawn as the floor of a [`World`](super::World). Courses come
 //! from [`generate`], or from files in a plain format of our own: see
 //! [`formats::course`](super::formats::course) and `docs/courses.md`.
 //!
 //! ```
-//! use roverlab::world::road::{Appearance, CourseOptions, generate};
+//! use roverlab::world::road::{Appearance, RoadCourseOptions, generate};
 //!
-//! let course = generate(1, &CourseOptions::default())?;
+//! let course = generate(1, &RoadCourseOptions::default())?;
 //! let world = course.world(&Appearance::default())?;
 //! let start = course.start();
 //! assert!(world.floor.contains(start.position()));
@@ -22,12 +22,12 @@
 //! ```
 //! use std::f64::consts::PI;
 //! use roverlab::geometry::Pose;
-//! use roverlab::world::road::{Alignment, Course, CourseError, Element};
+//! use roverlab::world::road::{Alignment, RoadCourse, CourseError, Element};
 //!
 //! let half = [Element::straight(3.0), Element::arc(1.5, PI)];
-//! let oval = Course::new(Alignment::new(Pose::default(), [half, half].concat()))?;
+//! let oval = RoadCourse::new(Alignment::new(Pose::default(), [half, half].concat()))?;
 //! assert!((oval.line.length() - 15.42).abs() < 0.01);
-//! let open = Course::new(Alignment::new(Pose::default(), [half, half, half].concat()));
+//! let open = RoadCourse::new(Alignment::new(Pose::default(), [half, half, half].concat()));
 //! assert!(matches!(open, Err(CourseError::Open { .. })));
 //! # Ok::<(), CourseError>(())
 //! ```
@@ -42,9 +42,10 @@ mod raster;
 #[cfg(test)]
 mod tests;
 
-pub use alignment::{Alignment, Element, Station};
+pub use alignment::{Alignment, AlignmentStation, Element};
 pub use course::{
-    Centre, Course, CourseError, Crossing, Direction, LanePose, Line, Mark, MarkKind, RightOfWay, Traffic,
+    Centre, CourseError, Crossing, LanePose, Line, RightOfWay, RoadCourse, RoadMark, RoadMarkKind, RoadSide,
+    Traffic,
 };
-pub use generate::{CourseOptions, generate};
+pub use generate::{RoadCourseOptions, generate};
 pub use raster::Appearance;

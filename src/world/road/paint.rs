@@ -1,6 +1,8 @@
 //! Markings of a course as convex quadrangles.
 
-use super::course::{Centre, Course, Crossing, Direction, Line, Mark, MarkKind, RightOfWay, Traffic};
+use super::course::{
+    Centre, Crossing, Line, RightOfWay, RoadCourse, RoadMark, RoadMarkKind, RoadSide, Traffic,
+};
 #[cfg(test)]
 use crate::geometry::cross;
 use crate::geometry::{Point, Pose, Vector, math};
@@ -23,7 +25,7 @@ const SPOT: f64 = 0.35;
 const PIECE: f64 = 0.03;
 
 /// All markings.
-pub(super) fn quads(course: &Course) -> Vec<[Point; 4]> {
+pub(super) fn quads(course: &RoadCourse) -> Vec<[Point; 4]> {
     let mut painter = Painter { course, quads: Vec::new() };
     painter.edges();
     painter.centre();
@@ -34,7 +36,7 @@ pub(super) fn quads(course: &Course) -> Vec<[Point; 4]> {
 }
 
 struct Painter<'c> {
-    course: &'c Course,
+    course: &'c RoadCourse,
     quads: Vec<[Point; 4]>,
 }
 
@@ -49,11 +51,11 @@ impl Painter<'_> {
     fn edges(&mut self) {
         let edge = self.course.edge();
         for (line, left) in [(Line::Left, edge), (Line::Right, -edge)] {
-            let side = if left > 0.0 { Direction::Left } else { Direction::Right };
+            let side = if left > 0.0 { RoadSide::Left } else { RoadSide::Right };
             let mut missing = self.missing(line);
             let mut side_roads = Vec::new();
             for mark in &self.course.marks {
-                if let MarkKind::SideRoad(at, long) = mark.kind
+                if let RoadMarkKind::SideRoad(at, long) = mark.kind
                     && at == side
                 {
                     side_roads.push((mark.at, mark.at + long));
@@ -111,8 +113,8 @@ impl Painter<'_> {
         let mut missing = Vec::new();
         for mark in &self.course.marks {
             match mark.kind {
-                MarkKind::Gap(of, long) if of == line => missing.push((mark.at, mark.at + long)),
-                MarkKind::Crossing(crossing) if self.opens(mark.at, &crossing, line) => {
+                RoadMarkKind::Gap(of, long) if of == line => missing.push((mark.at, mark.at + long)),
+                RoadMarkKind::Crossing(crossing) if self.opens(mark.at, &crossing, line) => {
                     let reach = self.course.crossing_reach(&crossing);
                     missing.push((mark.at - reach, mark.at + reach));
                 }
@@ -194,20 +196,20 @@ impl Painter<'_> {
         self.quads.push([from - aside, to - aside, to + aside, from + aside].map(|p| frame.to_world(p)));
     }
 
-    fn mark(&mut self, mark: &Mark) {
+    fn mark(&mut self, mark: &RoadMark) {
         let frame = self.course.line.at(mark.at).pose;
         match mark.kind {
-            MarkKind::Gap(..) | MarkKind::SideRoad(..) => {}
-            MarkKind::Start => self.chequers(&frame),
-            MarkKind::StopLine => self.across(&frame, self.own_lane(), None),
-            MarkKind::GiveWayLine => self.across(&frame, self.own_lane(), Some(GIVE_WAY)),
-            MarkKind::Crossing(crossing) => self.crossing(&frame, &crossing),
-            MarkKind::Zebra => self.zebra(&frame),
-            MarkKind::Barred(side, long, wide) => self.barred(mark.at, side, long, wide),
-            MarkKind::Arrow(to) => self.arrow(&frame, to),
-            MarkKind::Speed(value, struck) => self.speed(&frame, value, struck),
-            MarkKind::Parking(side, long) => self.parking(mark.at, side, long),
-            MarkKind::Artefact(left, long, wide) => {
+            RoadMarkKind::Gap(..) | RoadMarkKind::SideRoad(..) => {}
+            RoadMarkKind::Start => self.chequers(&frame),
+            RoadMarkKind::StopLine => self.across(&frame, self.own_lane(), None),
+            RoadMarkKind::GiveWayLine => self.across(&frame, self.own_lane(), Some(GIVE_WAY)),
+            RoadMarkKind::Crossing(crossing) => self.crossing(&frame, &crossing),
+            RoadMarkKind::Zebra => self.zebra(&frame),
+            RoadMarkKind::Barred(side, long, wide) => self.barred(mark.at, side, long, wide),
+            RoadMarkKind::Arrow(to) => self.arrow(&frame, to),
+            RoadMarkKind::Speed(value, struck) => self.speed(&frame, value, struck),
+            RoadMarkKind::Parking(side, long) => self.parking(mark.at, side, long),
+            RoadMarkKind::Artefact(left, long, wide) => {
                 let (long, wide) = (0.5 * long, 0.5 * wide);
                 self.block(&frame, (-long, long), (left - wide, left + wide));
             }
@@ -306,7 +308,7 @@ impl Painter<'_> {
     }
 
     /// A trapezoid at the edge of the road, filled with slanted stripes.
-    fn barred(&mut self, at: f64, side: Direction, long: f64, wide: f64) {
+    fn barred(&mut self, at: f64, side: RoadSide, long: f64, wide: f64) {
         let frame = self.course.line.at(at).pose;
         let (sign, edge) = (side.sign(), self.course.edge());
         let slope = wide / math::tan(std::f64::consts::FRAC_PI_3);
@@ -329,7 +331,7 @@ impl Painter<'_> {
         }
     }
 
-    fn arrow(&mut self, frame: &Pose, to: Direction) {
+    fn arrow(&mut self, frame: &Pose, to: RoadSide) {
         let (long, wide) = (self.size(ARROW.0), self.size(ARROW.1));
         let middle = self.course.lane_middle();
         let point = |x: f64, y: f64| Point::new(x, middle + y);
@@ -385,14 +387,14 @@ impl Painter<'_> {
 
     /// Parking spots beside an edge: a long one parallel to the road on the right, short ones across on the
     /// left.
-    fn parking(&mut self, at: f64, side: Direction, long: f64) {
+    fn parking(&mut self, at: f64, side: RoadSide, long: f64) {
         let (sign, edge) = (side.sign(), self.course.edge());
-        let depth = self.size(if side == Direction::Right { PARKING.0 } else { PARKING.1 });
+        let depth = self.size(if side == RoadSide::Right { PARKING.0 } else { PARKING.1 });
         let far = edge + depth;
         self.ribbon((at, at + long), sign * far, self.course.line_width);
         let width = self.course.line_width;
         let spots =
-            if side == Direction::Right { 1 } else { (long / self.size(SPOT)).floor().max(1.0) as usize };
+            if side == RoadSide::Right { 1 } else { (long / self.size(SPOT)).floor().max(1.0) as usize };
         for i in 0..=spots {
             let along = at + long * i as f64 / spots as f64;
             let frame = self.course.line.at(along).pose;

@@ -1,6 +1,6 @@
 use image::{Rgba, RgbaImage};
 
-use super::course::{Course, CourseError};
+use super::course::{CourseError, RoadCourse};
 use super::paint::quads;
 use crate::geometry::{Aabb, Point, Vector, cross, math};
 use crate::random::Stream;
@@ -37,7 +37,7 @@ const SPOT: f64 = 0.024;
 /// Largest additional brightness of a light patch.
 const GLARE: f64 = 110.0;
 
-impl Course {
+impl RoadCourse {
     /// The course as a world with the road's picture on its floor. Fails if the floor is too large for a
     /// picture.
     pub fn world(&self, appearance: &Appearance) -> Result<World, CourseError> {

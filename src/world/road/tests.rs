@@ -10,7 +10,8 @@ use crate::world::formats::course as file;
 fn pictures() {
     let Some(folder) = std::env::var_os("ROAD_PICTURES") else { return };
     for seed in 1..=6 {
-        let course = generate(seed, &CourseOptions { zebras: 0.3, ..CourseOptions::default() }).unwrap();
+        let course =
+            generate(seed, &RoadCourseOptions { zebras: 0.3, ..RoadCourseOptions::default() }).unwrap();
         let look = Appearance { pixel: 0.008, wear: 0.1, glare: 3, seed };
         let image = course.floor_image(&look).unwrap();
         image.save(std::path::Path::new(&folder).join(format!("course{seed}.png"))).unwrap();
@@ -20,7 +21,7 @@ fn pictures() {
 #[test]
 fn every_seed_gives_a_course_and_the_file_gives_it_back() {
     for seed in 0..40 {
-        let course = generate(seed, &CourseOptions::default()).unwrap();
+        let course = generate(seed, &RoadCourseOptions::default()).unwrap();
         course.check().unwrap();
         let text = file::print(&course);
         let again = file::parse(&text, "x.course").unwrap_or_else(|error| panic!("{seed}: {error}\n{text}"));
@@ -90,7 +91,7 @@ fn lanes_lie_on_the_side_of_the_traffic() {
     assert!((right.start().y + 0.105).abs() < 1e-9, "half of 210 mm at a scale of 2:1");
     // The inner lane of a left bend is the left one.
     let bend = 2.0;
-    let radius = |course: &Course| 1.0 / course.locate(&course.pose(bend, 0.0), None).curvature;
+    let radius = |course: &RoadCourse| 1.0 / course.locate(&course.pose(bend, 0.0), None).curvature;
     assert!((radius(&left) - 0.645).abs() < 1e-3 && (radius(&right) - 0.855).abs() < 1e-3);
 }
 

@@ -18,7 +18,7 @@ use roverlab::kinematics::{
 use roverlab::random::Stream;
 use roverlab::scan::{Landmark, LandmarkFilter};
 use roverlab::vision::lane_markings::RoadModel;
-use roverlab::world::road::{Appearance, Course, CourseOptions, generate};
+use roverlab::world::road::{Appearance, RoadCourse, RoadCourseOptions, generate};
 use roverlab::world::{DriveSpec, ObjectKind, RobotSpec, Scene, Shape, World};
 
 use super::{Robot, Scenario, in_room, noise, note, other, ride, room};
@@ -307,8 +307,8 @@ fn landmarks() -> Result<String> {
 }
 
 /// A short course with everything on it, and a car at its start.
-fn on_the_road() -> Result<(Course, Scene)> {
-    let options = CourseOptions { zebras: 0.5, ..CourseOptions::default() };
+fn on_the_road() -> Result<(RoadCourse, Scene)> {
+    let options = RoadCourseOptions { zebras: 0.5, ..RoadCourseOptions::default() };
     let course = generate(5, &options).map_err(other)?;
     let look = Appearance { pixel: 0.004, wear: 0.2, glare: 2, seed: 5 };
     let world = course.world(&look).map_err(other)?;

@@ -5,7 +5,7 @@ use roverlab::geometry::{Point3, Pose, Pose3, Twist, Vector};
 use roverlab::io::control::run;
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::{Clock, DepthSensor, Drive, Inertial, Motors, Odometry, Result};
-use roverlab::kinematics::marine::{Craft, CraftSpec, CraftState, Water as Around};
+use roverlab::kinematics::marine::{Craft, CraftSpec, CraftState, LocalWater as Around};
 use roverlab::world::{RobotSpec, Scene, Water, Waves, World};
 
 use super::{Scenario, noise, note, note_truth};

@@ -3,7 +3,7 @@ use crate::io::Result;
 use crate::io::sim::course::Course;
 use crate::io::sim::drive_mechanics::Mechanics;
 use crate::io::sim::{NoiseModel, TICK};
-use crate::kinematics::marine::{Allocation, Craft, MAX_THRUSTERS, Motion, Wrench};
+use crate::kinematics::marine::{Allocation, Craft, CraftMotion, MAX_THRUSTERS, Wrench};
 use crate::kinematics::{Displacement, PlanarTwist};
 use crate::random::Stream;
 
@@ -95,7 +95,7 @@ impl CraftDrive {
     /// the model does not know.
     fn hold(&mut self, wish: Twist) -> [f64; MAX_THRUSTERS] {
         let wish = Twist::new(wish.linear * self.factors[0], wish.angular * self.factors[1]);
-        let wanted = Motion { linear: Vector3::x() * wish.linear, angular: Vector3::z() * wish.angular };
+        let wanted = CraftMotion { linear: Vector3::x() * wish.linear, angular: Vector3::z() * wish.angular };
         let (drag, inertia) = (self.craft.drag(&wanted), self.craft.inertia());
         let off = Twist::new(wish.linear - self.measured.linear, wish.angular - self.measured.angular);
         let ahead = drag.force.x + inertia[0] / CLOSING * (off.linear + self.learnt.linear);
@@ -111,7 +111,7 @@ impl CraftDrive {
     }
 
     /// Takes notice of how the craft has moved through the water in a tick.
-    pub(super) fn sense(&mut self, through: &Motion) {
+    pub(super) fn sense(&mut self, through: &CraftMotion) {
         let ahead = through.linear.x * self.scale[0];
         let left = through.linear.y * self.scale[0];
         let turning = through.angular.z * self.scale[1];

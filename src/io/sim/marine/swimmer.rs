@@ -1,7 +1,7 @@
 use super::{CraftDrive, Waters};
 use crate::geometry::{Aabb, Point, Pose, Pose3, Vector, Vector3};
 use crate::io::sim::TICK;
-use crate::kinematics::marine::{Craft, CraftState, HullPart, Motion, Wrench};
+use crate::kinematics::marine::{Craft, CraftMotion, CraftState, HullPart, Wrench};
 use crate::world::HeightField;
 
 /// A craft in a world.
@@ -72,7 +72,7 @@ impl Swimmer {
     /// The height at which a level craft floats, or stands on the ground.
     fn rest(&self, ground: f64, waters: &Waters, pose: Pose) -> f64 {
         let still = waters.around(pose.position(), waters.level(), 0.0);
-        let still = crate::kinematics::marine::Water { slope: Vector::zeros(), ..still };
+        let still = crate::kinematics::marine::LocalWater { slope: Vector::zeros(), ..still };
         let lift = |z: f64| {
             let state = CraftState::at_rest(&self.craft, &Pose3::level(pose, z));
             still.density * self.craft.displaced(&state, &still).volume
@@ -99,9 +99,9 @@ impl Swimmer {
     }
 
     /// The speed over ground in the craft's own frame, at its origin.
-    pub(in crate::io::sim) fn velocity(&self) -> Motion {
-        let Motion { linear, angular } = self.state.velocity;
-        Motion { linear: linear - angular.cross(&self.craft.middle().coords), angular }
+    pub(in crate::io::sim) fn velocity(&self) -> CraftMotion {
+        let CraftMotion { linear, angular } = self.state.velocity;
+        CraftMotion { linear: linear - angular.cross(&self.craft.middle().coords), angular }
     }
 
     /// Moves it for a tick as its drive commands. Returns where it has come to touch the ground.
@@ -127,7 +127,7 @@ impl Swimmer {
         let touched = self.meet(ground);
         if !self.is_sound() {
             (self.state, self.broken) = (before, true);
-            self.state.velocity = Motion::STILL;
+            self.state.velocity = CraftMotion::STILL;
             return None;
         }
         let flow = self.state.attitude.inverse() * water.velocity;
@@ -139,7 +139,7 @@ impl Swimmer {
 
     /// Whether its numbers are of a craft that could be: finite, and no faster than any.
     fn is_sound(&self) -> bool {
-        let Motion { linear, angular } = self.state.velocity;
+        let CraftMotion { linear, angular } = self.state.velocity;
         self.state.is_finite() && linear.norm() < FASTEST && angular.norm() * self.craft.reach() < FASTEST
     }
 
@@ -171,7 +171,7 @@ impl Swimmer {
     /// Stops what of the hull has come into the ground. Returns where, if it is another contact.
     fn meet(&mut self, ground: &HeightField) -> Option<Point> {
         self.free_ticks = self.free_ticks.saturating_add(1);
-        let Motion { linear, angular } = self.state.velocity;
+        let CraftMotion { linear, angular } = self.state.velocity;
         self.clearance -= (linear.norm() + self.craft.reach() * angular.norm()) * TICK;
         if self.clearance > 0.0 {
             return None;

@@ -63,12 +63,12 @@ impl Waters {
     }
 
     /// The water around a place at a time.
-    pub(super) fn around(&self, at: Point, z: f64, time: f64) -> marine::Water {
+    pub(super) fn around(&self, at: Point, z: f64, time: f64) -> marine::LocalWater {
         let flow = self.water.current_at(self.level - z);
-        let mut water = marine::Water {
+        let mut water = marine::LocalWater {
             density: self.water.density,
             velocity: Vector3::new(flow.x, flow.y, 0.0),
-            ..marine::Water::still(self.level)
+            ..marine::LocalWater::still(self.level)
         };
         for wave in &self.waves {
             wave.add(&mut water, at, z - self.level, time);
@@ -79,7 +79,7 @@ impl Waters {
 
 impl Wave {
     /// Adds its height, slope and flow; `z` is above the surface at rest. Water above it moves as that at rest does.
-    fn add(&self, water: &mut marine::Water, at: Point, z: f64, time: f64) {
+    fn add(&self, water: &mut marine::LocalWater, at: Point, z: f64, time: f64) {
         let phase = self.number * self.direction.dot(&at.coords) - self.frequency * time + self.phase;
         let (sin, cos) = math::sin_cos(phase);
         water.level += self.amplitude * cos;

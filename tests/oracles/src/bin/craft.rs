@@ -6,7 +6,7 @@
 //! by the yaw alone. `own` is the library's integrator, in water without a current.
 
 use roverlab::geometry::{Point3, Pose3, Vector3, angle_difference, math};
-use roverlab::kinematics::marine::{CraftState, Motion, Otter, Remus100, Water, Wrench};
+use roverlab::kinematics::marine::{CraftMotion, CraftState, LocalWater, Otter, Remus100, Wrench};
 
 /// Position and Euler angles, and speeds, with y right and z down.
 #[derive(Clone, Copy)]
@@ -20,7 +20,7 @@ trait Vehicle {
     /// The commands of its autopilot.
     fn commands(&mut self, state: &State, step: f64) -> [f64; 3];
     /// The acceleration through the water by its actuators as they are, at speeds through the water and over ground.
-    fn response(&self, state: &State, through_water: &Motion) -> Motion;
+    fn response(&self, state: &State, through_water: &CraftMotion) -> CraftMotion;
     /// Lets the actuators follow as the program does.
     fn follow(&mut self, commands: [f64; 3], step: f64);
     /// Moves by a step of the library's integrator.
@@ -33,8 +33,8 @@ fn over(vector: Vector3) -> Vector3 {
     Vector3::new(vector.x, -vector.y, -vector.z)
 }
 
-fn motion(speed: &[f64; 6]) -> Motion {
-    Motion {
+fn motion(speed: &[f64; 6]) -> CraftMotion {
+    CraftMotion {
         linear: over(Vector3::new(speed[0], speed[1], speed[2])),
         angular: over(Vector3::new(speed[3], speed[4], speed[5])),
     }
@@ -152,7 +152,7 @@ impl Vehicle for Remus {
         [rudder, -stern, 1525.0]
     }
 
-    fn response(&self, state: &State, through_water: &Motion) -> Motion {
+    fn response(&self, state: &State, through_water: &CraftMotion) -> CraftMotion {
         let [u, v, w, ..] = state.speed;
         let speed = Vector3::new(u, v, w).norm();
         let forces = self.vehicle.forces(through_water, speed, Self::controls(self.limited()));
@@ -189,8 +189,8 @@ impl Vehicle for Remus {
 }
 
 /// So deep that the craft, which the program lets begin at depth 0, is under water.
-fn sea() -> Water {
-    Water { density: 1026.0, ..Water::still(100.0) }
+fn sea() -> LocalWater {
+    LocalWater { density: 1026.0, ..LocalWater::still(100.0) }
 }
 
 struct Catamaran {
@@ -223,7 +223,7 @@ impl Vehicle for Catamaran {
         [left, right, 0.0]
     }
 
-    fn response(&self, state: &State, through_water: &Motion) -> Motion {
+    fn response(&self, state: &State, through_water: &CraftMotion) -> CraftMotion {
         let thrust = self.limited().map(|speed| {
             let gain = if speed > 0.0 { Otter::THRUST[0] } else { Otter::THRUST[1] };
             gain * speed * speed.abs()
@@ -245,7 +245,7 @@ impl Vehicle for Catamaran {
     fn advance(&mut self, state: &mut CraftState, commands: [f64; 3], _step: f64) {
         let shares = [commands[0], commands[1]].map(|speed| speed / Otter::full_speed());
         let vehicle = &self.vehicle;
-        vehicle.craft.advance_under(state, &shares, &Water::still(100.0), |at| {
+        vehicle.craft.advance_under(state, &shares, &LocalWater::still(100.0), |at| {
             let [roll, pitch, _] = Pose3::new(at.position, at.attitude).roll_pitch_yaw();
             vehicle.forces(&at.velocity, at.position.z, [roll, pitch])
         });
