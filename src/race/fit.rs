@@ -28,6 +28,10 @@ const UNUSUAL: f64 = 4.0;
 /// How evenly lanes go on: deviations of half the width as a share of it, of how much that grows in metres for a metre, and of how
 /// curvature changes from knot to knot as a share of the greatest.
 const EVEN: f64 = 0.02;
+/// Weight of a sudden change of curvature: little, as tracks have sharp bends.
+const SHARP: f64 = 0.4;
+/// Factor on the allowed change of curvature for each unit of a round's reach beyond 1.
+const SLOWLY: f64 = 6.0;
 /// Deviation of the direction of the way where it begins, in radians.
 const HEADS: f64 = 0.2;
 /// Steps from place to place at which that is looked at.
@@ -70,12 +74,12 @@ impl Expectation {
     /// Negative log-likelihood.
     fn cost(&self) -> f64 {
         let squared = self.off * self.off;
-        if self.heavy { math::ln(1.0 + squared) } else { 0.5 * squared }
+        if self.heavy { SHARP * math::ln(1.0 + squared) } else { 0.5 * squared }
     }
 
     /// Weight in least squares.
     fn weight(&self) -> f64 {
-        if self.heavy { 2.0 / (1.0 + self.off * self.off) } else { 1.0 }
+        if self.heavy { 2.0 * SHARP / (1.0 + self.off * self.off) } else { 1.0 }
     }
 }
 
@@ -171,7 +175,7 @@ impl Fitter<'_> {
             one(WIDENS, 0.0, EVEN),
         ];
         let bends = (BENDS..BENDS + KNOTS).map(move |knot| one(knot, 0.0, p.curvature));
-        let deviation = EVEN * p.curvature * round;
+        let deviation = EVEN * p.curvature * (1.0 + SLOWLY * (round - 1.0));
         let changes = (BENDS..BENDS + KNOTS - 1).map(move |knot| Expectation {
             sum: [(knot + 1, 1.0 / deviation), (knot, -1.0 / deviation)],
             off: (unknowns[knot + 1] - unknowns[knot]) / deviation,
