@@ -2,7 +2,7 @@
 
 use roverlab::geometry::Point;
 use roverlab::picture::{Figure, Mark, Picture, Style};
-use roverlab::world::road::{Centre, Line, MarkKind};
+use roverlab::world::road::{Centre, Line, RoadMarkKind};
 use roverlab::world::{Colour, RobotSpec, World};
 
 use super::course::Setting;
@@ -30,7 +30,7 @@ pub(super) fn picture(setting: &Setting, drive: &Drive) -> Picture {
     for (line, left) in [(Line::Left, edge), (Line::Centre, 0.0), (Line::Right, -edge)] {
         let is_missing = |at: f64| {
             course.marks.iter().any(|mark| match mark.kind {
-                MarkKind::Gap(of, long) => of == line && (mark.at..mark.at + long).contains(&at),
+                RoadMarkKind::Gap(of, long) => of == line && (mark.at..mark.at + long).contains(&at),
                 _ => false,
             })
         };
