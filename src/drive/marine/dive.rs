@@ -65,6 +65,12 @@ halts!(DiveOutcome { Over: "the dive is over" });
 
 /// A share of its full speed for each of a craft's first thrusters, -1 to 1. Stopped thrusters let a craft with buoyancy
 /// surface.
+///
+/// ```
+/// use roverlab::drive::marine::Thrust;
+/// assert_eq!(Thrust::new(&[0.5, -0.5])?.commands(), [0.5, -0.5]);
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Thrust {
     commands: [f64; MAX_THRUSTERS],

@@ -71,6 +71,23 @@ impl FreeDriveScore {
 }
 
 /// The referee of Free Drive: sees the true pose of a car on a course, and never tells it.
+///
+/// ```
+/// use roverlab::drive::traffic::{FreeDrive, FreeDriveRules};
+/// use roverlab::world::RobotSpec;
+/// use roverlab::world::formats::course;
+/// let oval = course::parse("course 1\nstraight 6000\narc 1500 180\nstraight 6000\narc 1500 180\n", "oval")?;
+/// let mut referee = FreeDrive::new(oval.clone(), &RobotSpec::road_car(), FreeDriveRules::default());
+/// // Three metres at 1 m/s, in the middle of the lane at first, and 30 cm off it then.
+/// for step in 0..300 {
+///     let along = 0.01 * f64::from(step);
+///     referee.see(along, &oval.pose(along, if along < 2.0 { 0.0 } else { 0.3 }));
+/// }
+/// let score = referee.score();
+/// assert_eq!(score.departures, 1);
+/// assert!((score.survival - 2.0).abs() < 0.1, "seconds to the first departure");
+/// # Ok::<(), roverlab::world::formats::FormatError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct FreeDrive {
     course: RoadCourse,

@@ -16,7 +16,33 @@
 //! its added mass, and its damping fades with what of its hull is wet. The water is not moved by the craft. A
 //! current is the same all along the hull, and a wave is a plane across it.
 //!
-//! Reference: T. I. Fossen, *Handbook of Marine Craft Hydrodynamics and CraftMotion Control*, second edition, 2021.
+//! Reference: T. I. Fossen, *Handbook of Marine Craft Hydrodynamics and Motion Control*, second edition, 2021.
+//!
+//! ```
+//! use roverlab::geometry::{Point3, Pose3, Vector3};
+//! use roverlab::kinematics::marine::{
+//!     Craft, CraftMotion, CraftSpec, CraftState, HullPart, LocalWater, Otter, Remus100, Thruster, Wrench,
+//! };
+//! // A raft of 8 kg with a motor of 5 N at its stern.
+//! let deck = HullPart::Box { size: Vector3::new(0.6, 0.4, 0.1), centre: Point3::origin() };
+//! let mut spec = CraftSpec::of_hull(8.0, Point3::origin(), vec![deck]);
+//! spec.thrusters.push(Thruster::new("stern", Point3::new(-0.3, 0.0, -0.05), Vector3::x(), 5.0));
+//! let (raft, water) = (Craft::new(&spec, 0.01)?, LocalWater::still(0.0));
+//! let mut state = CraftState::at_rest(&raft, &Pose3::default());
+//! for _ in 0..1000 {
+//!     raft.advance(&mut state, &[1.0], &water);
+//! }
+//! assert!(state.position.x > 1.0 && state.position.z.abs() < 0.1, "it drives ahead and floats");
+//! // A force at a place has a moment about the middle.
+//! let push = Wrench::at(Vector3::new(0.0, 1.0, 0.0), Vector3::new(2.0, 0.0, 0.0));
+//! assert_eq!(push.moment, Vector3::new(0.0, 0.0, -2.0));
+//! // Two vehicles of the literature, to compare with.
+//! let (torpedo, boat) = (Remus100::new(0.02)?, Otter::new(0.02)?);
+//! assert!(torpedo.craft.mass() < boat.craft.mass());
+//! let ahead = CraftMotion { linear: Vector3::new(1.5, 0.0, 0.0), ..CraftMotion::STILL };
+//! assert!(torpedo.forces(&ahead, 1.5, [0.2, 0.0, 0.0]).moment.z != 0.0, "its rudder turns it");
+//! # Ok::<(), roverlab::ParameterError>(())
+//! ```
 
 mod allocation;
 mod capsule;

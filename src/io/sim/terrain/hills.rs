@@ -36,7 +36,7 @@ struct Rider {
 
 /// Displacement of an outline above which an obstacle was in its way (m or rad).
 const MOVED_ASIDE: f64 = 1e-9;
-/// CraftMotion that counts as rest (m or rad).
+/// Motion that counts as rest (m or rad).
 const STILL: f64 = 1e-11;
 /// Height above the ground up to which a robot counts as standing (m).
 const STANDING: f64 = 2e-3;
