@@ -9,7 +9,7 @@
 //! | `[collider] box X Y Z SX SY SZ` | solid cuboid: centre, sizes |
 //! | `[collider] sphere X Y Z R` | solid ball |
 //! | `[collider] capsule X Y Z R H AXIS` | solid capsule along `x`, `y` or `z` |
-//! | `buoyancy VOLUME` | displaced water in cubic metres; kept, but without effect |
+//! | `buoyancy VOLUME` | displaced water in cubic metres: in water, lighter objects float |
 //! | `fixed` | immovable object |
 //! | `falls` | robots knock it over; our extension, which EyeSim skips |
 //! | `cone R TOP HEIGHT` | cone with these radii of foot and top as the shape; our extension |
@@ -117,9 +117,6 @@ impl Reader<'_> {
             "buoyancy" => {
                 let volume = args.plain("a volume in cubic metres", 0.0..=1e9)?;
                 self.kind.buoyancy = Some(volume);
-                if volume > 0.0 {
-                    self.notes.warn(line.location(0), "`buoyancy`: water is not simulated");
-                }
             }
             "fixed" => self.kind.fixed = true,
             "falls" => self.kind.falls = true,
@@ -298,7 +295,7 @@ mod tests {
         let parsed = parse("obj a.obj\nbuoyancy 0.5", "a.esObj").unwrap();
         assert_eq!(parsed.value.shape, DEFAULT_SHAPE);
         assert_eq!(parsed.value.buoyancy, Some(0.5));
-        assert_eq!(parsed.warnings.len(), 2, "also of the water that there is none of");
+        assert_eq!(parsed.warnings.len(), 1, "{:?}", parsed.warnings);
     }
 
     #[test]
@@ -360,7 +357,7 @@ mod tests {
         #[test]
         fn what_is_printed_reads_back(kind in kind()) {
             let parsed = parse(&print(&kind), "x.esObj").unwrap();
-            prop_assert_eq!(parsed.warnings.len(), usize::from(kind.buoyancy > Some(0.0)));
+            prop_assert!(parsed.warnings.is_empty());
             prop_assert_eq!(parsed.value, kind);
         }
 

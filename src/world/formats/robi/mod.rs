@@ -69,6 +69,7 @@
 //! | `mast BACK RIGHT FRONT LEFT HEIGHT` | a narrow part above the rest, for rays |
 //! | `psd_range MM` | range of the preceding `psd` |
 //! | `lidar_range MM` | range of the lidar |
+//! | `depth_sensor CHANNEL [Z]` | a depth sensor: its channel of `ANALOGRead`, and its height |
 //! | `inertial` and 3, 6 or 9 channels | an inertial unit: channels of `ANALOGRead` for roll, pitch and yaw, turn rates, and accelerations, in the order forward, left, up: [`InertialSpec`](crate::world::InertialSpec); 0 0 0 for missing measurements |
 //! | `camera_view DEG` | the camera's horizontal field of view |
 //!
