@@ -159,10 +159,10 @@ fn walls() {
 fn lanes() {
     let camera = || RobotSpec::s4().camera.as_ref().expect("a camera").into();
     check!(LaneKeeperParameters = LaneKeeperParameters::default(),
-        |p| ends(RobotSpec::s4(), LaneKeeper::new(camera(), RoadModel::default(), p)?),
+        |p| LaneKeeper::new(camera(), RoadModel::default(), p)?,
         { Positive: period, speed, across, brake, sight; NotNegative: delay; } but settling);
     check!(BookLaneParameters = BookLaneParameters::default(),
-        |p| ends(RobotSpec::s4(), BookLaneKeeper::new(p)?),
+        |p| BookLaneKeeper::new(p)?,
         { Positive: period, speed, gain; BoundedFromZero: horizon; });
     check!(RoadModel = RoadModel::default(), |p| LaneKeeper::new(camera(), p, LaneKeeperParameters::default())?,
         { Bounded: size, line_width; } but left_hand);

@@ -44,7 +44,7 @@ pub(crate) struct Args {
     pub(crate) course: String,
 
     /// Minutes to drive.
-    #[arg(long, value_name = "N", default_value_t = 2.0, value_parser = minutes)]
+    #[arg(long, value_name = "N", default_value_t = 2.0, value_parser = minutes, allow_hyphen_values = true)]
     pub(crate) minutes: f64,
 
     /// What the car sees its lane by.
@@ -56,11 +56,11 @@ pub(crate) struct Args {
     pub(crate) driver: Driver,
 
     /// Fastest speed in m/s [default: 2.6, 0.5 for the book's driver].
-    #[arg(long, value_name = "M/S", value_parser = speed)]
+    #[arg(long, value_name = "M/S", value_parser = speed, allow_hyphen_values = true)]
     pub(crate) speed: Option<f64>,
 
     /// Brightness of the light; 1 is a well lit room.
-    #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = light)]
+    #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = light, allow_hyphen_values = true)]
     pub(crate) light: f64,
 
     /// Drive on many courses, from --seed on, and print how many went well.
@@ -68,7 +68,7 @@ pub(crate) struct Args {
     pub(crate) campaign: bool,
 
     /// Courses of a campaign.
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=100_000), allow_hyphen_values = true)]
     pub(crate) courses: u64,
 
     #[command(flatten)]

@@ -14,7 +14,8 @@ fn file(name: &str) -> PathBuf {
 
 /// Records a run twice and replays it: all recordings and reports are equal. Returns the recording.
 fn assert_replays(name: &str, options: &[&str]) -> PathBuf {
-    let [first, second, third] = [1, 2, 3].map(|n| file(&format!("{name}-{}-{n}.mcap", options.concat())));
+    let words = options.concat().replace(['/', '.'], "_");
+    let [first, second, third] = [1, 2, 3].map(|n| file(&format!("{name}-{words}-{n}.mcap")));
     let plain = run(name, options);
     for recording in [&first, &second] {
         let options = [options, &["--record", recording.to_str().unwrap()]].concat();

@@ -29,8 +29,8 @@ const FAULTS: [Wrong; 8] = [
     // Late readings look like frozen ones, unless they jump.
     Wrong { fault: "late=1", causes: &["sensor"], noticed: frozen },
     Wrong { fault: "link", causes: &["link"], noticed: |_| 0.0 },
-    // The fault is over by then; the robot's own watchdog has stopped it meanwhile.
-    Wrong { fault: "hang=2", causes: &["watchdog", "clock"], noticed: |_| 2.0 },
+    // The fault is over by then; the robot's own watchdog has stopped it meanwhile, and odometry has gone on.
+    Wrong { fault: "hang=2", causes: &["watchdog", "clock", "sensor"], noticed: |_| 2.0 },
     Wrong { fault: "clock", causes: &["clock"], noticed: |_| PERIOD },
 ];
 
