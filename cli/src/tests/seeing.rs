@@ -226,7 +226,7 @@ fn a_short_motion_campaign_passes() {
 #[test]
 fn looking_ends_at_its_limit() {
     let cases: [(&str, &[&str], f64); 5] = [
-        ("edges", &["--kernel", "sobel", "--time-limit", "0.5"], 0.5),
+        ("edges", &["--kernel", "sobel_l1", "--repeat", "20", "--time-limit", "0.5"], 0.5),
         ("camera", &["--time-limit", "0.1"], 0.1),
         ("camera", &["--pan", "30", "--time-limit", "3"], 3.0),
         ("lidar_scan", &["--time-limit", "0.0001"], 0.01),
@@ -241,7 +241,7 @@ fn looking_ends_at_its_limit() {
 
 #[test]
 fn a_stopped_clock_ends_looking() {
-    let (status, report, _) = run("edges", &["--kernel", "sobel", "--fault", "clock@2"]);
+    let (status, report, _) = run("edges", &["--kernel", "sobel_l1", "--repeat", "30", "--fault", "clock@2"]);
     assert_eq!((status, report["outcome"].as_str()), (1, Some("failed")), "{report}");
     assert!(report["error"].as_str().unwrap().contains("stands still"), "{report}");
 }
