@@ -9,7 +9,7 @@ use super::drive::drive;
 use super::job::{add_landmarks, heading_error, inside_ellipse, options};
 use super::{Args, table};
 use crate::common::{Failure, Outcome, Progress, Report, Trip};
-use crate::driving::{Conditions, Way};
+use crate::driving::{Conditions, RESERVE, Way};
 
 /// Conditions of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -148,6 +148,7 @@ fn add_run(row: &mut Row, args: &Args, seed: u64) -> Result<(), Failure> {
         noise: row.kind.noise(),
         ideal_encoders: row.kind == Kind::Ideal,
         time_limit: 120.0,
+        reserve: RESERVE,
         light: 1.0,
         keys: Vec::new(),
         pushing: false,

@@ -3,13 +3,14 @@
 use std::path::PathBuf;
 
 use image::RgbImage;
-use roverlab::geometry::{Pose, direction};
-use roverlab::io::{self, Camera, Clock, Display, DisplayImage, Resolution, Servos, Viewport};
+use roverlab::geometry::{Pose, Twist, direction};
+use roverlab::io::control::{self, until};
+use roverlab::io::{self, Camera, Clock, Display, DisplayImage, Drive, Resolution, Servos, Viewport};
 use roverlab::picture::{Picture, Style};
 use roverlab::vision::{GrayView, GrayViewMut, GrayWeights, ImageError, gray_into};
 
 use crate::common::{CommonArgs, Failure, Outcome, Report, Stopwatch, rounded, write_image};
-use crate::driving::{Conditions, Run, paced, pale};
+use crate::driving::{Conditions, Looking, Run, in_time, paced, pale};
 use crate::room;
 use roverlab::world::Scene;
 
@@ -27,7 +28,7 @@ JSON fields:
   mean_brightness             of the last image, 0 to 255
   timing                      with --timing: images_per_s
   picture
-Outcomes: seen, collided, failed."
+Outcomes: seen, collided, timed_out, failed."
 )]
 pub(crate) struct Args {
     /// Size of the images.
@@ -105,10 +106,12 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     common.check_picture()?;
     let scene = common.placed(room::scene)?;
     let head = head(args, &scene)?;
-    let conditions = Conditions { light: args.light, ..Conditions::new(common, 60.0)? };
+    let limit = 60.0 + f64::from(args.images) * FRAME;
+    let conditions = Conditions { light: args.light, reserve: 0.0, ..Conditions::new(common, limit)? };
     let size = args.resolution.into();
-    let run =
-        conditions.run(&scene, paced(common), |robot, step| look(robot, size, head, args.images, step))?;
+    let run = conditions.run(&scene, paced(common), |robot, step| {
+        look(robot, size, head, (args.images, conditions.time_limit), step)
+    })?;
     let output = save(args, &run)?;
     let seen = run.ending.as_ref().ok();
     let (width, height) = seen.map_or((0, 0), |seen| seen.image.dimensions());
@@ -173,15 +176,14 @@ fn head(args: &Args, scene: &Scene) -> Result<[(u8, f64); 2], Failure> {
 /// Frame period of the simulator's camera (s).
 const FRAME: f64 = 1.0 / 30.0;
 
-/// Turns the head, then takes images and shows each on the display.
+/// Turns the head, then takes a number of images within a time limit (s), and shows the last one.
 fn look(
-    robot: &mut (impl Camera + Clock + Display + Servos),
+    robot: &mut (impl Camera + Clock + Display + Drive + Servos),
     size: Resolution,
     head: [(u8, f64); 2],
-    images: u32,
+    (images, limit): (u32, f64),
     step: &mut dyn FnMut(),
 ) -> io::Result<Seen> {
-    robot.set_resolution(size)?;
     if head.iter().any(|&(_, position)| position != 0.0) {
         for (servo, position) in head {
             robot.set_servo(servo, position)?;
@@ -190,10 +192,16 @@ fn look(
     }
     let mut image = RgbImage::default();
     let stopwatch = Stopwatch::start();
-    for _ in 0..images {
-        robot.image_into(&mut image)?;
-        robot.wait(FRAME)?;
-    }
+    let mut still = Looking { resolution: size, period: FRAME, velocity: Twist::STOP };
+    let mut left = images;
+    let halt = control::run(robot, &mut still, limit, |_, _, at| {
+        left -= 1;
+        if left == 0 {
+            image.clone_from(at.seen);
+        }
+        until(left == 0)
+    })?;
+    in_time(halt)?;
     let seconds = stopwatch.seconds();
     robot.draw_image(DisplayImage::Rgb(&image), Viewport::default())?;
     step();

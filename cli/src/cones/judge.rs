@@ -167,8 +167,8 @@ where
         if let ControlFlow::Break(outcome) = run.step(car, behaviour)? {
             return Ok(outcome);
         }
-        let passed = pass(car, judge, behaviour.period());
-        let ended = match passed.and_then(|()| watch(car, behaviour, judge).verdict()) {
+        let rested = run.rest(&mut Judged { car, judge });
+        let ended = match rested.and_then(|()| watch(car, behaviour, judge).verdict()) {
             Ok(ControlFlow::Continue(())) => continue,
             Ok(ControlFlow::Break(())) => Ok(behaviour.halt(Halt::Stopped)),
             Err(error) => Err(error),
@@ -178,11 +178,28 @@ where
     }
 }
 
+/// A car whose waits are observed.
+struct Judged<'a, R: ?Sized> {
+    car: &'a mut R,
+    judge: &'a mut Judge,
+}
+
+impl<R: Clock + ?Sized> Clock for Judged<'_, R> {
+    fn now(&mut self) -> io::Result<f64> {
+        self.car.now()
+    }
+
+    fn wait(&mut self, seconds: f64) -> io::Result<()> {
+        pass(self.car, self.judge, seconds)
+    }
+}
+
 /// Lets time pass in ticks, with an observation at each.
 pub(crate) fn pass<R: Clock + ?Sized>(robot: &mut R, judge: &mut Judge, seconds: f64) -> io::Result<()> {
     let (time, metres) = (judge.time, judge.last.path_length);
-    for _ in 0..(seconds / TICK).round().max(1.0) as usize {
-        robot.wait(TICK)?;
+    let ticks = (seconds / TICK).ceil().max(1.0);
+    for _ in 0..ticks as usize {
+        robot.wait(seconds / ticks)?;
         judge.look()?;
     }
     let speed = (judge.last.path_length - metres) / (judge.time - time).max(TICK);

@@ -1,5 +1,6 @@
 //! Shared parts of the driving commands: an observed simulated robot, and the report on its run.
 
+mod looking;
 mod way;
 
 use std::sync::Arc;
@@ -14,6 +15,7 @@ use roverlab::world::{Colour, DriveSpec, Object, ObjectKind, RobotSpec, Scene, S
 
 use crate::common::{CommonArgs, Driven, Failure, Outcome, Pacer, Report, Stage};
 
+pub(crate) use looking::{Looking, in_time};
 pub(crate) use way::Way;
 
 /// Conditions of a simulation.
@@ -32,9 +34,15 @@ pub(crate) struct Conditions {
     pub(crate) ideal_encoders: bool,
     /// Time limit (s).
     pub(crate) time_limit: f64,
+    /// Time that the simulator adds to the limit (s): [`RESERVE`], or 0 for a program that leaves its limit to the
+    /// simulator.
+    pub(crate) reserve: f64,
     /// Options that select the robot's source; without them, an unrecorded simulator.
     pub(crate) common: Option<CommonArgs>,
 }
+
+/// Time after which the simulator ends a program with a limit of its own, such as one whose clock has stopped (s).
+pub(crate) const RESERVE: f64 = 1.0;
 
 /// Poses of a robot with their times (s).
 pub(crate) type Trail = Vec<(f64, Pose)>;
@@ -75,6 +83,7 @@ impl Conditions {
             others: Vec::new(),
             ideal_encoders: false,
             time_limit: common.time_limit.unwrap_or(time_limit),
+            reserve: RESERVE,
             common: Some(common.clone()),
         })
     }
@@ -107,10 +116,8 @@ impl Conditions {
         mut watch: impl FnMut(f64),
         program: impl FnOnce(&mut Driven, &mut dyn FnMut() -> Pose) -> io::Result<T>,
     ) -> Result<Run<T>, Failure> {
-        // The program's own limit comes first, unless its clock has stopped.
-        const RESERVE: f64 = 1.0;
         let options = SimOptions {
-            time_limit: Some(self.time_limit + RESERVE),
+            time_limit: Some(self.time_limit + self.reserve),
             ideal_encoders: self.ideal_encoders,
             light: self.light,
             pushing: self.pushing,

@@ -36,7 +36,7 @@ JSON fields:
   columns, rows               projections: the sums
   descriptor_length, descriptor_digest   hog; with --descriptor, its numbers in `descriptor`
   frames                      live: images shown
-Outcomes: filtered, shown, collided, failed."
+Outcomes: filtered, shown, collided, timed_out, failed."
 )]
 pub(crate) struct Args {
     /// Input image.

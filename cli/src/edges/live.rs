@@ -2,13 +2,14 @@
 
 use image::{DynamicImage, RgbImage};
 use roverlab::geometry::Twist;
+use roverlab::io::control::{self, until};
 use roverlab::io::{self, Camera, Clock, Display, DisplayImage, Drive, Resolution, Viewport};
 
 use super::checks::refused;
 use super::kernel::{Kernel, Runner};
 use super::{Args, file};
 use crate::common::{Failure, Outcome, Report};
-use crate::driving::{Conditions, paced};
+use crate::driving::{Conditions, Looking, in_time, paced};
 
 /// Time between two images (s).
 const PERIOD: f64 = 0.1;
@@ -30,7 +31,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
             frames += 1;
             step();
         };
-        show(robot, &mut runner, args.repeat, &mut count)
+        show(robot, &mut runner, (args.repeat, conditions.time_limit), &mut count)
     })?;
     let mut report = run.report(|_| Outcome::verdict("shown"));
     let output = args.output.clone().or_else(|| common.unnamed_file("edges.png"));
@@ -49,20 +50,19 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(report)
 }
 
-/// Turns on the spot and shows images. Returns the final display.
+/// Turns on the spot and shows a number of images within a time limit (s). Returns the final display.
 fn show(
     robot: &mut (impl Camera + Clock + Display + Drive),
     runner: &mut Runner,
-    images: u32,
+    (images, limit): (u32, f64),
     step: &mut dyn FnMut(),
 ) -> io::Result<RgbImage> {
-    robot.set_resolution(Resolution::Qvga)?;
-    robot.set_speed(Twist::new(0.0, 0.4))?;
-    let mut seen = RgbImage::default();
-    for _ in 0..images {
-        robot.image_into(&mut seen)?;
+    let velocity = Twist::new(0.0, 0.4);
+    let mut turning = Looking { resolution: Resolution::Qvga, period: PERIOD, velocity };
+    let mut left = images;
+    let halt = control::run(robot, &mut turning, limit, |robot, _, at| {
         let processed = runner
-            .run(&seen, None)
+            .run(at.seen, None)
             .map_err(|error| io::Error::new(io::ErrorKind::Other, error.to_string()).with_source(error))?;
         match &processed.image {
             DynamicImage::ImageLuma8(gray) if runner.kernel != Kernel::Hog => {
@@ -70,9 +70,10 @@ fn show(
             }
             other => robot.draw_image(DisplayImage::Rgb(&other.to_rgb8()), Viewport::default())?,
         }
-        robot.wait(PERIOD)?;
         step();
-    }
-    robot.set_speed(Twist::STOP)?;
+        left -= 1;
+        io::Result::Ok(until(left == 0))
+    })?;
+    in_time(halt)?;
     robot.screenshot()
 }

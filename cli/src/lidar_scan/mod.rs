@@ -34,7 +34,7 @@ JSON fields:
                               without corners
   object_error_mm             the same from a detected object to the nearest one in the world
   lcd, picture
-Outcomes: scanned, failed."
+Outcomes: scanned, timed_out, failed."
 )]
 pub(crate) struct Args {
     /// Save what the robot's display shows as a .png file.
@@ -80,7 +80,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     common.check_picture()?;
     let scene = common.placed_without_goal("the robot stands still", scene)?;
     check_lidar(&scene)?;
-    let conditions = Conditions::new(common, 5.0)?;
+    let conditions = Conditions { reserve: 0.0, ..Conditions::new(common, 5.0)? };
     let parameters = ScanFeaturesParameters {
         range_error: NoiseModel::real().scaled(conditions.noise).range,
         ..ScanFeaturesParameters::default()

@@ -69,7 +69,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     common.check_picture()?;
     let scene = common.placed_without_goal("the robot goes nowhere", || own_scene(common.seed))?;
     check_lidar(&scene)?;
-    let conditions = Conditions::new(common, args.patience + 30.0)?;
+    let conditions = Conditions { reserve: 0.0, ..Conditions::new(common, args.patience + 30.0)? };
     let run = run(args, &scene, &conditions, paced(common))?;
     let report = report(&run).field("time_limit_s", conditions.time_limit);
     Ok(common.draw(report, "localise.svg", || picture::of(&scene, &run, conditions.noise, conditions.seed)))

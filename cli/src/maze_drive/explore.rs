@@ -73,6 +73,7 @@ pub(crate) fn work(args: &ExploreArgs) -> Result<Report, Failure> {
         let mut explorer =
             if args.thorough { RecursiveExplorer::without_early_marking() } else { RecursiveExplorer::new() };
         let exploration = runner.explore(&mut explorer, &mut watch)?;
+        exploration.in_time()?;
         let route = shortest_route(runner.maze(), Unknown::Closed, Preference::Steps);
         if let Some(route) = &route {
             runner.go_to(route.end(), &mut watch)?;

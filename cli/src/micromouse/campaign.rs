@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use super::Args;
 use super::explore::{Told, drive, goal_error, kit, limit, stage};
 use crate::common::{Failure, Outcome, Report, millimetres, rounded, share_out};
-use crate::driving::{Conditions, Run};
+use crate::driving::{Conditions, RESERVE, Run};
 
 /// Result of a run through a maze.
 #[derive(Debug, Clone, PartialEq)]
@@ -139,6 +139,7 @@ fn trial(args: &Args, name: &str, file: &MazeFile, seed: u64) -> Result<Trial, F
         others: Vec::new(),
         ideal_encoders: false,
         time_limit: args.common.time_limit.unwrap_or_else(|| limit(&file.maze)),
+        reserve: RESERVE,
         common: None,
     };
     let mut told = None;

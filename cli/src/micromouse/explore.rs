@@ -54,12 +54,10 @@ pub(crate) fn explore(args: &Args) -> Result<Report, Failure> {
         drive(robot, args, &file.maze, &conditions, &mut told, step)
     })?;
     let told = told.as_ref();
-    let report = run.report(|()| match told {
-        Some(Told { exploration: Exploration { verdict: ExplorationOutcome::Unreachable, .. }, .. }) => {
-            Outcome::verdict("unreachable")
-        }
-        Some(Told { race: Some(_), .. }) => Outcome::verdict("raced"),
-        _ => Outcome::verdict("explored"),
+    // A program that ends without an error has proved its maze.
+    let report = run.report(|()| match told.and_then(|told| told.race) {
+        Some(_) => Outcome::verdict("raced"),
+        None => Outcome::verdict("unreachable"),
     });
     let report = with_maze(report, args, &file);
     let at_goal = goal_error(run.truth.pose, &file.maze, scale);
@@ -111,6 +109,7 @@ pub(crate) fn drive(
     let plan = runner.plan_fast_run();
     let (known, explored_steps, pose) = (runner.maze().clone(), steps.get(), runner.pose());
     let told = told.insert(Told { exploration, known, plan, race: None, explored_steps, pose });
+    told.exploration.in_time()?;
     if let Some(plan) = &told.plan {
         let race = runner.race(plan, &mut watch);
         told.pose = runner.pose();
@@ -147,6 +146,9 @@ fn picture_of(
     let split = told.map_or(run.trail.len(), |told| told.explored_steps.min(run.trail.len()));
     let mut picture = picture::of_maze(&file.maze, scale);
     let caption = match told.map(|told| (told, told.race)) {
+        Some((told, _)) if told.exploration.verdict == ExplorationOutcome::TimedOut => {
+            format!("the time is over; {} of {} cells seen", told.exploration.visited, file.maze.cell_count())
+        }
         Some((told, Some(race))) => format!(
             "explored to the proof in {:.0} s and {} of {} cells; fast run {race:.2} s",
             told.exploration.time,

@@ -5,7 +5,7 @@ use super::Args;
 use super::course;
 use super::drive::{Arrival, drive};
 use crate::common::{Failure, Outcome, Report, rounded, share_out, threads};
-use crate::driving::Conditions;
+use crate::driving::{Conditions, RESERVE};
 
 /// A generated world and its result.
 #[derive(Debug, Clone, PartialEq)]
@@ -93,6 +93,7 @@ fn trial(args: &Args, seed: u64) -> Result<Trial, Failure> {
         others: Vec::new(),
         ideal_encoders: false,
         time_limit: args.common.time_limit.unwrap_or(600.0),
+        reserve: RESERVE,
         common: None,
     };
     let places = (&course.known, trip.start(), trip.goal);

@@ -16,6 +16,7 @@ use super::base::{Answer, Base, SeenStop};
 use super::crew::{Crew, Event, STEP};
 use crate::common::{DEADMAN, Driven as Robot, Failure, Stage, rounded};
 use crate::cones::{Course, Judge, pass};
+use crate::driving::Ending;
 
 /// A stop with its ground truth.
 #[derive(Debug, Clone)]
@@ -86,8 +87,8 @@ pub(crate) struct Driven {
     /// Whether each event was answered in time.
     pub(crate) prompt: bool,
     pub(crate) states: Vec<(f64, SafetyState)>,
-    /// Whether all events happened within the time limit.
-    pub(crate) done: bool,
+    /// Whether all events happened within the time limit, or the robot's error that ended the drive.
+    pub(crate) ending: Ending<bool>,
     pub(crate) judge: Judge,
 }
 
@@ -104,14 +105,14 @@ pub(crate) fn drive(course: &Course, args: &Args, stage: &Stage) -> Result<Drive
     let crew = Crew::new(events, well(&args.common.faults()?));
     let base = Base::new(crew, stage.truth(0)?, parameters.heartbeat)?;
     let mut car = Supervised::new(stage.robot(0)?, base, parameters.clone()).map_err(Failure::run)?;
-    let done = program(&mut car, &mut judge, limit)?;
+    let ending = program(&mut car, &mut judge, limit)?;
     let base = car.station_mut();
     let bounded = |seen: &SeenStop| Stopped { bound: bound(&parameters, seen), seen: seen.clone() };
     let stops: Vec<Stopped> = base.stops.iter().map(bounded).collect();
     let mut answers = base.stops.iter().map(|stop| stop.answer).chain(base.takeovers.iter().copied());
     let prompt = answers.all(|answer| is_prompt(&answer, &parameters));
     let (takeovers, states) = (base.takeovers.clone(), base.states.clone());
-    Ok(Driven { stops, takeovers, prompt, states, done, judge })
+    Ok(Driven { stops, takeovers, prompt, states, ending, judge })
 }
 
 /// Maximum stopping distance (m).
@@ -145,8 +146,13 @@ fn fence(half: Option<f64>) -> Vec<Point> {
     half.flat_map(|half| corners.map(|(x, y)| Point::new(half * x, half * y))).collect()
 }
 
-/// The driving program, until all events have happened. Returns whether they did within the limit (s).
-fn program(car: &mut Supervised<Robot, Base>, judge: &mut Judge, limit: f64) -> Result<bool, ParameterError> {
+/// The driving program, until all events have happened. Returns whether they did within the limit (s), or the
+/// error of a car that stays out of reach.
+fn program(
+    car: &mut Supervised<Robot, Base>,
+    judge: &mut Judge,
+    limit: f64,
+) -> Result<Ending<bool>, ParameterError> {
     let mut racer = Racer::new(RacerParameters { laps: 100, ..RacerParameters::rolling() })?;
     let mut scan = LidarScan::default();
     while judge.time() < limit && !car.station_mut().crew.is_done() {
@@ -163,10 +169,11 @@ fn program(car: &mut Supervised<Robot, Base>, judge: &mut Judge, limit: f64) -> 
         }
         // A failing wait takes its time, except for a car that is permanently out of reach.
         let before = judge.time();
-        let passed = pass(car, judge, STEP);
-        if passed.is_err() && (judge.look().is_err() || judge.time() <= before) {
-            break;
+        if let Err(error) = pass(car, judge, STEP)
+            && (judge.look().is_err() || judge.time() <= before)
+        {
+            return Ok(Err(format!("the car is out of reach: {}", Failure::from(error))));
         }
     }
-    Ok(car.station_mut().crew.is_done())
+    Ok(Ok(car.station_mut().crew.is_done()))
 }

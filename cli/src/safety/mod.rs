@@ -30,7 +30,8 @@ JSON fields:
   takeovers           the same for each handover to the driver, up to reaction_ms
   states              [seconds, state] of every change
   picture
-Outcomes: stood (every stop within its bound), overran, late (an incident was not answered in time), timed_out."
+Outcomes: stood (every stop within its bound), overran, late (an incident was not answered in time), timed_out, failed (the car is
+out of reach)."
 )]
 pub(crate) struct Args {
     /// Track to drive on [default: a generated one].
@@ -85,10 +86,12 @@ fn report(course: &Course, driven: &Driven) -> Report {
         Outcome::failure("overran")
     } else if !driven.prompt {
         Outcome::failure("late")
-    } else if driven.done {
-        Outcome::verdict("stood")
     } else {
-        Outcome::failure("timed_out")
+        match driven.ending {
+            Ok(true) => Outcome::verdict("stood"),
+            Ok(false) => Outcome::failure("timed_out"),
+            Err(_) => Outcome::failure("failed"),
+        }
     };
     let states: Vec<(f64, String)> =
         driven.states.iter().map(|(time, state)| (rounded(*time), format!("{state:?}"))).collect();
@@ -103,6 +106,7 @@ fn report(course: &Course, driven: &Driven) -> Report {
         path_length: Some(truth.path_length),
         pose: Some(truth.pose),
         odometry: Some(course.start.compose(&truth.odometry)),
+        error: driven.ending.as_ref().err().cloned(),
         ..report
     }
 }

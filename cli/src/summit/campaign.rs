@@ -9,7 +9,7 @@ use super::args::Method;
 use super::climb::{Arrival, Summit, climb, equipped};
 use super::job::SECONDS;
 use crate::common::{Failure, Outcome, Report, rounded, share_out, threads};
-use crate::driving::Conditions;
+use crate::driving::{Conditions, RESERVE};
 use crate::terrain::{Hike, Ride, median};
 
 /// A climb and what came of it.
@@ -111,6 +111,7 @@ fn trial(args: &Args, seed: u64, method: Method) -> Result<Trial, Failure> {
         others: Vec::new(),
         ideal_encoders: false,
         time_limit: args.common.time_limit.unwrap_or(SECONDS),
+        reserve: RESERVE,
         common: None,
     };
     let run = climb(args, method, &hike, &conditions, |_| {}, |_| {})?;

@@ -344,3 +344,15 @@ fn wrong_files_are_told_where() {
     let (status, _, err) = race(&["--goal", "1,2"]);
     assert!(status == 2 && err.contains("has no meaning for a race"), "{err}");
 }
+
+/// The last wait ends at the limit, not a control period later.
+#[test]
+fn a_race_ends_at_its_limit() {
+    for (command, limit) in [("cone_race", 3.0), ("cone_race", 0.005), ("cone_drive", 3.02)] {
+        let given = limit.to_string();
+        let options = ["--track", "../tests/data/cones/oval.csv", "--time-limit", &given];
+        let (_, report, err) = run(command, &options);
+        let time = report["sim_time_s"].as_f64().unwrap_or_else(|| panic!("{err}"));
+        assert!((limit - 0.011..=limit + 1e-9).contains(&time), "{command}: {time} s of {limit} s");
+    }
+}

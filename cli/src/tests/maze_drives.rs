@@ -97,3 +97,13 @@ fn recordings_replay_to_the_same() {
     }
     std::fs::remove_file(file).unwrap();
 }
+
+/// A clock that jumps is what ended the path, not an obstacle.
+#[test]
+fn a_jump_of_the_clock_is_not_an_obstacle() {
+    let (status, report, _) = run("maze_explore", &["--fault", "clock=1000@2"]);
+    assert_eq!((status, report["outcome"].as_str()), (1, Some("failed")), "{report}");
+    assert!(report["error"].as_str().unwrap().contains("the clock has advanced by 100"), "{report}");
+    let limited = ["--fault", "clock=1000@2", "--time-limit", "20"];
+    assert_eq!(run("maze_explore", &limited).1["outcome"], "timed_out");
+}

@@ -263,3 +263,19 @@ fn fields(line: &str) -> Vec<String> {
     }
     fields
 }
+
+/// Nothing is proved before the limit, also if the clock has jumped beyond it.
+#[test]
+fn a_mouse_without_time_says_so() {
+    for options in [&["--time-limit", "3"][..], &["--fault", "clock=1000@2", "--time-limit", "20"]] {
+        let (status, report, err) = run(&[&["--noise", "0"], options].concat());
+        assert_eq!(
+            (status, report["outcome"].as_str()),
+            (1, Some("timed_out")),
+            "{options:?}: {report} {err}"
+        );
+        assert_eq!((&report["proved_optimal"], &report["fast_run_s"]), (&false.into(), &Value::Null));
+        assert!(report["unknown_walls"].as_u64().unwrap() > 0, "{report}");
+        assert!(report["sim_time_s"].as_f64().unwrap() <= 3.0 + 1e-9, "{report}");
+    }
+}

@@ -310,3 +310,12 @@ fn options_without_a_meaning() {
     let (status, _, err) = run("safety", &["--supervised"]);
     assert!(status == 2 && err.contains("here the car always is"), "{err}");
 }
+
+#[test]
+fn a_car_that_stays_out_of_reach_is_no_time_limit() {
+    let (status, report, err) =
+        run("safety", &[&OVAL, &["--fault", "link@1", "--time-limit", "30"][..]].concat());
+    assert_eq!((status, report["outcome"].as_str()), (1, Some("failed")), "{report}");
+    assert!(report["error"].as_str().unwrap().starts_with("the car is out of reach: "), "{report}");
+    assert!(err.contains("link"), "{err}");
+}

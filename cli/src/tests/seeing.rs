@@ -222,3 +222,26 @@ fn a_short_motion_campaign_passes() {
     let book = ended.1["book"]["detected"].as_f64().unwrap();
     assert!(book < ended.1["detected"].as_f64().unwrap(), "{}", ended.1);
 }
+
+#[test]
+fn looking_ends_at_its_limit() {
+    let cases: [(&str, &[&str], f64); 5] = [
+        ("edges", &["--kernel", "sobel_l1", "--repeat", "20", "--time-limit", "0.5"], 0.5),
+        ("camera", &["--time-limit", "0.1"], 0.1),
+        ("camera", &["--pan", "30", "--time-limit", "3"], 3.0),
+        ("lidar_scan", &["--time-limit", "0.0001"], 0.01),
+        ("localise", &["--time-limit", "1"], 1.0),
+    ];
+    for (command, options, limit) in cases {
+        let (status, report, err) = run(command, options);
+        assert_eq!((status, report["outcome"].as_str()), (1, Some("timed_out")), "{command}: {report} {err}");
+        assert!(report["sim_time_s"].as_f64().unwrap() <= limit + 1e-9, "{command}: {report}");
+    }
+}
+
+#[test]
+fn a_stopped_clock_ends_looking() {
+    let (status, report, _) = run("edges", &["--kernel", "sobel_l1", "--repeat", "30", "--fault", "clock@2"]);
+    assert_eq!((status, report["outcome"].as_str()), (1, Some("failed")), "{report}");
+    assert!(report["error"].as_str().unwrap().contains("stands still"), "{report}");
+}

@@ -58,9 +58,14 @@ impl Stopwatch {
         self.last
     }
 
+    /// Time from the last reading to the time limit (s).
+    pub(crate) fn left(&self) -> f64 {
+        self.end - self.last
+    }
+
     /// Whether the time limit is reached.
     pub(crate) fn is_over(&self) -> bool {
-        self.last >= self.end - RESOLUTION
+        self.left() <= RESOLUTION
     }
 
     /// Waits until `due` or the time limit, whichever comes first, unless it is past. Returns `due`, or the

@@ -15,7 +15,8 @@ pub struct Step<'a, O> {
 }
 
 /// Runs a behaviour on a robot for at most `time_limit` seconds; infinity disables the limit. `watch` is
-/// called at each step, before the command is applied, and at the end; if it breaks or fails, the run ends.
+/// called at each step, before the command is applied, and at the end, unless the time is over before the
+/// first observation; if it breaks or fails, the run ends.
 ///
 /// Steps are one period apart. After a late step the next one starts at once; missed steps are not made up
 /// for. The robot is stopped at every kind of end; an error while stopping does not hide an earlier one.
@@ -40,8 +41,13 @@ where
             Ok(decision) => decision,
             Err(error) => break Err(error),
         };
-        let step = Step { time: run.clock.map_or(0.0, |clock| clock.time()), seen: &run.seen };
-        match (watch(robot, behaviour, step).verdict(), decision) {
+        let watched = match run.clock {
+            Some(clock) if run.has_sensed => {
+                watch(robot, behaviour, Step { time: clock.time(), seen: &run.seen }).verdict()
+            }
+            _ => Ok(ControlFlow::Continue(())),
+        };
+        match (watched, decision) {
             (Err(error), _) => break Err(error),
             (Ok(_), ControlFlow::Break(outcome)) => break Ok(outcome),
             (Ok(ControlFlow::Break(())), _) => break Ok(behaviour.halt(Halt::Stopped)),
@@ -85,6 +91,7 @@ pub(crate) fn stopping<R: ?Sized, C: Command<R>, T>(robot: &mut R, result: Resul
 #[derive(Debug)]
 pub struct Run<B: Behaviour + ?Sized> {
     seen: B::Observation,
+    has_sensed: bool,
     period: f64,
     limit: f64,
     /// Set at the first step.
@@ -99,7 +106,14 @@ impl<B: Behaviour + ?Sized> Run<B> {
         let period = behaviour.period();
         require_positive("control period", period)?;
         Stopwatch::check_limit(time_limit)?;
-        Ok(Self { seen: B::Observation::default(), period, limit: time_limit, clock: None, due: 0.0 })
+        Ok(Self {
+            seen: B::Observation::default(),
+            has_sensed: false,
+            period,
+            limit: time_limit,
+            clock: None,
+            due: 0.0,
+        })
     }
 
     /// Makes one step: reads, decides, and applies the command. Stops the robot at the end and at an error.
@@ -139,11 +153,12 @@ impl<B: Behaviour + ?Sized> Run<B> {
             return Ok(ControlFlow::Break(behaviour.halt(Halt::TimedOut)));
         }
         behaviour.sense(robot, time, &mut self.seen)?;
+        self.has_sensed = true;
         behaviour.step(time, &self.seen)
     }
 
     /// Waits until the next step is due or the time limit is reached.
-    fn rest<R: Clock + ?Sized>(&mut self, robot: &mut R) -> Result<()> {
+    pub fn rest<R: Clock + ?Sized>(&mut self, robot: &mut R) -> Result<()> {
         if let Some(clock) = &mut self.clock {
             self.due = clock.wait_until(robot, self.due + self.period)?;
         }

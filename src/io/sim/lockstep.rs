@@ -1,5 +1,6 @@
 //! Programs that share one world in virtual time, independent of thread scheduling.
 
+use std::cmp::Reverse;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, ThreadId};
 use std::time::Duration;
@@ -20,14 +21,27 @@ pub(super) trait Ticking {
 ///
 /// The world stays at tick `n` until every running program has made a request at tick `n + 1` or later; the
 /// last of them advances it. A program's readings at a tick therefore depend on ticks only, never on thread
-/// scheduling.
+/// scheduling. The one exception is a program that makes no request for longer than the others' [`Patience`]
+/// in real time: their requests fail, as they would otherwise hang for ever if it is blocked.
 #[derive(Debug)]
 pub(super) struct Lockstep<W> {
     state: Mutex<State<W>>,
     advanced: Condvar,
     /// Duration of a tick (ns).
     tick: u64,
+    patience: Patience,
 }
+
+/// Real time for which a program waits while the world stands still.
+#[derive(Debug, Clone, Copy)]
+struct Patience {
+    /// For a robot that the waiting thread itself used last.
+    own: Duration,
+    /// For a robot of another thread, which may be computing.
+    others: Duration,
+}
+
+const PATIENCE: Patience = Patience { own: Duration::from_secs(10), others: Duration::from_secs(60) };
 
 #[derive(Debug)]
 pub(super) struct State<W> {
@@ -65,28 +79,26 @@ impl<W: Ticking> State<W> {
         }
     }
 
-    /// A robot that blocks the world and may be abandoned: this thread used it last, or no thread has used
-    /// it.
-    fn held_back_by(&self, index: usize) -> Option<usize> {
-        let me = thread::current().id();
+    /// A robot that blocks the world, if possible one that this thread used last, and whether it did.
+    fn held_back_by(&self, index: usize) -> Option<(usize, bool)> {
+        let me = Some(thread::current().id());
         let tick = self.world.time();
-        self.seats.iter().enumerate().position(|(other, seat)| {
-            other != index
-                && seat.phase == Phase::Running
-                && seat.tick == tick
-                && seat.thread.is_none_or(|thread| thread == me)
-        })
+        let blocking = self
+            .seats
+            .iter()
+            .enumerate()
+            .filter(|(other, seat)| *other != index && seat.phase == Phase::Running && seat.tick == tick);
+        blocking
+            .map(|(other, seat)| (other, seat.thread == me))
+            .max_by_key(|&(other, own)| (own, Reverse(other)))
     }
 }
 
-/// Real time within which another thread must start to use a robot that blocks the world.
-const PATIENCE: Duration = Duration::from_secs(10);
-
-fn held_back(index: usize, other: usize) -> Error {
+fn held_back(index: usize, other: usize, patience: Duration) -> Error {
     let message = format!(
-        "robot {index} waits for robot {other}, which no other thread has used for {} s of real time; \
-         give each robot a thread of its own, or use a fleet",
-        PATIENCE.as_secs()
+        "robot {index} waits for robot {other}, whose program has let no time pass for {} s of real time; \
+         give each robot a running thread of its own and drop robots that are done, or use a fleet",
+        patience.as_secs()
     );
     Error::new(ErrorKind::Other, message)
 }
@@ -96,7 +108,8 @@ impl<W: Ticking> Lockstep<W> {
     pub(super) fn new(world: W, tick: f64, programs: usize) -> Self {
         let seats = vec![Seat::default(); programs];
         let tick = nanoseconds(tick).max(1);
-        Self { state: Mutex::new(State { world, seats }), advanced: Condvar::new(), tick }
+        let state = Mutex::new(State { world, seats });
+        Self { state, advanced: Condvar::new(), tick, patience: PATIENCE }
     }
 
     /// The world in its present state.
@@ -138,17 +151,19 @@ impl<W: Ticking> Lockstep<W> {
             self.advanced.notify_all();
         }
         while state.world.time() < tick {
-            let Some(other) = state.held_back_by(index) else {
-                state = self.advanced.wait(state).unwrap_or_else(PoisonError::into_inner);
-                continue;
-            };
             let before = state.world.time();
+            let holder = state.held_back_by(index);
+            let own = holder.is_some_and(|(_, own)| own);
+            let patience = if own { self.patience.own } else { self.patience.others };
             let (woken, waited) =
-                self.advanced.wait_timeout(state, PATIENCE).unwrap_or_else(PoisonError::into_inner);
+                self.advanced.wait_timeout(state, patience).unwrap_or_else(PoisonError::into_inner);
             state = woken;
-            let still = state.world.time() == before && state.held_back_by(index) == Some(other);
-            if waited.timed_out() && still {
-                return Err(held_back(index, other));
+            let still = state.world.time() == before && state.held_back_by(index) == holder;
+            if let Some((other, _)) = holder
+                && waited.timed_out()
+                && still
+            {
+                return Err(held_back(index, other, patience));
             }
         }
         Ok(state)

@@ -10,10 +10,12 @@ use crate::world::Scene;
 ///
 /// One robot needs no thread. Several robots need a thread each. Take all of them with
 /// [`robot`](Simulation::robot) before the first one drives, because the world waits only for the robots that
-/// are taken. A robot that nobody takes stands still; one whose handle is dropped keeps its last command. If
-/// a thread waits ten seconds of real time for a robot that no other thread uses, for example for another
-/// robot in the same thread, its call fails instead of blocking for ever. A program that computes for longer
-/// before it drives should call [`now`](crate::io::Clock::now) first.
+/// are taken. A robot that nobody takes stands still; one whose handle is dropped keeps its last command.
+///
+/// Neither threads nor load affect what a program sees, within one bound of real time: while the world stands
+/// still because one robot's program lets no time pass, the calls of the others wait for at most 60 s (10 s for
+/// a robot that the waiting thread itself used last), and then fail with an error that names that robot,
+/// instead of blocking for ever.
 #[derive(Debug, Clone)]
 pub struct Simulation {
     shared: Arc<Lockstep<Engine>>,

@@ -69,6 +69,17 @@ pub struct Exploration {
     pub time: f64,
 }
 
+impl Exploration {
+    /// Fails with [`TimedOut`](ErrorKind::TimedOut) if the time limit ended it.
+    pub fn in_time(&self) -> Result<()> {
+        if self.verdict == ExplorationOutcome::TimedOut { Err(time_is_over()) } else { Ok(()) }
+    }
+}
+
+fn time_is_over() -> Error {
+    Error::new(ErrorKind::TimedOut, "the time limit of the run is over")
+}
+
 /// Drives a robot through a partly known maze: it looks around, explores and races.
 ///
 /// The frame is that of the maze, with the origin at its lower left corner. The odometry calibration learnt
@@ -307,14 +318,15 @@ impl<'r, R: Clock + Drive + Odometry + StallDetector + DistanceSensors + ?Sized>
         (time / period + 1e-6).floor() * period
     }
 
-    /// Waits for the next tick. Fails if the time limit is exceeded.
+    /// Waits for the next tick or the time limit. Fails if the latter is reached.
     fn wait_for_tick(&mut self) -> Result<()> {
         let now = self.now()?;
+        let left = self.clock.map_or(f64::INFINITY, |clock| clock.left());
         if self.is_over() {
-            return Err(Error::new(ErrorKind::TimedOut, "the time limit of the run is over"));
+            return Err(time_is_over());
         }
         let next = self.tick(now) + self.parameters.tracker.period;
-        self.robot.wait(next - now)
+        self.robot.wait((next - now).min(left))
     }
 
     /// Turns on the spot towards a direction.
@@ -384,7 +396,8 @@ impl<'r, R: Clock + Drive + Odometry + StallDetector + DistanceSensors + ?Sized>
 
     fn follow_to_end(&mut self, trajectory: Trajectory, watch: &mut dyn FnMut(Pose)) -> Result<f64> {
         let tracker = TrajectoryTracker::new(trajectory, self.parameters.tracker, self.rig.lag)?;
-        let limit = 2.0 * tracker.trajectory().duration() + 5.0;
+        let planned = tracker.trajectory().duration();
+        let limit = 2.0 * planned + 5.0;
         self.wait_for_tick()?;
         // Steps are counted from the tick at which the motors first respond.
         let begin = self.now()?;
@@ -394,6 +407,9 @@ impl<'r, R: Clock + Drive + Odometry + StallDetector + DistanceSensors + ?Sized>
                 Some(clock) => clock.step(self.robot)?,
                 None => begin,
             };
+            if self.is_over() {
+                return Err(time_is_over());
+            }
             let now = self.tick(now) - begin;
             self.sense()?;
             let pose = self.localiser.pose();
@@ -401,7 +417,15 @@ impl<'r, R: Clock + Drive + Odometry + StallDetector + DistanceSensors + ?Sized>
             let speed = self.robot.speed()?;
             let Some(command) = tracker.step(now, pose, speed) else { return Ok(now) };
             self.robot.set_speed(command)?;
-            if now > limit || self.robot.is_stalled()? {
+            if now > limit {
+                let message = format!(
+                    "the clock has advanced by {now:.1} s on a path of {planned:.1} s whose end the robot has not \
+                     reached, at {:.3}, {:.3} m; expected at most {limit:.1} s",
+                    pose.x, pose.y
+                );
+                return Err(Error::new(ErrorKind::Diverged, message));
+            }
+            if self.robot.is_stalled()? {
                 let message = format!("the robot is stuck at {:.3}, {:.3} m", pose.x, pose.y);
                 return Err(Error::new(ErrorKind::Diverged, message));
             }

@@ -126,3 +126,38 @@ fn clocks_of_programs_that_wait_as_long_agree() {
     });
     assert_eq!(times, [500, 500]);
 }
+
+/// Two programs, of which the first waits while the second is used as given. Returns what the first one gets.
+fn waiting(patience: Patience, second: impl FnOnce(Program<Ledger>) + Send) -> Result<u64> {
+    let ledger = Ledger { told: vec![0; 2], ..Ledger::default() };
+    let shared = Arc::new(Lockstep { patience, ..Lockstep::new(ledger, TICK, 2) });
+    let [mut waits, other] = [0, 1].map(|index| Program::claim(&shared, index, CALL, None).unwrap());
+    thread::scope(|scope| {
+        scope.spawn(move || second(other));
+        waits.pass(1.0)?;
+        waits.look(|world, _| Ok(world.time))
+    })
+}
+
+#[test]
+fn a_thread_may_compute_before_its_first_call() {
+    let patience = Patience { own: Duration::from_millis(1), others: Duration::from_secs(60) };
+    let late = |program: Program<Ledger>| {
+        thread::sleep(Duration::from_millis(100));
+        program.look(|_, _| Ok(())).unwrap();
+    };
+    assert_eq!(waiting(patience, late).unwrap(), 100);
+}
+
+/// As when a main program uses one robot and then joins the thread that drives the other.
+#[test]
+fn a_wait_for_a_blocked_thread_ends_and_names_its_robot() {
+    let patience = Patience { others: Duration::from_millis(100), ..PATIENCE };
+    let blocked = |program: Program<Ledger>| {
+        program.look(|_, _| Ok(())).unwrap();
+        // Longer than the other one's patience; a wait without an end would end here, without an error.
+        thread::sleep(Duration::from_secs(1));
+    };
+    let error = waiting(patience, blocked).unwrap_err().to_string();
+    assert!(error.contains("robot 0 waits for robot 1"), "{error}");
+}
