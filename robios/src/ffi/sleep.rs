@@ -11,9 +11,9 @@ use roverlab::io::sim::TICK;
 
 use super::real_time::nap;
 use super::runtime::{enter, enter_quietly, enter_to_wait};
-use super::threads::{Inside, alone, calls, is_the_programs};
+use super::threads::{Inside, alone, calls, is_inside, is_the_programs};
 #[cfg(target_os = "linux")]
-use super::turns::{Turn, all_sleep, is_there, own_number};
+use super::turns::{Turn, all_sleep, is_there, note_call, own_number};
 use crate::keys::Waiting;
 use crate::memory;
 use crate::robios::{NANOSECONDS, Robios};
@@ -30,9 +30,9 @@ thread_local! {
 }
 
 /// Whether this thread's calls wait for their turn: not if it is alone, or calls from a timer function or signal
-/// handler that interrupts its sleep.
+/// handler that interrupts its sleep or a call.
 fn takes_turns() -> bool {
-    !alone() && is_the_programs() && {
+    !alone() && is_the_programs() && !is_inside() && {
         let own = own_number();
         at_ends(|ends| ends.values().all(|sleep| sleep.thread != own))
     }
@@ -44,19 +44,22 @@ pub(super) fn wait_for_frame(call: &'static str) -> Option<u64> {
     if !takes_turns() {
         return None;
     }
+    note_call();
     let frame = enter_quietly(|robios| Ok(robios.reserve(call)))??;
     sleep_until(frame as f64 / NANOSECONDS)?;
     Some(frame)
 }
 
-/// Lets other threads run if one is due earlier, or if this one's calls have taken a tick since it last waited.
+/// Lets other threads run that are due earlier, if this one's calls have taken a tick since it last waited.
+///
+/// Not more often: the call may be within a lock, and others that wait for it would then run beside this thread.
 pub(super) fn let_earlier_run() {
     if !takes_turns() {
         return;
     }
     let Some(now) = enter_quietly(|robios| Ok(robios.now())) else { return };
     let since = AWAKE_SINCE.try_with(Cell::get).unwrap_or(now);
-    if now - since >= TICK || earliest_end() < now {
+    if now - since >= TICK {
         // The program is over if it fails.
         let _ = sleep_until(now);
     }
@@ -210,6 +213,8 @@ fn sleep_until(end: f64) -> Option<()> {
         }
         if !sleeper.is_next() {
             sleeper.wait_to_be_next(now);
+            // What it knew of the others is past.
+            (turn, waking) = (Turn::default(), None);
             continue;
         }
         if is_due && nobody_starts() && waking.get_or_insert_default().is_long_over(&asleep()) {
@@ -253,6 +258,9 @@ struct Turn;
 fn own_number() -> u32 {
     0
 }
+
+#[cfg(not(target_os = "linux"))]
+fn note_call() {}
 
 #[cfg(not(target_os = "linux"))]
 fn all_sleep(_: &[u32]) -> bool {
