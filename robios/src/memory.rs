@@ -261,8 +261,9 @@ fn anonymous_file() -> io::Result<OwnedFd> {
     Ok(file.into())
 }
 
+/// Waits until a word may no longer have a value, or the patience is exhausted.
 #[cfg(target_os = "linux")]
-fn wait(word: &AtomicU32, value: u32, patience: Duration) {
+pub(crate) fn wait(word: &AtomicU32, value: u32, patience: Duration) {
     let time = libc::timespec {
         tv_sec: patience.as_secs() as libc::time_t,
         tv_nsec: libc::c_long::from(patience.subsec_nanos() as i32),
@@ -274,20 +275,22 @@ fn wait(word: &AtomicU32, value: u32, patience: Duration) {
     };
 }
 
+/// Wakes those that wait for a word.
 #[cfg(target_os = "linux")]
-fn wake(word: &AtomicU32) {
+pub(crate) fn wake(word: &AtomicU32) {
     // SAFETY: the kernel wakes those that wait for a word of mapped memory.
     unsafe { libc::syscall(libc::SYS_futex, word.as_ptr(), libc::FUTEX_WAKE, i32::MAX) };
 }
 
 /// Where the system cannot wait for a word, sleeps briefly.
 #[cfg(not(target_os = "linux"))]
-fn wait(_: &AtomicU32, _: u32, patience: Duration) {
+pub(crate) fn wait(_: &AtomicU32, _: u32, patience: Duration) {
     std::thread::sleep(patience.min(Duration::from_micros(50)));
 }
 
+/// They wake up by themselves.
 #[cfg(not(target_os = "linux"))]
-fn wake(_: &AtomicU32) {}
+pub(crate) fn wake(_: &AtomicU32) {}
 
 #[cfg(test)]
 mod tests {

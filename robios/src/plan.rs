@@ -86,7 +86,7 @@ pub mod names {
     pub const MEMORY: &str = "ROBIOS_MEMORY";
     /// File for the picture of the display.
     pub const LCD: &str = "ROBIOS_LCD";
-    /// Set if the world lives in the runner.
+    /// Set if the world lives in the runner: real seconds after which it stops waiting for a silent program.
     pub const SHARED: &str = "ROBIOS_SHARED";
     /// File descriptor of the socket for typed keys.
     pub const KEYBOARD: &str = "ROBIOS_KEYBOARD";

@@ -23,6 +23,7 @@ use crate::robios::{Outlets, Robios};
 use super::computing;
 use super::globals::publish_points;
 use super::real_time::{nap, real_seconds};
+use super::sleep::{let_earlier_run, wait_for_frame};
 use super::threads::{Inside, be_present, count_call, is_ours, own};
 use super::watch::{self, Unasked};
 
@@ -44,7 +45,22 @@ const ENDED: c_int = 124;
 
 /// Calls the robot. `None` if there is none, or if the call fails. Ends the program at its time limit. The
 /// call's name determines its cost and appears in the report.
+///
+/// Where there are several threads, a query's thread waits for its frame first, and a thread whose calls have
+/// taken some time lets others run that are due earlier.
 pub(super) fn enter<T>(name: &'static str, call: impl FnOnce(&mut Robios) -> Result<T>) -> Option<T> {
+    count_call();
+    let frame = wait_for_frame(name);
+    let answer = enter_as(name, |robios| {
+        robios.use_reserved(frame);
+        call(robios)
+    });
+    let_earlier_run();
+    answer
+}
+
+/// Like [`enter`], for a call that begins a wait.
+pub(super) fn enter_to_wait<T>(name: &'static str, call: impl FnOnce(&mut Robios) -> Result<T>) -> Option<T> {
     count_call();
     enter_as(name, call)
 }
@@ -122,11 +138,13 @@ fn serve<T>(
 
 /// From now on, lets time pass while the program makes no calls.
 pub(super) fn watch_program() {
-    watch::start(pass_unasked, env::var_os(names::SHARED).is_some());
+    let patience = env::var(names::SHARED).ok().and_then(|seconds| seconds.parse().ok());
+    watch::start(pass_unasked, patience);
 }
 
-/// Lets time pass without a call: `with_timers` seconds to the next due timer, or `without` seconds.
-fn pass_unasked(with_timers: f64, without: f64) -> Unasked {
+/// Lets time pass without a call: `with_timers` seconds to the next due timer, or `without` seconds, or if
+/// they are unknown just until all commands have reached the world.
+fn pass_unasked(with_timers: f64, without: Option<f64>) -> Unasked {
     let Some(inside) = Inside::new().filter(|_| is_ours()) else { return Unasked::Over };
     let state = match STATE.try_lock() {
         Ok(state) => state,
@@ -141,8 +159,11 @@ fn pass_unasked(with_timers: f64, without: f64) -> Unasked {
             let rest = due - robios.now();
             robios.pass(rest.min(with_timers))
         }
-        None if without > 0.0 => robios.pass(without),
-        None => Ok(()),
+        None => match without {
+            None => robios.deliver_all(),
+            Some(0.0) => Ok(()),
+            Some(time) => robios.pass(time),
+        },
     });
     Unasked::Passed
 }
@@ -162,7 +183,7 @@ fn born() -> State {
         }
         Ok(Err(message)) => {
             eprintln!("libeyesim: {message}");
-            refuse();
+            refuse(message);
             State::Over
         }
         Err(_) => State::Over,
@@ -205,9 +226,11 @@ extern "C" fn eyesim_begin() {
     }
 }
 
-fn refuse() {
+fn refuse(message: String) {
     if let Some(memory) = memory() {
-        ReportFile::new(Arc::clone(memory)).write(&Report { stage: Stage::Refused, ..Report::default() });
+        let file = ReportFile::new(Arc::clone(memory));
+        file.write(&Report { stage: Stage::Refused, ..Report::default() });
+        file.write_notes(&[message]);
     }
 }
 

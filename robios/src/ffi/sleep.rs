@@ -1,41 +1,117 @@
 //! Waiting of programs.
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use roverlab::io::Result;
 use roverlab::io::sim::TICK;
 
 use super::real_time::nap;
-use super::runtime::{enter, enter_quietly};
-use super::threads::{Inside, alone, calls};
+use super::runtime::{enter, enter_quietly, enter_to_wait};
+use super::threads::{Inside, alone, calls, is_inside, is_the_programs};
 #[cfg(target_os = "linux")]
-use super::turns::{Turn, all_sleep, is_there, own_number};
+use super::turns::{Turn, all_sleep, is_there, note_call, own_number};
 use crate::keys::Waiting;
-use crate::robios::Robios;
+use crate::memory;
+use crate::robios::{NANOSECONDS, Robios};
 
 /// Lets the program wait for a time (s).
 pub(super) fn sleep_for(call: &'static str, seconds: f64) -> Option<()> {
-    let start = enter(call, |robios| Ok(robios.now()))?;
+    let start = enter_to_wait(call, |robios| Ok(robios.now()))?;
     sleep_until(start + seconds)
+}
+
+thread_local! {
+    /// Time at which this thread's last wait ended (s).
+    static AWAKE_SINCE: Cell<f64> = const { Cell::new(0.0) };
+}
+
+/// Whether this thread's calls wait for their turn: not if it is alone, or calls from a timer function or signal
+/// handler that interrupts its sleep or a call.
+fn takes_turns() -> bool {
+    !alone() && is_the_programs() && !is_inside() && {
+        let own = own_number();
+        at_ends(|ends| ends.values().all(|sleep| sleep.thread != own))
+    }
+}
+
+/// Waits for the frame that serves a query, so that threads which are due earlier run first. Returns the frame's
+/// time since the start (ns), if there is a wait.
+pub(super) fn wait_for_frame(call: &'static str) -> Option<u64> {
+    if !takes_turns() {
+        return None;
+    }
+    note_call();
+    let frame = enter_quietly(|robios| Ok(robios.reserve(call)))??;
+    sleep_until(frame as f64 / NANOSECONDS)?;
+    Some(frame)
+}
+
+/// Lets other threads run that are due earlier, if this one's calls have taken a tick since it last waited.
+///
+/// Not more often: the call may be within a lock, and others that wait for it would then run beside this thread.
+pub(super) fn let_earlier_run() {
+    if !takes_turns() {
+        return;
+    }
+    let Some(now) = enter_quietly(|robios| Ok(robios.now())) else { return };
+    let since = AWAKE_SINCE.try_with(Cell::get).unwrap_or(now);
+    if now - since >= TICK {
+        // The program is over if it fails.
+        let _ = sleep_until(now);
+    }
 }
 
 /// Real time between a sleeping thread's checks of the others.
 const GRACE: Duration = Duration::from_micros(50);
 
-/// Wake-up times of the sleeping threads since the start (s), and their numbers.
-static ENDS: Mutex<BTreeMap<u64, (f64, u32)>> = Mutex::new(BTreeMap::new());
+/// A thread's sleep.
+#[derive(Debug)]
+struct Sleep {
+    /// Wake-up time since the start (s).
+    end: f64,
+    /// Number of the thread.
+    thread: u32,
+    /// Set to 1 when it is the next to wake up: until then the thread leaves it to others to let time pass.
+    next: Arc<AtomicU32>,
+}
+
+/// The sleeping threads' sleeps by number.
+static ENDS: Mutex<BTreeMap<u64, Sleep>> = Mutex::new(BTreeMap::new());
 static SLEEPERS: AtomicU64 = AtomicU64::new(0);
 /// Number of threads that are starting another one and let it run: this is short, so nobody wakes up
 /// meanwhile.
 static STARTERS: AtomicU64 = AtomicU64::new(0);
 
 /// Accesses the list as within a call, so that a sleeping signal handler does not wait for this thread.
-fn at_ends<T>(look: impl FnOnce(&mut BTreeMap<u64, (f64, u32)>) -> T) -> T {
+fn at_ends<T>(look: impl FnOnce(&mut BTreeMap<u64, Sleep>) -> T) -> T {
     let _inside = Inside::new();
     look(&mut ENDS.lock().unwrap_or_else(PoisonError::into_inner))
+}
+
+/// The next to wake up: threads wake in the order of their times, and of their calls.
+fn next_of(ends: &BTreeMap<u64, Sleep>) -> Option<(u64, &Sleep)> {
+    let ends = ends.iter().map(|(&number, sleep)| (number, sleep));
+    ends.min_by(|(_, one), (_, other)| one.end.total_cmp(&other.end))
+}
+
+/// Removes sleeps, and tells the next thread that it is.
+fn forget(remains: impl Fn(u64, &Sleep) -> bool) {
+    at_ends(|ends| {
+        ends.retain(|&number, sleep| remains(number, sleep));
+        if let Some((_, sleep)) = next_of(ends) {
+            sleep.next.store(1, Ordering::Release);
+            memory::wake(&sleep.next);
+        }
+    });
+}
+
+/// Wake-up time of the next thread (s).
+fn earliest_end() -> f64 {
+    at_ends(|ends| next_of(ends).map_or(f64::INFINITY, |(_, sleep)| sleep.end))
 }
 
 fn nobody_starts() -> bool {
@@ -44,21 +120,14 @@ fn nobody_starts() -> bool {
 
 /// Numbers of the sleeping threads.
 fn asleep() -> Vec<u32> {
-    at_ends(|ends| ends.values().map(|&(_, thread)| thread).collect())
-}
-
-/// Whether all of the program's threads are asleep at a time, and each until later.
-fn all_are_asleep(now: f64) -> bool {
-    let (threads, earliest) = at_ends(|ends| {
-        let earliest = ends.values().map(|&(end, _)| end).fold(f64::INFINITY, f64::min);
-        (ends.values().map(|&(_, thread)| thread).collect::<Vec<_>>(), earliest)
-    });
-    earliest > now && all_sleep(&threads)
+    at_ends(|ends| ends.values().map(|sleep| sleep.thread).collect())
 }
 
 /// A sleeping thread.
 struct Sleeper {
     number: u64,
+    end: f64,
+    next: Arc<AtomicU32>,
     /// Number of checks for another thread that should have woken up.
     waits: u32,
 }
@@ -71,62 +140,57 @@ const MOST_WAITS: u32 = 20_000;
 impl Sleeper {
     fn new(end: f64) -> Self {
         let number = SLEEPERS.fetch_add(1, Ordering::Relaxed);
-        at_ends(|ends| ends.insert(number, (end, own_number())));
-        Self { number, waits: 0 }
+        let next = Arc::new(AtomicU32::new(0));
+        let sleep = Sleep { end, thread: own_number(), next: Arc::clone(&next) };
+        at_ends(|ends| ends.insert(number, sleep));
+        Self { number, end, next, waits: 0 }
     }
 
-    /// Lets time pass until the next thread wakes up, and nothing before due threads have done so: a tick at
-    /// most, unless all threads were asleep at the present time, so that none can act before.
-    fn pass(&mut self, all_asleep_at: Option<f64>) -> Option<()> {
-        let earliest = at_ends(|ends| ends.values().map(|&(end, _)| end).fold(f64::INFINITY, f64::min));
-        let passed = enter_quietly(|robios| {
+    /// Whether this thread is the next to wake up, and so the one that looks after the others.
+    fn is_next(&self) -> bool {
+        at_ends(|ends| next_of(ends).is_none_or(|(number, _)| number == self.number))
+    }
+
+    /// Waits until this thread is the next to wake up, but not for long: the next one may never wake up.
+    fn wait_to_be_next(&mut self, now: f64) {
+        memory::wait(&self.next, 0, SOME_WAITS * GRACE);
+        if self.next.swap(0, Ordering::Acquire) != 0 || earliest_end() > now {
+            self.waits = 0;
+            return;
+        }
+        self.waits += SOME_WAITS;
+        let lost = self.waits >= MOST_WAITS;
+        let own = self.number;
+        forget(|number, sleep| number == own || is_there(sleep.thread) && !(lost && sleep.end <= now));
+    }
+
+    /// Lets time pass until this thread, the next, wakes up: a tick at most, unless all threads were asleep at
+    /// the present time, so that none can act before.
+    fn pass(&self, all_asleep_at: Option<f64>) -> Option<()> {
+        enter_quietly(|robios| {
             let now = robios.now();
             let most = match robios.timers.next() {
                 _ if all_asleep_at != Some(now) => TICK,
                 Some(due) => (due - now).max(TICK),
                 None => f64::INFINITY,
             };
-            let rest = earliest - now;
-            if rest > 0.0 { robios.pass(rest.min(most)).map(|()| true) } else { Ok(false) }
-        })?;
-        self.waits = if passed { 0 } else { self.waits + 1 };
-        self.forget_others();
-        Some(())
-    }
-
-    /// Forgets threads that should have woken up and never will.
-    fn forget_others(&self) {
-        if self.waits.is_multiple_of(SOME_WAITS) {
-            let lost = self.waits >= MOST_WAITS;
-            let remembers = |number, thread| number == self.number || (!lost && is_there(thread));
-            at_ends(|ends| ends.retain(|&number, &mut (_, thread)| remembers(number, thread)));
-        }
-    }
-
-    /// Whether it is this thread's turn to wake up among all that are due. Sleeping threads wake in the order
-    /// of their times, each when the previous one waits again, so that the order of calls does not depend on
-    /// the system.
-    fn may_wake(&mut self, turn: &mut Turn, end: f64) -> bool {
-        let first = at_ends(|ends| {
-            let earlier = |(&number, &(other, _)): (&u64, &(f64, u32))| (other, number) < (end, self.number);
-            !ends.iter().any(earlier)
-        });
-        self.waits += 1;
-        self.forget_others();
-        first && nobody_starts() && turn.is_long_over(&asleep())
+            let rest = self.end - now;
+            if rest > 0.0 { robios.pass(rest.min(most)) } else { Ok(()) }
+        })
     }
 }
 
 impl Drop for Sleeper {
     fn drop(&mut self) {
-        at_ends(|ends| ends.remove(&self.number));
+        forget(|number, _| number != self.number);
     }
 }
 
 /// Lets the program wait until a time since the start (s). Timer functions are called in between.
 ///
-/// A program with one thread skips the time, and so does one whose threads all sleep. Otherwise a sleeping
-/// one advances the world by a tick whenever the others have had and not used the opportunity to act.
+/// A program with one thread skips the time, and so does one whose threads all sleep. Otherwise the next to
+/// wake up advances the world by a tick whenever the others have had and not used the opportunity to act. It
+/// wakes up when the previous one waits again, so that the order of calls does not depend on the system.
 fn sleep_until(end: f64) -> Option<()> {
     let (mut sleeper, mut turn) = (Sleeper::new(end), Turn::default());
     let mut waking: Option<Turn> = None;
@@ -140,25 +204,36 @@ fn sleep_until(end: f64) -> Option<()> {
             }
             Ok(robios.now())
         })?;
-        let rest = end - now;
-        if alone && rest > 0.0 {
+        let is_due = end <= now;
+        if alone && is_due {
+            return Some(());
+        }
+        if alone {
             continue;
         }
-        if rest <= 0.0 {
-            if alone || sleeper.may_wake(waking.get_or_insert_default(), end) {
-                return Some(());
-            }
-            nap(GRACE);
+        if !sleeper.is_next() {
+            sleeper.wait_to_be_next(now);
+            // What it knew of the others is past.
+            (turn, waking) = (Turn::default(), None);
             continue;
+        }
+        if is_due && nobody_starts() && waking.get_or_insert_default().is_long_over(&asleep()) {
+            let _ = AWAKE_SINCE.try_with(|since| since.set(now));
+            return Some(());
         }
         nap(GRACE);
+        if is_due {
+            continue;
+        }
         if calls() != before || !nobody_starts() {
             turn = Turn::default();
-        } else if all_are_asleep(now) {
+        } else if all_sleep(&asleep()) && sleeper.is_next() {
             sleeper.pass(Some(now))?;
         } else if turn.is_over(&asleep()) {
             turn = Turn::default();
-            sleeper.pass(None)?;
+            if sleeper.is_next() {
+                sleeper.pass(None)?;
+            }
         }
     }
 }
@@ -183,6 +258,9 @@ struct Turn;
 fn own_number() -> u32 {
     0
 }
+
+#[cfg(not(target_os = "linux"))]
+fn note_call() {}
 
 #[cfg(not(target_os = "linux"))]
 fn all_sleep(_: &[u32]) -> bool {

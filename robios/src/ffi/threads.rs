@@ -66,6 +66,11 @@ impl Drop for Present {
     }
 }
 
+/// Whether this thread is within a call.
+pub(super) fn is_inside() -> bool {
+    INSIDE.try_with(Cell::get).unwrap_or(true)
+}
+
 /// Marks this thread as being within a call.
 pub(super) struct Inside;
 

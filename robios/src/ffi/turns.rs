@@ -3,10 +3,12 @@
 //!
 //! Real time is no measure: on a busy machine a thread may wait long for a processor.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io::Read;
 use std::sync::{Mutex, PoisonError};
+
+use super::threads::Inside;
 
 /// Activity of the other threads since the first look.
 #[derive(Debug, Default)]
@@ -21,7 +23,8 @@ pub(super) struct Turn {
 /// Processor time granted to a thread for making a call (ns): one that makes none is busy with something
 /// else.
 const SHARE: u64 = 1_000_000;
-/// Processor time granted to a thread to reach its next wait, before another one wakes up (ns).
+/// Processor time granted to a thread to reach its next wait, before another one wakes up (ns). One that does not
+/// use it waits for the others' results, as in `while (distance > 300);`, and then has the shorter share.
 const LONG_SHARE: u64 = 5_000_000;
 /// Number of looks after which time passes in any case: on a busy machine, a runnable thread may wait long.
 const MOST_LOOKS: u32 = 20_000;
@@ -61,11 +64,37 @@ impl Turn {
         let (first, last) = known.unwrap_or((now, now));
         self.spent.insert(thread, (first, now));
         match state(thread) {
-            Some('S') => known.is_some() && now == last,
-            Some('R' | 'D') => now.saturating_sub(first) >= share,
+            Some('S') => {
+                let waits = known.is_some() && now == last;
+                if waits {
+                    at_spinners(|spinners| spinners.remove(&thread));
+                }
+                waits
+            }
+            Some('R' | 'D') => at_spinners(|spinners| {
+                let used = now.saturating_sub(first);
+                if used >= LONG_SHARE {
+                    spinners.insert(thread);
+                }
+                used >= share || used >= SHARE && spinners.contains(&thread)
+            }),
             _ => true,
         }
     }
+}
+
+/// Threads that have used a long share without a call or a wait.
+static SPINNERS: Mutex<BTreeSet<u32>> = Mutex::new(BTreeSet::new());
+
+/// Accesses them as within a call, so that a signal handler does not wait for this thread.
+fn at_spinners<T>(look: impl FnOnce(&mut BTreeSet<u32>) -> T) -> T {
+    let _inside = Inside::new();
+    look(&mut SPINNERS.lock().unwrap_or_else(PoisonError::into_inner))
+}
+
+/// Records that this thread makes a call.
+pub(super) fn note_call() {
+    at_spinners(|spinners| spinners.remove(&own_number()));
 }
 
 /// Numbers of the library's own threads.
@@ -147,7 +176,15 @@ fn state(thread: u32) -> Option<char> {
     file(thread, "stat").and_then(|text| text.rsplit(')').next()?.trim_start().chars().next())
 }
 
-/// Processor time of a thread (ns).
+/// Processor time of a thread of this process (ns), by the clock that Linux keeps of it: to the present, while
+/// the files in `/proc` lag by milliseconds.
 fn spent(thread: u32) -> Option<u64> {
-    file(thread, "schedstat")?.split_whitespace().next()?.parse().ok()
+    let clock = ((!thread << 3) | THREADS_PROCESSOR_TIME) as libc::clockid_t;
+    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    // SAFETY: the kernel writes to a variable that outlives the call.
+    let known = unsafe { libc::syscall(libc::SYS_clock_gettime, clock, &raw mut time) } == 0;
+    known.then_some(time.tv_sec as u64 * 1_000_000_000 + time.tv_nsec as u64)
 }
+
+/// Kind of such a clock, in the lowest bits of its number.
+const THREADS_PROCESSOR_TIME: u32 = 6;

@@ -21,8 +21,9 @@ pub(super) enum Unasked {
     Over,
 }
 
-/// Lets time pass without a call: seconds to the next due timer, or seconds without timers.
-type Pass = fn(f64, f64) -> Unasked;
+/// Lets time pass without a call: seconds to the next due timer, or seconds without timers; `None` if only the
+/// commands given so far are to reach the world.
+type Pass = fn(f64, Option<f64>) -> Unasked;
 
 /// Real time between two looks.
 const LOOK: Duration = Duration::from_millis(5);
@@ -45,13 +46,14 @@ static WATCHING: AtomicBool = AtomicBool::new(false);
 
 /// Starts the watching thread, unless it is running.
 ///
-/// In a shared world, the host decides when time passes for a computing program.
-pub(super) fn start(pass: Pass, is_shared: bool) {
+/// In a shared world, the host decides when time passes for a computing program: after `patience` real
+/// seconds. The program's commands must have arrived before.
+pub(super) fn start(pass: Pass, patience: Option<f64>) {
     if WATCHING.swap(true, Ordering::Relaxed) {
         return;
     }
     set_ours(true);
-    let started = std::thread::Builder::new().name("robios".into()).spawn(move || watch(pass, is_shared));
+    let started = std::thread::Builder::new().name("robios".into()).spawn(move || watch(pass, patience));
     set_ours(false);
     // Without the thread, time passes only with calls.
     drop(started);
@@ -65,19 +67,21 @@ fn step(doublings: u32) -> f64 {
 /// With timers, time passes like real time at first, then ever faster: a program that computes for a while
 /// loses little, and one that waits need not wait long. Without timers it starts later and accelerates more
 /// slowly. While the program waits for another process, time passes like real time.
-fn watch(pass: Pass, is_shared: bool) {
+fn watch(pass: Pass, patience: Option<f64>) {
     set_ours(true);
     note_ours();
     let (mut before, mut idle) = (calls(), 0_u32);
     let (mut stillness, mut last) = (Stillness::default(), real_seconds());
     // Number of looks, and time, for which the program has been waiting.
     let (mut still, mut stood) = (0_u32, 0.0);
+    let mut silence = 0.0;
     loop {
         nap(LOOK);
         let (now, time) = (calls(), real_seconds());
         idle = if now == before { idle.saturating_add(1) } else { 0 };
         let elapsed = std::mem::replace(&mut last, time);
         let elapsed = (time - elapsed).clamp(0.0, MOST);
+        silence = if now == before { silence + elapsed } else { 0.0 };
         before = now;
         let Some(waited) = idle.checked_sub(PATIENCE) else { continue };
         if have_all_ended() {
@@ -88,10 +92,10 @@ fn watch(pass: Pass, is_shared: bool) {
         let fast = step(waited / DOUBLING);
         let slow = idle.checked_sub(LONG).map_or(0.0, |waited| step(waited / SLOW_DOUBLING));
         (still, stood) = if stillness.holds() { (still + 1, stood + elapsed) } else { (0, 0.0) };
-        let slow = match still {
-            WAITING.. => std::mem::take(&mut stood),
-            _ if is_shared => 0.0,
-            _ => slow,
+        let slow = match (still, patience) {
+            (WAITING.., _) => Some(std::mem::take(&mut stood)),
+            (_, Some(patience)) => (silence < patience / 2.0).then_some(0.0),
+            (_, None) => Some(slow),
         };
         match pass(fast, slow) {
             Unasked::Passed => {}

@@ -91,7 +91,7 @@ enum Moving {
     Speeds,
 }
 
-const NANOSECONDS: f64 = 1e9;
+pub(crate) const NANOSECONDS: f64 = 1e9;
 /// Time from 1970 to the start of every run (s): 1 January 2020, 12:00 UTC.
 pub(crate) const EPOCH: f64 = 1_577_880_000.0;
 

@@ -21,6 +21,8 @@ pub(super) struct Queue {
     due: Option<Cost>,
     /// The first free frame.
     free: u64,
+    /// Service time reserved for the current call (ns).
+    reserved: Option<u64>,
     /// Service time since the start (ns), name of the call, and request of each entry.
     orders: VecDeque<(u64, &'static str, Request)>,
 }
@@ -33,7 +35,7 @@ const FREE_CALL: u64 = 100_000;
 
 impl Queue {
     pub(super) fn new(costs: Costs) -> Self {
-        Self { costs, due: None, free: 0, orders: VecDeque::new() }
+        Self { costs, due: None, free: 0, reserved: None, orders: VecDeque::new() }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -48,6 +50,9 @@ impl Queue {
 
     /// Service time of a request that arrives at a time.
     fn slot(&mut self, now: u64) -> u64 {
+        if let Some(reserved) = self.reserved.take() {
+            return reserved.max(now);
+        }
         let Costs::Frames(frames) = &self.costs else { return now };
         let frame = frames.after(now).max(self.free);
         self.free = frame + 1;
@@ -68,10 +73,26 @@ impl Robios {
     /// Starts a RoBIOS call; one without a name takes no time.
     pub(crate) fn begin(&mut self, call: &'static str) {
         self.call = call;
+        self.queue.reserved = None;
         self.queue.due = match &self.queue.costs {
             Costs::Frames(frames) if !call.is_empty() => Some(frames.of(call)),
             _ => None,
         };
+    }
+
+    /// Reserves the next free frame if a call is a query, and returns its time since the start (ns): a thread
+    /// waits for it while others run.
+    pub(crate) fn reserve(&mut self, call: &str) -> Option<u64> {
+        let now = self.clock();
+        match &self.queue.costs {
+            Costs::Frames(frames) if frames.of(call).kind == Kind::Query => Some(self.queue.slot(now)),
+            _ => None,
+        }
+    }
+
+    /// Lets the current call have a frame that was reserved for it.
+    pub(crate) fn use_reserved(&mut self, slot: Option<u64>) {
+        self.queue.reserved = slot;
     }
 
     /// Charges the program's computing time since its last call.
@@ -242,7 +263,7 @@ impl Robios {
     }
 
     /// Sends all commands to the world, and lets the necessary time pass.
-    pub(super) fn deliver_all(&mut self) -> Result<()> {
+    pub(crate) fn deliver_all(&mut self) -> Result<()> {
         if let Some(&(last, ..)) = self.queue.orders.back() {
             let now = self.clock();
             self.set_clock(last.max(now));

@@ -252,16 +252,22 @@ impl Running {
             last_words = relay.last_line(&patience);
         }
         let mut report = Report::read(&self.memory);
-        if self.memory.has_forked() {
-            report.notes.push(FORKED.into());
-        }
         let ending = match (report.stage, ending) {
             (Stage::TimedOut, _) => Ending::OutOfTime("its simulated time was over".into()),
+            // Its calls have failed, whatever it made of that.
+            (Stage::Refused, Ending::Exit(code, _)) => {
+                let reason = report.notes.pop().unwrap_or(last_words);
+                let reason = if reason.is_empty() { REFUSED.into() } else { reason };
+                Ending::Exit(code, Some(reason))
+            }
             (_, Ending::Exit(code, _)) if code != 0 && !last_words.is_empty() => {
                 Ending::Exit(code, Some(last_words))
             }
             (_, ending) => ending,
         };
+        if self.memory.has_forked() {
+            report.notes.push(FORKED.into());
+        }
         (ending, report)
     }
 
@@ -275,6 +281,9 @@ impl Running {
 const ORPHAN: &str = "it has ended its parent process, or all of its group, and so itself";
 /// Message for a program whose forked processes make calls.
 const FORKED: &str = "a process that the program has forked calls RoBIOS: it has no robot, so its calls fail";
+
+/// Message for a program whose library does not say why it has no robot.
+const REFUSED: &str = "its library has refused to work: it may be of another build than the runner";
 
 fn of_status(status: ExitStatus) -> Ending {
     match (status.code(), status.signal()) {

@@ -73,9 +73,10 @@ pub(crate) fn run_together(
     let (sender, results) = mpsc::channel();
     let mut processes = Vec::new();
     let tables = programs.iter().zip(seats).map(|(program, seat)| {
+        let patience = options.hang_limit.to_string().into();
         let (seed, index) = (options.seed.to_string().into(), program.robot.to_string().into());
         let variables =
-            BTreeMap::from([(names::SHARED, "1".into()), (names::SEED, seed), (names::INDEX, index)]);
+            BTreeMap::from([(names::SHARED, patience), (names::SEED, seed), (names::INDEX, index)]);
         Ok((seat, start(program, variables, options, folder, stopwatch)?))
     });
     for (number, (seat, running)) in tables.collect::<Result<Vec<_>, String>>()?.into_iter().enumerate() {

@@ -91,6 +91,7 @@ fn run(options: &Options, warnings: &mut Vec<String>) -> Result<Summary, String>
     }
     let folder = work_folder::WorkFolder::new()?;
     let programs = programs::of(options, &scene, &folder)?;
+    warn(warnings, programs.iter().filter_map(|program| program.warning.clone()));
     let watched = options.picture.is_some() || options.record.is_some();
     let own_world = programs.len() == 1 && !watched;
     let mut verdicts = if own_world {

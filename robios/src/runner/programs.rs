@@ -12,8 +12,10 @@ use super::work_folder::WorkFolder;
 /// A program and the robot it drives.
 #[derive(Debug)]
 pub(crate) struct Program {
-    /// Name as given.
+    /// Name as given, or that of the file which takes its place.
     pub(crate) name: String,
+    /// Warning about that.
+    pub(crate) warning: Option<String>,
     /// Index of the robot in the scene.
     pub(crate) robot: usize,
     /// The executable file, or the reason why there is none.
@@ -40,10 +42,10 @@ pub(crate) fn of(options: &Options, scene: &Scene, folder: &WorkFolder) -> Resul
     }
     let base = whole(&options.program);
     let base = base.parent().unwrap_or(Path::new("/"));
-    let named =
+    let placed =
         scene.robots.iter().enumerate().filter_map(|(robot, placed)| Some((robot, placed.program.as_ref()?)));
     let mut programs: Vec<Program> =
-        named.map(|(robot, name)| prepared(name, find(base, name), robot, options, folder)).collect();
+        placed.map(|(robot, name)| named(base, name, robot, options, folder)).collect();
     let Some(first) = programs.first_mut() else {
         let script = options.program.display();
         return Err(format!(
@@ -54,16 +56,26 @@ pub(crate) fn of(options: &Options, scene: &Scene, folder: &WorkFolder) -> Resul
     Ok(programs)
 }
 
-/// The file of a program named in a script: relative to the script, in the script's own folder, or else the
-/// only source text of that folder.
-fn find(base: &Path, name: &str) -> Result<PathBuf, String> {
+/// A program named in a script: relative to the script, in the script's own folder, or else the only source text
+/// of that folder, with a warning.
+fn named(base: &Path, name: &str, robot: usize, options: &Options, folder: &WorkFolder) -> Program {
     let path = base.join(name.replace('\\', "/"));
     let beside = path.file_name().map(|file| base.join(file));
-    let folder = path.parent().filter(|folder| folder.is_dir()).unwrap_or(base);
-    let found = source(&path).or_else(|| source(&beside?)).or_else(|| only_source(folder));
-    found.ok_or_else(|| {
-        format!("{}: no such file; expected a program, or its source text beside it", path.display())
-    })
+    if let Some(file) = source(&path).or_else(|| source(&beside?)) {
+        return prepared(name, Ok(file), robot, options, folder);
+    }
+    let place = path.parent().filter(|place| place.is_dir()).unwrap_or(base);
+    let Some(only) = only_source(place) else {
+        let missing =
+            format!("{}: no such file; expected a program, or its source text beside it", path.display());
+        return prepared(name, Err(missing), robot, options, folder);
+    };
+    let instead = only.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let warning = format!(
+        "robot {}: its program {name} is not there; {instead}, the only source text in the folder, runs instead",
+        robot + 1
+    );
+    Program { warning: Some(warning), ..prepared(&instead, Ok(only), robot, options, folder) }
 }
 
 fn prepared(
@@ -77,6 +89,7 @@ fn prepared(
     let file = found.and_then(|file| if is_source(&file) { compile(&file, folder, robot) } else { Ok(file) });
     Program {
         name: name.to_owned(),
+        warning: None,
         robot,
         file,
         folder: own_folder.unwrap_or_else(|| PathBuf::from("/")),

@@ -27,7 +27,7 @@ impl Stopwatch {
 /// How a program's process ended.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Ending {
-    /// Exit status, and its last words on failure.
+    /// Exit status, and on failure its last words, or why it had no robot.
     Exit(i32, Option<String>),
     Signal(i32),
     OutOfTime(String),
@@ -97,8 +97,8 @@ impl Verdict {
         match self.ending {
             Ending::Signal(_) => "crashed",
             Ending::OutOfTime(_) => "timed_out",
-            Ending::Exit(0, _) if self.truth.contacts > 0 => "collided",
-            Ending::Exit(0, _) => "finished",
+            Ending::Exit(0, None) if self.truth.contacts > 0 => "collided",
+            Ending::Exit(0, None) => "finished",
             Ending::Exit(..) | Ending::Offence(_) | Ending::NotStarted(_) => "failed",
         }
     }

@@ -47,3 +47,22 @@ fn a_library_of_another_build_refuses_and_says_so() {
     assert_eq!(code, Some(1));
     assert!(said.contains("of another build") && said.contains("cargo build -p robios"), "{said}");
 }
+
+/// Its program ends well, as it does not look at what calls return; the run does not.
+#[test]
+fn a_refusal_is_in_the_report() {
+    if !compiler() {
+        return;
+    }
+    let folder = Folder::new("library-refuses");
+    let text = "#include <stdlib.h>\n#include \"eyebot.h\"\nint main() { setenv(\"ROBIOS_BUILD\", \"another\", 1); \
+                LCDPrintf(\"here\"); return 0; }\n";
+    let file = folder.write("print.c", text);
+    let output = Command::new(env!("CARGO_BIN_EXE_robios")).arg("--json").arg(&file).output().unwrap();
+    let told: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(
+        (output.status.code(), &told["outcome"], &told["exit"]),
+        (Some(1), &"failed".into(), &0.into())
+    );
+    assert!(told["error"].as_str().unwrap().contains("of another build ("), "{told}");
+}

@@ -152,3 +152,70 @@ fn programs_that_wait_for_each_other_are_named() {
     );
     assert!(errors[1].contains("robot 1, wait.x") && errors[1].contains("none of them sends"), "{all}");
 }
+
+/// A thread's query waits for its frame, while others run in the same simulated time: whatever the others do
+/// meanwhile, they see every reading in time.
+#[test]
+fn a_thread_that_calls_without_sleeping_leaves_time_to_others() {
+    if !compiler() || !cfg!(target_os = "linux") {
+        return;
+    }
+    let text = |body: &str| {
+        format!(
+            "#include \"eyebot.h\"\nvolatile int distance = 9999;\nvoid *sense(void *a) {{ for (;;) distance = \
+             PSDGet(PSD_FRONT); }}\nint main() {{ pthread_t t; pthread_create(&t, NULL, sense, NULL);\n\
+             VWSetSpeed(200, 0); while (distance > 1000) {body}; VWSetSpeed(0, 0); OSWait(100); \
+             LCDPrintf(\"%d\", PSDGet(PSD_FRONT)); return 0; }}\n"
+        )
+    };
+    let folder = Folder::new("limits-polling");
+    for (name, body) in [("waits.c", "OSWait(10)"), ("spins.c", "")] {
+        let file = folder.write(name, &text(body));
+        let all = report(&["--time-limit", "60", "--real-limit", "60", file.to_str().unwrap()]);
+        assert_eq!(all["outcome"], "finished", "{name}: {all}");
+        let left: f64 = all["lcd_text"].as_str().unwrap().parse().unwrap();
+        assert!((960.0..1001.0).contains(&left), "{name}: it stops within some frames: {all}");
+    }
+    let drive = "#include \"eyebot.h\"\nvoid *sense(void *a) { for (;;) PSDGet((int)(intptr_t)a); }\n\
+                 int main() { intptr_t i; for (i = 1; i < 4; i++) { pthread_t t; pthread_create(&t, NULL, sense, \
+                 (void *)i); }\nVWStraight(300, 100); VWWait(); LCDPrintf(\"there\"); return 0; }\n";
+    let file = folder.write("three.c", drive);
+    let all = report(&["--time-limit", "60", file.to_str().unwrap()]);
+    assert_eq!((&all["outcome"], &all["lcd_text"]), (&"finished".into(), &"there".into()), "{all}");
+    assert!((3.0..4.5).contains(&number(&all["sim_time_s"])), "{all}");
+    let print = "#include \"eyebot.h\"\nvoid *print(void *a) { int n = 0; for (;;) LCDSetPrintf(0, 0, \"%d\", n++); }\n\
+                 int main() { pthread_t t; pthread_create(&t, NULL, print, NULL);\n\
+                 OSWait(1000); return OSGetCount() > 1020; }\n";
+    let all = report(&["--time-limit", "60", folder.write("print.c", print).to_str().unwrap()]);
+    assert_eq!(all["outcome"], "finished", "{all}");
+}
+
+/// Each sleeping thread looks after the others only when it is the next to wake up.
+#[test]
+fn many_sleeping_threads_take_little() {
+    if !compiler() || !cfg!(target_os = "linux") {
+        return;
+    }
+    let text = "#include \"eyebot.h\"\nvoid *nap(void *a) { int i; for (i = 0; i < 10; i++) OSWait(100 + \
+                (int)(intptr_t)a); return NULL; }\nint main() { pthread_t t[30]; intptr_t i;\n\
+                for (i = 0; i < 30; i++) pthread_create(t + i, NULL, nap, (void *)i);\n\
+                for (i = 0; i < 30; i++) pthread_join(t[i], NULL); LCDPrintf(\"%d\", OSGetCount()); return 0; }\n";
+    let file = Folder::new("limits-crowd").write("crowd.c", text);
+    let all = report(&["--real-limit", "10", file.to_str().unwrap()]);
+    assert_eq!(all["outcome"], "finished", "{all}");
+    assert!((1.29..1.32).contains(&number(&all["sim_time_s"])), "{all}");
+}
+
+#[test]
+fn a_command_before_a_busy_loop_arrives_in_a_shared_world_too() {
+    if !compiler() {
+        return;
+    }
+    let folder = Folder::new("limits-order");
+    folder.write("hang.c", "#include \"eyebot.h\"\nint main() { VWSetSpeed(50, 0); for (;;) ; }\n");
+    folder.write("long.c", "#include \"eyebot.h\"\nint main() { OSWait(10000); return 0; }\n");
+    let script = folder.write("two.sim", "S4 500 500 0 hang.x\nLabBot 500 1500 0 long.x\n");
+    let all = report(&["--time-limit", "20", "--hang-limit", "1", script.to_str().unwrap()]);
+    let path = number(&all["robots"][0]["path_length_mm"]);
+    assert!((950.0..1001.0).contains(&path), "20 s at 50 mm/s: {all}");
+}

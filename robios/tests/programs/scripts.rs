@@ -139,6 +139,20 @@ fn programs_are_found_by_names_of_other_systems() {
     assert_eq!(alone["lcd_text"], "C", "{alone}");
 }
 
+/// The report names what ran, not what was asked for.
+#[test]
+fn the_only_source_text_takes_a_programs_place_with_a_warning() {
+    if !compiler() {
+        return;
+    }
+    let folder = Folder::new("instead");
+    folder.write("look.c", "#include \"eyebot.h\"\nint main() { LCDPrintf(\"looks\"); return 0; }\n");
+    let all = run(&folder.write("all.sim", "S4 500 500 0 nothere.x\n"));
+    assert_eq!((&all["program"], &all["lcd_text"]), (&"look.c".into(), &"looks".into()), "{all}");
+    let told = "robot 1: its program nothere.x is not there; look.c, the only source text in the folder, runs instead";
+    assert_eq!(all["warnings"], serde_json::json!([told]), "{all}");
+}
+
 #[test]
 fn what_a_robot_touches_after_its_program_is_not_the_programs_doing() {
     if !python() {
