@@ -174,6 +174,7 @@ impl<'a> Reader<'a> {
         Some(Pose::new(self.number()?, self.number()?, self.number()?))
     }
 
+    #[allow(clippy::option_option, reason = "nothing to read, or no channels")]
     fn channels(&mut self) -> Option<Option<[u8; 3]>> {
         self.take().map(|channels| (channels != [0; 3]).then_some(channels))
     }

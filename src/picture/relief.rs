@@ -109,7 +109,8 @@ fn patches(
             let low = frame.at(raster.corner(first as f64, row as f64));
             let high = frame.at(raster.corner(column as f64, row as f64 + 1.0));
             let [x, y, width, height] = [low.x, high.y, high.x - low.x, low.y - high.y].map(number);
-            paths.entry(key).or_default().push_str(&format!("M{x} {y}h{width}v{height}h-{width}z"));
+            let path: &mut String = paths.entry(key).or_default();
+            path.extend(["M", &x, " ", &y, "h", &width, "v", &height, "h-", &width, "z"]);
         }
     }
     paths

@@ -59,7 +59,7 @@ impl World {
                 line.segments().for_each(|segment| self.add_edge(place(segment.a), place(segment.b)));
             }
             TypedShape::Triangle(triangle) => {
-                self.add_outline(&[triangle.a, triangle.b, triangle.c].map(place))
+                self.add_outline(&[triangle.a, triangle.b, triangle.c].map(place));
             }
             TypedShape::ConvexPolygon(polygon) => {
                 let corners: Vec<Point> = polygon.points().iter().map(|&corner| place(corner)).collect();

@@ -21,7 +21,7 @@ fn simulation(number: usize, options: SimOptions) -> (Simulation, Vec<SimRobot>)
 fn assert_held_back(error: &Error) {
     assert_eq!(error.kind(), ErrorKind::Other);
     assert!(error.to_string().contains("robot 0 waits for robot 1"), "{error}");
-    assert!(error.to_string().contains("give each robot a thread of its own, or use a fleet"), "{error}");
+    assert!(error.to_string().contains("give each robot a running thread of its own"), "{error}");
 }
 
 #[test]

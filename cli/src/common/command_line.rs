@@ -208,9 +208,8 @@ fn options(command: &Command, matches: &ArgMatches) -> Vec<String> {
             matches.get_raw(id).into_iter().flatten().map(|value| value.to_string_lossy().into_owned());
         let is_file = FILES.contains(&id);
         let is_name = |value: &str| id == "robot" && is_built_in(value);
-        let values = values.map(|value| match is_file && !is_name(&value) {
-            true => recorded_name(id, Path::new(&value)),
-            false => value,
+        let values = values.map(|value| {
+            if is_file && !is_name(&value) { recorded_name(id, Path::new(&value)) } else { value }
         });
         options.extend(values.map(|value| match &name {
             Some(name) => format!("{name}={value}"),

@@ -25,14 +25,11 @@ impl Setting {
     /// What a command line describes.
     pub(super) fn of(args: &Args) -> Result<Self, Failure> {
         let (name, seed) = (args.course.clone(), args.common.seed);
-        let course = match name.parse::<u64>() {
-            Ok(seed) => generated(seed)?,
-            Err(_) => {
-                let path = Path::new(&name);
-                let bytes = args.common.read("course", path).map_err(Failure::input)?;
-                let text = String::from_utf8_lossy(&bytes);
-                course::parse(&text, &path.display().to_string()).map_err(Failure::input)?
-            }
+        let course = if let Ok(seed) = name.parse::<u64>() {
+            generated(seed)?
+        } else {
+            let bytes = args.common.read("course", Path::new(&name)).map_err(Failure::input)?;
+            course::parse(&String::from_utf8_lossy(&bytes), &name).map_err(Failure::input)?
         };
         let setting = Self {
             name,

@@ -110,7 +110,7 @@ fn changed(args: &Args, seed: u64, trial: &mut Trial) -> Result<(), Failure> {
         trial.compared += 1;
         let cost = |way: &Option<roverlab::nav::elevation::ElevationPath>| way.as_ref().map(|way| way.cost);
         trial.equal += u32::from(cost(&way) == cost(&fresh));
-        if let Some(next) = way.and_then(|way| way.points.get(2).map(|point| point.xy())) {
+        if let Some(next) = way.and_then(|way| way.points.get(2).map(nalgebra::OPoint::xy)) {
             robot = next;
             kept.move_to(robot).map_err(refused)?;
         }

@@ -116,7 +116,7 @@ fn picture(world: &World, args: &Args, path: Option<&ElevationPath>, start: Poin
     let limit = units::to_deg(args.climber().slope);
     picture.title(title).caption(format!("{}, slopes up to {limit:.0} degrees", args.robot.name));
     if let Some(path) = path {
-        picture.line(path.points.iter().map(|point| point.xy()), Style::plan().width(3.0));
+        picture.line(path.points.iter().map(nalgebra::OPoint::xy), Style::plan().width(3.0));
     }
     picture.mark(Mark::Start, start).mark(Mark::Goal, goal);
     picture

@@ -49,6 +49,9 @@ const LONGEST_RECORDING: i32 = 65_536;
 /// Duration of a sound (s).
 const SOUND: f64 = 0.5;
 
+/// From metres, radians and seconds to what a channel reads.
+type Scale = fn(f64) -> f64;
+
 impl Robios {
     /// `DIGITALSetup`.
     pub fn digital_setup(&mut self, line: i32, direction: u8) -> Result<()> {
@@ -93,7 +96,7 @@ impl Robios {
         }
         let unit = self.identity.inertial;
         let tenths_of_degrees = |radians| 10.0 * units::to_deg(radians);
-        let groups: [(_, _, fn(f64) -> f64); 3] = [
+        let groups: [(_, _, Scale); 3] = [
             (unit.attitude, Request::Attitude, tenths_of_degrees),
             (unit.turn_rates, Request::TurnRates, tenths_of_degrees),
             (unit.acceleration, Request::Acceleration, units::to_mm),

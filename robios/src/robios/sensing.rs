@@ -10,7 +10,7 @@ use crate::ask::{Reply, Request};
 pub const NOTHING: i32 = 9999;
 
 /// Default duration of an image (s), for 30 images per second.
-const FRAME: f64 = 1.0 / 30.0;
+const FRAME: f64 = 0.033;
 
 impl Robios {
     /// `PSDGet`: at least 1 mm, as 0 means a missing sensor.

@@ -48,7 +48,7 @@ impl LaneKeeperParameters {
         require_positive("control period", self.period)?;
         require_positive("speed", self.speed)?;
         require_positive("acceleration across", self.across)?;
-        require_positive("deceleration", self.brake)?;
+        require_positive("brake", self.brake)?;
         require_positive("settling", self.settling[0])?;
         crate::parameter::require_not_negative("settling by speed", self.settling[1])?;
         crate::parameter::require_not_negative("delay", self.delay)?;

@@ -286,8 +286,8 @@ fn mishap_number(mishap: Mishap) -> u8 {
     MISHAPS.iter().position(|&known| known == mishap).map_or(0, |index| index as u8 + 1)
 }
 
-fn mishap_of(number: u8) -> Option<Option<Mishap>> {
-    if number == 0 { Some(None) } else { MISHAPS.get(usize::from(number) - 1).copied().map(Some) }
+fn mishap_of(number: u8) -> Option<Mishap> {
+    MISHAPS.get(usize::from(number.checked_sub(1)?)).copied()
 }
 
 compounds! {
@@ -301,7 +301,7 @@ compounds! {
             v.pose.attitude.w, v.mishap.map_or(0, mishap_number)],
         [x, y, z, i, j, k, w, mishap] => TruthInSpace {
             pose: Pose3::new(Point3::new(x, y, z), unit([w, i, j, k])?),
-            mishap: mishap_of(mishap)?,
+            mishap: mishap_of(mishap),
         };
     Psd: v => [v.0], [number] => Psd(number);
     Colour: v => [v.red, v.green, v.blue], [red, green, blue] => Colour::new(red, green, blue);

@@ -96,7 +96,7 @@ mod tests {
         fn energy_never_rises((x, y) in (-1.0..1.0f64, -1.0..1.0f64), (vx, vy) in (-2.0..2.0f64, -2.0..2.0f64), rolls in any::<bool>()) {
             let (slope, before) = (Vector::new(x, y), Vector::new(vx, vy));
             let share = if rolls { OF_A_BALL } else { 1.0 };
-            let energy = |v: Vector| 0.5 * (v.norm_squared() + slope.dot(&v).powi(2)) / share;
+            let energy = |v: Vector| 0.5 * (v.norm_squared() + slope.dot(&v) * slope.dot(&v)) / share;
             let after = slide(before, slope, rolls);
             let climbed = GRAVITY * slope.dot(&after) * TICK;
             prop_assert!(energy(after) + climbed <= energy(before) + 1e-12);

@@ -2,7 +2,6 @@ use ambassador::Delegate;
 use image::RgbImage;
 
 use crate::geometry::{Pose, Twist, Vector3, math, normalize_angle, units};
-use crate::io::camera::FRAME_RATE;
 use crate::io::delegate::ambassador_impl_StallDetector;
 use crate::io::{
     Attitude, Camera, Clock, DepthSensor, Display, DisplayImage, DisplayOption, DistanceSensors, Drive,
@@ -40,6 +39,8 @@ pub struct Quantised<R> {
 
 /// Minimum distance (m): 0 would mean a missing sensor.
 const NEAREST: f64 = 0.001;
+/// Duration of an image through RoBIOS (s).
+const FRAME: f64 = 0.033;
 
 impl<R> Quantised<R> {
     /// Rounds a robot's numbers.
@@ -238,7 +239,7 @@ impl<R: Camera + Clock> Camera for Quantised<R> {
             self.set_resolution(self.resolution)?;
         }
         self.inner.image_into(image)?;
-        self.inner.wait(1.0 / FRAME_RATE)
+        self.inner.wait(FRAME)
     }
 }
 

@@ -136,8 +136,8 @@ impl Craft {
             reach: reach.fold(0.0, f64::max),
             hull,
             most_damping: rigid.diagonal() / step,
-            wet: Inertia { straightened, ..Inertia::new(wet)? },
-            dry: Inertia::new(rigid)?,
+            wet: Inertia { straightened, ..Inertia::new(&wet)? },
+            dry: Inertia::new(&rigid)?,
             linear_damping: Vector6::from(spec.linear_damping),
             quadratic_damping: Vector6::from(spec.quadratic_damping),
             thrusters,
@@ -378,11 +378,11 @@ impl From<(Vector3, Vector3)> for Wrench {
 }
 
 impl Inertia {
-    fn new(matrix: Matrix6<f64>) -> Result<Self, ParameterError> {
-        let least = least_pivot(matrix);
+    fn new(matrix: &Matrix6<f64>) -> Result<Self, ParameterError> {
+        let least = least_pivot(*matrix);
         require("least principal inertia", least, least > 1e-12, "the inertia of a body with some size")?;
         let inverse = matrix.try_inverse().unwrap_or_else(Matrix6::identity);
-        Ok(Self { matrix, inverse, straightened: None })
+        Ok(Self { matrix: *matrix, inverse, straightened: None })
     }
 }
 

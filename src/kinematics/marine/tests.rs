@@ -86,7 +86,7 @@ fn draught_and_heel_are_those_of_archimedes() {
     // The waterplane is two strips, 0.3 m to each side.
     let length = plane / (2.0 * (plane / 2.6).min(0.16));
     let width = plane / (2.0 * length);
-    let inertia = 2.0 * (length * width.powi(3) / 12.0 + length * width * 0.09);
+    let inertia = 2.0 * (length * width * width * width / 12.0 + length * width * 0.09);
     let metacentric = displaced.centre().z + inertia / displaced.volume - raft.mass_centre.z;
     let [heel, _, _] = state.pose(&raft).roll_pitch_yaw();
     assert!(

@@ -85,14 +85,7 @@ impl GroundCosts {
 
     pub(super) fn set_height(&mut self, cell: GridCell, height: f32) {
         let index = cell.row * self.columns + cell.column;
-        match Arc::get_mut(&mut self.heights) {
-            Some(heights) => heights[index] = height,
-            None => {
-                let mut heights = self.heights.to_vec();
-                heights[index] = height;
-                self.heights = heights.into();
-            }
-        }
+        Arc::make_mut(&mut self.heights)[index] = height;
     }
 
     /// What a straight way between two places costs, in samples, by the ground at places about half a cell

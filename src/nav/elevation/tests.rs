@@ -217,6 +217,7 @@ fn what_cannot_be_planned_is_told() {
 /// Run in release: `cargo test --release --lib elevation -- --ignored --nocapture`.
 #[test]
 #[ignore = "measures time"]
+#[allow(clippy::disallowed_methods, reason = "it measures time")]
 fn planning_on_512_by_512_samples() {
     let options = ReliefOptions { samples: 512, ..ReliefOptions::of(ReliefKind::Range) };
     for seed in 0..5 {

@@ -121,7 +121,7 @@ mod tests {
         let curve = Curve::new(&[0.8; KNOTS]);
         for (angle, left) in [(0.2_f64, 0.0), (0.9, 0.3), (1.4, -0.4), (1.0, 0.42)] {
             let radius = 1.25 - left;
-            let point = Point::new(radius * angle.sin(), 1.25 - radius * angle.cos());
+            let point = Point::new(radius * math::sin(angle), 1.25 - radius * math::cos(angle));
             let foot = curve.foot(point).unwrap();
             assert!((foot.left - left).abs() < 1e-3, "{foot:?}");
             assert!((foot.along - 1.25 * angle).abs() < 2e-3, "{foot:?}");

@@ -41,7 +41,9 @@ fn road(camera: &RoadCamera, (offset, heading, bend): (f64, f64, f64), lines: &[
 fn look(camera: RoadCamera, image: &[u8], frames: usize) -> LaneEstimate {
     let mut finder = LaneMarkingFinder::new(camera, RoadModel::default()).unwrap();
     let view = || GrayView::new(image, 320, 240).unwrap();
-    (1..frames).for_each(|_| drop(finder.see(view(), (0.0, 0.0))));
+    for _ in 1..frames {
+        finder.see(view(), (0.0, 0.0));
+    }
     finder.see(view(), (0.0, 0.0))
 }
 

@@ -81,7 +81,7 @@ fn wall(a: [f64; 2], b: [f64; 2], colour: Colour) -> Wall {
     Wall { colour, ..Wall::new(Point::new(a[0], a[1]), Point::new(b[0], b[1])) }
 }
 
-/// The field of the RoboCup small-size league in 1998, as large as a table-tennis table, with its goals.
+/// The field of the robot-soccer small-size league in 1998, as large as a table-tennis table, with its goals.
 fn soccer() -> World {
     let (length, width, goal, depth) = (2.74, 1.525, 0.5, 0.18);
     let mut world = World::empty(length, width);

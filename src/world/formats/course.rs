@@ -152,7 +152,7 @@ const RIGHTS: [(&str, RightOfWay); 4] = [
     ("from-the-right", RightOfWay::FromTheRight),
 ];
 
-fn name_of<T: PartialEq>(names: &[(&'static str, T)], value: T) -> &'static str {
+fn name_of<T: PartialEq + Copy>(names: &[(&'static str, T)], value: T) -> &'static str {
     names.iter().find(|(_, known)| *known == value).map_or("", |(name, _)| name)
 }
 

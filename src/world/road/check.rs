@@ -79,11 +79,13 @@ impl RoadCourse {
             if !(0.0..=length).contains(&mark.at) {
                 return wrong("a mark's place", mark.at, "a place on the road");
             }
-            let long = match mark.kind {
-                RoadMarkKind::Gap(_, long) | RoadMarkKind::SideRoad(_, long) => long,
-                RoadMarkKind::Barred(_, long, _) | RoadMarkKind::Parking(_, long) => long,
-                RoadMarkKind::Artefact(_, long, _) => long,
-                _ => continue,
+            let (RoadMarkKind::Gap(_, long)
+            | RoadMarkKind::SideRoad(_, long)
+            | RoadMarkKind::Barred(_, long, _)
+            | RoadMarkKind::Parking(_, long)
+            | RoadMarkKind::Artefact(_, long, _)) = mark.kind
+            else {
+                continue;
             };
             if !(long > 0.0 && long <= 0.5 * length) {
                 return wrong("a mark's length", long, "more than 0 and at most half the road");

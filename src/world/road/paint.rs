@@ -289,6 +289,7 @@ impl Painter<'_> {
     }
 
     /// A straight road away from a crossing, along a frame.
+    #[allow(clippy::option_option, reason = "no line, a solid one, or one of dashes")]
     fn arm(&mut self, out: &Pose, from: f64, to: f64, waits: Option<Option<(f64, f64)>>) {
         let (edge, half) = (self.course.edge(), 0.5 * self.course.line_width);
         for y in [edge, -edge] {

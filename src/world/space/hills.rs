@@ -19,12 +19,12 @@ struct Ground<'a>(Option<&'a HeightField>);
 
 impl Ground<'_> {
     /// Elevation at a point; beyond the hills, that of the floor.
-    fn height(&self, at: Point) -> f64 {
+    fn height(self, at: Point) -> f64 {
         self.0.and_then(|hills| hills.height(at)).unwrap_or(0.0)
     }
 
     /// Distance to the first intersection of a ray with the ground.
-    fn cast_ray(&self, origin: Point3, direction: Vector3, max_range: f64) -> f64 {
+    fn cast_ray(self, origin: Point3, direction: Vector3, max_range: f64) -> f64 {
         match self.0 {
             Some(hills) => hills.cast_ray(origin, direction, max_range),
             None if direction.z < 0.0 && origin.z >= 0.0 => origin.z / -direction.z,

@@ -49,7 +49,8 @@ impl Piece {
         let (foot, top) = (raised(body.bottom - FOUNDATION), raised(body.top));
         let middle = [0, 1, 2].map(|axis| 0.5 * (foot[0][axis] + top[2][axis]));
         let away = |corner: &Place| {
-            [0, 1, 2].map(|axis| (corner[axis] - middle[axis]).powi(2)).iter().sum::<f64>().sqrt()
+            let aside = [0, 1, 2].map(|axis| corner[axis] - middle[axis]);
+            aside.iter().map(|part| part * part).sum::<f64>().sqrt()
         };
         let radius = foot.iter().chain(&top).map(away).fold(0.0, f64::max);
         Self { foot, top, colour: body.colour, middle, radius }

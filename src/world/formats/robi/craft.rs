@@ -207,7 +207,9 @@ fn hull_of(body: &Body, mass: f64, boat: bool, notes: &mut Notes<'_>) -> Vec<Hul
     let wanted = mass / FRESH * if boat { FREEBOARD } else { RESERVE };
     let scale = crate::geometry::math::pow(wanted / volume, 1.0 / 3.0);
     if scale.is_finite() && scale > 0.0 && (!boat || scale > 1.0) {
-        parts.iter_mut().for_each(|part| *part = scaled(*part, scale));
+        for part in &mut parts {
+            *part = scaled(*part, scale);
+        }
     }
     parts
 }
