@@ -25,7 +25,7 @@ fn drives_over_hills(name: &str, program: &str) {
     let scripts = folder.0.join("simulations/terrain");
     fs::copy(programs().join("check.h"), scripts.join("check.h")).unwrap();
     fs::copy(folder.0.join(program), scripts.join(program)).unwrap();
-    if program.ends_with(".c") {
+    if Path::new(program).extension().is_some_and(|kind| kind == "c") {
         compiled(&scripts.join(program));
     }
     for script in ["crater.sim", "levels-steel.sim"] {
