@@ -1,6 +1,7 @@
-//! Planning between cones: the lane around the car in a map of about 200 cones, the way through all of it, and the racing line on
-//! it, with all cones and with some that are missing and some that are false. What counts is the worst track, so the slowest of
-//! many is printed beside the mean; each is the fastest of some repetitions, as the machine has other things to do.
+//! Planning between cones: the lane around the car in a map of about 200 cones, the way through all of it,
+//! and the racing line on it, with all cones and with some that are missing and some that are false. What
+//! counts is the worst track, so the slowest of many is printed beside the mean; each is the fastest of some
+//! repetitions, as the machine has other things to do.
 
 use std::hint::black_box;
 use std::time::Instant;

@@ -1,9 +1,9 @@
 //! Flood fill and time-optimal plans of mazes.
 //!
-//! First a table: flood fill of all published mazes of 16 x 16 cells in turn, beside the book's passes over all cells and a
-//! queue, both in C, and beside the queue of this library. Then criterion's figures. The published mazes are found in the
-//! folder `micromouse` of the one that the environment variable `ROVERLAB_DATA` names; without it, mazes made at random
-//! take their place.
+//! First a table: flood fill of all published mazes of 16 x 16 cells in turn, beside the book's passes over
+//! all cells and a queue, both in C, and beside the queue of this library. Then criterion's figures. The
+//! published mazes are found in the folder `micromouse` of the one that the environment variable
+//! `ROVERLAB_DATA` names; without it, mazes made at random take their place.
 
 #[path = "mazes/contest.rs"]
 mod contest;

@@ -1,4 +1,5 @@
-//! The planners of `roverlab::nav::grid` beside their peers: the same queries, costs compared first, then times.
+//! The planners of `roverlab::nav::grid` beside their peers: the same queries, costs compared first, then
+//! times.
 //!
 //! `cargo bench -p roverlab-bench --bench planners` prints a table for each map with the median time of a
 //! query and, at the end, geometric means of the ratios over the maps of 512 cells and more. Published maps
@@ -94,7 +95,8 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Cells along the sides of maps, and how many queries these get at most: a search of all cells of the last takes seconds.
+/// Cells along the sides of maps, and how many queries these get at most: a search of all cells of the last
+/// takes seconds.
 const SIZES: [(usize, usize); 5] = [(256, 100), (512, 100), (1024, 50), (2048, 20), (4096, 8)];
 
 /// How the planners of this library grow.

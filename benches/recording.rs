@@ -46,7 +46,8 @@ fn record(scene: &Scene, goal: Point, memory: Vec<u8>) -> Vec<u8> {
 /// Runs of each kind that are compared.
 const ROUNDS: usize = 15;
 
-/// How much longer a run takes that is recorded. The fastest of many is what other work on the machine disturbs least.
+/// How much longer a run takes that is recorded. The fastest of many is what other work on the machine
+/// disturbs least.
 #[allow(clippy::disallowed_methods, reason = "a benchmark takes the time")]
 fn cost(scene: &Scene, goal: Point) -> f64 {
     let (mut plain, mut recorded) = (f64::INFINITY, f64::INFINITY);

@@ -1,5 +1,5 @@
-//! The memory that an hour of recording takes: it is printed for each ten minutes of the run, and must stay where it is.
-//! For Linux, whose kernel tells how much memory a process uses.
+//! The memory that an hour of recording takes: it is printed for each ten minutes of the run, and must stay
+//! where it is. For Linux, whose kernel tells how much memory a process uses.
 
 use std::io;
 

@@ -1,4 +1,4 @@
-//! Rays against hills, beside parry3d's answers to the same; a tracked robot on hills, and its camera.
+//! Rays against hills, beside parry3d's answers to the same; a tracked robot on hills, its camera, and plans.
 
 use std::hint::black_box;
 
@@ -10,6 +10,7 @@ use parry3d_f64::utils::Array2;
 use roverlab::geometry::{Aabb, Point, Point3, Pose, Twist, Vector, Vector3, math};
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::{Camera, Clock, DistanceSensors, Drive, Lidar, LidarScan, Psd, Resolution};
+use roverlab::nav::elevation::{Climber, ElevationMap, ElevationPlanner, Objective};
 use roverlab::random::Stream;
 use roverlab::world::{HeightField, RobotSpec, Scene, Terrain, World};
 
@@ -142,7 +143,8 @@ fn simulation() -> Simulation {
     Simulation::new(&scene, SimOptions::ideal()).expect("a good scene")
 }
 
-/// Ten seconds of driving, to and fro so that nobody leaves the field, with four PSDs at 10 Hz, and a lidar of 360 beams.
+/// Ten seconds of driving, to and fro so that nobody leaves the field, with four PSDs at 10 Hz, and a lidar
+/// of 360 beams.
 fn driving(c: &mut Criterion) {
     for (name, lidar) in [("terrain drive 10 s, 4 PSDs", false), ("terrain drive 10 s, 360 beams", true)] {
         let mut robot = simulation().robot(0).expect("the robot");
@@ -179,9 +181,25 @@ fn camera(c: &mut Criterion) {
     });
 }
 
+/// Plans from corner to corner of 512 x 512 samples.
+fn planning(c: &mut Criterion) {
+    let map = ElevationMap::new(&hills(512), &Climber::of(&RobotSpec::blizzard())).expect("hills");
+    let (start, goal) = (Point::new(0.3, 0.3), Point::new(SIDE - 0.3, SIDE - 0.3));
+    let mut group = c.benchmark_group("plans on 512 x 512");
+    for (name, objective) in [
+        ("length", Objective::Length),
+        ("energy", Objective::Energy { resistance: 0.1 }),
+        ("time", Objective::Time { speed: 0.3, climb: 0.05 }),
+    ] {
+        let mut planner = ElevationPlanner::astar(&map, objective).expect("a good objective");
+        planner.plan(start, goal).expect("a way");
+        group.bench_function(name, |b| b.iter(|| planner.plan(black_box(start), goal)));
+    }
+}
+
 criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(20);
-    targets = rays, driving, camera
+    targets = rays, driving, camera, planning
 }
 criterion_main!(benches);

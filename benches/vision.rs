@@ -1,4 +1,5 @@
-//! Every kernel of `roverlab::vision` at three resolutions, beside imageproc's and beside a copy of the memory.
+//! Every kernel of `roverlab::vision` at three resolutions, beside imageproc's and beside a copy of the
+//! memory.
 //!
 //! `cargo bench -p roverlab-bench --bench vision` prints the table. `-- --json FILE` writes the times as
 //! JSON, `-- --images FOLDER` the images that they were taken on, for `benches/peers/vision.py`; `-- --quick`

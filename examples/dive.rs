@@ -1,5 +1,5 @@
-//! Diving (book, sections 8.1 to 8.3): Mako comes to a depth by its two upright thrusters, holds it, and surfaces by itself
-//! when they stop.
+//! Diving (book, sections 8.1 to 8.3): Mako comes to a depth by its two upright thrusters, holds it, and
+//! surfaces by itself when they stop.
 //!
 //! `cargo run --release --example dive`
 

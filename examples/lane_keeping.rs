@@ -1,5 +1,6 @@
-//! Keeping the lane (book, chapter 13): a model car drives on a course that it does not know, by its camera alone, before the
-//! referee of Free Drive; then the book's pipeline of edges and straight lines drives on the same course.
+//! Keeping the lane (book, chapter 13): a model car drives on a course that it does not know, by its camera
+//! alone, before the referee of Free Drive; then the book's pipeline of edges and straight lines drives on
+//! the same course.
 //!
 //! `cargo run --release --example lane_keeping`
 

@@ -1,6 +1,6 @@
 //! A robot of one's own (book, chapter 2): whoever implements the traits of what a robot can do can be driven
-//! by every behaviour that asks for no more. This one has a clock, speeds and odometry, and moves exactly as it
-//! is told; [`Manoeuvring`] makes manoeuvres and a stall detector of that.
+//! by every behaviour that asks for no more. This one has a clock, speeds and odometry, and moves exactly as
+//! it is told; [`Manoeuvring`] makes manoeuvres and a stall detector of that.
 //!
 //! `cargo run --release --example own_robot`
 

@@ -1,4 +1,5 @@
-//! The safety system allocates nothing once it is there. A program of its own, as it counts all that is allocated.
+//! The safety system allocates nothing once it is there. A program of its own, as it counts all that is
+//! allocated.
 
 #![allow(unsafe_code, reason = "an allocator is unsafe to write")]
 

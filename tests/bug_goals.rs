@@ -1,4 +1,5 @@
-//! The bug family's verdicts on goals beside walls, corners and curves, at every distance from touching to well clear.
+//! The bug family's verdicts on goals beside walls, corners and curves, at every distance from touching to
+//! well clear.
 
 use roverlab::geometry::{Point, Pose, direction};
 use roverlab::io::control;
@@ -9,9 +10,11 @@ use roverlab::world::{RobotSpec, Scene, Wall, World};
 
 /// The farthest goal from a surface in metres.
 const FAR: f64 = 0.2;
-/// Goals for which a few millimetres decide are left out, in metres, by the level of noise: a tenth of the tolerance is kept.
+/// Goals for which a few millimetres decide are left out, in metres, by the level of noise: a tenth of the
+/// tolerance is kept.
 const UNDECIDED: [f64; 2] = [0.004, 0.02];
-/// How far from the goal the robot may truly be where it says that it is there, in metres, by the level of noise.
+/// How far from the goal the robot may truly be where it says that it is there, in metres, by the level of
+/// noise.
 const MISSED: [f64; 2] = [0.03, 0.1];
 
 /// A room with a block and a round pillar.
@@ -37,7 +40,8 @@ fn goal(stream: &mut Stream) -> Point {
     }
 }
 
-/// How much larger than the disc of a robot the free space is at the best place that counts as the goal, in metres.
+/// How much larger than the disc of a robot the free space is at the best place that counts as the goal, in
+/// metres.
 fn room_at(world: &World, goal: Point, parameters: &BugParameters) -> f64 {
     let clearance = |place: Point| {
         let far = |wall: &Wall| wall.line.distance_to(place) - 0.5 * wall.thickness;

@@ -1,8 +1,8 @@
 //! Every public algorithm has a documentation example that runs.
 //!
 //! An algorithm is a public function, or a public structure with a constructor of its own or with one of
-//! [`ALGORITHM_TRAITS`]; parameters and errors are none. Its example is a block of code that runs and names it (an
-//! import does not count), in the documentation of the same file or of a module that contains it.
+//! [`ALGORITHM_TRAITS`]; parameters and errors are none. Its example is a block of code that runs and names
+//! it (an import does not count), in the documentation of the same file or of a module that contains it.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -21,7 +21,8 @@ const ALGORITHM_TRAITS: [&str; 9] = [
     "Station",
 ];
 
-/// Algorithms without an example: file, names, reason. The list may only shrink: whatever gets an example leaves it.
+/// Algorithms without an example: file, names, reason. The list may only shrink: whatever gets an example
+/// leaves it.
 const EXCEPTIONS: &[(&str, &str, &str)] = &[
     ("evolve/processes.rs", "Processes serve", "needs child processes"),
     ("io/robios/robot.rs", "RobiosRobot", "needs the RoBIOS library of a robot"),
@@ -127,7 +128,8 @@ fn behaving(text: &str) -> BTreeSet<&str> {
     found
 }
 
-/// The algorithms that a file defines. What is `pub` in the first column is public: the lint `unreachable_pub` sees to it.
+/// The algorithms that a file defines. What is `pub` in the first column is public: the lint
+/// `unreachable_pub` sees to it.
 fn algorithms(text: &str, behaving: &BTreeSet<&str>) -> Vec<String> {
     let declared = |line: &str| {
         let rest = line.strip_prefix("pub ")?;

@@ -41,7 +41,8 @@ impl Errors {
         (squares / self.frames as f64).sqrt()
     }
 
-    /// Carries a car along a course, aside of the lane's middle and askew, and compares what it sees in the next metre.
+    /// Carries a car along a course, aside of the lane's middle and askew, and compares what it sees in the
+    /// next metre.
     fn look(&mut self, seed: u64, pixel: f64, most: usize) {
         let course = generate(seed, &RoadCourseOptions::default()).unwrap();
         let simulation = simulation(&course, seed, pixel);

@@ -103,7 +103,8 @@ fn a_picture_shows_what_is_there_at_a_time() {
 fn a_moving_picture_moves_what_has_times_and_nothing_else() {
     let svg = moving().to_moving_svg();
     let times = |text: &str| svg.matches(text).count();
-    // The robot's place and heading; three lines that grow; a mark, its name, and a disc that come and go; the bar.
+    // The robot's place and heading; three lines that grow; a mark, its name, and a disc that come and go;
+    // the bar.
     assert_eq!((times("<animateTransform"), times("<mask"), times("<animate ")), (2, 2, 7));
     assert_eq!(times("attributeName=\"visibility\""), 3);
     assert!(svg.contains("2.1 times as fast") && svg.len() < 12_000, "{} bytes", svg.len());

@@ -115,7 +115,8 @@ fn edges_are_those_of_imageproc() -> Result<(), vision::ImageError> {
     let (mut smooth, mut found) = (zebra.clone(), zebra.clone());
     let kernel = GaussianKernel::new(7, 1.4)?;
     vision::gaussian_into((&zebra).try_into()?, (&mut smooth).try_into()?, kernel)?;
-    // Its thresholds of 250 and 300 are of the gradient's length; ours are of |dx| + |dy|, in the mean 4 / pi of it.
+    // Its thresholds of 250 and 300 are of the gradient's length; ours are of |dx| + |dy|, in the mean 4 / pi
+    // of it.
     let thresholds = CannyThresholds { low: 318, high: 382 };
     Canny::new().find_into((&smooth).try_into()?, (&mut found).try_into()?, thresholds)?;
     for (ours, theirs) in [(&found, &truth), (&truth, &found)] {

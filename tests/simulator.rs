@@ -1,4 +1,5 @@
-//! The simulator as a whole: motion, collisions, noise, time, radio and lockstep, through the public interface alone.
+//! The simulator as a whole: motion, collisions, noise, time, radio and lockstep, through the public
+//! interface alone.
 
 #[allow(unreachable_pub, reason = "the library's own, which is public there with the feature `testing`")]
 #[path = "../src/testing/cases.rs"]

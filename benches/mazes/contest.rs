@@ -20,10 +20,12 @@ pub(crate) fn least_seconds(mut call: impl FnMut()) -> f64 {
     (0..9).map(|_| seconds(1, &mut call)).fold(f64::INFINITY, f64::min)
 }
 
-/// Prints the mean time of each method over all mazes, and the worst maze for the wave of bits beside our queue.
+/// Prints the mean time of each method over all mazes, and the worst maze for the wave of bits beside our
+/// queue.
 pub(crate) fn table(tasks: &[Task]) {
     let mut fillers = METHODS.map(filler);
-    // All mazes in turn, as a robot meets them, then each maze on its own; medians of rounds in which the methods alternate.
+    // All mazes in turn, as a robot meets them, then each maze on its own; medians of rounds in which the
+    // methods alternate.
     let mut in_turn = METHODS.map(|_| Vec::new());
     let mut each = METHODS.map(|_| vec![f64::INFINITY; tasks.len()]);
     for _ in 0..ROUNDS {

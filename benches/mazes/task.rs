@@ -126,7 +126,8 @@ fn openings(maze: &Maze) -> Openings {
     Openings::new(open)
 }
 
-/// Neighbours with a way between them are a step apart at most, and all cells but the start have one that is nearer.
+/// Neighbours with a way between them are a step apart at most, and all cells but the start have one that is
+/// nearer.
 pub(crate) fn assert_steps_differ_by_one(maze: &Maze, steps: &Distances) {
     for cell in maze.cells() {
         let here = steps.get(cell).expect("a cell within reach");

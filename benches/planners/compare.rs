@@ -56,7 +56,8 @@ impl std::fmt::Display for Result {
     }
 }
 
-/// Asks all queries. What to expect is said by Dijkstra's algorithm, and by shortest paths without preparation.
+/// Asks all queries. What to expect is said by Dijkstra's algorithm, and by shortest paths without
+/// preparation.
 ///
 /// # Panics
 ///

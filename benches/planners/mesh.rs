@@ -1,4 +1,5 @@
-//! A mesh of rectangles for polyanya: stretches of free cells in rows, joined where they are the same from row to row.
+//! A mesh of rectangles for polyanya: stretches of free cells in rows, joined where they are the same from
+//! row to row.
 
 use glam::Vec2;
 use polyanya::{Mesh, Polygon, Vertex};

@@ -118,7 +118,8 @@ impl Petgraph {
     }
 }
 
-/// `grid_pathfinding`, its turning points alone. It cuts corners, which is an easier rule, and offers two ways of pruning.
+/// `grid_pathfinding`, its turning points alone. It cuts corners, which is an easier rule, and offers two
+/// ways of pruning.
 #[derive(Debug)]
 pub(crate) struct GridPathfinding(PathingGrid);
 

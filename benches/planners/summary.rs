@@ -7,8 +7,9 @@ use crate::table::{
     ALL, ANY_ANGLE, GRID_PATHFINDING, GRID_PATHFINDING_PLAIN, JPS, JPS_PLUS, PATHFINDING, POLYANYA, QUADTREE,
 };
 
-/// Figures of warthog, a C++ library (D. Harabor), that were measured on another day beside `pathfinding`'s A\* on the same
-/// maps: microseconds of the median query of that A\*, of its jump point search without preparation, and of jps2+.
+/// Figures of warthog, a C++ library (D. Harabor), that were measured on another day beside `pathfinding`'s
+/// A\* on the same maps: microseconds of the median query of that A\*, of its jump point search without
+/// preparation, and of jps2+.
 const WARTHOG: [(&str, f64, f64, f64); 10] = [
     ("arena2.map", 245.0, 10.0, 5.8),
     ("32room_000.map", 3600.0, 37.0, 13.0),
@@ -82,7 +83,8 @@ fn warthog(text: &mut String, large: &[&Result]) {
     }
 }
 
-/// A table for each kind of map: medians by planner and by size, and in brackets the milliseconds to get ready.
+/// A table for each kind of map: medians by planner and by size, and in brackets the milliseconds to get
+/// ready.
 pub(crate) fn growth(results: &[Result]) -> String {
     // Names are those of kinds, and sizes after them.
     let kind = |result: &Result| result.map.split(',').next().unwrap_or_default().to_owned();

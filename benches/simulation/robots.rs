@@ -70,8 +70,8 @@ fn discs() -> World {
     world
 }
 
-/// Seconds that pass in the world for one of ours, by the fastest of many slices: what else the machine does counts as
-/// little as can be.
+/// Seconds that pass in the world for one of ours, by the fastest of many slices: what else the machine does
+/// counts as little as can be.
 #[allow(clippy::disallowed_methods, reason = "a benchmark is about real time")]
 fn real_time_factor(slices: usize, seconds: f64, mut run: impl FnMut()) -> f64 {
     let times = (0..slices).map(|_| {
@@ -130,7 +130,8 @@ fn race() -> Simulation {
     Simulation::new(&scene, SimOptions::with_noise(1.0, 1)).expect("a good scene")
 }
 
-/// Drives along the ring by pure pursuit, twenty times a second, by odometry; if it looks, with a scan each time.
+/// Drives along the ring by pure pursuit, twenty times a second, by odometry; if it looks, with a scan each
+/// time.
 fn drive_race(race: &Simulation, looks: bool) -> Result<()> {
     let (mut car, mut scan) = (race.robot(0)?, LidarScan::default());
     let begin = car.now()?;

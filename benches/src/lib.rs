@@ -8,8 +8,8 @@ use roverlab::world::{Wall, World};
 const ROOMS: usize = 8;
 const ROOM: f64 = 3.0;
 
-/// A building of 600 walls of default thickness on 24 m x 24 m: four long outer walls, 64 rooms with a door in each
-/// side, whose walls come in short pieces, and slanted furniture.
+/// A building of 600 walls of default thickness on 24 m x 24 m: four long outer walls, 64 rooms with a door
+/// in each side, whose walls come in short pieces, and slanted furniture.
 ///
 /// ```
 /// let world = roverlab_bench::building(1);
@@ -36,7 +36,8 @@ pub fn building(seed: u64) -> World {
     world
 }
 
-/// A square floor with four outer walls and so many short walls in all directions, one on each half of a square metre.
+/// A square floor with four outer walls and so many short walls in all directions, one on each half of a
+/// square metre.
 ///
 /// ```
 /// let world = roverlab_bench::thicket(200, 1);

@@ -1,5 +1,5 @@
-//! Reads a script and the files that it names: those of `tests/data/formats`, and one that the input brings along
-//! behind a form feed.
+//! Reads a script and the files that it names: those of `tests/data/formats`, and one that the input brings
+//! along behind a form feed.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -500,8 +500,8 @@ fn speeds(spec: &RobotSpec) -> (f64, f64, f64) {
         DriveSpec::Ackermann { wheel_diameter, max_wheel_speed, ticks_per_turn, .. } => {
             (wheel_diameter, max_wheel_speed, ticks_per_turn, FULL_SPEED_OF_CARS)
         }
-        // Thrusters: as if wheels of 2 m turned so that their rims have its top speed. All of it is 100 percent; one that
-        // cannot drive ahead still has a full speed of its other thrusters.
+        // Thrusters: as if wheels of 2 m turned so that their rims have its top speed. All of it is 100
+        // percent; one that cannot drive ahead still has a full speed of its other thrusters.
         DriveSpec::Craft(_) => (2.0, spec.drive.top_speed().max(1e-3), 1.0, f64::INFINITY),
         _ => (0.0, 0.0, 1.0, FULL_SPEED),
     };

@@ -178,7 +178,8 @@ enum Phase {
 
 /// Tolerances beyond which a goal is missed.
 const MISSED: f64 = 4.0;
-/// Turning radii that a car drives back before it comes again, and before a goal with a heading at which a dog curve hands over.
+/// Turning radii that a car drives back before it comes again, and before a goal with a heading at which a
+/// dog curve hands over.
 const ROOM: f64 = 2.0;
 /// Metres from the goal at which the car stops.
 const ARRIVED: f64 = 0.001;
@@ -186,7 +187,8 @@ const ARRIVED: f64 = 0.001;
 const SHARP_TURN: f64 = 0.1;
 /// How far the curvature jumps, in terms of the largest one, where the car stops to turn its wheels.
 const LARGE_JUMP: f64 = 1.2;
-/// The largest k of splines that is tried where the book's k of 1 bends too tightly; it is doubled from try to try.
+/// The largest k of splines that is tried where the book's k of 1 bends too tightly; it is doubled from try
+/// to try.
 const LARGEST_SCALE: f64 = 4.0;
 
 impl CarToB {

@@ -105,7 +105,8 @@ struct Target {
     seen: f64,
 }
 
-/// Metres from where the robot ahead is expected within which a thing is taken for it, and what it may have driven meanwhile.
+/// Metres from where the robot ahead is expected within which a thing is taken for it, and what it may have
+/// driven meanwhile.
 const GATE: f64 = 0.15;
 /// The share of a new sight in the place of the robot ahead (alpha of an alpha-beta filter).
 const OF_PLACE: f64 = 0.5;

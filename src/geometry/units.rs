@@ -14,7 +14,8 @@ pub const GRAVITY: f64 = 9.81;
 /// The farthest from the origin, in metres, that anything stands: larger numbers are mistakes.
 pub(crate) const FARTHEST: f64 = 1e6;
 
-/// Metres that a turn of a radian counts as where ways and turns are added, as those of a robot that may be held.
+/// Metres that a turn of a radian counts as where ways and turns are added, as those of a robot that may be
+/// held.
 pub(crate) const ARM: f64 = 0.1;
 
 /// Metres or radians, or these in a second, that count as nothing.

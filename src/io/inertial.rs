@@ -1,8 +1,8 @@
 use super::Result;
 use crate::geometry::{Point3, Pose3, Vector3};
 
-/// Attitude of a robot (rad), with the conventions of [`Pose3`]: a positive pitch lowers the nose, a positive roll
-/// lifts the left side.
+/// Attitude of a robot (rad), with the conventions of [`Pose3`]: a positive pitch lowers the nose, a positive
+/// roll lifts the left side.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Attitude {
     /// About the forward axis.
@@ -39,11 +39,11 @@ pub trait Inertial {
     /// Attitude in the world. Fails on a robot whose unit does not measure it.
     fn attitude(&mut self) -> Result<Attitude>;
 
-    /// Turn rates about the robot's forward, left and upright axes (rad/s). Fails on a robot whose unit does not measure
-    /// them.
+    /// Turn rates about the robot's forward, left and upright axes (rad/s). Fails on a robot whose unit does
+    /// not measure them.
     fn turn_rates(&mut self) -> Result<Vector3>;
 
-    /// Specific force along the robot's forward, left and upright axes (m/s²): (0, 0, 9.81) at rest on level ground, 0 in
-    /// free fall. Fails on a robot whose unit does not measure it.
+    /// Specific force along the robot's forward, left and upright axes (m/s²): (0, 0, 9.81) at rest on level
+    /// ground, 0 in free fall. Fails on a robot whose unit does not measure it.
     fn acceleration(&mut self) -> Result<Vector3>;
 }

@@ -93,7 +93,8 @@ pub enum Mishap {
     Stuck,
     /// The middle of its mass is below the water's surface.
     Drowned,
-    /// Its motion is no number any more, so that it stays where it was: its description is of no craft that could be.
+    /// Its motion is no number any more, so that it stays where it was: its description is of no craft that
+    /// could be.
     Broken,
 }
 

@@ -6,7 +6,8 @@ use crate::geometry::{Point, Pose, Vector, math};
 
 /// Standard deviations beyond which a measurement is of something else than what it is held to be of.
 pub(crate) const OUTLIER: f64 = 4.0;
-/// The least standard deviation of a range, in metres, which keeps filters open for what they do not know about.
+/// The least standard deviation of a range, in metres, which keeps filters open for what they do not know
+/// about.
 pub(crate) const LEAST_RANGE_ERROR: f64 = 0.001;
 /// What odometry misses of a way, as a share: a standard deviation.
 pub(crate) const DISTANCE_ERROR: f64 = 0.01;

@@ -2,8 +2,8 @@ use petgraph::graph::{NodeIndex, UnGraph};
 
 use super::{Cell, Direction, Maze, Unknown};
 
-/// A maze as a `petgraph` graph: a node for each cell, row by row from the south west, and an edge for each opening
-/// between two cells.
+/// A maze as a `petgraph` graph: a node for each cell, row by row from the south west, and an edge for each
+/// opening between two cells.
 ///
 /// ```
 /// use roverlab::maze::{Maze, Unknown, petgraph_of_maze};

@@ -33,8 +33,8 @@ pub(super) fn robot(
     }
 }
 
-/// A robot's outline with an arrowhead inside that shows its heading; the arrowhead alone where the outline would be
-/// smaller than a mark. `scale` is the pixels in a metre.
+/// A robot's outline with an arrowhead inside that shows its heading; the arrowhead alone where the outline
+/// would be smaller than a mark. `scale` is the pixels in a metre.
 pub(super) fn outline(at: Pixel, heading: f64, footprint: &Footprint, style: &Style, scale: f64) -> Group {
     let colour = style.colour;
     let radius = scale * footprint.bounding_radius();

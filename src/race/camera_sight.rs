@@ -61,8 +61,8 @@ const LEAST_SATURATION: u8 = 90;
 const LEAST_PIXELS: usize = 6;
 /// Levels by which the channels of gray ground differ because of noise.
 const GROUND_CHROMA: u8 = 10;
-/// Metres of the ground that one row of an image may show: the racing car's camera does 14 m away with 640 columns, and 20 m away with
-/// 1296.
+/// Metres of the ground that one row of an image may show: the racing car's camera does 14 m away with 640
+/// columns, and 20 m away with 1296.
 const COARSEST: f64 = 2.0 / 3.0;
 
 /// Metres from the camera within which it finds the colours of nearly all cones that are large enough in the
@@ -224,7 +224,8 @@ impl CameraMount {
         if edge > self.farthest(width) {
             return None;
         }
-        // An image shows the edge of a cone's foot: a square, whose edge is about as far from its middle as a circle's of its area.
+        // An image shows the edge of a cone's foot: a square, whose edge is about as far from its middle as a
+        // circle's of its area.
         let foot = ConeColour::Unknown.radius() * std::f64::consts::FRAC_2_SQRT_PI;
         let range = edge + foot;
         let [ahead, left] = [nearer, aside].map(|metres| metres * range / edge.max(foot));

@@ -21,12 +21,13 @@ type Information = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 const OFF: f64 = 0.25;
 /// How many times as far cones are taken for those of the edge, from round to round.
 const ROUNDS: [f64; 7] = [3.5, 2.5, 1.8, 1.3, 1.0, 1.0, 1.0];
-/// What is unusual costs so much: the logarithm of how much likelier it is to be otherwise, 1 to 55. A cone of the other edge, one in
-/// the lane, one that a car would touch, one that stands just at an edge and belongs to none, an edge without cones for long, a lane that leads back or between cones of one edge, and one
-/// that is not the lane found before.
+/// What is unusual costs so much: the logarithm of how much likelier it is to be otherwise, 1 to 55. A cone
+/// of the other edge, one in the lane, one that a car would touch, one that stands just at an edge and
+/// belongs to none, an edge without cones for long, a lane that leads back or between cones of one edge, and
+/// one that is not the lane found before.
 const UNUSUAL: f64 = 4.0;
-/// How evenly lanes go on: deviations of half the width as a share of it, of how much that grows in metres for a metre, and of how
-/// curvature changes from knot to knot as a share of the greatest.
+/// How evenly lanes go on: deviations of half the width as a share of it, of how much that grows in metres
+/// for a metre, and of how curvature changes from knot to knot as a share of the greatest.
 const EVEN: f64 = 0.02;
 /// Weight of a sudden change of curvature: little, as tracks have sharp bends.
 const SHARP: f64 = 0.4;
@@ -287,7 +288,8 @@ impl Fitter<'_> {
     }
 }
 
-/// What cones of an edge are worth that stand as near to another one as they may be loose: of an edge that tells one thing, not two.
+/// What cones of an edge are worth that stand as near to another one as they may be loose: of an edge that
+/// tells one thing, not two.
 fn twice(edge: &[EdgeCone], loose: f64) -> f64 {
     let less = |pair: &[EdgeCone]| {
         if pair[1].along - pair[0].along < loose { pair[0].worth.min(pair[1].worth) } else { 0.0 }

@@ -55,7 +55,8 @@ pub(super) fn around_lap(cones: &[Point], lap: &[Point], p: &LaneParameters) -> 
     Corridor::closed(&rows)
 }
 
-/// The distance of an edge at a station of a lap, between the cones before and behind it that are about as far off as is usual.
+/// The distance of an edge at a station of a lap, between the cones before and behind it that are about as
+/// far off as is usual.
 fn between(asides: &[Option<f64>], at: usize, usual: f64, p: &LaneParameters) -> Option<f64> {
     let (n, far) = (asides.len(), (p.spacing as usize).min(asides.len()));
     let good = |k: usize| asides[k % n].filter(|aside| (aside - usual).abs() < p.loose);

@@ -93,10 +93,11 @@ pub struct ConeMap {
 
 /// Cones with colours that there have to be for each thing that a camera shows to have none.
 const MANY: usize = 4;
-/// Metres that the car goes while a cone is fresh: so far, odometry and sightings are good. The first cones were seen in so many
-/// metres, at most.
+/// Metres that the car goes while a cone is fresh: so far, odometry and sightings are good. The first cones
+/// were seen in so many metres, at most.
 pub(super) const FRESH: f64 = 25.0;
-/// Metres of the way that lie just behind the car, in which the last cones were seen: no lane turns back within so many.
+/// Metres of the way that lie just behind the car, in which the last cones were seen: no lane turns back
+/// within so many.
 const BEHIND: f64 = 8.0;
 /// Metres from place to place of the trail.
 pub(super) const STRIDE: f64 = 2.0;
@@ -104,7 +105,8 @@ pub(super) const STRIDE: f64 = 2.0;
 pub(super) const SHORTEST_LAP: f64 = 12.0;
 /// Metres from a place within which a lap has led back to it.
 const AROUND: f64 = 2.5;
-/// Metres between a cone and what was seen of it earlier in the first lap, at most: what has added up since, and less than a lane.
+/// Metres between a cone and what was seen of it earlier in the first lap, at most: what has added up since,
+/// and less than a lane.
 const EARLIER: f64 = 1.5;
 /// The cosine of the angle between two ways below which they cross.
 const ATHWART: f64 = 0.5;

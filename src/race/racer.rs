@@ -163,12 +163,14 @@ pub struct Racer {
 
 /// Places behind the car that are taken for the lane.
 const BEHIND_POSES: usize = 4;
-/// Metres within which the lane tells on which side of it cones are: what is farther off changes from look to look.
+/// Metres within which the lane tells on which side of it cones are: what is farther off changes from look to
+/// look.
 const VOTES: f64 = 5.0;
-/// Metres from the line within which another car is in the way, metres ahead at which it begins to matter, and metres, from the
-/// middle of a car to the end of another one, that are kept.
+/// Metres from the line within which another car is in the way, metres ahead at which it begins to matter,
+/// and metres, from the middle of a car to the end of another one, that are kept.
 const OTHERS: (f64, f64, f64) = (1.5, 24.0, 4.5);
-/// Decisions at the start at which it only looks: a cone is one after some sightings, and wheels turn a third of a second to the stop.
+/// Decisions at the start at which it only looks: a cone is one after some sightings, and wheels turn a third
+/// of a second to the stop.
 const LOOKS: u32 = 10;
 /// Metres by which a lap that is closed later begins before the place where the car is now.
 const BEFORE_LAP: f64 = 15.0;
@@ -357,7 +359,8 @@ impl Racer {
             return;
         }
         if !self.map.is_closed() {
-            // The first one began at the start, and ended where the car came by there; all others are counted at the same place.
+            // The first one began at the start, and ended where the car came by there; all others are counted
+            // at the same place.
             let past = line.to_local(self.map.pose().position()).x + RUN_UP;
             self.open_lap = Some(self.since_line - if self.laps == 0 { past } else { 0.0 });
         }

@@ -17,7 +17,8 @@ pub(super) const GATE: f64 = 0.5;
 const FEWEST: usize = 6;
 /// The share of the cones that has to be found again.
 const SHARE: f64 = 0.6;
-/// How many times better the best motion has to be than any other one: rows of cones look alike a few metres farther on.
+/// How many times better the best motion has to be than any other one: rows of cones look alike a few metres
+/// farther on.
 const LEAD: f64 = 1.2;
 /// The deviation of errors as a share of the largest one.
 const LIKELY: f64 = 0.4;

@@ -8,10 +8,11 @@ use super::pair::CentreLineParameters;
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Segment, cross, math};
 
-/// Metres beside a corridor within which a cone is one of its edge, and from its middle at which a lap may have been driven.
+/// Metres beside a corridor within which a cone is one of its edge, and from its middle at which a lap may
+/// have been driven.
 pub(super) const BESIDE: f64 = 1.0;
-/// The shares of coloured cones that have to stand at the corridor, and of these on their own side: where a track passes close by
-/// itself, some stand nearer to its other part.
+/// The shares of coloured cones that have to stand at the corridor, and of these on their own side: where a
+/// track passes close by itself, some stand nearer to its other part.
 const PASSED: f64 = 0.97;
 const ON_THEIR_SIDE: f64 = 0.85;
 /// A gap is so many times as long as cones usually are apart, and a bend turns by so many radians over it.

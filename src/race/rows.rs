@@ -46,10 +46,11 @@ const FAR: f64 = 0.07;
 const ALONE: f64 = 0.3;
 /// What a cone of a row is worth as a share of the one before: of what is farther off, less is seen.
 const LESS: f64 = 0.85;
-/// By how much a leg of the other row has to cost less, from where that begins to count to where it counts fully.
+/// By how much a leg of the other row has to cost less, from where that begins to count to where it counts
+/// fully.
 const BETTER: [f64; 2] = [0.1, 0.43];
-/// What a cone may cost that is followed all the same, and how much less than the best rows others are worth at most that are
-/// told of.
+/// What a cone may cost that is followed all the same, and how much less than the best rows others are worth
+/// at most that are told of.
 const DEAREST: f64 = 2.4;
 /// Rows that are told of at most, where cones may be those of one edge or of the other.
 const READINGS: usize = 4;
@@ -459,7 +460,8 @@ pub(super) fn passes([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
 /// The cosine of the angle between two ways beyond which one leads back along the other.
 const BACK: f64 = -0.8;
 
-/// Half widths between the middles of a lane and of what is no lane, as it is partly the same: less than two lie between two lanes.
+/// Half widths between the middles of a lane and of what is no lane, as it is partly the same: less than two
+/// lie between two lanes.
 const OVERLAPS: f64 = 1.8;
 
 /// Whether a lane with its centre at a point coincides with, or overlaps, the car's earlier path in the

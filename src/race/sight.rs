@@ -86,7 +86,8 @@ fn finish(scan: &LidarScan, run: &[usize]) -> Option<ConeSighting> {
     if size < ConeSighting::WIDEST_CONE && (before || is_nearer(scan, last + 1, last)) {
         return None;
     }
-    // Beams meet a disc at a quarter of pi of its radius before its middle, in the mean; half way up, as here.
+    // Beams meet a disc at a quarter of pi of its radius before its middle, in the mean; half way up, as
+    // here.
     let radius = ConeColour::Unknown.radius_half_way_up();
     let range = mean + FRAC_PI_4 * radius;
     let half = math::asin((radius / range).min(1.0));

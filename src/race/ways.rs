@@ -3,8 +3,8 @@
 use super::lane_model::Lane;
 use crate::geometry::{Point, Pose, direction, math};
 
-/// Metres from station to station beyond the end of what is known, from the car to the first one beside a row, and within which ways
-/// are next to each other.
+/// Metres from station to station beyond the end of what is known, from the car to the first one beside a
+/// row, and within which ways are next to each other.
 const STEP: f64 = 1.0;
 /// Metres away from the car within which it begins.
 const AWAY: f64 = 4.0;

@@ -47,7 +47,8 @@ struct Beam {
     weight: f64,
 }
 
-/// The standard deviation of a range, in metres, that is expected before anything was measured: that of an EyeBot's lidar.
+/// The standard deviation of a range, in metres, that is expected before anything was measured: that of an
+/// EyeBot's lidar.
 pub(super) const RANGE_ERROR: f64 = 0.010;
 /// A beam that has met nothing.
 const UNKNOWN: Beam = Beam { range: f64::INFINITY, weight: 0.0 };
@@ -57,8 +58,8 @@ const MAX_WEIGHT: f64 = 20.0;
 pub(super) const GRAZING: f64 = 0.2;
 /// Beams next to each other whose ranges differ by less than this part of the range see one surface.
 pub(super) const SURFACE_STEP: f64 = 0.1;
-/// Beams whose hits lie closer together than this, in metres, see the same piece of surface; seen at a slant, it moves by as much
-/// between them.
+/// Beams whose hits lie closer together than this, in metres, see the same piece of surface; seen at a slant,
+/// it moves by as much between them.
 const SMOOTHING_ARC: f64 = 0.015;
 /// Maximum number of averaged neighbours on either side.
 const MAX_SMOOTHING: usize = 10;

@@ -60,7 +60,8 @@ pub struct ScanMatcher {
 const REFERENCE_REACH: f64 = 0.8;
 /// Maximum number of active references.
 const ACTIVE_REFERENCES: usize = 3;
-/// After so many metres they are chosen anew, or where the present ones share little with the scan; they stand at least as far apart.
+/// After so many metres they are chosen anew, or where the present ones share little with the scan; they
+/// stand at least as far apart.
 const CHOICE_SPACING: f64 = 0.1;
 /// A scan of which less than this share matches any reference becomes one itself.
 const MIN_OVERLAP: f64 = 0.6;

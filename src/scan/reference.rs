@@ -29,13 +29,15 @@ pub(super) struct Evidence {
     pub(super) matched: usize,
 }
 
-/// Points farther from a surface than this, in metres, do not count as shared, and have no counterpart in the last round.
+/// Points farther from a surface than this, in metres, do not count as shared, and have no counterpart in the
+/// last round.
 pub(super) const OVERLAP_GATE: f64 = 0.03;
 /// Bearings that a reference is divided into.
 const BINS: usize = 360;
-/// How many matched points count as one fact. Scans matched against one reference share its errors, tens of them one
-/// after the other; counted singly they would drown what odometry knows where the surfaces say little, as in a round
-/// room. Found by trial: 2 lets spirals turn the pose by degrees, 200 lets odometry's drift through.
+/// How many matched points count as one fact. Scans matched against one reference share its errors, tens of
+/// them one after the other; counted singly they would drown what odometry knows where the surfaces say
+/// little, as in a round room. Found by trial: 2 lets spirals turn the pose by degrees, 200 lets odometry's
+/// drift through.
 const POINTS_PER_FACT: f64 = 40.0;
 /// Extent of the neighbours used for a line (m).
 const LINE_REACH: f64 = 0.06;

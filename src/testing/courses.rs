@@ -3,8 +3,8 @@ use proptest::prelude::*;
 use crate::random::Stream;
 use crate::world::road::{RoadCourse, RoadCourseOptions, Traffic, generate};
 
-/// Closed courses by the rules of the CAuDri-Challenge, of either traffic, in the rules' size or half of it, with or without
-/// gaps, crossings and crosswalks.
+/// Closed courses by the rules of the CAuDri-Challenge, of either traffic, in the rules' size or half of it,
+/// with or without gaps, crossings and crosswalks.
 ///
 /// ```
 /// use proptest::prelude::*;

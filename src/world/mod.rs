@@ -16,6 +16,7 @@ mod object;
 pub mod road;
 mod robot;
 mod scene;
+mod sensors;
 mod site;
 pub mod space;
 mod terrain;
@@ -32,11 +33,9 @@ pub use colour::Colour;
 pub use grid::{Occupancy, OccupancyGrid};
 pub use mesh::{Face, Material, Mesh};
 pub use object::{Billboard, Marker, Object, ObjectKind, Shape};
-pub use robot::{
-    CameraSpec, CarDynamics, DepthSensorSpec, DriveSpec, Footprint, InertialSpec, LidarSpec, Mast, MotorSpec,
-    Mount, PsdSpec, RobotSpec,
-};
+pub use robot::{CarDynamics, DriveSpec, Footprint, Mast, MotorSpec, RobotSpec};
 pub use scene::{Place, RobotPlacement, Scene, Settings, World};
+pub use sensors::{CameraSpec, DepthSensorSpec, InertialSpec, LidarSpec, Mount, PsdSpec};
 pub use terrain::{HeightField, Terrain};
 pub use texture::Texture;
 pub use wall::Wall;

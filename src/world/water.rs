@@ -7,8 +7,8 @@ use crate::parameter::{require, require_finite, require_not_negative, require_po
 pub struct Water {
     /// Kilograms in a cubic metre.
     pub density: f64,
-    /// Metres below the surface, and the speed of the current there in m/s along x and y. Between two depths it changes
-    /// evenly; above the first and below the last it stays.
+    /// Metres below the surface, and the speed of the current there in m/s along x and y. Between two depths
+    /// it changes evenly; above the first and below the last it stays.
     pub current: Vec<(f64, Vector)>,
     /// Waves on its surface.
     pub waves: Option<Waves>,

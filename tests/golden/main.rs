@@ -1,6 +1,5 @@
-//! The same seed gives the same log, byte for byte: in debug and release, on every platform, and for robots in threads
-//! however these are scheduled. The digests of whole runs of every system stand in
-//! `digests.txt`.
+//! The same seed gives the same log, byte for byte: in debug and release, on every platform, and for robots
+//! in threads however these are scheduled. The digests of whole runs of every system stand in `digests.txt`.
 //!
 //! `REGENERATE=1 cargo test --all-features --test golden` writes that file anew, after a change that is meant
 //! to change runs. `cargo run -p roverlab-oracles NAME` prints a run's log, to see where two of them part.

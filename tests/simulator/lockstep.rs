@@ -128,8 +128,8 @@ fn run(number: usize, disturbance: u64) -> u64 {
     all.fold(0, |sum: u64, value| (sum ^ value).wrapping_mul(0x0000_0100_0000_01b3).rotate_left(7))
 }
 
-/// The same on every machine, in debug and in release. A change of the simulator's numbers changes them; then the
-/// new ones stand here.
+/// The same on every machine, in debug and in release. A change of the simulator's numbers changes them; then
+/// the new ones stand here.
 const DIGESTS: [(usize, u64); 8] = [
     (1, 0xc241_40d3_6154_d2b4),
     (2, 0xa0cd_f191_4052_0c9c),

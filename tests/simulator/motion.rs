@@ -101,8 +101,8 @@ proptest! {
         }
         let expected = START.compose(&robot.pose().unwrap());
         let (pose, path) = (truth.pose(0).unwrap(), truth.robot(0).unwrap().path_length);
-        // A count is off by up to a tick, the heading by both wheels' over the track; the heading's error displaces
-        // what is driven under it.
+        // A count is off by up to a tick, the heading by both wheels' over the track; the heading's error
+        // displaces what is driven under it.
         let turned = 2.0 * ENCODER_TICK / 0.09;
         prop_assert!(degrees_between(pose.heading, expected.heading) <= turned.to_degrees() + 1e-9);
         let apart = (pose.position() - expected.position()).norm();

@@ -38,8 +38,8 @@ fn straight_covariance(noise: &NoiseModel, length: f64) -> Matrix3<f64> {
     let turned_by_slip = 2.0 * slip / (TRACK * TRACK);
     let turned_by_wheels = square(noise.wheel_mismatch * length / TRACK);
     let along = square(noise.wheel_scale * length) + 0.5 * slip;
-    // A heading error that grows steadily carries the robot aside by half of it times the way; one that comes in
-    // small independent parts has a third of its variance.
+    // A heading error that grows steadily carries the robot aside by half of it times the way; one that comes
+    // in small independent parts has a third of its variance.
     let aside = length * length * (0.25 * turned_by_wheels + turned_by_slip / 3.0);
     let both = 0.5 * length * (turned_by_wheels + turned_by_slip);
     let turned = turned_by_wheels + turned_by_slip;

@@ -1,5 +1,5 @@
-//! Peers written in C: flood fill of mazes of 16 x 16 cells by repeated passes over all cells, as the book describes it in
-//! section 9.6, and by a queue.
+//! Peers written in C: flood fill of mazes of 16 x 16 cells by repeated passes over all cells, as the book
+//! describes it in section 9.6, and by a queue.
 
 /// Cells in a row and in a column.
 pub const SIDE: usize = 16;
@@ -28,8 +28,8 @@ unsafe extern "C" {
 /// If a cell lies outside of the maze.
 pub fn sweep(walls: &Walls, start: usize, goal: usize, steps: &mut [i32; CELLS]) {
     assert!(start < CELLS && goal < CELLS, "cells {start} and {goal} of {CELLS}");
-    // SAFETY: the layout of `Walls` is that of the C structure; the function writes `CELLS` numbers, and reads maps at the
-    // cells that have just been checked.
+    // SAFETY: the layout of `Walls` is that of the C structure; the function writes `CELLS` numbers, and
+    // reads maps at the cells that have just been checked.
     unsafe { roverlab_sweep(walls, start as i32, goal as i32, steps.as_mut_ptr()) }
 }
 
@@ -40,8 +40,8 @@ pub fn sweep(walls: &Walls, start: usize, goal: usize, steps: &mut [i32; CELLS])
 /// If the cell lies outside of the maze.
 pub fn queue(open: &Openings, start: usize, steps: &mut [i32; CELLS]) {
     assert!(start < CELLS, "cell {start} of {CELLS}");
-    // SAFETY: openings lead to cells of the maze, and each cell enters the queue once, so that neither it nor `steps`, of
-    // `CELLS` each, is overrun.
+    // SAFETY: openings lead to cells of the maze, and each cell enters the queue once, so that neither it nor
+    // `steps`, of `CELLS` each, is overrun.
     unsafe { roverlab_queue(open.0.as_ptr(), start as i32, steps.as_mut_ptr()) }
 }
 
@@ -50,7 +50,8 @@ pub fn queue(open: &Openings, start: usize, steps: &mut [i32; CELLS]) {
 pub struct Openings([u8; CELLS]);
 
 impl Openings {
-    /// A bit for each open direction of a cell, north in the lowest, clockwise. Those that lead out of the maze are closed.
+    /// A bit for each open direction of a cell, north in the lowest, clockwise. Those that lead out of the
+    /// maze are closed.
     pub fn new(mut open: [u8; CELLS]) -> Self {
         for (index, open) in open.iter_mut().enumerate() {
             let (column, row) = (index % SIDE, index / SIDE);

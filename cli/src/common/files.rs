@@ -7,8 +7,8 @@ use roverlab::world::{RobotSpec, Scene};
 
 use super::{CommonArgs, onlooker};
 
-/// Name of an option's file in recordings: that of the option, with the file's extension. A number is no file but a
-/// seed, and stays as it is.
+/// Name of an option's file in recordings: that of the option, with the file's extension. A number is no file
+/// but a seed, and stays as it is.
 pub(crate) fn recorded_name(option: &str, path: &Path) -> String {
     if let Some(seed) = path.to_str().filter(|text| text.parse::<u64>().is_ok()) {
         return seed.to_owned();
@@ -58,7 +58,8 @@ impl CommonArgs {
         self.load(option, path, formats::parse_scene)
     }
 
-    /// The robot in the file of an option, with its 3D model where that is found, or the built-in robot of that name.
+    /// The robot in the file of an option, with its 3D model where that is found, or the built-in robot of
+    /// that name.
     pub(crate) fn load_robot(&self, option: &str, path: &Path) -> Result<Parsed<RobotSpec>, FormatError> {
         let built_in = path.to_str().filter(|_| !path.exists()).and_then(RobotSpec::predefined);
         if let Some(value) = built_in {

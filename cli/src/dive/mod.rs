@@ -71,7 +71,8 @@ fn parse_noise(text: &str) -> Result<f64, String> {
     noise.ok_or_else(|| "expected 0 to 100".into())
 }
 
-/// Seconds in which a dive is to settle, for which it is watched after them, and for which it is at its depth when it has.
+/// Seconds in which a dive is to settle, for which it is watched after them, and for which it is at its depth
+/// when it has.
 const SETTLING: f64 = 20.0;
 const WATCHED: f64 = 60.0;
 const SETTLED: f64 = 5.0;

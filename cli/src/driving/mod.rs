@@ -34,14 +34,15 @@ pub(crate) struct Conditions {
     pub(crate) ideal_encoders: bool,
     /// Time limit (s).
     pub(crate) time_limit: f64,
-    /// Time that the simulator adds to the limit (s): [`RESERVE`], or 0 for a program that leaves its limit to the
-    /// simulator.
+    /// Time that the simulator adds to the limit (s): [`RESERVE`], or 0 for a program that leaves its limit
+    /// to the simulator.
     pub(crate) reserve: f64,
     /// Options that select the robot's source; without them, an unrecorded simulator.
     pub(crate) common: Option<CommonArgs>,
 }
 
-/// Time after which the simulator ends a program with a limit of its own, such as one whose clock has stopped (s).
+/// Time after which the simulator ends a program with a limit of its own, such as one whose clock has stopped
+/// (s).
 pub(crate) const RESERVE: f64 = 1.0;
 
 /// Poses of a robot with their times (s).

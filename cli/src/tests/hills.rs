@@ -6,7 +6,8 @@ use super::support::{Ended, number, run, temporary};
 use crate::summit;
 use clap::Parser;
 
-/// A world whose ground is an ESRI grid: a hill with its top at (1.9, 1.7) m. Returns the name of the world's file.
+/// A world whose ground is an ESRI grid: a hill with its top at (1.9, 1.7) m. Returns the name of the world's
+/// file.
 fn hill(name: &str) -> String {
     let (columns, cell) = (61, 0.05);
     let height = |column: usize, row: usize| {

@@ -29,8 +29,8 @@ thread_local! {
     static AWAKE_SINCE: Cell<f64> = const { Cell::new(0.0) };
 }
 
-/// Whether this thread's calls wait for their turn: not if it is alone, or calls from a timer function or signal
-/// handler that interrupts its sleep or a call.
+/// Whether this thread's calls wait for their turn: not if it is alone, or calls from a timer function or
+/// signal handler that interrupts its sleep or a call.
 fn takes_turns() -> bool {
     !alone() && is_the_programs() && !is_inside() && {
         let own = own_number();
@@ -38,8 +38,8 @@ fn takes_turns() -> bool {
     }
 }
 
-/// Waits for the frame that serves a query, so that threads which are due earlier run first. Returns the frame's
-/// time since the start (ns), if there is a wait.
+/// Waits for the frame that serves a query, so that threads which are due earlier run first. Returns the
+/// frame's time since the start (ns), if there is a wait.
 pub(super) fn wait_for_frame(call: &'static str) -> Option<u64> {
     if !takes_turns() {
         return None;
@@ -52,7 +52,8 @@ pub(super) fn wait_for_frame(call: &'static str) -> Option<u64> {
 
 /// Lets other threads run that are due earlier, if this one's calls have taken a tick since it last waited.
 ///
-/// Not more often: the call may be within a lock, and others that wait for it would then run beside this thread.
+/// Not more often: the call may be within a lock, and others that wait for it would then run beside this
+/// thread.
 pub(super) fn let_earlier_run() {
     if !takes_turns() {
         return;
@@ -164,8 +165,8 @@ impl Sleeper {
         forget(|number, sleep| number == own || is_there(sleep.thread) && !(lost && sleep.end <= now));
     }
 
-    /// Lets time pass until this thread, the next, wakes up: a tick at most, unless all threads were asleep at
-    /// the present time, so that none can act before.
+    /// Lets time pass until this thread, the next, wakes up: a tick at most, unless all threads were asleep
+    /// at the present time, so that none can act before.
     fn pass(&self, all_asleep_at: Option<f64>) -> Option<()> {
         enter_quietly(|robios| {
             let now = robios.now();

@@ -23,8 +23,8 @@ pub(super) struct Turn {
 /// Processor time granted to a thread for making a call (ns): one that makes none is busy with something
 /// else.
 const SHARE: u64 = 1_000_000;
-/// Processor time granted to a thread to reach its next wait, before another one wakes up (ns). One that does not
-/// use it waits for the others' results, as in `while (distance > 300);`, and then has the shorter share.
+/// Processor time granted to a thread to reach its next wait, before another one wakes up (ns). One that does
+/// not use it waits for the others' results, as in `while (distance > 300);`, and then has the shorter share.
 const LONG_SHARE: u64 = 5_000_000;
 /// Number of looks after which time passes in any case: on a busy machine, a runnable thread may wait long.
 const MOST_LOOKS: u32 = 20_000;
@@ -176,8 +176,8 @@ fn state(thread: u32) -> Option<char> {
     file(thread, "stat").and_then(|text| text.rsplit(')').next()?.trim_start().chars().next())
 }
 
-/// Processor time of a thread of this process (ns), by the clock that Linux keeps of it: to the present, while
-/// the files in `/proc` lag by milliseconds.
+/// Processor time of a thread of this process (ns), by the clock that Linux keeps of it: to the present,
+/// while the files in `/proc` lag by milliseconds.
 fn spent(thread: u32) -> Option<u64> {
     let clock = ((!thread << 3) | THREADS_PROCESSOR_TIME) as libc::clockid_t;
     let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };

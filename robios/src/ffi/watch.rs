@@ -21,8 +21,8 @@ pub(super) enum Unasked {
     Over,
 }
 
-/// Lets time pass without a call: seconds to the next due timer, or seconds without timers; `None` if only the
-/// commands given so far are to reach the world.
+/// Lets time pass without a call: seconds to the next due timer, or seconds without timers; `None` if only
+/// the commands given so far are to reach the world.
 type Pass = fn(f64, Option<f64>) -> Unasked;
 
 /// Real time between two looks.

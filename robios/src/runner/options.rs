@@ -65,8 +65,8 @@ pub(crate) struct Options {
     #[arg(long, value_name = "S", default_value = "5", value_parser = parse_seconds)]
     pub(crate) hang_limit: f64,
 
-    /// Keys: AUTO; NONE; presses such as `KEY1@2s,KEY4@60s,TOUCH:120:80@3s,IRTV_OK@4s`; or TERMINAL: the digits
-    /// 1 to 4 and Enter press the first robot's soft keys, in real time.
+    /// Keys: AUTO; NONE; presses such as `KEY1@2s,KEY4@60s,TOUCH:120:80@3s,IRTV_OK@4s`; or TERMINAL: the
+    /// digits 1 to 4 and Enter press the first robot's soft keys, in real time.
     #[arg(long, value_name = "PLAN", default_value = "AUTO", value_parser = parse_keys)]
     pub(crate) keys: String,
 
@@ -98,8 +98,8 @@ pub(crate) struct Options {
     #[arg(long)]
     pub(crate) timing: bool,
 
-    /// A script (.sim), or a program: an executable, Python (.py), C (.c) or C++ (.cpp, .cc). Or install FOLDER,
-    /// to copy the library, headers and scripts to a folder.
+    /// A script (.sim), or a program: an executable, Python (.py), C (.c) or C++ (.cpp, .cc). Or install
+    /// FOLDER, to copy the library, headers and scripts to a folder.
     #[arg(value_name = "PROGRAM", required = true)]
     pub(crate) program: PathBuf,
 

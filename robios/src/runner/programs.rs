@@ -56,8 +56,8 @@ pub(crate) fn of(options: &Options, scene: &Scene, folder: &WorkFolder) -> Resul
     Ok(programs)
 }
 
-/// A program named in a script: relative to the script, in the script's own folder, or else the only source text
-/// of that folder, with a warning.
+/// A program named in a script: relative to the script, in the script's own folder, or else the only source
+/// text of that folder, with a warning.
 fn named(base: &Path, name: &str, robot: usize, options: &Options, folder: &WorkFolder) -> Program {
     let path = base.join(name.replace('\\', "/"));
     let beside = path.file_name().map(|file| base.join(file));

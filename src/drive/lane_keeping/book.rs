@@ -29,9 +29,10 @@ impl Default for BookLaneParameters {
     }
 }
 
-/// The book's lane keeper: gray, smooth, edges, the lower part of the picture, straight lines, the mean of those that lean to
-/// the right and of those that lean to the left, and a steering in proportion to how far the middle between them is aside.
-/// Where one side is missing, it is taken to be as far away as it was; where both are, the steering stays as it is.
+/// The book's lane keeper: gray, smooth, edges, the lower part of the picture, straight lines, the mean of
+/// those that lean to the right and of those that lean to the left, and a steering in proportion to how far
+/// the middle between them is aside. Where one side is missing, it is taken to be as far away as it was;
+/// where both are, the steering stays as it is.
 #[derive(Debug)]
 pub struct BookLaneKeeper {
     parameters: BookLaneParameters,
@@ -105,8 +106,8 @@ impl BookLaneKeeper {
     }
 }
 
-/// Where the mean of the lines to one side, -1 for the left and 1 for the right, meets the row a quarter up the picture. A line
-/// to the left of a camera leans to the right, and counts by its length.
+/// Where the mean of the lines to one side, -1 for the left and 1 for the right, meets the row a quarter up
+/// the picture. A line to the left of a camera leans to the right, and counts by its length.
 fn mean_line(lines: &[LineSegment], side: f64, (width, height): (f64, f64)) -> Option<f64> {
     let (mut sum, mut weight) = (0.0, 0.0);
     for line in lines {

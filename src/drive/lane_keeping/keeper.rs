@@ -56,8 +56,8 @@ impl LaneKeeperParameters {
     }
 }
 
-/// Keeps a car, or a robot on two wheels, in the middle of its lane by its camera and its odometry. Where the lane is lost, it
-/// stands and looks.
+/// Keeps a car, or a robot on two wheels, in the middle of its lane by its camera and its odometry. Where the
+/// lane is lost, it stands and looks.
 #[derive(Debug, Clone)]
 pub struct LaneKeeper {
     parameters: LaneKeeperParameters,

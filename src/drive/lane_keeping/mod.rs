@@ -1,8 +1,10 @@
 //! Keeping the lane by what a camera sees (book, section 13.3).
 //!
-//! [`LaneKeeper`] steers by the road that [`LaneMarkingFinder`](crate::vision::lane_markings::LaneMarkingFinder) fits to the markings: ahead
-//! by the lane's curvature, back by offset and heading, and as fast as grip, bends and sight allow. [`BookLaneKeeper`] is the
-//! book's pipeline as printed: edges by Canny, lines by Hough, and a proportional controller.
+//! [`LaneKeeper`] steers by the road that
+//! [`LaneMarkingFinder`](crate::vision::lane_markings::LaneMarkingFinder) fits to the markings: ahead by the
+//! lane's curvature, back by offset and heading, and as fast as grip, bends and sight allow.
+//! [`BookLaneKeeper`] is the book's pipeline as printed: edges by Canny, lines by Hough, and a proportional
+//! controller.
 //!
 //! ```
 //! use roverlab::drive::lane_keeping::{BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters};

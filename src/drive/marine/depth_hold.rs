@@ -8,11 +8,13 @@ use crate::parameter::{require_not_negative, require_positive};
 pub struct DepthHoldParameters {
     /// Fastest change of the wanted depth (m/s).
     pub speed: f64,
-    /// Bandwidth of the way to a new depth (rad/s): it takes about four of its inverses more than the speed asks for.
+    /// Bandwidth of the way to a new depth (rad/s): it takes about four of its inverses more than the speed
+    /// asks for.
     pub approach: f64,
     /// Bandwidth of the control (rad/s).
     pub control: f64,
-    /// Bandwidth of the observer (rad/s): lower averages the sensor's noise, higher learns a wrong weight faster.
+    /// Bandwidth of the observer (rad/s): lower averages the sensor's noise, higher learns a wrong weight
+    /// faster.
     pub observer: f64,
 }
 
@@ -23,8 +25,8 @@ impl Default for DepthHoldParameters {
     }
 }
 
-/// Holds a depth: a reference that moves to the wanted depth without overshoot, an observer of depth, speed and the
-/// unknown force that acts besides the model's, and state feedback with that force fed forward.
+/// Holds a depth: a reference that moves to the wanted depth without overshoot, an observer of depth, speed
+/// and the unknown force that acts besides the model's, and state feedback with that force fed forward.
 ///
 /// The observer knows what the thrusters really push, limits included, so that nothing winds up.
 ///
@@ -83,8 +85,8 @@ impl DepthHold {
         })
     }
 
-    /// The force down (N) by which a craft, whose sensor reads `depth`, comes to `goal` and stays there, `seconds` after
-    /// the step before.
+    /// The force down (N) by which a craft, whose sensor reads `depth`, comes to `goal` and stays there,
+    /// `seconds` after the step before.
     pub fn step(&mut self, depth: f64, goal: f64, seconds: f64) -> f64 {
         self.observe(depth, seconds);
         let acceleration = self.lead(goal, seconds);

@@ -63,8 +63,8 @@ pub enum DiveOutcome {
 
 halts!(DiveOutcome { Over: "the dive is over" });
 
-/// A share of its full speed for each of a craft's first thrusters, -1 to 1. Stopped thrusters let a craft with buoyancy
-/// surface.
+/// A share of its full speed for each of a craft's first thrusters, -1 to 1. Stopped thrusters let a craft
+/// with buoyancy surface.
 ///
 /// ```
 /// use roverlab::drive::marine::Thrust;
@@ -109,8 +109,8 @@ impl<R: Motors + ?Sized> Command<R> for Thrust {
 
 /// Brings a craft to a depth and holds it there, level and on its heading (book, section 8.3).
 ///
-/// The thrusters' forces follow from the craft's own model: damping, buoyancy and inertia with added mass. What the
-/// model does not know, such as a load that is not trimmed, is learnt as a force.
+/// The thrusters' forces follow from the craft's own model: damping, buoyancy and inertia with added mass.
+/// What the model does not know, such as a load that is not trimmed, is learnt as a force.
 ///
 /// ```
 /// use roverlab::drive::marine::{Dive, DiveOutcome, DiveParameters};
@@ -143,7 +143,8 @@ pub struct Dive {
     before: f64,
 }
 
-/// The share of the difference between a reading of the attitude and what turn rates say that a step believes.
+/// The share of the difference between a reading of the attitude and what turn rates say that a step
+/// believes.
 const BELIEVED: f64 = 0.1;
 
 impl Dive {

@@ -5,14 +5,17 @@ use crate::world::{DriveSpec, RobotSpec};
 /// The rules of Free Drive that are open in their text, or differ from release to release.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FreeDriveRules {
-    /// Whether metres outside the own lane are subtracted: so in the release of 2025, no longer in that of 2026.
+    /// Whether metres outside the own lane are subtracted: so in the release of 2025, no longer in that of
+    /// 2026.
     pub subtract_outside: bool,
-    /// Metres that leaving the lane with two wheels costs, as does each time that the car is taken over by remote control.
+    /// Metres that leaving the lane with two wheels costs, as does each time that the car is taken over by
+    /// remote control.
     pub penalty: f64,
-    /// Seconds that an intervention costs in the measure of autonomy (M. Bojarski et al., "End to end learning for self-driving
-    /// cars", 2016).
+    /// Seconds that an intervention costs in the measure of autonomy (M. Bojarski et al., "End to end
+    /// learning for self-driving cars", 2016).
     pub intervention: f64,
-    /// The farthest that the car's middle may be from its lane's middle, in widths of a lane, before it is taken over.
+    /// The farthest that the car's middle may be from its lane's middle, in widths of a lane, before it is
+    /// taken over.
     pub astray: f64,
     /// Seconds for which a car may stand before it is taken over.
     pub standing: f64,
@@ -40,7 +43,8 @@ pub struct FreeDriveScore {
     pub interventions: u32,
     /// Seconds to the first departure, or to the end (Duckietown's survival time).
     pub survival: f64,
-    /// The sum of squared offsets from the lane's middle by metres driven, and of absolute ones (Duckietown's deviation).
+    /// The sum of squared offsets from the lane's middle by metres driven, and of absolute ones (Duckietown's
+    /// deviation).
     squares: f64,
     deviation: f64,
 }

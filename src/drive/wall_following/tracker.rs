@@ -26,11 +26,12 @@ pub(super) enum Reading {
 
 /// The variance that a metre of wall adds to its distance, slope and curvature.
 const WANDER: [f64; 3] = [2e-5, 8e-3, 120.0];
-/// The tightest curvature that is believed, in 1/m, and the spread of that of a wall of which nothing is known.
+/// The tightest curvature that is believed, in 1/m, and the spread of that of a wall of which nothing is
+/// known.
 const TIGHTEST: f64 = 3.0;
 
-/// Points within so many metres of each other are taken for one surface; a reading that is off by more may not be of the
-/// wall, and a new wall whose line passes the corner at less begins there.
+/// Points within so many metres of each other are taken for one surface; a reading that is off by more may
+/// not be of the wall, and a new wall whose line passes the corner at less begins there.
 pub(super) const ONE_SURFACE: f64 = 0.05;
 /// Innovations that add up to more than this show a bend, ...
 const BEND: f64 = 1.1;

@@ -97,7 +97,8 @@ impl RobiosRobot {
         })
     }
 
-    /// Gives the robot an inertial unit, which the library reads on these channels: RoBIOS does not tell of any.
+    /// Gives the robot an inertial unit, which the library reads on these channels: RoBIOS does not tell of
+    /// any.
     #[must_use]
     pub fn with_inertial(self, inertial: InertialSpec) -> Self {
         Self { inertial, ..self }

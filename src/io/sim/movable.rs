@@ -42,8 +42,8 @@ pub(super) fn movables(world: &World, solids: &[SolidId]) -> Vec<Movable> {
 }
 
 impl Movable {
-    /// How deep its foot is under the surface when it floats in water of a density; `None` if it sinks. Its cross-section
-    /// is taken for the same all the way up.
+    /// How deep its foot is under the surface when it floats in water of a density; `None` if it sinks. Its
+    /// cross-section is taken for the same all the way up.
     pub(super) fn draught(&self, density: f64) -> Option<f64> {
         let carried = density * self.volume;
         (carried > self.weight).then(|| self.height * self.weight / carried)

@@ -13,8 +13,8 @@ use crate::world::Scene;
 /// are taken. A robot that nobody takes stands still; one whose handle is dropped keeps its last command.
 ///
 /// Neither threads nor load affect what a program sees, within one bound of real time: while the world stands
-/// still because one robot's program lets no time pass, the calls of the others wait for at most 60 s (10 s for
-/// a robot that the waiting thread itself used last), and then fail with an error that names that robot,
+/// still because one robot's program lets no time pass, the calls of the others wait for at most 60 s (10 s
+/// for a robot that the waiting thread itself used last), and then fail with an error that names that robot,
 /// instead of blocking for ever.
 #[derive(Debug, Clone)]
 pub struct Simulation {

@@ -33,8 +33,8 @@ impl Engine {
         }
     }
 
-    /// Moves an object and returns its remaining velocity. Obstacles take the part towards them; the edge of the hills
-    /// stops it.
+    /// Moves an object and returns its remaining velocity. Obstacles take the part towards them; the edge of
+    /// the hills stops it.
     fn advance(&mut self, thing: usize, velocity: Vector) -> Vector {
         let solid = self.movables[thing].solid;
         let before = *self.space.solid(solid);

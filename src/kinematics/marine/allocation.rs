@@ -5,8 +5,8 @@ use super::{Craft, MAX_THRUSTERS, Thruster, Wrench};
 
 /// Shares a wanted force and moment out among a craft's thrusters.
 ///
-/// The thrusters' forces are those of least squares; where one would have to push harder than it can, all are scaled down
-/// alike, so that the direction of force and moment stays (Fossen 2021, section 11.2).
+/// The thrusters' forces are those of least squares; where one would have to push harder than it can, all are
+/// scaled down alike, so that the direction of force and moment stays (Fossen 2021, section 11.2).
 ///
 /// ```
 /// use roverlab::geometry::Vector3;
@@ -31,12 +31,13 @@ pub struct Allocation {
 pub struct Allocated {
     /// A share of each thruster's full speed, -1 to 1.
     pub commands: [f64; MAX_THRUSTERS],
-    /// The share of the wanted force and moment that comes of it, as far as the thrusters act along it at all; 1 unless
-    /// one of them is at its limit.
+    /// The share of the wanted force and moment that comes of it, as far as the thrusters act along it at
+    /// all; 1 unless one of them is at its limit.
     pub share: f64,
 }
 
-/// What keeps directions in which no thruster pushes out of the least squares, beside forces of N² and moments of N² m².
+/// What keeps directions in which no thruster pushes out of the least squares, beside forces of N² and
+/// moments of N² m².
 const LITTLE: f64 = 1e-9;
 
 impl Allocation {

@@ -107,8 +107,8 @@ struct Inertia {
 impl Craft {
     /// A craft that moves in steps of some seconds.
     ///
-    /// Fails with the name of a number that is not what it must be, with an inertia that no body has, and with a
-    /// step above 0.1 s.
+    /// Fails with the name of a number that is not what it must be, with an inertia that no body has, and
+    /// with a step above 0.1 s.
     pub fn new(spec: &CraftSpec, step: f64) -> Result<Self, ParameterError> {
         spec.validate()?;
         require_positive("step", step)?;
@@ -161,7 +161,8 @@ impl Craft {
         Point3::from(self.origin)
     }
 
-    /// Mass and moments of inertia with those of the water that moves along: kg for the three axes, kg m² about them.
+    /// Mass and moments of inertia with those of the water that moves along: kg for the three axes, kg m²
+    /// about them.
     pub fn inertia(&self) -> [f64; 6] {
         self.wet.matrix.diagonal().into()
     }
@@ -214,14 +215,15 @@ impl Craft {
         GRAVITY * (density * self.whole.volume - self.mass)
     }
 
-    /// The forces that drive it at one axis at a time to a steady speed through the water, damping's: N and N m.
+    /// The forces that drive it at one axis at a time to a steady speed through the water, damping's: N and N
+    /// m.
     pub fn drag(&self, through_water: &CraftMotion) -> Wrench {
         let speed = stack(&through_water.linear, &through_water.angular);
         split(&self.damping(&speed)).into()
     }
 
-    /// The acceleration of a craft under water, through the water, by a force and a moment besides those of inertia
-    /// and damping. A current turns with the craft's frame in addition.
+    /// The acceleration of a craft under water, through the water, by a force and a moment besides those of
+    /// inertia and damping. A current turns with the craft's frame in addition.
     pub fn response(&self, through_water: &CraftMotion, wrench: &Wrench) -> CraftMotion {
         let speed = stack(&through_water.linear, &through_water.angular);
         let force = stack(&wrench.force, &wrench.moment);
@@ -333,8 +335,8 @@ impl Craft {
         rates
     }
 
-    /// The share of the damping that a craft has of which so much is under water: all of it, if that is what carries
-    /// it or all there is.
+    /// The share of the damping that a craft has of which so much is under water: all of it, if that is what
+    /// carries it or all there is.
     fn share(&self, volume: f64, density: f64) -> f64 {
         let most = self.whole.volume.min(self.mass / density);
         if volume >= most || most == 0.0 { 1.0 } else { volume / most }
@@ -386,7 +388,8 @@ impl Inertia {
     }
 }
 
-/// The least pivot of a symmetric matrix: positive if and only if it is positive definite. NaN if there is one.
+/// The least pivot of a symmetric matrix: positive if and only if it is positive definite. NaN if there is
+/// one.
 fn least_pivot(mut matrix: Matrix6<f64>) -> f64 {
     let mut least = f64::INFINITY;
     for k in 0..6 {

@@ -5,8 +5,8 @@ use crate::geometry::{Point3, Vector3, math};
 
 /// The density of fresh water, in kg/m³.
 const FRESH: f64 = 1000.0;
-/// The drag coefficient of a body no longer along the flow than across it; a slender one has the second, and more by
-/// the ratio of its width to its length.
+/// The drag coefficient of a body no longer along the flow than across it; a slender one has the second, and
+/// more by the ratio of its width to its length.
 const BLUNT: f64 = 1.1;
 const SLENDER: f64 = 0.3;
 /// The speed, in m/s or rad/s, at which linear damping is as large as quadratic damping.
@@ -15,9 +15,9 @@ const CREEP: f64 = 0.1;
 impl CraftSpec {
     /// A craft without thrusters, with the inertia, the added mass and the damping that follow from its hull.
     ///
-    /// The mass is spread evenly over the parts. Each part has the added mass of an ellipsoid of its size (Lamb) and the
-    /// drag of a body of its length and width, as far as it is under water when the craft floats at rest; the parts do
-    /// not shade each other.
+    /// The mass is spread evenly over the parts. Each part has the added mass of an ellipsoid of its size
+    /// (Lamb) and the drag of a body of its length and width, as far as it is under water when the craft
+    /// floats at rest; the parts do not shade each other.
     pub fn of_hull(mass: f64, centre_of_mass: Point3, hull: Vec<HullPart>) -> Self {
         let whole: f64 = hull.iter().map(HullPart::volume).sum();
         let centre: Vector3 = hull.iter().map(|part| part.centre().coords * (part.volume() / whole)).sum();
@@ -49,7 +49,8 @@ impl CraftSpec {
         Self { hull, ..spec }
     }
 
-    /// Square metres of what is out of fresh water at rest, seen from ahead and from the side: wind pushes it.
+    /// Square metres of what is out of fresh water at rest, seen from ahead and from the side: wind pushes
+    /// it.
     pub fn windage(&self) -> [f64; 2] {
         let level = floats_at(&self.hull, self.mass);
         [0, 1].map(|axis| {
@@ -81,7 +82,8 @@ fn floats_at(hull: &[HullPart], mass: f64) -> f64 {
     high
 }
 
-/// Adds the added mass and the quadratic damping of a part whose middle is at `arm`, and of which a share is wet.
+/// Adds the added mass and the quadratic damping of a part whose middle is at `arm`, and of which a share is
+/// wet.
 fn add_water(spec: &mut CraftSpec, part: &HullPart, arm: &Vector3, wet: f64) {
     let half = part.half_size();
     let lamb = lamb(&half);
@@ -104,7 +106,8 @@ fn add_water(spec: &mut CraftSpec, part: &HullPart, arm: &Vector3, wet: f64) {
         let turned = if difference == 0.0 { 0.0 } else { difference * difference * more / denominator };
         let carried = added[b] * arm[c] * arm[c] + added[c] * arm[b] * arm[b];
         spec.added_mass[axis + 3] += 0.2 * mass * turned + carried;
-        // A strip at a distance along b moves along c: the mean of the cube of the distance is a quarter of half's.
+        // A strip at a distance along b moves along c: the mean of the cube of the distance is a quarter of
+        // half's.
         let strips = 0.25 * (drag[c] * cube(half[b]) + drag[b] * cube(half[c]));
         let moved = drag[b] * cube(arm[c]) + drag[c] * cube(arm[b]);
         spec.quadratic_damping[axis + 3] += strips + moved;

@@ -50,7 +50,8 @@ struct Flow {
 }
 
 impl Craft {
-    /// Moves a craft by one step. Commands are shares of each thruster's full speed, -1 to 1; those that are missing are 0.
+    /// Moves a craft by one step. Commands are shares of each thruster's full speed, -1 to 1; those that are
+    /// missing are 0.
     pub fn advance(&self, state: &mut CraftState, commands: &[f64], water: &LocalWater) {
         let wrench = self.thrust(state, commands, water);
         let by_itself = wrench == Vector6::zeros() && water.velocity == Vector3::zeros();
@@ -63,8 +64,8 @@ impl Craft {
         self.give_back(state, self.energy(state, water) - before, water);
     }
 
-    /// Takes energy from the motion to which a craft has come without a thruster, because an edge of its hull came to
-    /// the surface within the step.
+    /// Takes energy from the motion to which a craft has come without a thruster, because an edge of its hull
+    /// came to the surface within the step.
     fn give_back(&self, state: &mut CraftState, more: f64, water: &LocalWater) {
         let kinetic = self.kinetic(state, water);
         if more > 0.0 && kinetic > 0.0 {

@@ -3,10 +3,11 @@ use crate::ParameterError;
 use crate::geometry::{Point3, Vector3};
 use crate::parameter::{require, require_finite, require_not_negative};
 
-/// What a craft is: its mass, its hull and what drives it. Places are in its own frame: x forward, y left, z up.
+/// What a craft is: its mass, its hull and what drives it. Places are in its own frame: x forward, y left, z
+/// up.
 ///
-/// Added mass and damping are about the middle of the hull's volume, one number for each axis of motion: forward, left,
-/// up, and turning about these (surge, sway, heave, roll, pitch, yaw).
+/// Added mass and damping are about the middle of the hull's volume, one number for each axis of motion:
+/// forward, left, up, and turning about these (surge, sway, heave, roll, pitch, yaw).
 ///
 /// ```
 /// use roverlab::geometry::{Point3, Vector3};
@@ -35,8 +36,8 @@ pub struct CraftSpec {
     pub hull: Vec<HullPart>,
     /// Added mass in kg for the first three axes, in kg m² for the others.
     pub added_mass: [f64; 6],
-    /// Whether the added mass turns the craft across the flow (Munk), as it does with a bare, slender hull. Frames and fins
-    /// outweigh that; without them a craft does not keep its course.
+    /// Whether the added mass turns the craft across the flow (Munk), as it does with a bare, slender hull.
+    /// Frames and fins outweigh that; without them a craft does not keep its course.
     pub munk: bool,
     /// Damping in proportion to the speed: N s/m, and N m s for the last three axes.
     pub linear_damping: [f64; 6],

@@ -77,8 +77,8 @@ const BEND: usize = 5;
 
 /// The standard deviations at the start: metres and radians.
 const START: [f64; 2] = [1e-3, 4e-3];
-/// Cells by which a robot that does not know better may be wrong about its place: what it sees is then the nearest that it
-/// can be.
+/// Cells by which a robot that does not know better may be wrong about its place: what it sees is then the
+/// nearest that it can be.
 const NEAREST: f64 = 0.45;
 /// Beams square to a wall, up to 14 degrees: others may see what stands behind an opening beside it.
 const SQUARE: f64 = 0.97;

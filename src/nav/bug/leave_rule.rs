@@ -59,8 +59,8 @@ pub(super) struct OnMainLine<const EVER: bool> {
 
 /// Metres to either side that still count as on the line.
 const LINE_WIDTH: f64 = 0.005;
-/// Robot radii beyond which a place is left behind, and a free range along the line from which on it is open even at a slant into
-/// the wall.
+/// Robot radii beyond which a place is left behind, and a free range along the line from which on it is open
+/// even at a slant into the wall.
 pub(super) const OPEN: f64 = 2.5;
 
 impl<const EVER: bool> Default for OnMainLine<EVER> {

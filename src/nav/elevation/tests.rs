@@ -1,5 +1,3 @@
-use std::time::Instant;
-
 use proptest::prelude::*;
 
 use super::*;
@@ -8,7 +6,7 @@ use crate::nav::graph::shortest_path;
 use crate::nav::grid::PlanError;
 use crate::random::Stream;
 use crate::testing::reliefs;
-use crate::world::generate::{ReliefKind, ReliefOptions, relief};
+use crate::world::generate::ReliefKind;
 use crate::world::{GridCell, HeightField};
 
 const CLIMBER: Climber = Climber { slope: 0.35, step: 0.02, radius: 0.15 };
@@ -212,37 +210,4 @@ fn what_cannot_be_planned_is_told() {
     // A robot larger than the world has no place on it.
     let large = ElevationMap::new(&level, &Climber { radius: 5.0, ..CLIMBER }).unwrap();
     assert_eq!(large.open().count_free(), 0);
-}
-
-/// Run in release: `cargo test --release --lib elevation -- --ignored --nocapture`.
-#[test]
-#[ignore = "measures time"]
-#[allow(clippy::disallowed_methods, reason = "it measures time")]
-fn planning_on_512_by_512_samples() {
-    let options = ReliefOptions { samples: 512, ..ReliefOptions::of(ReliefKind::Range) };
-    for seed in 0..5 {
-        let range = relief(&mut Stream::new(seed), &options).unwrap();
-        let ground = range.world.terrain.unwrap().surface.unwrap();
-        let begun = Instant::now();
-        let map = ElevationMap::new(&ground, &CLIMBER).unwrap();
-        let prepared = begun.elapsed();
-        let (start, goal) = (Point::new(0.3, 0.3), Point::new(4.7, 4.7));
-        for objective in objectives() {
-            let mut planner = ElevationPlanner::astar(&map, objective).unwrap();
-            let times = [(); 5].map(|()| {
-                let begun = Instant::now();
-                let plan = planner.plan(start, goal);
-                (begun.elapsed(), plan)
-            });
-            let begun = Instant::now();
-            let any = planner.plan_any_angle(start, goal);
-            let any_time = begun.elapsed();
-            let least = times.iter().map(|(time, _)| *time).min().unwrap();
-            let cost = times[0].1.as_ref().map(|plan| (plan.cost, plan.statistics.expanded));
-            let any = any.map(|any| (any.cost, any.points.len()));
-            println!(
-                "{seed} {objective:?}: map {prepared:?}, plan {least:?} {cost:?}, any angle {any_time:?} {any:?}"
-            );
-        }
-    }
 }

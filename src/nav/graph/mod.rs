@@ -2,9 +2,9 @@
 //!
 //! [`shortest_path`] searches any graph that can list the neighbours of a node. With the feature `petgraph`,
 //! `petgraph_shortest_path` searches graphs of that crate, and `petgraph_of_grid` makes one of a grid. Both
-//! searches are A\*, or Dijkstra's algorithm with an estimate of 0. Costs are floating-point numbers: a NaN or
-//! negative cost is an error that names its edge, and equal costs are taken in the order in which they were
-//! found.
+//! searches are A\*, or Dijkstra's algorithm with an estimate of 0. Costs are floating-point numbers: a NaN
+//! or negative cost is an error that names its edge, and equal costs are taken in the order in which they
+//! were found.
 
 mod search;
 #[cfg(test)]

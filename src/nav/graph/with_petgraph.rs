@@ -4,8 +4,8 @@ use petgraph::visit::{EdgeRef, IntoEdges, NodeIndexable};
 use super::search::{GraphError, GraphPath, GraphStep, shortest_path};
 use crate::world::{BitGrid, GridCell};
 
-/// A grid as a `petgraph` graph: a node for each free cell, row by row, and an edge for each step that grid planners take,
-/// with its cost in cells: 1 along rows and columns, √2 along a diagonal that cuts no corner.
+/// A grid as a `petgraph` graph: a node for each free cell, row by row, and an edge for each step that grid
+/// planners take, with its cost in cells: 1 along rows and columns, √2 along a diagonal that cuts no corner.
 ///
 /// ```
 /// use roverlab::nav::graph::petgraph_of_grid;

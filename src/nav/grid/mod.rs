@@ -13,7 +13,8 @@
 //! | [`LazyThetaStar`] | short, in any direction | nothing |
 //! | [`QuadtreePlanner`] | short, in any direction | a [`Quadtree`], and which of its leaves are neighbours |
 //!
-//! [`GridSearch`] and [`DStarLite`] also plan by [`StepCosts`]: [`elevation`](super::elevation) does so on hills.
+//! [`GridSearch`] and [`DStarLite`] also plan by [`StepCosts`]: [`elevation`](super::elevation) does so on
+//! hills.
 //!
 //! [`DStarLite`] repairs its plan while the map changes. [`inflated`] inflates a map by a robot's outline,
 //! [`DistanceField`] computes the distance to obstacles.

@@ -44,7 +44,8 @@ const LANES: f64 = 6.5;
 impl EventShape {
     /// A strip as wide as the rules let it be at least.
     pub const STRIP: Self = Self::Strip { half_width: 1.5 };
-    /// The skidpad of the rules of Formula Student: centres 18.25 m from each other, circles of 15.25 and 21.25 m.
+    /// The skidpad of the rules of Formula Student: centres 18.25 m from each other, circles of 15.25 and
+    /// 21.25 m.
     pub const EIGHT: Self = Self::Eight { apart: 9.125, inner: 7.625, outer: 10.625 };
 
     /// Its numbers (m).

@@ -11,7 +11,8 @@ const STEP: f64 = 0.25;
 const ROUND: u32 = 224;
 /// Laps of each circle.
 pub(super) const LAPS: u32 = 2;
-/// Metres over which the way passes from circle to circle: the standard deviation of the bell that smooths it.
+/// Metres over which the way passes from circle to circle: the standard deviation of the bell that smooths
+/// it.
 const PASSES: f64 = 2.0;
 
 /// A straight line along x.

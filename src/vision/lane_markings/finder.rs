@@ -57,7 +57,8 @@ impl LaneEstimate {
         bend / (1.0 - bend * self.middle)
     }
 
-    /// A place of the lane's middle some metres ahead along the road, in the robot's frame, with the lane's direction.
+    /// A place of the lane's middle some metres ahead along the road, in the robot's frame, with the lane's
+    /// direction.
     pub fn place(&self, ahead: f64) -> Pose {
         let (point, forward) = Curve::new(&self.bends).at(ahead / self.size);
         let left = self.middle / self.size;
@@ -130,8 +131,8 @@ impl LaneMarkingFinder {
         self.blind = 0.0;
     }
 
-    /// Looks at an image after the car has driven some metres and turned by some radians since the last one. Takes the car to be
-    /// about in its lane when it looks for the road.
+    /// Looks at an image after the car has driven some metres and turned by some radians since the last one.
+    /// Takes the car to be about in its lane when it looks for the road.
     pub fn see(&mut self, image: GrayView<'_>, (metres, turn): (f64, f64)) -> LaneEstimate {
         let size = self.road_model.size;
         self.filter.find(image, &mut self.points);

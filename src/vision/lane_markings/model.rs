@@ -1,5 +1,6 @@
-//! The road as a state with its covariance: where the car is on it, how it bends ahead, how wide it is, and by how much the
-//! camera is tilted otherwise than it is said to be. All lengths are those of the rules' size.
+//! The road as a state with its covariance: where the car is on it, how it bends ahead, how wide it is, and
+//! by how much the camera is tilted otherwise than it is said to be. All lengths are those of the rules'
+//! size.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -7,8 +8,8 @@ use super::curve::{Bends, Curve, Foot, KNOTS, SPACING, bend_at};
 use super::{MarkingPoint, RoadCamera};
 use crate::geometry::{Point, Vector, math};
 
-/// Metres to the left of the road's middle; radians to the left of its direction; curvatures; metres from its middle to an
-/// edge line; radians of the camera's pitch.
+/// Metres to the left of the road's middle; radians to the left of its direction; curvatures; metres from its
+/// middle to an edge line; radians of the camera's pitch.
 pub(super) const STATES: usize = KNOTS + 4;
 const OFFSET: usize = 0;
 const HEADING: usize = 1;
@@ -40,7 +41,8 @@ const FIRST: [f64; 5] = [0.12, 0.12, 0.7, 0.035, 0.01];
 const EDGE_AT_FIRST: f64 = 0.42;
 /// Deviations that grow with the root of the metres driven.
 const DRIFT: [f64; 5] = [0.010, 0.020, 0.25, 0.003, 0.0005];
-/// Curvatures of a road that has not come into view yet: their deviation, and metres in which they are forgotten.
+/// Curvatures of a road that has not come into view yet: their deviation, and metres in which they are
+/// forgotten.
 const UNSEEN: (f64, f64) = (0.6, 1.5);
 /// The tightest bend of a road, and how sharply that is meant; and the same of its edges, from least to most.
 const TIGHTEST: (f64, f64) = (1.0, 0.1);
@@ -147,8 +149,8 @@ impl Road {
         keep(EDGE, EDGES.0, EDGES.1);
     }
 
-    /// Fits it to points, with weights that leave out what no line of the road is. `wide` are the metres within which points
-    /// count at first. Returns the weight of the points within a metre and a half.
+    /// Fits it to points, with weights that leave out what no line of the road is. `wide` are the metres
+    /// within which points count at first. Returns the weight of the points within a metre and a half.
     pub(super) fn see(&mut self, points: &[MarkingPoint], camera: &RoadCamera, wide: f64) -> f64 {
         let Some(prior) = self.covariance.cholesky().map(|root| root.inverse()) else { return 0.0 };
         let before = self.state;
@@ -191,7 +193,8 @@ impl Road {
         fits.sum()
     }
 
-    /// A point as the road sees it: its distance from the line that it is nearest to, and how that changes with the state.
+    /// A point as the road sees it: its distance from the line that it is nearest to, and how that changes
+    /// with the state.
     fn measure(&self, curve: &Curve, point: &MarkingPoint, camera: &RoadCamera) -> Option<Measured> {
         let lift = camera.lift(point.place);
         let place = point.place + lift * self.pitch();

@@ -295,7 +295,8 @@ impl RobotSpec {
         Self { name: "LidarBot".into(), psds, lidar: Some(lidar), ..s4 }
     }
 
-    /// The underwater craft Mako (book, chapter 8), with PSDs ahead, to the left, to the right, back, up and down.
+    /// The underwater craft Mako (book, chapter 8), with PSDs ahead, to the left, to the right, back, up and
+    /// down.
     ///
     /// Its body is [`CraftSpec::mako`](crate::kinematics::marine::CraftSpec::mako).
     pub fn mako() -> Self {

@@ -7,8 +7,8 @@
 //!
 //! Sensor-based algorithms for finding a goal (chapter 10) are evaluated on such courses.
 //!
-//! [`room`] draws a room with corners of many angles, curved walls and doors, whose wall can be followed all the way round
-//! (chapter 6). [`relief`] draws hills, craters, ramps and steps (chapter 7).
+//! [`room`] draws a room with corners of many angles, curved walls and doors, whose wall can be followed all
+//! the way round (chapter 6). [`relief`] draws hills, craters, ramps and steps (chapter 7).
 
 mod bent;
 mod border;

@@ -18,8 +18,8 @@ const CLOSING: (f64, f64) = (0.10, 0.0524);
 const MARKS: usize = 10_000;
 
 impl RoadCourse {
-    /// Fails unless the road is closed, nowhere too tight, and crosses itself at crossings alone, and lanes and marks are as the
-    /// rules say.
+    /// Fails unless the road is closed, nowhere too tight, and crosses itself at crossings alone, and lanes
+    /// and marks are as the rules say.
     pub fn check(&self) -> Result<(), CourseError> {
         let size = self.size;
         let within = |[least, most]: [f64; 2], value: f64| (least * size..=most * size).contains(&value);

@@ -154,8 +154,8 @@ impl HeightField {
         f64::from(self.pyramid.whole().high)
     }
 
-    /// No place of a rectangle is higher than this; some place not much farther away may be as high. Beyond the surface
-    /// there is nothing: -∞. O(1).
+    /// No place of a rectangle is higher than this; some place not much farther away may be as high. Beyond
+    /// the surface there is nothing: -∞. O(1).
     pub fn upper_bound(&self, area: &Aabb) -> f64 {
         let (low, high) = (area.min.sup(&self.area.min), area.max.inf(&self.area.max));
         if !(low.x <= high.x && low.y <= high.y) {

@@ -214,8 +214,8 @@ fn threads_and_radio() -> Result<String> {
     threads(8, |_, _| {})
 }
 
-/// Robots in threads of their own, which meet, and tell each other where they are. `disturb` is called with the
-/// robot's index and the step's number between steps, so that a caller can upset the scheduler.
+/// Robots in threads of their own, which meet, and tell each other where they are. `disturb` is called with
+/// the robot's index and the step's number between steps, so that a caller can upset the scheduler.
 pub(crate) fn threads(robots: usize, disturb: impl Fn(usize, u32) + Sync) -> Result<String> {
     let simulation = Simulation::new(&formation(robots, 4), noise(1.0, 19))?;
     let all: Vec<SimRobot> = (0..robots).map(|index| simulation.robot(index)).collect::<Result<_>>()?;

@@ -158,8 +158,8 @@ fn edge(a: Point, b: Point, eye: Point, d: Vector) -> f64 {
     }
 }
 
-/// Whether a range is what rays give: the ray itself to 1 nm, or, where an edge is only just hit or missed or a face
-/// is grazed, rays beside it.
+/// Whether a range is what rays give: the ray itself to 1 nm, or, where an edge is only just hit or missed or
+/// a face is grazed, rays beside it.
 fn agrees(range: f64, angle: f64, max_range: f64, cast: impl Fn(Vector) -> f64) -> bool {
     let limited = |r: f64| if r <= max_range { r } else { f64::INFINITY };
     let same = |a: f64, b: f64| a == b || (a - b).abs() < 1e-9;

@@ -56,8 +56,8 @@ impl Cutter {
         }
     }
 
-    /// Draws how near a triangle is whose corners are in the camera's frame, where it is nearer than what is there. Its
-    /// colour is none yet.
+    /// Draws how near a triangle is whose corners are in the camera's frame, where it is nearer than what is
+    /// there. Its colour is none yet.
     pub(super) fn draw_seen(&mut self, canvas: &mut Canvas, view: &View, corners: &[Seen; 3]) {
         self.seen.clear();
         self.seen.extend_from_slice(corners);
@@ -99,7 +99,8 @@ impl Cutter {
         }
     }
 
-    /// Takes a face's corners into the camera's frame. Returns its plane, if it has one that does not hold the eye.
+    /// Takes a face's corners into the camera's frame. Returns its plane, if it has one that does not hold
+    /// the eye.
     pub(super) fn look(&mut self, view: &View, corners: &[Place]) -> Option<Plane> {
         self.seen.clear();
         self.seen.extend(corners.iter().map(|&corner| view.see(corner)));

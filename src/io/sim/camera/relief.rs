@@ -38,7 +38,8 @@ struct Block {
     row: usize,
 }
 
-/// How samples come into the camera's frame: the place of the first at height 0, and the steps along x, y and upwards.
+/// How samples come into the camera's frame: the place of the first at height 0, and the steps along x, y and
+/// upwards.
 struct Steps {
     origin: Seen,
     x: Seen,
@@ -59,7 +60,8 @@ impl Relief {
         Self { surface, light, cutter: Cutter::default(), mesh: Vec::new(), blocks: Vec::new() }
     }
 
-    /// Draws how near the surface is, where it is nearer than what is there. Colours are for [`paint`](Self::paint).
+    /// Draws how near the surface is, where it is nearer than what is there. Colours are for
+    /// [`paint`](Self::paint).
     pub(super) fn draw(&mut self, canvas: &mut Canvas, view: &View) {
         let area = self.surface.area();
         let pitch = self.surface.pitch();
@@ -149,7 +151,8 @@ impl Relief {
         }
     }
 
-    /// The light on a place of the surface, in 256ths of that on level ground, for pixels that cover so many metres.
+    /// The light on a place of the surface, in 256ths of that on level ground, for pixels that cover so many
+    /// metres.
     #[inline]
     pub(super) fn light(&self, at: Point, pixel: f64) -> u32 {
         let per_metre = self.surface.per_metre();
@@ -283,8 +286,8 @@ fn light(surface: &HeightField) -> Texture {
     Texture::with_smaller_ones(Level { width: columns, height: rows, texels })
 }
 
-/// How the picture's rays go in the world: the direction of the middle of pixel (0, 0), and the change to the next
-/// column and row, each for a metre along the line of sight.
+/// How the picture's rays go in the world: the direction of the middle of pixel (0, 0), and the change to the
+/// next column and row, each for a metre along the line of sight.
 pub(super) struct Rays {
     eye: Point3,
     first: Place,

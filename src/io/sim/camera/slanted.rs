@@ -9,7 +9,8 @@ use super::view::{Place, View};
 use crate::geometry::{Point, Vector3};
 use crate::world::{Colour, HeightField};
 
-/// A piece of a wall on hills: its corners as seen from above, and the heights of foot and top at each of them.
+/// A piece of a wall on hills: its corners as seen from above, and the heights of foot and top at each of
+/// them.
 #[derive(Debug)]
 pub(super) struct Piece {
     foot: [Place; 4],
@@ -64,8 +65,8 @@ impl Piece {
     }
 }
 
-/// Draws an upright prism of somebody's own frame, who stands on hills. Its corners run counter-clockwise as seen from
-/// above.
+/// Draws an upright prism of somebody's own frame, who stands on hills. Its corners run counter-clockwise as
+/// seen from above.
 pub(super) fn draw_block(
     cutter: &mut Cutter,
     canvas: &mut Canvas,

@@ -7,10 +7,11 @@ use crate::kinematics::marine::{Allocation, Craft, CraftMotion, MAX_THRUSTERS, W
 use crate::kinematics::{Displacement, PlanarTwist};
 use crate::random::Stream;
 
-/// The thrusters of a craft and who commands them: the program, or RoBIOS's v-omega layer in closed loop on the speed.
+/// The thrusters of a craft and who commands them: the program, or RoBIOS's v-omega layer in closed loop on
+/// the speed.
 ///
-/// Odometry is dead reckoning: the way through the water that a log measures, along the heading that follows from the
-/// turn rate. Neither knows of a current.
+/// Odometry is dead reckoning: the way through the water that a log measures, along the heading that follows
+/// from the turn rate. Neither knows of a current.
 #[derive(Debug, Clone)]
 pub(in crate::io::sim) struct CraftDrive {
     craft: Craft,
@@ -91,8 +92,8 @@ impl CraftDrive {
         self.hold(wish)
     }
 
-    /// The commands that bring the craft to a speed and hold it there: what damping takes, what closes the rest, and what
-    /// the model does not know.
+    /// The commands that bring the craft to a speed and hold it there: what damping takes, what closes the
+    /// rest, and what the model does not know.
     fn hold(&mut self, wish: Twist) -> [f64; MAX_THRUSTERS] {
         let wish = Twist::new(wish.linear * self.factors[0], wish.angular * self.factors[1]);
         let wanted = CraftMotion { linear: Vector3::x() * wish.linear, angular: Vector3::z() * wish.angular };

@@ -49,7 +49,8 @@ impl Swimmer {
         Self { craft, state, points, windage, clearance: 0.0, free_ticks: ANOTHER, broken: false }
     }
 
-    /// Puts it somewhere: so many metres above the ground; at 0, where it comes to rest: afloat, or on the ground.
+    /// Puts it somewhere: so many metres above the ground; at 0, where it comes to rest: afloat, or on the
+    /// ground.
     pub(in crate::io::sim) fn place(
         &mut self,
         ground: &HeightField,

@@ -78,7 +78,8 @@ impl Waters {
 }
 
 impl Wave {
-    /// Adds its height, slope and flow; `z` is above the surface at rest. Water above it moves as that at rest does.
+    /// Adds its height, slope and flow; `z` is above the surface at rest. Water above it moves as that at
+    /// rest does.
     fn add(&self, water: &mut marine::LocalWater, at: Point, z: f64, time: f64) {
         let phase = self.number * self.direction.dot(&at.coords) - self.frequency * time + self.phase;
         let (sin, cos) = math::sin_cos(phase);

@@ -124,8 +124,8 @@ impl Hills {
         }
     }
 
-    /// Lets all robots move for a tick, and puts how their frames move over the plane in place of how their wheels
-    /// turned. Returns whether any moves.
+    /// Lets all robots move for a tick, and puts how their frames move over the plane in place of how their
+    /// wheels turned. Returns whether any moves.
     pub(in crate::io::sim) fn ride(
         &mut self,
         bodies: &mut [Body],

@@ -21,10 +21,11 @@
 //!
 //! # Accuracy
 //!
-//! Ground normals, lever arms and rim directions are those of the middle of the tick (a midpoint rule). On smooth hills,
-//! halving the tick moves the end of a 10 m drive by less than 0.2 mm for robots on three wheels and for cars, if the
-//! drive accelerates as motors do. Rigid bodies on four Mecanum wheels or on belts rock from three feet to three others,
-//! and slip differently each time: there the end of a drive depends on the tick by millimetres to centimetres.
+//! Ground normals, lever arms and rim directions are those of the middle of the tick (a midpoint rule). On
+//! smooth hills, halving the tick moves the end of a 10 m drive by less than 0.2 mm for robots on three
+//! wheels and for cars, if the drive accelerates as motors do. Rigid bodies on four Mecanum wheels or on
+//! belts rock from three feet to three others, and slip differently each time: there the end of a drive
+//! depends on the tick by millimetres to centimetres.
 
 mod hills;
 mod mishap;

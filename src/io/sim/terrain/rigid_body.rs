@@ -47,8 +47,8 @@ struct Axis {
     effort: f64,
 }
 
-/// Rounds over all contacts, at most, in each look at the ground of a tick: the first says about where feet will be, and
-/// there the second looks.
+/// Rounds over all contacts, at most, in each look at the ground of a tick: the first says about where feet
+/// will be, and there the second looks.
 const ROUNDS: [usize; 2] = [10, 60];
 /// The change of an impulse below which rounds end, in m/s.
 const SETTLED: f64 = 1e-9;
@@ -289,8 +289,8 @@ const CALMING: f64 = 0.8;
 /// Normal of the ground where a foot arrives on its way, and the foot's initial distance from that plane;
 /// `None` beyond the ground.
 ///
-/// It goes through the ground's place at the end, but lies as the ground does in the middle of the way: as arms and
-/// rims do, so that halving the tick quarters the error and does not halve it.
+/// It goes through the ground's place at the end, but lies as the ground does in the middle of the way: as
+/// arms and rims do, so that halving the tick quarters the error and does not halve it.
 fn plane(ground: &HeightField, start: Point3, way: Vector3) -> Option<(Vector3, f64)> {
     let at = |end: Point3| {
         let (level, slope) = ground.height_and_gradient(end.xy())?;

@@ -271,8 +271,8 @@ fn a_robot_drives_up_a_ramp_and_falls_off_a_ledge() {
     assert!(flew && down.x > 1.9 && down.z < 0.15, "{down:?}");
 }
 
-/// Where a robot comes to in some seconds, if the drive comes to its speed within a second; with a whole tick, a half and
-/// a quarter of one.
+/// Where a robot comes to in some seconds, if the drive comes to its speed within a second; with a whole
+/// tick, a half and a quarter of one.
 fn ends(spec: &RobotSpec, ground: &HeightField, start: Pose, drive: PlanarTwist, seconds: u32) -> [Pose3; 3] {
     [1, 2, 4].map(|parts| {
         let mut robot = Robot::resting(spec, ground, start);
@@ -307,8 +307,8 @@ fn the_tick_matters_little() {
     }
 }
 
-/// The same where more than three wheels stay on the ground; elsewhere rigid bodies rock, and slip differently each
-/// time.
+/// The same where more than three wheels stay on the ground; elsewhere rigid bodies rock, and slip
+/// differently each time.
 #[test]
 fn the_tick_matters_little_to_skidding_robots_on_a_plane() {
     let ground = field(33, |at| 0.15 * at.x + 0.1 * at.y);
@@ -319,8 +319,8 @@ fn the_tick_matters_little_to_skidding_robots_on_a_plane() {
     }
 }
 
-/// Lets a robot go above the ground, turned and moving as chance has it, and looks at it for 2 s. Fails if it gains energy
-/// or sinks into the ground.
+/// Lets a robot go above the ground, turned and moving as chance has it, and looks at it for 2 s. Fails if it
+/// gains energy or sinks into the ground.
 fn let_go(ground: &HeightField, spec: &RobotSpec, stream: &mut Stream) -> Result<(), String> {
     let carriage = Undercarriage::of(spec);
     let mut between = |most: f64| stream.between(-most, most);

@@ -22,12 +22,12 @@ pub(super) struct CraftLines {
     inertia: Option<[f64; 6]>,
 }
 
-/// The share of its volume that an underwater craft keeps in reserve whose file states no hull, and how many times its
-/// weight the hull of such a boat carries at least.
+/// The share of its volume that an underwater craft keeps in reserve whose file states no hull, and how many
+/// times its weight the hull of such a boat carries at least.
 const RESERVE: f64 = 1.05;
 const FREEBOARD: f64 = 2.0;
-/// The force of a thruster in newtons for each kilogram, and where vertical ones are as a share of half the length, where a
-/// file states none: Mako's.
+/// The force of a thruster in newtons for each kilogram, and where vertical ones are as a share of half the
+/// length, where a file states none: Mako's.
 const STRENGTH: f64 = 0.7;
 const NEAR_THE_ENDS: f64 = 0.75;
 /// Kilograms in a cubic metre of water.
@@ -189,8 +189,8 @@ fn six(args: &mut Args<'_, '_>, what: &str, least: f64) -> Result<[f64; 6], Form
     Ok(values)
 }
 
-/// The hull that follows from a robot's colliders. As these hold a robot rather than water out, they are scaled: an
-/// underwater craft has a little volume in reserve, a boat floats by half at the most.
+/// The hull that follows from a robot's colliders. As these hold a robot rather than water out, they are
+/// scaled: an underwater craft has a little volume in reserve, a boat floats by half at the most.
 fn hull_of(body: &Body, mass: f64, boat: bool, notes: &mut Notes<'_>) -> Vec<HullPart> {
     let mut parts: Vec<HullPart> = body.colliders.iter().map(part_of).collect();
     if parts.is_empty() {
@@ -250,7 +250,8 @@ fn bounds(hull: &[HullPart]) -> (Vector3, Vector3) {
     })
 }
 
-/// The middle of the mass: as stated, or a tenth of the hull's height below its middle, so that it stays upright.
+/// The middle of the mass: as stated, or a tenth of the hull's height below its middle, so that it stays
+/// upright.
 fn centre(body: &Body, hull: &[HullPart]) -> Point3 {
     if body.mass_centre != [0.0; 3] {
         return body.mass_centre.into();

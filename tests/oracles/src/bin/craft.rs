@@ -1,9 +1,10 @@
 //! Runs the two craft of Fossen's Python Vehicle Simulator under that program's autopilots, so that
 //! `tests/interop/craft.py` can hold the runs against it.
 //!
-//! `craft remus100|otter euler|own STEP STEPS SPEED DIRECTION` prints a line for each step: position, roll, pitch and
-//! yaw with x forward, y right and z down. `euler` integrates as that program does, and takes the current as it does: turned
-//! by the yaw alone. `own` is the library's integrator, in water without a current.
+//! `craft remus100|otter euler|own STEP STEPS SPEED DIRECTION` prints a line for each step: position, roll,
+//! pitch and yaw with x forward, y right and z down. `euler` integrates as that program does, and takes the
+//! current as it does: turned by the yaw alone. `own` is the library's integrator, in water without a
+//! current.
 
 use roverlab::geometry::{Point3, Pose3, Vector3, angle_difference, math};
 use roverlab::kinematics::marine::{CraftMotion, CraftState, LocalWater, Otter, Remus100, Wrench};
@@ -19,7 +20,8 @@ struct State {
 trait Vehicle {
     /// The commands of its autopilot.
     fn commands(&mut self, state: &State, step: f64) -> [f64; 3];
-    /// The acceleration through the water by its actuators as they are, at speeds through the water and over ground.
+    /// The acceleration through the water by its actuators as they are, at speeds through the water and over
+    /// ground.
     fn response(&self, state: &State, through_water: &CraftMotion) -> CraftMotion;
     /// Lets the actuators follow as the program does.
     fn follow(&mut self, commands: [f64; 3], step: f64);
