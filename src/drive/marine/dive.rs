@@ -3,7 +3,7 @@ use std::ops::ControlFlow;
 use super::{DepthHold, DepthHoldParameters};
 use crate::geometry::{Vector3, angle_difference};
 use crate::io::control::{Behaviour, Command, Decision, Senses, halts};
-use crate::io::{Attitude, DepthSensor, Error, Inertial, Motors, Result};
+use crate::io::{Attitude, DepthSensor, Error, ErrorKind, Inertial, Motors, Result};
 use crate::kinematics::marine::{Allocation, Craft, CraftSpec, MAX_THRUSTERS, Wrench};
 use crate::parameter::{require_finite, require_not_negative, require_positive};
 
@@ -100,9 +100,17 @@ impl<R: Motors + ?Sized> Command<R> for Thrust {
     }
 
     fn stop(robot: &mut R) -> Result<()> {
-        // Craft have up to eight thrusters; the first that there is not ends the row.
-        robot.set_motor(1, 0.0)?;
-        let _ = (2..=MAX_THRUSTERS as u8).try_for_each(|motor| robot.set_motor(motor, 0.0));
+        // The first motor that the craft does not have ends the row; RoBIOS gives no reason for its refusal.
+        for motor in 1..=MAX_THRUSTERS as u8 {
+            match robot.set_motor(motor, 0.0) {
+                Err(error)
+                    if motor > 1 && matches!(error.kind(), ErrorKind::Unsupported | ErrorKind::Other) =>
+                {
+                    break;
+                }
+                stopped => stopped?,
+            }
+        }
         Ok(())
     }
 }
