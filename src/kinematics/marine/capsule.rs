@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::hull::{Displaced, cap, segment};
+use super::displaced::{Displaced, cap, segment};
 use crate::geometry::{Vector3, math};
 
 /// The part of a centred capsule below a plane: a cylinder of length `2 half`, and two half balls.

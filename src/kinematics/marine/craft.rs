@@ -1,8 +1,8 @@
 use nalgebra::{Matrix3, Matrix6, Rotation3, UnitQuaternion, Vector6};
 
-use super::{CraftSpec, CraftState, Displaced, GRAVITY, HullPart, MAX_THRUSTERS, Thruster};
+use super::{CraftSpec, Displaced, GRAVITY, HullPart, MAX_THRUSTERS, Thruster};
 use crate::ParameterError;
-use crate::geometry::{Point3, Vector, Vector3, math};
+use crate::geometry::{Point3, Pose3, Vector, Vector3, math};
 use crate::parameter::{require, require_positive};
 
 /// A speed through space: of a craft in its own frame, at the middle of its hull's volume.
@@ -102,6 +102,43 @@ struct Inertia {
     inverse: Matrix6<f64>,
     /// The added mass of a craft that it does not turn across the flow.
     straightened: Option<Vector3>,
+}
+
+/// Where a craft is, how it moves and how its thrusters turn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CraftState {
+    /// The middle of its hull's volume.
+    pub position: Point3,
+    /// How its frame is turned in the world's.
+    pub attitude: UnitQuaternion<f64>,
+    /// The speed over ground of that middle, in the craft's own frame.
+    pub velocity: CraftMotion,
+    /// The speed of each thruster, as a share of its full speed.
+    pub shafts: [f64; MAX_THRUSTERS],
+}
+
+impl CraftState {
+    /// A craft at rest, its own frame at a pose.
+    pub fn at_rest(craft: &Craft, pose: &Pose3) -> Self {
+        Self {
+            position: pose.to_world(craft.middle()),
+            attitude: pose.attitude,
+            velocity: CraftMotion::STILL,
+            shafts: [0.0; MAX_THRUSTERS],
+        }
+    }
+
+    /// The pose of the craft's own frame.
+    pub fn pose(&self, craft: &Craft) -> Pose3 {
+        Pose3::new(self.position - self.attitude * craft.origin, self.attitude)
+    }
+
+    /// Whether every component is a finite number.
+    pub fn is_finite(&self) -> bool {
+        let speed = stack(&self.velocity.linear, &self.velocity.angular);
+        let place = self.position.iter().chain(self.attitude.coords.iter());
+        place.chain(speed.iter()).chain(&self.shafts).all(|part| part.is_finite())
+    }
 }
 
 impl Craft {

@@ -1,45 +1,8 @@
 use nalgebra::{Quaternion, UnitQuaternion, Vector6};
 
 use super::craft::{split, stack};
-use super::{Craft, CraftMotion, LocalWater, MAX_THRUSTERS, Thruster, Wrench};
-use crate::geometry::{Point3, Pose3, Vector3};
-
-/// Where a craft is, how it moves and how its thrusters turn.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CraftState {
-    /// The middle of its hull's volume.
-    pub position: Point3,
-    /// How its frame is turned in the world's.
-    pub attitude: UnitQuaternion<f64>,
-    /// The speed over ground of that middle, in the craft's own frame.
-    pub velocity: CraftMotion,
-    /// The speed of each thruster, as a share of its full speed.
-    pub shafts: [f64; MAX_THRUSTERS],
-}
-
-impl CraftState {
-    /// A craft at rest, its own frame at a pose.
-    pub fn at_rest(craft: &Craft, pose: &Pose3) -> Self {
-        Self {
-            position: pose.to_world(craft.middle()),
-            attitude: pose.attitude,
-            velocity: CraftMotion::STILL,
-            shafts: [0.0; MAX_THRUSTERS],
-        }
-    }
-
-    /// The pose of the craft's own frame.
-    pub fn pose(&self, craft: &Craft) -> Pose3 {
-        Pose3::new(self.position - self.attitude * craft.origin, self.attitude)
-    }
-
-    /// Whether every component is a finite number.
-    pub fn is_finite(&self) -> bool {
-        let speed = stack(&self.velocity.linear, &self.velocity.angular);
-        let place = self.position.iter().chain(self.attitude.coords.iter());
-        place.chain(speed.iter()).chain(&self.shafts).all(|part| part.is_finite())
-    }
-}
+use super::{Craft, CraftMotion, CraftState, LocalWater, Thruster, Wrench};
+use crate::geometry::{Point3, Vector3};
 
 /// What changes in a step, and how fast.
 #[derive(Debug, Clone, Copy)]

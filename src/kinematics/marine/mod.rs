@@ -50,6 +50,7 @@ mod capsule;
 mod comparison;
 mod craft;
 mod derived;
+mod displaced;
 mod hull;
 mod integrate;
 mod presets;
@@ -59,9 +60,9 @@ mod tests;
 
 pub use allocation::{Allocated, Allocation};
 pub use comparison::{Otter, Remus100};
-pub use craft::{Craft, CraftMotion, LocalWater, Wrench};
-pub use hull::{Displaced, HullPart};
-pub use integrate::CraftState;
+pub use craft::{Craft, CraftMotion, CraftState, LocalWater, Wrench};
+pub use displaced::Displaced;
+pub use hull::HullPart;
 pub use spec::{CraftSpec, Thruster};
 
 /// The acceleration of gravity, in m/s².
