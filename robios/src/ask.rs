@@ -135,6 +135,8 @@ pub struct Identity {
     pub objects: u32,
     /// Maximum rim speed of its wheels (m/s).
     pub top_speed: f64,
+    /// Maximum turn rate on the spot (rad/s); infinite where unknown.
+    pub top_turn: f64,
     /// Rim speed at 100 percent of a motor (m/s).
     pub full_speed: f64,
     /// Distance rolled per encoder tick (m).
@@ -237,6 +239,7 @@ impl Seat {
             robots: scene.robots.len() as u32,
             objects: scene.world.objects.len() as u32,
             top_speed,
+            top_turn: if on_wheels { top_turn(&spec.drive, top_speed) } else { f64::INFINITY },
             full_speed,
             tick_length,
             lidar_points: spec.lidar.filter(|_| on_wheels).map_or(0, |lidar| lidar.points as u32),
@@ -507,4 +510,13 @@ fn speeds(spec: &RobotSpec) -> (f64, f64, f64) {
     };
     let top_speed = 0.5 * diameter * fastest;
     (top_speed, full.min(top_speed), std::f64::consts::PI * diameter / ticks)
+}
+
+/// Maximum turn rate on the spot, for a rim speed.
+fn top_turn(drive: &DriveSpec, rim: f64) -> f64 {
+    match *drive {
+        DriveSpec::Differential { track, .. } | DriveSpec::Tracked { track, .. } => 2.0 * rim / track,
+        DriveSpec::Omni { track, wheelbase, .. } => 2.0 * rim / (track + wheelbase),
+        _ => f64::INFINITY,
+    }
 }

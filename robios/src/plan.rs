@@ -201,6 +201,11 @@ impl Plan {
         if let Some(start) = self.start {
             placed.pose = start;
         }
+        warnings.extend(scene.misplacements().into_iter().map(|(robot, place)| {
+            let Pose { x, y, .. } = scene.robots[robot].pose;
+            let (x, y, number) = (units::to_mm(x), units::to_mm(y), robot + 1);
+            format!("robot {number} starts at {x:.0}, {y:.0} mm, {place}; expected free floor")
+        }));
         Ok((scene, warnings))
     }
 
@@ -285,6 +290,19 @@ mod tests {
         assert!(warnings.is_empty());
         assert_eq!(scene.robots[0].spec.name, "S4");
         assert_eq!(scene.robots[0].pose, Pose::new(2.0, 2.0, 0.0));
+    }
+
+    #[test]
+    fn robots_in_walls_and_outside_are_warned_of() {
+        let warnings = |x: f64| {
+            let plan = Plan { start: Some(Pose::new(x, 2.0, 0.0)), ..Plan::default() };
+            plan.scene().unwrap().1
+        };
+        assert_eq!(warnings(4.0), ["robot 1 starts at 4000, 2000 mm, in a wall; expected free floor"]);
+        assert_eq!(
+            warnings(9.0),
+            ["robot 1 starts at 9000, 2000 mm, outside the world; expected free floor"]
+        );
     }
 
     #[test]

@@ -133,6 +133,7 @@ impl Writer {
                 .word(identity.objects)
                 .word(identity.lidar_points)
                 .number(identity.top_speed)
+                .number(identity.top_turn)
                 .number(identity.full_speed)
                 .number(identity.tick_length)
                 .byte(u8::from(identity.full_turn))
@@ -248,6 +249,7 @@ impl<'a> Reader<'a> {
                     objects,
                     lidar_points,
                     top_speed: r.number()?,
+                    top_turn: r.number()?,
                     full_speed: r.number()?,
                     tick_length: r.number()?,
                     full_turn: r.byte()? != 0,

@@ -6,15 +6,48 @@ use crate::ask::{Reply, Request};
 
 /// Number of motors and encoders, numbered from 1.
 const MOTORS: i32 = 4;
+/// Share of a top speed that whole units may round it up by.
+const ROUNDING: f64 = 0.01;
 
 impl Robios {
     /// `VWSetSpeed`, in mm/s and degrees/s.
     pub fn vw_set_speed(&mut self, linear: i32, angular: i32) -> Result<()> {
         let twist = Twist::new(units::from_mm(linear.into()), units::from_deg(angular.into()));
+        self.note_too_fast(twist.linear);
+        self.note_turning_too_fast(twist.angular);
         self.order(&Request::SetSpeed(twist))?;
         self.turning = 0;
         self.drives(if (linear, angular) == (0, 0) { Moving::No } else { Moving::Speeds });
         Ok(())
+    }
+
+    /// Notes a speed (m/s) that the robot cannot reach. A walking robot has no wheels, and drives at any.
+    fn note_too_fast(&mut self, speed: f64) {
+        let most = self.identity.top_speed;
+        if most > 0.0 && speed.abs() > most * (1.0 + ROUNDING) {
+            self.note_clipped(units::to_mm(speed), units::to_mm(most), "mm/s");
+        }
+    }
+
+    /// Notes a turn rate (rad/s) that the robot cannot reach.
+    fn note_turning_too_fast(&mut self, rate: f64) {
+        let most = self.identity.top_turn;
+        if rate.abs() > most * (1.0 + ROUNDING) {
+            self.note_clipped(units::to_deg(rate), units::to_deg(most), "degrees/s");
+        }
+    }
+
+    fn note_clipped(&mut self, value: f64, most: f64, unit: &str) {
+        self.note(&format!("{value:.0} {unit} is more than this robot can; it does at most {most:.0}"));
+    }
+
+    /// The nearest value of a range, with a note where that is another.
+    fn clamped(&mut self, value: i32, least: i32, most: i32) -> i32 {
+        let taken = value.clamp(least, most);
+        if taken != value {
+            self.note(&format!("{value}; expected {least} to {most}, taken as {taken}"));
+        }
+        taken
     }
 
     fn drives(&mut self, moving: Moving) {
@@ -86,6 +119,11 @@ impl Robios {
             return Err(invalid("speed", speed, "more than 0 in size"));
         }
         self.turns = length == 0.0;
+        if self.turns {
+            self.note_turning_too_fast(speed);
+        } else {
+            self.note_too_fast(speed);
+        }
         self.order(&Request::Curve(length, angle, speed.abs()))?;
         self.turning = 0;
         self.drives(Moving::Manoeuvre);
@@ -121,8 +159,7 @@ impl Robios {
 
     /// `MOTORDrive`: percent of EyeSim's full speed.
     pub fn motor_drive(&mut self, motor: i32, percent: i32) -> Result<()> {
-        // Larger values are clamped.
-        let percent = percent.clamp(-100, 100);
+        let percent = self.clamped(percent, -100, 100);
         let share = self.identity.full_speed / self.identity.top_speed;
         self.motor(motor, f64::from(percent) / 100.0 * share)
     }
@@ -130,6 +167,7 @@ impl Robios {
     /// `MOTORSpeed`: encoder ticks per hundredth of a second.
     pub fn motor_speed(&mut self, motor: i32, ticks: i32) -> Result<()> {
         let speed = self.identity.tick_length * f64::from(ticks) * 100.0;
+        self.note_too_fast(speed);
         self.motor(motor, speed / self.identity.top_speed)
     }
 
@@ -167,7 +205,7 @@ impl Robios {
     /// `SERVOSet`: 0 to 255, 128 in the middle. Positions of servos without a device are only stored.
     pub fn servo_set(&mut self, servo: i32, angle: i32) -> Result<()> {
         let index = servo_index(servo)?;
-        let angle = angle.clamp(0, 255);
+        let angle = self.clamped(angle, 0, 255);
         self.servos[index] = angle;
         let position = f64::from(angle - 128) / 128.0;
         match self.order(&Request::Servo(index as u8, position)) {

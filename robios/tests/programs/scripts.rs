@@ -172,3 +172,18 @@ fn what_a_robot_touches_after_its_program_is_not_the_programs_doing() {
         }
     }
 }
+
+#[test]
+fn robots_on_one_spot_are_warned_of() {
+    if !python() {
+        return;
+    }
+    let folder = Folder::new("one-spot");
+    folder.write("rest.py", "from eye import *\nOSWait(100)\n");
+    let report =
+        run(&folder.write("spot.sim", "S4 500 500 0 rest.py\nS4 520 500 0 rest.py\nS4 1500 500 0 rest.py\n"));
+    let warnings = report["warnings"].as_array().unwrap();
+    let texts = warnings.iter().map(|warning| warning.as_str().unwrap());
+    let found: Vec<_> = texts.filter(|text| text.contains("free floor")).collect();
+    assert_eq!(found, ["robot 2 starts at 520, 500 mm, in robot 1; expected free floor"], "{report}");
+}

@@ -4,7 +4,7 @@ use std::process::Command;
 
 use serde_json::Value;
 
-use super::{Folder, compiled, compiler, programs, report, robios};
+use super::{Folder, compiled, compiler, programs, python, report, robios};
 
 /// A program that counts its loops in two seconds.
 const COUNT: &str = "#include \"eyebot.h\"\nint main() { int n = 0; while (OSGetCount() < 2000) { CALLS; n++; }\n\
@@ -217,6 +217,27 @@ fn opencv_is_found() {
         .unwrap();
     let told: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(told["lcd_text"], "42", "{told}");
+}
+
+/// A Python program finds edges in a camera image by OpenCV, where that is installed.
+#[test]
+fn python_programs_use_opencv() {
+    if !python() {
+        return;
+    }
+    if !Command::new("python3").args(["-c", "import cv2, numpy"]).output().unwrap().status.success() {
+        eprintln!("skipped: Python has no `cv2`");
+        return;
+    }
+    let folder = Folder::new("time-cv2");
+    let file = folder.write(
+        "canny.py",
+        "from eye import *\nimport cv2, numpy\nCAMInit(QVGA)\n\
+         image = numpy.frombuffer(CAMGet(), dtype=numpy.uint8).reshape(240, 320, 3)\n\
+         edges = cv2.Canny(cv2.cvtColor(image, cv2.COLOR_RGB2GRAY), 50, 150)\n\
+         LCDPrintf(\"%d\", int(numpy.count_nonzero(edges) > 100))\n",
+    );
+    assert_eq!(report(&[file.to_str().unwrap()])["lcd_text"], "1");
 }
 
 /// Threads that print in turn with a lock, like the book's.
