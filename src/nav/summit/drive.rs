@@ -1,5 +1,5 @@
 use super::parameters::SummitParameters;
-use crate::geometry::{Point, Pose, Twist, angle_difference, direction, math, normalize_angle};
+use crate::geometry::{Point, Pose, Twist, direction, math, normalize_angle};
 
 /// A way that a [`SummitSearch`](super::SummitSearch) drives.
 #[derive(Debug, Clone)]
@@ -11,9 +11,6 @@ pub(super) struct Drive {
     passed: usize,
     /// The least distance to the end so far, and since when.
     nearest: (f64, f64),
-    /// The heading before, and by how much it has changed on the spot in all.
-    heading: f64,
-    turned: f64,
 }
 
 /// What comes of a step on a way.
@@ -21,7 +18,7 @@ pub(super) struct Drive {
 pub(super) enum Step {
     /// On, at a speed.
     Go(Twist),
-    /// It is at the end, or unsure of where it is.
+    /// It is at the end.
     Arrived,
     /// It does not get on, or the ground is too steep.
     NoWay {
@@ -38,8 +35,6 @@ const AHEAD: f64 = 0.18;
 const ARRIVED: f64 = 0.04;
 /// Radians beyond which it turns on the spot.
 const ASIDE: f64 = 0.9;
-/// Radians of turning after which it looks around to see where it is: belts slide in turns.
-const UNSURE: f64 = 0.9;
 /// Seconds without getting nearer after which it does not get on.
 const PATIENCE: f64 = 8.0;
 /// Radians above the slope limit at which it backs off.
@@ -54,8 +49,6 @@ impl Drive {
             backwards: bearing.abs() > std::f64::consts::FRAC_PI_2,
             passed: 0,
             nearest: (f64::INFINITY, time),
-            heading: pose.heading,
-            turned: 0.0,
         }
     }
 
@@ -85,11 +78,6 @@ impl Drive {
         }
         let aside = pose.bearing_to(self.way[self.passed]);
         let bearing = if self.backwards { normalize_angle(aside + std::f64::consts::PI) } else { aside };
-        self.turned += angle_difference(pose.heading, self.heading).abs();
-        self.heading = pose.heading;
-        if self.turned > UNSURE && bearing.abs() < 0.3 * ASIDE {
-            return Step::Arrived;
-        }
         let turn = (2.0 * bearing).clamp(-turn_rate, turn_rate);
         let fast = speed.min(0.03 + 0.8 * rest);
         let ahead = if bearing.abs() > ASIDE { 0.0 } else { sign * fast * math::cos(bearing) };

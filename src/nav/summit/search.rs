@@ -252,9 +252,7 @@ impl SummitSearch {
         let near = sweep.fans(&robot, &lidar).flatten().filter(|beam| beam.range < NEAR);
         let points: Vec<Point3> = near.filter_map(|beam| beam.end()).collect();
         let shift = align(&self.map, robot.position, &points, tilt)?;
-        let Pose { x, y, heading } = self.reckoning.pose;
-        self.reckoning.pose = Pose::new(x + shift.place.x, y + shift.place.y, heading + shift.turn);
-        self.reckoning.elevation += shift.up;
+        self.reckoning.correct(&shift);
         Some(shift)
     }
 
@@ -521,4 +519,4 @@ impl<R: Odometry + Lidar + Inertial + ?Sized> Senses<R> for SummitSearch {
 }
 
 /// Beams of a scan.
-const BEAMS: usize = 180;
+const BEAMS: usize = 360;
