@@ -22,7 +22,7 @@ JSON fields:
   depth_rms_error_mm          of the depth of the sensor on the way
   picture
   rows                        with --campaign only: the table, by kind of pool
-Away from corners: no side within 1.2 m of the nearest one is turned by more than 45 degrees, nor has one been for 3 s.
+Away from corners: no side within 1.2 m of the nearest one is turned by more than 45 degrees, nor has one been for 5 s.
 Outcomes: round, timed_out, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {

@@ -25,7 +25,7 @@ pub(crate) struct Errors {
 
 /// Metres around the nearest side in which a corner counts, and seconds after one that do.
 const CORNER: f64 = 1.2;
-const AFTER: f64 = 3.0;
+const AFTER: f64 = 5.0;
 /// Metres from the wanted distance at which the first lap begins.
 const BEGINS: f64 = 0.05;
 

@@ -1,5 +1,5 @@
 use super::{DepthHold, DepthHoldParameters, DiveObservation, Thrust};
-use crate::geometry::{Vector3, angle_difference};
+use crate::geometry::{Vector3, angle_difference, math};
 use crate::io::Result;
 use crate::kinematics::marine::{Allocation, Craft, CraftMotion, CraftSpec, Wrench};
 
@@ -38,6 +38,8 @@ pub(super) struct Push {
 const BELIEVED: f64 = 0.1;
 /// Seconds in which a difference of speed, and of turn rate, is to be closed.
 const CLOSING: f64 = 0.5;
+/// The most that a craft slips aside, as a share of its speed ahead.
+const MOST_SLIP: f64 = 1.0;
 
 impl Helm {
     pub(super) fn new(
@@ -93,6 +95,22 @@ impl Helm {
     /// Mass and moments of inertia, with those of the water that moves along.
     pub(super) fn inertia(&self) -> [f64; 6] {
         self.craft.inertia()
+    }
+
+    /// The angle (rad) from the heading to the way of a craft that keeps turning at a speed: it slips until the
+    /// water holds it.
+    pub(super) fn slip(&self, speed: f64, turn_rate: f64) -> f64 {
+        let aside = |left: f64| {
+            let linear = Vector3::new(speed, left, 0.0);
+            let motion = CraftMotion { linear, angular: Vector3::z() * turn_rate };
+            self.craft.response(&motion, &Wrench::NONE).linear.y
+        };
+        let (mut low, mut high) = (-MOST_SLIP * speed, MOST_SLIP * speed);
+        for _ in 0..20 {
+            let middle = 0.5 * (low + high);
+            if aside(middle) > 0.0 { low = middle } else { high = middle }
+        }
+        math::atan2(low, speed)
     }
 
     /// The push that brings a craft, which moves ahead through the water at `speed`, to another speed and

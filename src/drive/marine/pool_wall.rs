@@ -41,7 +41,7 @@ impl Default for PoolWallParameters {
             speed: 0.3,
             side: WallSide::Left,
             laps: 1,
-            lookahead: 0.6,
+            lookahead: 1.0,
             period: 0.1,
             hold: DepthHoldParameters::default(),
         }
@@ -80,8 +80,7 @@ halts!(PoolWallOutcome { Round: "all laps are done" });
 /// It remembers what the sensors have hit, seen by dead reckoning, and continues the wall at its side by a
 /// parabola as long as there is no gap. It steers by pure pursuit: of the places at the lookahead distance, to
 /// the nearest one to the wall that keeps the wanted distance from all of it. So it rounds outer corners,
-/// turns before walls ahead, and comes to a wall from afar, all by one rule. It steers the way that it makes,
-/// not its heading, as a craft without a keel slips.
+/// turns before walls ahead, and comes to a wall from afar, all by one rule.
 ///
 /// ```
 /// use roverlab::drive::marine::{PoolWall, PoolWallOutcome, PoolWallParameters};
@@ -119,12 +118,33 @@ struct Lap {
     number: u32,
 }
 
+/// Where a craft steers for.
+#[derive(Debug, Clone, Copy)]
+struct Aim {
+    /// The angle (rad) from the heading to the place.
+    angle: f64,
+    /// How much the way there bends (rad/m), positive to the left.
+    bend: f64,
+}
+
+impl Aim {
+    /// A place straight away.
+    fn at(angle: f64) -> Self {
+        Self { angle, bend: 0.0 }
+    }
+}
+
 /// Radians per second: the fastest turn.
 const FASTEST: f64 = 0.5;
-/// The largest angle between heading and way that is believed (rad), and the speed (m/s) below which there is
-/// no way to speak of.
-const SLIP: f64 = 0.6;
+/// The speed (m/s) below which there is no slip to speak of, and its largest angle (rad).
 const CREEP: f64 = 0.15;
+const SLIP: f64 = 0.6;
+/// Turn rate for an angle to the place that is steered for (1/s), and the share of the momentary slip in that
+/// angle: of what a turn does to the way, the larger part comes later, so all of the slip would make it swing.
+const GAIN: f64 = 1.0;
+const MOMENTARY: f64 = 0.4;
+/// Metres between the walls nearest here and there within which the way leads round a corner.
+const PIVOT: f64 = 0.2;
 /// Steps in which a direction is looked for (rad).
 const STEP: f64 = 0.1;
 /// Halvings of a step.
@@ -195,37 +215,33 @@ impl PoolWall {
         Ok(())
     }
 
-    /// The direction in which the craft moves.
-    fn course(&self) -> f64 {
-        let velocity = self.reckoning.velocity();
-        let slip = math::atan2(velocity.y, velocity.x.max(CREEP));
-        self.reckoning.pose().heading + slip.clamp(-SLIP, SLIP)
-    }
-
-    /// The angle (rad) from the course to the place to steer for: from the direction of the nearest wall on,
-    /// the first one that keeps the distance.
-    fn aim(&self) -> f64 {
-        let (pose, course) = (self.reckoning.pose(), self.course());
-        let (place, ahead) = (pose.position(), self.parameters.lookahead);
+    /// Where to steer for: from the direction of the nearest wall on, the first place ahead that keeps the
+    /// distance.
+    fn aim(&self) -> Aim {
+        let (pose, ahead) = (self.reckoning.pose(), self.parameters.lookahead);
+        let place = pose.position();
         let apart = self.parameters.distance + self.side.y;
-        let Some(wall) = self.walls.nearest(place) else { return 0.0 };
-        let towards = Pose { heading: course, ..pose }.bearing_to(wall);
+        let Some(wall) = self.walls.nearest(place) else { return Aim::at(0.0) };
+        let towards = pose.bearing_to(wall);
         if (wall - place).norm() >= apart + ahead {
-            return towards;
+            return Aim::at(towards);
         }
-        let is_free = |aside: f64| {
-            let there = place + direction(course + towards - aside) * ahead;
-            self.walls.clearance(there) >= apart
-        };
+        let there = |aside: f64| place + direction(pose.heading + towards - aside) * ahead;
+        let is_free = |aside: f64| self.walls.clearance(there(aside)) >= apart;
         let steps = (PI / STEP) as u32;
         let free = (1..=steps).map(|step| STEP * f64::from(step)).find(|&aside| is_free(aside));
-        let Some(mut free) = free else { return normalize_angle(towards - PI) };
+        let Some(mut free) = free else { return Aim::at(normalize_angle(towards - PI)) };
         let mut blocked = free - STEP;
         for _ in 0..HALVINGS {
             let middle = 0.5 * (free + blocked);
             if is_free(middle) { free = middle } else { blocked = middle }
         }
-        normalize_angle(towards - free)
+        // Round a corner the way bends about it, elsewhere as the wall does.
+        let next = self.walls.nearest(there(free)).unwrap_or(wall);
+        let pivots = (next - wall).norm() < PIVOT;
+        let bend = self.walls.bend();
+        let bend = if pivots { 1.0 / apart } else { bend / (1.0 - bend * apart).max(0.3) };
+        Aim { angle: normalize_angle(towards - free), bend }
     }
 
     /// Counts laps. Round a pool, the craft turns once.
@@ -247,14 +263,19 @@ impl PoolWall {
 
     fn thrust(&mut self, seen: &PoolWallObservation) -> Result<Thrust> {
         let PoolWallParameters { depth, speed, lookahead, .. } = self.parameters;
-        let aim = self.aim();
-        let sharp = math::sin(aim.clamp(-0.5 * PI, 0.5 * PI));
-        let turn = (2.0 * speed * sharp / lookahead).clamp(-FASTEST, FASTEST);
+        let Aim { angle, bend } = self.aim();
+        let velocity = self.reckoning.velocity();
+        let slip = math::atan2(velocity.y, velocity.x.max(CREEP)).clamp(-SLIP, SLIP);
+        let lasting = self.helm.slip(speed, speed * bend).clamp(-SLIP, SLIP);
+        let off = angle - MOMENTARY * slip - (1.0 - MOMENTARY) * lasting;
+        // What of the angle is the chord of the bend is no error.
+        let turn = GAIN * math::sin(off.clamp(-0.5 * PI, 0.5 * PI)) + (speed - 0.5 * GAIN * lookahead) * bend;
+        let turn = turn.clamp(-FASTEST, FASTEST);
         let free = (seen.front - FREE) / BRAKING;
         let deep = (seen.dive.depth - depth).abs() < BEGIN || self.lap.is_some();
-        let wanted = if deep { speed * math::cos(aim).max(0.0) } else { 0.0 };
+        let wanted = if deep { speed * math::cos(off).max(0.0) } else { 0.0 };
         let wanted = wanted.min(free.max(0.0));
-        let push = self.helm.push(self.reckoning.velocity().x, wanted, self.mirror() * turn);
+        let push = self.helm.push(velocity.x, wanted, self.mirror() * turn);
         self.helm.thrust(depth, push)
     }
 }

@@ -14,6 +14,8 @@ pub(super) struct WallMemory {
     run: usize,
     /// Where the wall at the side goes on.
     onward: Vec<Point>,
+    /// Radians in a metre by which it bends there, positive to the left of its way.
+    bend: f64,
 }
 
 /// Points that are kept of each sensor, and how far away.
@@ -22,11 +24,14 @@ const NEAR: f64 = 4.0;
 /// Metres between two hits that are on different walls.
 const GAP: f64 = 0.3;
 /// Lengths of wall (m) by which it is continued: the longest that it fits.
-const WINDOWS: [f64; 4] = [1.2, 0.8, 0.5, 0.3];
+const WINDOWS: [f64; 5] = [1.8, 1.2, 0.8, 0.5, 0.3];
 /// The root mean square of what a wall's points are off (m): sensors' errors are less.
 const FITS: f64 = 0.03;
+/// The newest points of a wall, and the most (m) that these may be off in the mean: it begins to bend.
+const LAST: usize = 6;
+const DRIFT: f64 = 0.012;
 /// Metres by which a wall is continued, and between its points.
-const ONWARD: f64 = 0.9;
+const ONWARD: f64 = 1.3;
 const SPACING: f64 = 0.1;
 
 impl WallMemory {
@@ -43,7 +48,7 @@ impl WallMemory {
             points.drain(..points.len().saturating_sub(KEPT));
         }
         self.run = self.run.min(self.side.len());
-        self.onward = WINDOWS.iter().find_map(|&length| self.continued(length)).unwrap_or_default();
+        (self.onward, self.bend) = WINDOWS.iter().find_map(|&length| self.continued(length)).unwrap_or_default();
     }
 
     /// The nearest place of a wall that is known or goes on.
@@ -52,13 +57,18 @@ impl WallMemory {
         points.min_by(|a, b| (a - place).norm_squared().total_cmp(&(b - place).norm_squared()))
     }
 
+    /// How much the wall at the side bends (rad/m), positive to the left; 0 where it has ended.
+    pub(super) fn bend(&self) -> f64 {
+        self.bend
+    }
+
     /// Metres from a place to the nearest wall; infinite if none is known.
     pub(super) fn clearance(&self, place: Point) -> f64 {
         self.nearest(place).map_or(f64::INFINITY, |point| (point - place).norm())
     }
 
     /// How the wall goes on after its last so many metres; `None` if these are of no one wall.
-    fn continued(&self, length: f64) -> Option<Vec<Point>> {
+    fn continued(&self, length: f64) -> Option<(Vec<Point>, f64)> {
         let newest = *self.side.back()?;
         let run = self.side.iter().rev().take(self.run);
         let run: Vec<Point> = run.take_while(|point| (*point - newest).norm() <= length).copied().collect();
@@ -75,13 +85,16 @@ impl WallMemory {
         let bend = if length >= 0.8 { parabola(&points)? } else { Vector3::zeros() };
         let height = |along: f64| bend.dot(&Vector3::new(1.0, along, along * along));
         let squares: f64 = points.iter().map(|point| (point.y - height(point.x)) * (point.y - height(point.x))).sum();
-        if (squares / points.len() as f64).sqrt() > FITS {
+        let last = &points[..points.len().min(LAST)];
+        let drift = last.iter().map(|point| point.y - height(point.x)).sum::<f64>() / last.len() as f64;
+        if (squares / points.len() as f64).sqrt() > FITS || drift.abs() > DRIFT {
             return None;
         }
         let begin = points[0].x;
         let steps = 1..=(ONWARD / SPACING) as usize;
         let on = steps.map(|step| begin + SPACING * step as f64);
-        Some(on.map(|along| line.middle + line.direction * along + across * height(along)).collect())
+        let on = on.map(|along| line.middle + line.direction * along + across * height(along));
+        Some((on.collect(), 2.0 * bend.z))
     }
 }
 
@@ -112,7 +125,7 @@ mod tests {
         // 0.8 m beyond the last point, the wall itself and not its tangent.
         let beyond = at(0.59 + 0.8 / 3.0);
         assert!(memory.clearance(beyond) < 0.06, "{}", memory.clearance(beyond));
-        assert!(memory.clearance(at(0.59 + 1.5 / 3.0)) > 0.4);
+        assert!(memory.clearance(at(0.59 + 1.9 / 3.0)) > 0.4);
     }
 
     #[test]
