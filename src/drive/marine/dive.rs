@@ -2,7 +2,7 @@ use std::ops::ControlFlow;
 
 use super::helm::{Helm, Push};
 use super::{DepthHoldParameters, Thrust};
-use crate::geometry::{Vector3, angle_difference};
+use crate::geometry::Vector3;
 use crate::io::control::{Behaviour, Decision, Senses, halts};
 use crate::io::{Attitude, DepthSensor, Error, Inertial, Result};
 use crate::kinematics::marine::CraftSpec;
@@ -150,11 +150,10 @@ impl Behaviour for Dive {
         if time - begun >= self.parameters.duration {
             return Ok(ControlFlow::Break(DiveOutcome::Over));
         }
-        let DiveParameters { depth, heading, turning, .. } = self.parameters;
+        let DiveParameters { depth, heading, .. } = self.parameters;
         self.helm.observe(time, seen)?;
-        let off = angle_difference(heading, self.helm.heading());
-        let turn = self.helm.inertia()[5] * turning * (turning * off - 2.0 * seen.rates.z);
-        Ok(ControlFlow::Continue(self.helm.thrust(depth, Push { ahead: 0.0, turn })?))
+        let push = Push { ahead: 0.0, turn: self.helm.turn_to(heading) };
+        Ok(ControlFlow::Continue(self.helm.thrust(depth, push)?))
     }
 }
 

@@ -124,6 +124,19 @@ impl Helm {
         }
     }
 
+    /// The moment that turns the craft to a heading (rad) and keeps it there.
+    pub(super) fn turn_to(&self, heading: f64) -> f64 {
+        let off = angle_difference(heading, self.yaw);
+        self.craft.inertia()[5] * self.turning * (self.turning * off - 2.0 * self.turn_rate)
+    }
+
+    /// The thrusters' commands that push a boat.
+    pub(super) fn afloat(&self, push: Push) -> Result<Thrust> {
+        let along = Wrench { force: Vector3::x() * push.ahead, moment: Vector3::z() * push.turn };
+        let along = self.allocation.share(&along);
+        Thrust::new(&along.commands[..self.craft.thrusters().len()])
+    }
+
     /// The thrusters' commands that bring the craft to a depth and push it.
     pub(super) fn thrust(&mut self, depth: f64, push: Push) -> Result<Thrust> {
         let (turning, inertia) = (self.turning, self.craft.inertia());

@@ -9,6 +9,11 @@ pub(super) struct Reckoning {
 }
 
 impl Reckoning {
+    /// Begins at a pose.
+    pub(super) fn at(pose: Pose) -> Self {
+        Self { pose, ..Self::default() }
+    }
+
     /// Moves on to what the log says, `seconds` after the step before.
     pub(super) fn advance(&mut self, odometry: Pose, heading: f64, seconds: f64) {
         if let Some(before) = self.odometry.replace(odometry) {
