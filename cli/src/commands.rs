@@ -17,7 +17,7 @@ use crate::starman;
 use crate::{
     a_to_b, ackermann, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug, dive,
     edges, follow_me, genetic, grid_benchmark, lane_keeping, lidar_scan, localise, micromouse, motion,
-    navigate, omni, quadtree, random_drive, replay, safety, summit, terrain_plan, wall_following,
+    navigate, omni, pool_wall, quadtree, random_drive, replay, safety, summit, terrain_plan, wall_following,
 };
 
 /// Runs a command with its command line and its two output streams. Returns the exit status.
@@ -86,6 +86,7 @@ commands!(
     motion by run,
     navigate by run,
     omni by run,
+    pool_wall by run,
     quadtree by run_plain,
     random_drive by run,
     replay by run_printing,

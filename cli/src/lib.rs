@@ -29,6 +29,7 @@ mod micromouse;
 mod motion;
 mod navigate;
 mod omni;
+mod pool_wall;
 mod quadtree;
 mod random_drive;
 mod replay;
@@ -42,6 +43,7 @@ mod terrain_plan;
 #[cfg(test)]
 mod tests;
 mod wall_following;
+mod water;
 
 pub use commands::{Ended, main, options, run_words};
 pub use common::Onlooker;

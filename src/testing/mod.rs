@@ -32,5 +32,5 @@ mod tracks;
 pub use cases::cases;
 pub use checks::{Movement, PlanWith, Violation, collision_free, complete, optimal, triangle_inequality};
 pub use courses::courses;
-pub use strategies::{GridMaze, grid_queries, grids, mazes, reliefs, worlds};
+pub use strategies::{GridMaze, grid_queries, grids, mazes, pools, reliefs, worlds};
 pub use tracks::cone_tracks;

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use crate::random::Stream;
 use crate::world::generate::{
-    Course, CourseOptions, Relief, ReliefKind, ReliefOptions, obstacle_course, relief,
+    Course, CourseOptions, Pool, PoolKind, Relief, ReliefKind, ReliefOptions, obstacle_course, pool, relief,
 };
 use crate::world::{BitGrid, GridCell};
 
@@ -198,5 +198,24 @@ pub fn reliefs(kind: ReliefKind) -> impl Strategy<Value = Relief> {
     (any::<u64>(), 5.0..20.0f64).prop_filter_map("ramps without room", move |(seed, degrees)| {
         let slope = crate::geometry::units::from_deg(degrees);
         relief(&mut Stream::new(seed), &ReliefOptions { slope, ..ReliefOptions::of(kind) }).ok()
+    })
+}
+
+/// Pools with water: rectangles, Ls and kidneys with floors that slope; see [`pool`].
+///
+/// ```
+/// use proptest::prelude::*;
+/// use proptest::test_runner::{Config, TestRunner};
+/// use roverlab::testing::pools;
+/// TestRunner::new(Config::with_cases(4)).run(&pools(), |pool| {
+///     let ground = pool.world.terrain.and_then(|terrain| terrain.surface).expect("a floor");
+///     let level = pool.world.water_level.expect("water");
+///     prop_assert!(level - ground.height(pool.start.position()).expect("a place to start from") > 1.4);
+///     Ok(())
+/// }).unwrap();
+/// ```
+pub fn pools() -> impl Strategy<Value = Pool> {
+    (any::<u64>(), prop::sample::select(&PoolKind::ALL[..])).prop_filter_map("no pool of this seed", |(seed, kind)| {
+        pool(&mut Stream::new(seed), kind).ok()
     })
 }

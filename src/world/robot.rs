@@ -41,6 +41,9 @@ pub struct RobotSpec {
     pub camera: Option<CameraSpec>,
     /// Its pressure sensor, if it has one.
     pub depth_sensor: Option<DepthSensorSpec>,
+    /// Range (m) of a craft's Doppler log: so far below, it sees the ground. Odometry then is the way over
+    /// ground, otherwise that through the water.
+    pub dvl: Option<f64>,
     /// Measurements of its inertial unit.
     pub inertial: InertialSpec,
     /// File of its 3D model.
@@ -360,6 +363,7 @@ impl RobotSpec {
         require_not_negative("mass", self.mass)?;
         require_not_negative("friction", self.friction)?;
         self.inertial.validate()?;
+        self.dvl.map_or(Ok(()), |range| require_positive("range of the Doppler log", range))?;
         if let Some(DepthSensorSpec { channel, z }) = self.depth_sensor {
             require("channel of the depth sensor", channel.into(), channel > 0, "1 to 255")?;
             require_finite("height of the depth sensor", z)?;

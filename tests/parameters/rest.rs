@@ -28,7 +28,7 @@ fn the_simulator() {
         but seed, noise, pushing, ideal_encoders);
     check!(NoiseModel = NoiseModel::real(),
         |p| simulation(RobotSpec::s4(), SimOptions { noise: p, ..SimOptions::default() })?,
-        { BoundedFromZero: wheel_scale, wheel_mismatch, track, slip, range, command, shot, exposure, blur, depth, attitude, turn_rate,
+        { BoundedFromZero: wheel_scale, wheel_mismatch, track, slip, range, command, shot, exposure, blur, depth, doppler, attitude, turn_rate,
             acceleration; });
 }
 
@@ -36,7 +36,7 @@ fn the_simulator() {
 fn robots() {
     let s4 = RobotSpec::s4;
     check!(RobotSpec = s4(), |p| simulation(p, SimOptions::default())?, { Positive: height; NotNegative: mass, friction; }
-        but name, drive, motor, footprint, mast, psds, lidar, camera, depth_sensor, inertial, model, mesh, body);
+        but name, drive, motor, footprint, mast, psds, lidar, camera, depth_sensor, dvl, inertial, model, mesh, body);
     check!(MotorSpec = MotorSpec::default(), |p| simulation(RobotSpec { motor: p, ..s4() }, SimOptions::default())?,
         { NotNegative: time_constant; Positive: max_acceleration; });
     check!(PsdSpec = s4().psds[0].clone(),

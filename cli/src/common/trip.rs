@@ -109,12 +109,18 @@ impl CommonArgs {
         stand_in: &StandIn,
         own: impl FnOnce() -> Scene,
     ) -> Result<Scene, Failure> {
+        let scene = self.scene_or(own)?;
+        self.placed_in(scene, stand_in)
+    }
+
+    /// The scene of the options, or the command's own, without what options say about its robot.
+    pub(crate) fn scene_or(&self, own: impl FnOnce() -> Scene) -> Result<Scene, Failure> {
         let scene = match &self.world {
             Some(file) => self.parsed(self.load_scene("world", file))?,
             None => own(),
         };
         self.warn_of_strays(&scene);
-        self.placed_in(scene, stand_in)
+        Ok(scene)
     }
 
     /// Warns of things so far from everything else that maps and pictures omit them.

@@ -67,7 +67,7 @@ pub(crate) struct Run<T> {
     pub(crate) others: Vec<Trail>,
     /// Final positions of the scene's objects.
     pub(crate) objects: Vec<Point>,
-    /// Where the robot was in space, in a world with hills, at each moment of the trail but the first.
+    /// Where the robot was in space, in a world with hills or water, at each moment of the trail but the first.
     pub(crate) in_space: Vec<TruthInSpace>,
 }
 
@@ -139,7 +139,8 @@ impl Conditions {
         let mut robot = stage.robot(0)?;
         let mut truth = stage.truth(0)?;
         let (mut trail, mut odometry_path) = (vec![(0.0, start)], vec![(0.0, start.position())]);
-        let (has_hills, mut in_space) = (scene.world.terrain.is_some(), Vec::new());
+        let has_hills = scene.world.terrain.is_some() || scene.world.water_level.is_some();
+        let mut in_space = Vec::new();
         let mut others: Vec<Trail> = self.others.iter().map(|_| Trail::new()).collect();
         let result = program(&mut robot, &mut || {
             let seen = truth.robot(0);

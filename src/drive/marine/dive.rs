@@ -1,10 +1,11 @@
 use std::ops::ControlFlow;
 
-use super::{DepthHold, DepthHoldParameters};
-use crate::geometry::{Vector3, angle_difference};
-use crate::io::control::{Behaviour, Command, Decision, Senses, halts};
-use crate::io::{Attitude, DepthSensor, Error, ErrorKind, Inertial, Motors, Result};
-use crate::kinematics::marine::{Allocation, Craft, CraftSpec, MAX_THRUSTERS, Wrench};
+use super::helm::{Helm, Push};
+use super::{DepthHoldParameters, Thrust};
+use crate::geometry::Vector3;
+use crate::io::control::{Behaviour, Decision, Senses, halts};
+use crate::io::{Attitude, DepthSensor, Error, Inertial, Result};
+use crate::kinematics::marine::CraftSpec;
 use crate::parameter::{require_finite, require_not_negative, require_positive};
 
 /// Parameters of [`Dive`].
@@ -49,6 +50,27 @@ pub struct DiveObservation {
     pub rates: Vector3,
 }
 
+impl DiveObservation {
+    pub(super) fn read<R: DepthSensor + Inertial + ?Sized>(&mut self, robot: &mut R) -> Result<()> {
+        self.depth = robot.depth()?;
+        self.attitude = robot.attitude()?;
+        self.rates = robot.turn_rates()?;
+        Ok(())
+    }
+
+    /// Fails with the name of a reading that is none.
+    pub(super) fn check(&self) -> Result<()> {
+        if !(self.depth.is_finite() && self.depth >= 0.0) {
+            return Err(Error::invalid_input("observed depth", self.depth, "a finite number of at least 0"));
+        }
+        let angles = [self.attitude.pitch, self.attitude.yaw, self.rates.y, self.rates.z];
+        match angles.iter().find(|angle| !angle.is_finite()) {
+            Some(angle) => Err(Error::invalid_input("observed attitude", angle, "finite numbers")),
+            None => Ok(()),
+        }
+    }
+}
+
 /// How a dive ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
@@ -62,58 +84,6 @@ pub enum DiveOutcome {
 }
 
 halts!(DiveOutcome { Over: "the dive is over" });
-
-/// A share of its full speed for each of a craft's first thrusters, -1 to 1. Stopped thrusters let a craft
-/// with buoyancy surface.
-///
-/// ```
-/// use roverlab::drive::marine::Thrust;
-/// assert_eq!(Thrust::new(&[0.5, -0.5])?.commands(), [0.5, -0.5]);
-/// # Ok::<(), roverlab::io::Error>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Thrust {
-    commands: [f64; MAX_THRUSTERS],
-    thrusters: usize,
-}
-
-impl Thrust {
-    /// Commands for the thrusters from the first on. Fails with more of them than a craft may have.
-    pub fn new(commands: &[f64]) -> Result<Self> {
-        if commands.len() > MAX_THRUSTERS {
-            return Err(Error::invalid_input("number of thrusters", commands.len(), "at most 8"));
-        }
-        let mut all = [0.0; MAX_THRUSTERS];
-        all[..commands.len()].copy_from_slice(commands);
-        Ok(Self { commands: all, thrusters: commands.len() })
-    }
-
-    /// The commands.
-    pub fn commands(&self) -> &[f64] {
-        &self.commands[..self.thrusters]
-    }
-}
-
-impl<R: Motors + ?Sized> Command<R> for Thrust {
-    fn apply(&self, robot: &mut R) -> Result<()> {
-        (1..).zip(self.commands()).try_for_each(|(motor, &command)| robot.set_motor(motor, command))
-    }
-
-    fn stop(robot: &mut R) -> Result<()> {
-        // The first motor that the craft does not have ends the row; RoBIOS gives no reason for its refusal.
-        for motor in 1..=MAX_THRUSTERS as u8 {
-            match robot.set_motor(motor, 0.0) {
-                Err(error)
-                    if motor > 1 && matches!(error.kind(), ErrorKind::Unsupported | ErrorKind::Other) =>
-                {
-                    break;
-                }
-                stopped => stopped?,
-            }
-        }
-        Ok(())
-    }
-}
 
 /// Brings a craft to a depth and holds it there, level and on its heading (book, section 8.3).
 ///
@@ -141,19 +111,9 @@ impl<R: Motors + ?Sized> Command<R> for Thrust {
 #[derive(Debug, Clone)]
 pub struct Dive {
     parameters: DiveParameters,
-    craft: Craft,
-    allocation: Allocation,
-    hold: Option<DepthHold>,
-    /// Pitch and yaw as turn rates and readings agree.
-    pitch: f64,
-    yaw: f64,
+    helm: Helm,
     begun: Option<f64>,
-    before: f64,
 }
-
-/// The share of the difference between a reading of the attitude and what turn rates say that a step
-/// believes.
-const BELIEVED: f64 = 0.1;
 
 impl Dive {
     /// A dive of a craft of this description.
@@ -163,11 +123,8 @@ impl Dive {
         require_positive("duration", parameters.duration)?;
         require_positive("turning", parameters.turning)?;
         require_positive("period", parameters.period)?;
-        // The model's own step does not matter to what is asked of it.
-        let craft = Craft::new(craft, 0.1)?;
-        DepthHold::new(&craft, parameters.depth, parameters.hold)?;
-        let allocation = Allocation::new(&craft);
-        Ok(Self { parameters, craft, allocation, hold: None, pitch: 0.0, yaw: 0.0, begun: None, before: 0.0 })
+        let helm = Helm::new(craft, parameters.turning, parameters.period, parameters.hold)?;
+        Ok(Self { parameters, helm, begun: None })
     }
 
     /// Changes the depth (m) to which the craft shall come from now on.
@@ -176,36 +133,6 @@ impl Dive {
         self.parameters.depth = depth;
         Ok(())
     }
-
-    /// The commands for the thrusters at a time.
-    fn thrust(&mut self, time: f64, seen: &DiveObservation) -> Result<Thrust> {
-        let seconds = if self.hold.is_some() { time - self.before } else { self.parameters.period };
-        self.before = time;
-        if self.hold.is_none() {
-            (self.pitch, self.yaw) = (seen.attitude.pitch, seen.attitude.yaw);
-            self.hold = Some(DepthHold::new(&self.craft, seen.depth, self.parameters.hold)?);
-        }
-        self.pitch = believed(self.pitch + seen.rates.y * seconds, seen.attitude.pitch);
-        self.yaw = believed(self.yaw + seen.rates.z * seconds, seen.attitude.yaw);
-        let (turning, inertia) = (self.parameters.turning, self.craft.inertia());
-        let moment = |inertia: f64, off: f64, rate: f64| inertia * turning * (turning * off - 2.0 * rate);
-        let level = moment(inertia[4], -self.pitch, seen.rates.y);
-        let ahead = moment(inertia[5], angle_difference(self.parameters.heading, self.yaw), seen.rates.z);
-        let Some(hold) = &mut self.hold else { return Thrust::new(&[]) };
-        let down = hold.step(seen.depth, self.parameters.depth, seconds);
-        let upright = Wrench { force: Vector3::z() * -down, moment: Vector3::y() * level };
-        let upright = self.allocation.share(&upright);
-        hold.told(down * upright.share);
-        let turned = self.allocation.share(&Wrench { moment: Vector3::z() * ahead, ..Wrench::NONE });
-        let both = upright.commands.iter().zip(&turned.commands);
-        let commands: Vec<f64> = both.map(|(a, b)| (a + b).clamp(-1.0, 1.0)).collect();
-        Thrust::new(&commands[..self.craft.thrusters().len()])
-    }
-}
-
-/// An angle between what is expected and what is read.
-fn believed(expected: f64, read: f64) -> f64 {
-    expected + BELIEVED * angle_difference(read, expected)
 }
 
 impl Behaviour for Dive {
@@ -218,27 +145,21 @@ impl Behaviour for Dive {
     }
 
     fn step(&mut self, time: f64, seen: &DiveObservation) -> Decision<Self> {
-        if !(seen.depth.is_finite() && seen.depth >= 0.0) {
-            return Err(Error::invalid_input("observed depth", seen.depth, "a finite number of at least 0"));
-        }
-        let angles = [seen.attitude.pitch, seen.attitude.yaw, seen.rates.y, seen.rates.z];
-        if let Some(angle) = angles.iter().find(|angle| !angle.is_finite()) {
-            return Err(Error::invalid_input("observed attitude", angle, "finite numbers"));
-        }
+        seen.check()?;
         let begun = *self.begun.get_or_insert(time);
         if time - begun >= self.parameters.duration {
             return Ok(ControlFlow::Break(DiveOutcome::Over));
         }
-        Ok(ControlFlow::Continue(self.thrust(time, seen)?))
+        let DiveParameters { depth, heading, .. } = self.parameters;
+        self.helm.observe(time, seen)?;
+        let push = Push { ahead: 0.0, turn: self.helm.turn_to(heading) };
+        Ok(ControlFlow::Continue(self.helm.thrust(depth, push)?))
     }
 }
 
 impl<R: DepthSensor + Inertial + ?Sized> Senses<R> for Dive {
     fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut DiveObservation) -> Result<()> {
-        seen.depth = robot.depth()?;
-        seen.attitude = robot.attitude()?;
-        seen.rates = robot.turn_rates()?;
-        Ok(())
+        seen.read(robot)
     }
 }
 

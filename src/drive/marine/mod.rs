@@ -1,11 +1,22 @@
-//! Craft in water (book, chapter 8): diving to a depth and holding it.
+//! Craft in water (book, chapter 8): diving, along the sides of a pool, and boats on a course.
 //!
 //! - [`Dive`]: to a depth, and there level on a heading, by pressure sensor and inertial unit;
-//! - [`DepthHold`]: the controller of depth inside it;
+//! - [`PoolWall`]: along the sides of a pool at a depth, by distance sensors;
+//! - [`Boat`]: a boat on a course, and on its station at the end;
+//! - [`DepthHold`]: the controller of depth inside them;
 //! - [`Thrust`]: what a behaviour tells a craft's thrusters.
 
+mod boat;
 mod depth_hold;
 mod dive;
+mod helm;
+mod pool_wall;
+mod reckoning;
+mod thrust;
+mod wall_memory;
 
+pub use boat::{Boat, BoatObservation, BoatOutcome, BoatParameters};
 pub use depth_hold::{DepthHold, DepthHoldParameters};
-pub use dive::{Dive, DiveObservation, DiveOutcome, DiveParameters, Thrust};
+pub use dive::{Dive, DiveObservation, DiveOutcome, DiveParameters};
+pub use pool_wall::{PoolWall, PoolWallObservation, PoolWallOutcome, PoolWallParameters};
+pub use thrust::Thrust;

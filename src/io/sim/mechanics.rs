@@ -62,7 +62,7 @@ impl Powertrain {
             }
             DriveSpec::Craft(ref craft) => {
                 let craft = Craft::new(craft, TICK).map_err(invalid)?;
-                Self::Craft(Box::new(CraftDrive::new(craft, noise, stream)))
+                Self::Craft(Box::new(CraftDrive::new(craft, spec.dvl, noise, stream)))
             }
         })
     }

@@ -35,6 +35,8 @@ pub struct NoiseModel {
     pub blur: f64,
     /// Error of the depth sensor, in metres: one is drawn once, and one for each reading.
     pub depth: f64,
+    /// Error of a Doppler log: relative, drawn once, and as many m/s in the mean of a second.
+    pub doppler: f64,
     /// Error of the inertial unit's roll, pitch and yaw (rad): a constant one and one for each reading. The
     /// yaw also drifts, by the same amount per minute.
     pub attitude: f64,
@@ -58,6 +60,7 @@ impl NoiseModel {
             exposure: 0.0,
             blur: 0.0,
             depth: 0.0,
+            doppler: 0.0,
             attitude: 0.0,
             turn_rate: 0.0,
             acceleration: 0.0,
@@ -78,6 +81,8 @@ impl NoiseModel {
             blur: 0.5,
             // The resolution of the Bar30 of 300 m, zeroed at the surface.
             depth: 0.002,
+            // A small log's data sheet (Nortek DVL1000): 0.3 %, and 1 mm/s in the long term.
+            doppler: 0.003,
             // From data sheets of small units: Xsens MTi 1 (0.5 degrees), InvenSense MPU-6050 (0.05 degrees
             // per second, and 4 mg in a band of 100 Hz).
             attitude: 0.0087,
@@ -105,6 +110,7 @@ impl NoiseModel {
             exposure: self.exposure * factor,
             blur: self.blur * factor,
             depth: self.depth * factor,
+            doppler: self.doppler * factor,
             attitude: self.attitude * factor,
             turn_rate: self.turn_rate * factor,
             acceleration: self.acceleration * factor,
@@ -124,6 +130,7 @@ impl NoiseModel {
             ("exposure error", self.exposure, 1.0),
             ("blur", self.blur, 10.0),
             ("depth error", self.depth, 1000.0),
+            ("Doppler log's error", self.doppler, 1.0),
             ("attitude error", self.attitude, 10.0),
             ("turn rate error", self.turn_rate, 1000.0),
             ("acceleration error", self.acceleration, 1000.0),

@@ -56,6 +56,7 @@ impl RobotSpec {
                 fisheye: false,
             }),
             depth_sensor: None,
+            dvl: None,
             inertial: InertialSpec::default(),
             model: None,
             mesh: None,

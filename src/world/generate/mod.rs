@@ -8,7 +8,7 @@
 //! Sensor-based algorithms for finding a goal (chapter 10) are evaluated on such courses.
 //!
 //! [`room`] draws a room with corners of many angles, curved walls and doors, whose wall can be followed all
-//! the way round (chapter 6). [`relief`] draws hills, craters, ramps and steps (chapter 7).
+//! the way round (chapter 6). [`relief`] draws hills, craters, ramps and steps (chapter 7), [`pool`] pools with water (chapter 8).
 
 mod bent;
 mod border;
@@ -21,6 +21,7 @@ mod family;
 mod figure;
 mod layout;
 mod options;
+mod pool;
 mod relief;
 mod repertoire;
 mod room;
@@ -31,6 +32,7 @@ mod survey;
 pub use course::{Course, obstacle_course};
 pub use family::{CourseFamily, UnknownFamily};
 pub use options::CourseOptions;
+pub use pool::{Pool, PoolKind, pool};
 pub use relief::{Relief, ReliefKind, ReliefOptions, relief};
 pub use repertoire::ObstacleKind;
 pub use room::{Room, RoomFeature, RoomOptions, room};

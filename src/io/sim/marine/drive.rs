@@ -2,7 +2,7 @@ use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::Result;
 use crate::io::sim::course::Course;
 use crate::io::sim::drive_mechanics::Mechanics;
-use crate::io::sim::{NoiseModel, TICK};
+use crate::io::sim::{NoiseModel, TICK, TICKS_PER_SECOND};
 use crate::kinematics::marine::{Allocation, Craft, CraftMotion, MAX_THRUSTERS, Wrench};
 use crate::kinematics::{Displacement, PlanarTwist};
 use crate::random::Stream;
@@ -11,20 +11,33 @@ use crate::random::Stream;
 /// the speed.
 ///
 /// Odometry is dead reckoning: the way through the water that a log measures, along the heading that follows
-/// from the turn rate. Neither knows of a current.
+/// from the turn rate. Neither knows of a current; a Doppler log that sees the ground does.
 #[derive(Debug, Clone)]
 pub(in crate::io::sim) struct CraftDrive {
     craft: Craft,
     allocation: Allocation,
     mode: Mode,
     odometry: Course,
+    /// The speed through the water.
     measured: Twist,
+    doppler: Option<Doppler>,
     /// What the forces that hold a speed have come to, in N s/kg and rad/s, besides what the model says.
     learnt: Twist,
     /// Factors of the log and of the turn rate.
     scale: [f64; 2],
     command: f64,
     factors: [f64; 2],
+    stream: Stream,
+}
+
+/// A log that measures the speed over ground by the echoes of the ground.
+#[derive(Debug, Clone)]
+struct Doppler {
+    /// Metres.
+    range: f64,
+    scale: f64,
+    /// Standard deviation of a tick's speed (m/s).
+    sigma: f64,
     stream: Stream,
 }
 
@@ -54,7 +67,17 @@ const LEARNING: f64 = 2.0;
 const NEAR: Displacement = Displacement { length: 0.01, angle: 0.01 };
 
 impl CraftDrive {
-    pub(in crate::io::sim) fn new(craft: Craft, noise: &NoiseModel, mut stream: Stream) -> Self {
+    pub(in crate::io::sim) fn new(
+        craft: Craft,
+        dvl: Option<f64>,
+        noise: &NoiseModel,
+        mut stream: Stream,
+    ) -> Self {
+        let doppler = dvl.map(|range| {
+            let mut stream = stream.child("doppler", 0);
+            let scale = 1.0 + noise.doppler * stream.normal();
+            Doppler { range, scale, sigma: noise.doppler * TICKS_PER_SECOND.sqrt(), stream }
+        });
         let scale = [noise.wheel_scale, noise.track].map(|sigma| (1.0 + sigma * stream.normal()).max(0.1));
         Self {
             allocation: Allocation::new(&craft),
@@ -62,6 +85,7 @@ impl CraftDrive {
             mode: Mode::Thrusters([0.0; MAX_THRUSTERS]),
             odometry: Course::new(Pose::default()),
             measured: Twist::default(),
+            doppler,
             learnt: Twist::default(),
             scale,
             command: noise.command,
@@ -111,18 +135,30 @@ impl CraftDrive {
         shared.commands
     }
 
-    /// Takes notice of how the craft has moved through the water in a tick.
-    pub(super) fn sense(&mut self, through: &CraftMotion) {
+    /// Takes notice of how the craft has moved in a tick: through the water, and over ground so many metres
+    /// below.
+    pub(super) fn sense(&mut self, through: &CraftMotion, over: &CraftMotion, altitude: f64) {
         let ahead = through.linear.x * self.scale[0];
         let left = through.linear.y * self.scale[0];
         let turning = through.angular.z * self.scale[1];
         self.measured = Twist::new(ahead, turning);
+        let [ahead, left] = match &mut self.doppler {
+            Some(log) if altitude <= log.range => log.measure(over),
+            _ => [ahead, left],
+        };
         let motion = PlanarTwist::new(ahead, left, turning).during(TICK);
         self.odometry.advance(motion);
         if let Mode::Manoeuvre(manoeuvre) = &mut self.mode {
             manoeuvre.rest.length -= motion.forward;
             manoeuvre.rest.angle -= motion.angle;
         }
+    }
+}
+
+impl Doppler {
+    /// The speed ahead and to the left.
+    fn measure(&mut self, over: &CraftMotion) -> [f64; 2] {
+        [over.linear.x, over.linear.y].map(|speed| speed * self.scale + self.sigma * self.stream.normal())
     }
 }
 

@@ -132,9 +132,11 @@ impl Swimmer {
             return None;
         }
         let flow = self.state.attitude.inverse() * water.velocity;
-        let mut through = self.velocity();
-        through.linear -= flow;
-        drive.sense(&through);
+        let over = self.velocity();
+        let through = CraftMotion { linear: over.linear - flow, ..over };
+        let place = self.state.position;
+        let altitude = place.z - ground.height(place.xy()).unwrap_or(0.0);
+        drive.sense(&through, &over, altitude);
         touched
     }
 

@@ -131,6 +131,7 @@ impl<'f> Reader<'f> {
             lidar: None,
             camera: None,
             depth_sensor: None,
+            dvl: None,
             inertial: InertialSpec::default(),
             mast: None,
             ..RobotSpec::s4()
@@ -228,6 +229,7 @@ impl<'f> Reader<'f> {
                 let z = if args.left() > 0 { args.length("the depth sensor's height")? } else { 0.0 };
                 self.spec.depth_sensor = Some(DepthSensorSpec { channel, z });
             }
+            "dvl" => self.spec.dvl = Some(args.positive_size("the Doppler log's range")?),
             "inertial" => self.spec.inertial = parts::inertial(line, args)?,
             "dynamics" => self.dynamics = Some(parts::dynamics(args)?),
             "outline" => self.outline = Some(parts::outline(line, args)?),

@@ -42,6 +42,9 @@ fn write_spec(text: &mut String, spec: &RobotSpec) -> Result {
     if let Some(sensor) = &spec.depth_sensor {
         writeln!(text, "depth_sensor {} {}", sensor.channel, millimetres(sensor.z))?;
     }
+    if let Some(range) = spec.dvl {
+        writeln!(text, "dvl {}", millimetres(range))?;
+    }
     write_inertial(text, &spec.inertial)
 }
 

@@ -1,0 +1,84 @@
+use roverlab::drive::marine::{PoolWallOutcome, PoolWallParameters};
+use roverlab::geometry::units;
+use roverlab::world::generate::PoolKind;
+use serde_json::json;
+
+use super::Args;
+use super::job::{LAP, generated, kind};
+use super::round::{Errors, round};
+use crate::common::{Failure, Outcome, Report, millimetres, share_out, threads};
+use crate::driving::{Conditions, RESERVE};
+
+/// Laps of a pool, and the largest root mean square of the error (m).
+const LAPS: u32 = 10;
+const RMS: f64 = 0.05;
+const LISTED: usize = 10;
+
+/// A pool and what came of it.
+#[derive(Debug, Clone)]
+struct Trial {
+    seed: u64,
+    laps: u32,
+    contacts: u32,
+    errors: Errors,
+}
+
+impl Trial {
+    fn is_good(&self) -> bool {
+        self.laps >= LAPS && self.contacts == 0 && self.errors.rms().is_some_and(|rms| rms <= RMS)
+    }
+}
+
+/// The campaign's work.
+pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
+    let trials = share_out("pools", args.runs, threads(args.threads), |index| {
+        trial(args, args.common.seed.wrapping_add(index))
+    })?;
+    let mut rows = Vec::new();
+    args.common.tell("pool       pools  laps  contacts  rms error  largest");
+    let mut all = Errors::default();
+    for shape in PoolKind::ALL {
+        let of = || trials.iter().filter(move |trial| kind(trial.seed) == shape);
+        let mut errors = Errors::default();
+        of().for_each(|trial| errors.add(&trial.errors));
+        all.add(&errors);
+        let (pools, laps) = (of().count(), of().map(|trial| trial.laps).sum::<u32>());
+        let contacts: u32 = of().map(|trial| trial.contacts).sum();
+        let (rms, largest) = (errors.rms().unwrap_or(0.0), errors.largest);
+        args.common.tell(format_args!(
+            "{:<9}  {pools:>5}  {laps:>4}  {contacts:>8}  {:>6.1} mm  {:>4.0} mm",
+            format!("{shape:?}"),
+            units::to_mm(rms),
+            units::to_mm(largest)
+        ));
+        rows.push(json!({
+            "pool": format!("{shape:?}").to_lowercase(), "pools": pools, "laps": laps, "contacts": contacts,
+            "rms_error_mm": millimetres(rms), "max_error_mm": millimetres(largest),
+        }));
+    }
+    let wrong: Vec<u64> = trials.iter().filter(|trial| !trial.is_good()).map(|trial| trial.seed).collect();
+    if !wrong.is_empty() {
+        args.common.tell(format_args!("  amiss with seeds {:?}", &wrong[..wrong.len().min(LISTED)]));
+    }
+    let outcome = if wrong.is_empty() { Outcome::verdict("passed") } else { Outcome::failure("wrong") };
+    let contacts: u32 = trials.iter().map(|trial| trial.contacts).sum();
+    Ok(Report { collisions: Some(contacts.into()), ..Report::new(outcome) }
+        .field("rms_error_mm", all.rms().map(millimetres))
+        .field("max_error_mm", millimetres(all.largest))
+        .field("laps", trials.iter().map(|trial| trial.laps).sum::<u32>())
+        .field("wrong_seeds", &wrong[..wrong.len().min(LISTED)])
+        .table("rows", rows))
+}
+
+fn trial(args: &Args, seed: u64) -> Result<Trial, Failure> {
+    let scene = generated(seed)?;
+    let limit = args.common.time_limit.unwrap_or(LAP * f64::from(LAPS));
+    let conditions = Conditions { seed, common: None, reserve: RESERVE, ..Conditions::new(&args.common, limit)? };
+    let parameters = PoolWallParameters { laps: LAPS, ..PoolWallParameters::default() };
+    let done = round(&scene, parameters, &conditions, |_| {})?;
+    let laps = match done.run.ending {
+        Ok((PoolWallOutcome::Round | PoolWallOutcome::TimedOut, laps)) => laps,
+        _ => 0,
+    };
+    Ok(Trial { seed, laps, contacts: done.run.truth.contacts, errors: done.errors })
+}

@@ -1,0 +1,65 @@
+use roverlab::drive::marine::{PoolWallOutcome, PoolWallParameters};
+use roverlab::geometry::units;
+use roverlab::picture::Picture;
+use roverlab::random::Stream;
+use roverlab::world::generate::{PoolKind, pool};
+use roverlab::world::{RobotSpec, Scene};
+
+use super::Args;
+use super::campaign::campaign;
+use super::round::{Round, round};
+use crate::common::{Failure, Outcome, Report, millimetres};
+use crate::driving::{Conditions, paced};
+use crate::water::afloat;
+
+/// Seconds of a lap, with the way to the wall.
+pub(super) const LAP: f64 = 400.0;
+
+/// The pool of a seed.
+pub(super) fn generated(seed: u64) -> Result<Scene, Failure> {
+    let made = pool(&mut Stream::new(seed), kind(seed)).map_err(Failure::run)?;
+    Ok(Scene::with_robot(made.world, RobotSpec::mako(), made.start))
+}
+
+pub(super) fn kind(seed: u64) -> PoolKind {
+    PoolKind::ALL[(seed % PoolKind::ALL.len() as u64) as usize]
+}
+
+/// The work of the command.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    if args.campaign {
+        return campaign(args);
+    }
+    let common = &args.common;
+    common.check_picture()?;
+    let own = generated(common.seed)?;
+    let scene = afloat(common, &RobotSpec::mako(), || own)?;
+    let parameters =
+        PoolWallParameters { laps: args.laps, depth: args.depth, ..PoolWallParameters::default() };
+    let conditions = Conditions::new(common, LAP * f64::from(args.laps))?;
+    let done = round(&scene, parameters, &conditions, paced(common))?;
+    let Round { run, errors } = &done;
+    let laps = run.ending.as_ref().ok().map(|ended| ended.1);
+    let report = run
+        .report(|ended| match ended.0 {
+            PoolWallOutcome::Round => Outcome::verdict("round"),
+            _ => Outcome::failure("timed_out"),
+        })
+        .field("rms_error_mm", errors.rms().map(millimetres))
+        .field("max_error_mm", errors.rms().map(|_| millimetres(errors.largest)))
+        .field("laps", laps)
+        .field("depth_rms_error_mm", errors.depth_rms().map(millimetres));
+    Ok(common.draw(report, "pool_wall.svg", || picture(&scene, &done)))
+}
+
+fn picture(scene: &Scene, done: &Round) -> Picture {
+    let Round { run, errors } = done;
+    let mut picture = Picture::new(&scene.world);
+    picture.title("Along the sides of a pool");
+    let rms = errors.rms().map_or("never beside a side".into(), |rms| {
+        format!("{:.0} mm off in the root mean square, {:.0} mm at most", units::to_mm(rms), units::to_mm(errors.largest))
+    });
+    picture.caption(format!("{:.1} m in {:.0} s, {rms}", run.truth.path_length, run.sim_time));
+    run.draw(&mut picture, &scene.robots[0].spec);
+    picture
+}

@@ -1,0 +1,255 @@
+use std::ops::ControlFlow;
+
+use super::helm::{Helm, Push};
+use super::reckoning::Reckoning;
+use super::{DepthHoldParameters, DiveObservation, Thrust};
+use crate::geometry::{Point, Pose, Vector, Vector3, angle_difference, math};
+use crate::io::control::{Behaviour, Decision, Senses, halts};
+use crate::io::{Attitude, Error, Inertial, Odometry, Result};
+use crate::kinematics::marine::CraftSpec;
+use crate::parameter::{require_not_negative, require_positive};
+
+/// Parameters of [`Boat`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BoatParameters {
+    /// Speed over ground on a leg (m/s).
+    pub speed: f64,
+    /// Metres ahead on the leg at which the boat steers.
+    pub lookahead: f64,
+    /// Metres from a waypoint within which it is reached.
+    pub reached: f64,
+    /// Seconds on station at the last waypoint.
+    pub station: f64,
+    /// Seconds between steps.
+    pub period: f64,
+}
+
+impl Default for BoatParameters {
+    /// 0.5 m/s, and a minute on station.
+    fn default() -> Self {
+        Self { speed: 0.5, lookahead: 1.5, reached: 0.2, station: 60.0, period: 0.1 }
+    }
+}
+
+/// What [`Boat`] goes by.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BoatObservation {
+    /// How the boat is turned.
+    pub attitude: Attitude,
+    /// How it turns about its own axes (rad/s).
+    pub rates: Vector3,
+    /// The way by the log.
+    pub odometry: Pose,
+}
+
+/// How a boat's course ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum BoatOutcome {
+    /// All waypoints are reached, and the time on station is over.
+    Arrived,
+    /// The time was over.
+    TimedOut,
+    /// Who watched had seen enough.
+    Stopped,
+}
+
+halts!(BoatOutcome { Arrived: "the time on station is over" });
+
+/// A boat with two thrusters on a course of waypoints, and on station at the last one.
+///
+/// On a leg it steers by line of sight with integral action, which takes out wind and current (Fossen 2021,
+/// section 12.3), and slows down before a waypoint. On station a force towards the place, with an integral,
+/// says where the bow points and what the thrusters push.
+///
+/// ```
+/// use roverlab::drive::marine::{Boat, BoatOutcome, BoatParameters};
+/// use roverlab::geometry::{Point, Pose, Vector};
+/// use roverlab::io::control::run;
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::kinematics::marine::CraftSpec;
+/// use roverlab::world::{RobotSpec, Scene, Water, World};
+///
+/// let water = Water { current: vec![(0.0, Vector::new(0.0, 0.1))], ..Water::default() };
+/// let lake = World { water_level: Some(3.0), water, ..World::empty(20.0, 20.0) };
+/// let raft = RobotSpec { dvl: Some(10.0), ..RobotSpec::solar_raft() };
+/// let scene = Scene::with_robot(lake, raft, Pose::new(3.0, 5.0, 0.0));
+/// let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
+/// let course = [Point::new(12.0, 5.0), Point::new(12.0, 12.0)];
+/// let start = Pose::new(3.0, 5.0, 0.0);
+/// let mut boat = Boat::new(&CraftSpec::solar_raft(), start, &course, BoatParameters::default())?;
+/// assert_eq!(run(&mut simulation.robot(0)?, &mut boat, 200.0, |_, _, _| {})?, BoatOutcome::Arrived);
+/// assert!((simulation.truth().pose(0)?.position() - course[1]).norm() < 0.5);
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Boat {
+    parameters: BoatParameters,
+    helm: Helm,
+    reckoning: Reckoning,
+    /// Where the course began and its waypoints, in the world.
+    course: Vec<Point>,
+    /// The waypoint ahead, by its index; the number of all of them on station.
+    next: usize,
+    /// The integral of the cross-track error (m).
+    offset: f64,
+    /// The force (N) that wind and current take on station, and when the boat came there.
+    against: Vector,
+    since: f64,
+    heading: f64,
+}
+
+/// The share of the speed at which a waypoint is passed, and the seconds in which it is slowed to.
+const PASSING: f64 = 0.3;
+const SLOWING: f64 = 2.5;
+/// The share of the lookahead distance that the integral counts for, per second.
+const INTEGRAL: f64 = 0.15;
+/// Stiffness, damping and integral of the hold of a place: 1/s², 1/s and 1/s³ times the mass.
+const STIFF: f64 = 0.15;
+const DAMPED: f64 = 0.8;
+const LEARNT: f64 = 0.015;
+/// Newtons below which a force does not turn the bow.
+const LITTLE: f64 = 2.0;
+/// Newtons that the hold of a place learns at most.
+const MOST: f64 = 60.0;
+
+impl Boat {
+    /// A course from a start through waypoints of the world. Odometry begins at the start.
+    ///
+    /// Fails without waypoints.
+    pub fn new(
+        craft: &CraftSpec,
+        start: Pose,
+        waypoints: &[Point],
+        parameters: BoatParameters,
+    ) -> Result<Self> {
+        require_positive("speed", parameters.speed)?;
+        require_positive("lookahead", parameters.lookahead)?;
+        require_positive("reached", parameters.reached)?;
+        require_not_negative("station", parameters.station)?;
+        require_positive("period", parameters.period)?;
+        let all = || std::iter::once(start.position()).chain(waypoints.iter().copied());
+        if let Some(wrong) = all().find(|point| !(point.x.is_finite() && point.y.is_finite())) {
+            return Err(Error::invalid_input("waypoint", wrong, "finite numbers"));
+        }
+        if waypoints.is_empty() {
+            return Err(Error::invalid_input("waypoints", 0, "at least 1"));
+        }
+        Ok(Self {
+            helm: Helm::new(craft, 0.8, parameters.period, DepthHoldParameters::default())?,
+            reckoning: Reckoning::at(start),
+            course: all().collect(),
+            next: 1,
+            offset: 0.0,
+            against: Vector::zeros(),
+            since: 0.0,
+            heading: start.heading,
+            parameters,
+        })
+    }
+
+    /// The index of the waypoint ahead; their number when the boat is on station.
+    pub fn leg(&self) -> usize {
+        self.next - 1
+    }
+
+    fn notice(&mut self, time: f64, seen: &BoatObservation) -> Result<()> {
+        let BoatObservation { attitude, rates, odometry } = *seen;
+        self.helm.observe(time, &DiveObservation { depth: 0.0, attitude, rates })?;
+        self.reckoning.advance(odometry, self.helm.heading(), self.helm.seconds());
+        let (place, last) = (self.reckoning.pose().position(), self.course.len());
+        while self.next < last && self.is_passed(place) {
+            (self.next, self.offset, self.since) = (self.next + 1, 0.0, time);
+            self.heading = self.helm.heading();
+        }
+        Ok(())
+    }
+
+    /// Whether the waypoint ahead is reached.
+    fn is_passed(&self, place: Point) -> bool {
+        (place - self.course[self.next]).norm() < self.parameters.reached
+    }
+
+    /// The push along the leg.
+    fn sail(&mut self) -> Push {
+        let BoatParameters { speed, lookahead, .. } = self.parameters;
+        let (from, to) = (self.course[self.next - 1], self.course[self.next]);
+        let pose = self.reckoning.pose();
+        let leg = to - from;
+        let along = leg.try_normalize(1e-9).unwrap_or_else(Vector::x);
+        let across = Vector::new(-along.y, along.x);
+        let left = (pose.position() - from).dot(&across);
+        let ahead = (to - pose.position()).dot(&along);
+        // Near its end, and beyond it, the leg is the way to the waypoint itself.
+        let direct = to - pose.position();
+        let goal = if ahead < lookahead {
+            math::atan2(direct.y, direct.x)
+        } else {
+            // The integral grows less the farther the boat is from the leg.
+            let aim = left + self.offset;
+            let share = lookahead * lookahead / (lookahead * lookahead + aim * aim);
+            self.offset += INTEGRAL * left * share * self.helm.seconds();
+            math::atan2(leg.y, leg.x) - math::atan2(aim, lookahead)
+        };
+        let off = angle_difference(goal, self.helm.heading());
+        let slow = PASSING * speed + (direct.norm() - self.parameters.reached).max(0.0) / SLOWING;
+        let wanted = speed.min(slow) * math::cos(off).max(0.0);
+        let ahead = self.helm.push(self.reckoning.velocity().x, wanted, 0.0).ahead;
+        Push { ahead, turn: self.helm.turn_to(goal) }
+    }
+
+    /// The push that keeps the boat at the last waypoint.
+    fn stay(&mut self) -> Push {
+        let pose = self.reckoning.pose();
+        let mass = self.helm.inertia()[0];
+        let off = self.course[self.course.len() - 1] - pose.position();
+        let speed = pose.to_world(Point::from(self.reckoning.velocity())) - pose.position();
+        self.against += off * (LEARNT * mass * self.helm.seconds());
+        let learnt = self.against.norm();
+        if learnt > MOST {
+            self.against *= MOST / learnt;
+        }
+        let lasting = self.against + off * (STIFF * mass);
+        if lasting.norm() > LITTLE {
+            self.heading = math::atan2(lasting.y, lasting.x);
+        }
+        let force = lasting - speed * (DAMPED * mass);
+        Push { ahead: force.dot(&pose.forward()), turn: self.helm.turn_to(self.heading) }
+    }
+}
+
+impl Behaviour for Boat {
+    type Observation = BoatObservation;
+    type Command = Thrust;
+    type Outcome = BoatOutcome;
+
+    fn period(&self) -> f64 {
+        self.parameters.period
+    }
+
+    fn step(&mut self, time: f64, seen: &BoatObservation) -> Decision<Self> {
+        let BoatObservation { attitude, rates, odometry } = *seen;
+        DiveObservation { depth: 0.0, attitude, rates }.check()?;
+        if !odometry.is_finite() {
+            return Err(Error::invalid_input("observed pose", format!("{odometry:?}"), "finite numbers"));
+        }
+        self.notice(time, seen)?;
+        let push = if self.next < self.course.len() {
+            self.sail()
+        } else if time - self.since >= self.parameters.station {
+            return Ok(ControlFlow::Break(BoatOutcome::Arrived));
+        } else {
+            self.stay()
+        };
+        Ok(ControlFlow::Continue(self.helm.afloat(push)?))
+    }
+}
+
+impl<R: Inertial + Odometry + ?Sized> Senses<R> for Boat {
+    fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut BoatObservation) -> Result<()> {
+        seen.attitude = robot.attitude()?;
+        seen.rates = robot.turn_rates()?;
+        seen.odometry = robot.pose()?;
+        Ok(())
+    }
+}

@@ -1,0 +1,169 @@
+use super::{DepthHold, DepthHoldParameters, DiveObservation, Thrust};
+use crate::geometry::{Vector3, angle_difference, math};
+use crate::io::Result;
+use crate::kinematics::marine::{Allocation, Craft, CraftMotion, CraftSpec, Wrench};
+
+/// What steers a craft under water: its depth held and its pitch level by the upright thrusters, a push and a
+/// turn by the others.
+#[derive(Debug, Clone)]
+pub(super) struct Helm {
+    craft: Craft,
+    allocation: Allocation,
+    hold: Option<DepthHold>,
+    hold_parameters: DepthHoldParameters,
+    /// Bandwidth of the pitch (rad/s).
+    turning: f64,
+    depth: f64,
+    /// Pitch and yaw as turn rates and readings agree.
+    pitch: f64,
+    yaw: f64,
+    pitch_rate: f64,
+    turn_rate: f64,
+    before: f64,
+    /// Seconds since the observation before; at first the period.
+    seconds: f64,
+}
+
+/// What the level thrusters are to do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Push {
+    /// Newtons forward.
+    pub(super) ahead: f64,
+    /// Newton metres, counter-clockwise.
+    pub(super) turn: f64,
+}
+
+/// The share of the difference between a reading of the attitude and what turn rates say that a step
+/// believes.
+const BELIEVED: f64 = 0.1;
+/// Seconds in which a difference of speed, and of turn rate, is to be closed.
+const CLOSING: f64 = 0.5;
+/// The most that a craft slips aside, as a share of its speed ahead.
+const MOST_SLIP: f64 = 1.0;
+
+impl Helm {
+    pub(super) fn new(
+        craft: &CraftSpec,
+        turning: f64,
+        period: f64,
+        hold: DepthHoldParameters,
+    ) -> Result<Self> {
+        // The model's own step does not matter to what is asked of it.
+        let craft = Craft::new(craft, 0.1)?;
+        DepthHold::new(&craft, 0.0, hold)?;
+        Ok(Self {
+            allocation: Allocation::new(&craft),
+            craft,
+            hold: None,
+            hold_parameters: hold,
+            turning,
+            depth: 0.0,
+            pitch: 0.0,
+            yaw: 0.0,
+            pitch_rate: 0.0,
+            turn_rate: 0.0,
+            before: 0.0,
+            seconds: period,
+        })
+    }
+
+    /// Takes notice of what is seen at a time.
+    pub(super) fn observe(&mut self, time: f64, seen: &DiveObservation) -> Result<()> {
+        if self.hold.is_some() {
+            self.seconds = time - self.before;
+        } else {
+            (self.pitch, self.yaw) = (seen.attitude.pitch, seen.attitude.yaw);
+            self.hold = Some(DepthHold::new(&self.craft, seen.depth, self.hold_parameters)?);
+        }
+        self.before = time;
+        self.pitch = believed(self.pitch + seen.rates.y * self.seconds, seen.attitude.pitch);
+        self.yaw = believed(self.yaw + seen.rates.z * self.seconds, seen.attitude.yaw);
+        (self.depth, self.pitch_rate, self.turn_rate) = (seen.depth, seen.rates.y, seen.rates.z);
+        Ok(())
+    }
+
+    /// The heading (rad) that turn rates and readings agree on.
+    pub(super) fn heading(&self) -> f64 {
+        self.yaw
+    }
+
+    /// Seconds since the observation before.
+    pub(super) fn seconds(&self) -> f64 {
+        self.seconds
+    }
+
+    /// Mass and moments of inertia, with those of the water that moves along.
+    pub(super) fn inertia(&self) -> [f64; 6] {
+        self.craft.inertia()
+    }
+
+    /// The angle (rad) from the heading to the way of a craft that keeps turning at a speed: it slips until the
+    /// water holds it.
+    pub(super) fn slip(&self, speed: f64, turn_rate: f64) -> f64 {
+        let aside = |left: f64| {
+            let linear = Vector3::new(speed, left, 0.0);
+            let motion = CraftMotion { linear, angular: Vector3::z() * turn_rate };
+            self.craft.response(&motion, &Wrench::NONE).linear.y
+        };
+        let (mut low, mut high) = (-MOST_SLIP * speed, MOST_SLIP * speed);
+        for _ in 0..20 {
+            let middle = 0.5 * (low + high);
+            if aside(middle) > 0.0 { low = middle } else { high = middle }
+        }
+        math::atan2(low, speed)
+    }
+
+    /// The push that brings a craft, which moves ahead through the water at `speed`, to another speed and
+    /// turn rate.
+    pub(super) fn push(&self, speed: f64, wanted: f64, turn_rate: f64) -> Push {
+        let motion = CraftMotion { linear: Vector3::x() * wanted, angular: Vector3::z() * turn_rate };
+        let (drag, inertia) = (self.craft.drag(&motion), self.craft.inertia());
+        Push {
+            ahead: drag.force.x + inertia[0] / CLOSING * (wanted - speed),
+            turn: drag.moment.z + inertia[5] / CLOSING * (turn_rate - self.turn_rate),
+        }
+    }
+
+    /// The moment that turns the craft to a heading (rad) and keeps it there.
+    pub(super) fn turn_to(&self, heading: f64) -> f64 {
+        let off = angle_difference(heading, self.yaw);
+        self.craft.inertia()[5] * self.turning * (self.turning * off - 2.0 * self.turn_rate)
+    }
+
+    /// The thrusters' commands that push a boat.
+    pub(super) fn afloat(&self, push: Push) -> Result<Thrust> {
+        let along = Wrench { force: Vector3::x() * push.ahead, moment: Vector3::z() * push.turn };
+        let along = self.allocation.share(&along);
+        Thrust::new(&along.commands[..self.craft.thrusters().len()])
+    }
+
+    /// The thrusters' commands that bring the craft to a depth and push it.
+    pub(super) fn thrust(&mut self, depth: f64, push: Push) -> Result<Thrust> {
+        let (turning, inertia) = (self.turning, self.craft.inertia());
+        let level = inertia[4] * turning * (turning * -self.pitch - 2.0 * self.pitch_rate);
+        let Some(hold) = &mut self.hold else { return Thrust::new(&[]) };
+        let down = hold.step(self.depth, depth, self.seconds);
+        let upright = Wrench { force: Vector3::z() * -down, moment: Vector3::y() * level };
+        let upright = self.allocation.share(&upright);
+        hold.told(down * upright.share);
+        let along = Wrench { force: Vector3::x() * push.ahead, moment: Vector3::z() * push.turn };
+        let along = self.allocation.share(&along);
+        let both = upright.commands.iter().zip(&along.commands);
+        let commands: Vec<f64> = both.map(|(a, b)| combined(*a, *b)).collect();
+        Thrust::new(&commands[..self.craft.thrusters().len()])
+    }
+}
+
+/// The command whose force, by the square, is that of two commands together.
+fn combined(a: f64, b: f64) -> f64 {
+    if a == 0.0 || b == 0.0 {
+        return a + b;
+    }
+    let force = a * a.abs() + b * b.abs();
+    force.abs().sqrt().min(1.0).copysign(force)
+}
+
+/// An angle between what is expected and what is read.
+fn believed(expected: f64, read: f64) -> f64 {
+    expected + BELIEVED * angle_difference(read, expected)
+}

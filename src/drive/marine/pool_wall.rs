@@ -1,0 +1,327 @@
+use std::f64::consts::{PI, TAU};
+use std::ops::ControlFlow;
+
+use super::helm::Helm;
+use super::reckoning::Reckoning;
+use super::wall_memory::WallMemory;
+use super::{DepthHoldParameters, DiveObservation, Thrust};
+use crate::geometry::{Point, Pose, Vector, WallSide, direction, math, normalize_angle};
+use crate::io::control::{Behaviour, Decision, Senses, halts};
+use crate::io::{DepthSensor, DistanceSensors, Error, Inertial, Odometry, Psd, Result};
+use crate::parameter::{require_not_negative, require_positive, require_up_to};
+use crate::world::{DriveSpec, RobotSpec};
+
+/// Parameters of [`PoolWall`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PoolWallParameters {
+    /// Depth of the sensor on the way (m).
+    pub depth: f64,
+    /// Distance from the craft's side to the wall (m).
+    pub distance: f64,
+    /// Speed (m/s).
+    pub speed: f64,
+    /// Side on which the wall is.
+    pub side: WallSide,
+    /// Rounds along the wall after which the drive is over.
+    pub laps: u32,
+    /// Metres ahead of the craft at which it steers.
+    pub lookahead: f64,
+    /// Seconds between steps.
+    pub period: f64,
+    /// The controller of depth.
+    pub hold: DepthHoldParameters,
+}
+
+impl Default for PoolWallParameters {
+    /// One lap at 0.3 m/s, half a metre beside the wall on the left, 0.8 m deep.
+    fn default() -> Self {
+        Self {
+            depth: 0.8,
+            distance: 0.5,
+            speed: 0.3,
+            side: WallSide::Left,
+            laps: 1,
+            lookahead: 1.0,
+            period: 0.1,
+            hold: DepthHoldParameters::default(),
+        }
+    }
+}
+
+/// What [`PoolWall`] goes by.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PoolWallObservation {
+    /// Depth, attitude and turn rates.
+    pub dive: DiveObservation,
+    /// The way through the water by the log.
+    pub odometry: Pose,
+    /// Readings of the sensors ahead and at the side of the wall (m).
+    pub front: f64,
+    /// See `front`.
+    pub side: f64,
+}
+
+/// How a drive along the sides of a pool ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum PoolWallOutcome {
+    /// All laps are done.
+    Round,
+    /// The time was over.
+    TimedOut,
+    /// Who watched had seen enough.
+    Stopped,
+}
+
+halts!(PoolWallOutcome { Round: "all laps are done" });
+
+/// Follows the sides of a pool at a depth, by the distance sensors ahead and at one side (book, section 8.5).
+///
+/// It remembers what the sensors have hit, seen by dead reckoning, and continues the wall at its side by a
+/// parabola as long as there is no gap. It steers by pure pursuit: of the places at the lookahead distance, to
+/// the nearest one to the wall that keeps the wanted distance from all of it. So it rounds outer corners,
+/// turns before walls ahead, and comes to a wall from afar, all by one rule.
+///
+/// ```
+/// use roverlab::drive::marine::{PoolWall, PoolWallOutcome, PoolWallParameters};
+/// use roverlab::io::control::run;
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::random::Stream;
+/// use roverlab::world::generate::{PoolKind, pool};
+/// use roverlab::world::{RobotSpec, Scene};
+///
+/// let pool = pool(&mut Stream::new(1), PoolKind::Kidney)?;
+/// let scene = Scene::with_robot(pool.world, RobotSpec::mako(), pool.start);
+/// let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
+/// let mut round = PoolWall::new(&RobotSpec::mako(), PoolWallParameters::default())?;
+/// assert_eq!(run(&mut simulation.robot(0)?, &mut round, 400.0, |_, _, _| {})?, PoolWallOutcome::Round);
+/// assert_eq!(simulation.truth().robot(0)?.contacts, 0);
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct PoolWall {
+    parameters: PoolWallParameters,
+    helm: Helm,
+    reckoning: Reckoning,
+    walls: WallMemory,
+    /// Places of the sensors in the craft's frame, mirrored if the wall is on the right.
+    front: Point,
+    side: Point,
+    lap: Option<Lap>,
+}
+
+/// A round along the wall.
+#[derive(Debug, Clone, Copy)]
+struct Lap {
+    /// Where it began; the heading is not bounded.
+    start: Pose,
+    number: u32,
+}
+
+/// Where a craft steers for.
+#[derive(Debug, Clone, Copy)]
+struct Aim {
+    /// The angle (rad) from the heading to the place.
+    angle: f64,
+    /// How much the way there bends (rad/m), positive to the left.
+    bend: f64,
+}
+
+impl Aim {
+    /// A place straight away.
+    fn at(angle: f64) -> Self {
+        Self { angle, bend: 0.0 }
+    }
+}
+
+/// Radians per second: the fastest turn.
+const FASTEST: f64 = 0.5;
+/// The speed (m/s) below which there is no slip to speak of, and its largest angle (rad).
+const CREEP: f64 = 0.15;
+const SLIP: f64 = 0.6;
+/// Turn rate for an angle to the place that is steered for (1/s), and the share of the momentary slip in that
+/// angle: of what a turn does to the way, the larger part comes later, so all of the slip would make it swing.
+const GAIN: f64 = 1.0;
+const MOMENTARY: f64 = 0.4;
+/// Metres between the walls nearest here and there within which the way leads round a corner.
+const PIVOT: f64 = 0.2;
+/// Steps in which a direction is looked for (rad).
+const STEP: f64 = 0.1;
+/// Halvings of a step.
+const HALVINGS: usize = 6;
+/// Metres before the nose that stay free, and seconds in which the rest is driven.
+const FREE: f64 = 0.2;
+const BRAKING: f64 = 2.0;
+/// Metres from the depth, and from the distance, at which the drive and its first lap begin.
+const BEGIN: f64 = 0.1;
+/// Radians that may be missing from a full turn when a lap ends, and metres from its start.
+const NEARLY: f64 = 0.6;
+const CLOSE: f64 = 2.5;
+
+impl PoolWall {
+    /// A drive of a craft of this description, with its distance sensors ahead and at the wall's side.
+    pub fn new(robot: &RobotSpec, parameters: PoolWallParameters) -> Result<Self> {
+        let DriveSpec::Craft(craft) = &robot.drive else {
+            return Err(Error::invalid_input("robot", &robot.name, "a craft"));
+        };
+        require_not_negative("depth", parameters.depth)?;
+        require_positive("distance", parameters.distance)?;
+        require_positive("speed", parameters.speed)?;
+        require_positive("lookahead", parameters.lookahead)?;
+        require_up_to("lookahead", parameters.lookahead, 10.0)?;
+        require_positive("period", parameters.period)?;
+        if parameters.laps == 0 {
+            return Err(Error::invalid_input("laps", 0, "at least 1"));
+        }
+        let side = wall_sensor(parameters.side);
+        let place = |psd: Psd| {
+            let spec = robot.psds.iter().find(|spec| spec.id == psd.0);
+            spec.map(|spec| Point::new(spec.mount.x, spec.mount.y.abs())).ok_or_else(|| Error::unsupported(psd))
+        };
+        let helm = Helm::new(craft, 0.8, parameters.period, parameters.hold)?;
+        Ok(Self {
+            helm,
+            front: place(Psd::FRONT)?,
+            side: place(side)?,
+            reckoning: Reckoning::default(),
+            walls: WallMemory::default(),
+            lap: None,
+            parameters,
+        })
+    }
+
+    /// Whole rounds so far.
+    pub fn laps(&self) -> u32 {
+        self.lap.map_or(0, |lap| lap.number)
+    }
+
+    /// 1 with the wall on the left, -1 with a mirrored world.
+    fn mirror(&self) -> f64 {
+        if self.parameters.side == WallSide::Left { 1.0 } else { -1.0 }
+    }
+
+    fn notice(&mut self, time: f64, seen: &PoolWallObservation) -> Result<()> {
+        self.helm.observe(time, &seen.dive)?;
+        let sense = self.mirror();
+        let Pose { x, y, heading } = seen.odometry;
+        let mirrored = Pose::new(x, sense * y, sense * heading);
+        self.reckoning.advance(mirrored, sense * self.helm.heading(), self.helm.seconds());
+        let pose = self.reckoning.pose();
+        let hit = |sensor: Point, way: Vector, range: f64| {
+            range.is_finite().then(|| pose.to_world(sensor + way * range))
+        };
+        let side = hit(self.side, Vector::y(), seen.side);
+        self.walls.add(pose.position(), side, hit(self.front, Vector::x(), seen.front));
+        Ok(())
+    }
+
+    /// Where to steer for: from the direction of the nearest wall on, the first place ahead that keeps the
+    /// distance.
+    fn aim(&self) -> Aim {
+        let (pose, ahead) = (self.reckoning.pose(), self.parameters.lookahead);
+        let place = pose.position();
+        let apart = self.parameters.distance + self.side.y;
+        let Some(wall) = self.walls.nearest(place) else { return Aim::at(0.0) };
+        let towards = pose.bearing_to(wall);
+        if (wall - place).norm() >= apart + ahead {
+            return Aim::at(towards);
+        }
+        let there = |aside: f64| place + direction(pose.heading + towards - aside) * ahead;
+        let is_free = |aside: f64| self.walls.clearance(there(aside)) >= apart;
+        let steps = (PI / STEP) as u32;
+        let free = (1..=steps).map(|step| STEP * f64::from(step)).find(|&aside| is_free(aside));
+        let Some(mut free) = free else { return Aim::at(normalize_angle(towards - PI)) };
+        let mut blocked = free - STEP;
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (free + blocked);
+            if is_free(middle) { free = middle } else { blocked = middle }
+        }
+        // Round a corner the way bends about it, elsewhere as the wall does.
+        let next = self.walls.nearest(there(free)).unwrap_or(wall);
+        let pivots = (next - wall).norm() < PIVOT;
+        let bend = self.walls.bend();
+        let bend = if pivots { 1.0 / apart } else { bend / (1.0 - bend * apart).max(0.3) };
+        Aim { angle: normalize_angle(towards - free), bend }
+    }
+
+    /// Counts laps. Round a pool, the craft turns once.
+    fn count(&mut self, side: f64) {
+        let pose = self.reckoning.pose();
+        let Some(lap) = &mut self.lap else {
+            if (side - self.parameters.distance).abs() < BEGIN {
+                self.lap = Some(Lap { start: pose, number: 0 });
+            }
+            return;
+        };
+        let turned = lap.start.heading - pose.heading;
+        let start = Pose { heading: lap.start.heading, ..lap.start };
+        let passed = start.to_local(pose.position());
+        if turned > TAU - NEARLY && passed.x >= 0.0 && passed.coords.norm() < CLOSE {
+            *lap = Lap { start: Pose { heading: lap.start.heading - TAU, ..pose }, number: lap.number + 1 };
+        }
+    }
+
+    fn thrust(&mut self, seen: &PoolWallObservation) -> Result<Thrust> {
+        let PoolWallParameters { depth, speed, lookahead, .. } = self.parameters;
+        let Aim { angle, bend } = self.aim();
+        let velocity = self.reckoning.velocity();
+        let slip = math::atan2(velocity.y, velocity.x.max(CREEP)).clamp(-SLIP, SLIP);
+        let lasting = self.helm.slip(speed, speed * bend).clamp(-SLIP, SLIP);
+        let off = angle - MOMENTARY * slip - (1.0 - MOMENTARY) * lasting;
+        // What of the angle is the chord of the bend is no error.
+        let turn = GAIN * math::sin(off.clamp(-0.5 * PI, 0.5 * PI)) + (speed - 0.5 * GAIN * lookahead) * bend;
+        let turn = turn.clamp(-FASTEST, FASTEST);
+        let free = (seen.front - FREE) / BRAKING;
+        let deep = (seen.dive.depth - depth).abs() < BEGIN || self.lap.is_some();
+        let wanted = if deep { speed * math::cos(off).max(0.0) } else { 0.0 };
+        let wanted = wanted.min(free.max(0.0));
+        let push = self.helm.push(velocity.x, wanted, self.mirror() * turn);
+        self.helm.thrust(depth, push)
+    }
+}
+
+/// The distance sensor at a side.
+fn wall_sensor(side: WallSide) -> Psd {
+    match side {
+        WallSide::Left => Psd::LEFT,
+        WallSide::Right => Psd::RIGHT,
+    }
+}
+
+impl Behaviour for PoolWall {
+    type Observation = PoolWallObservation;
+    type Command = Thrust;
+    type Outcome = PoolWallOutcome;
+
+    fn period(&self) -> f64 {
+        self.parameters.period
+    }
+
+    fn step(&mut self, time: f64, seen: &PoolWallObservation) -> Decision<Self> {
+        seen.dive.check()?;
+        if !seen.odometry.is_finite() {
+            return Err(Error::invalid_input("observed pose", format!("{:?}", seen.odometry), "finite numbers"));
+        }
+        for range in [seen.front, seen.side] {
+            if range.is_nan() || range < 0.0 {
+                return Err(Error::invalid_input("observed distance", range, "at least 0"));
+            }
+        }
+        self.notice(time, seen)?;
+        self.count(seen.side);
+        if self.laps() >= self.parameters.laps {
+            return Ok(ControlFlow::Break(PoolWallOutcome::Round));
+        }
+        Ok(ControlFlow::Continue(self.thrust(seen)?))
+    }
+}
+
+impl<R: DepthSensor + Inertial + Odometry + DistanceSensors + ?Sized> Senses<R> for PoolWall {
+    fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut PoolWallObservation) -> Result<()> {
+        seen.dive.read(robot)?;
+        seen.odometry = robot.pose()?;
+        seen.front = robot.distance(Psd::FRONT)?;
+        seen.side = robot.distance(wall_sensor(self.parameters.side))?;
+        Ok(())
+    }
+}
