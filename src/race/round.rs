@@ -32,9 +32,10 @@ impl CentreLine {
     /// If there is no such loop: what is wrong with it. O(n log n) for n cones.
     pub fn round_track(cones: &[Cone], start: Pose) -> Result<Self, LineError> {
         let by_colour = |colour: f64| {
-            let line =
+            let mut line =
                 Self::from_cones(cones, start, &CentreLineParameters { colour, ..Default::default() })?;
             check(&line.corridor, cones)?;
+            line.corridor = centred(&line.corridor)?;
             check_bends(&line.left)?;
             check_bends(&line.right)?;
             Ok(line)
@@ -71,6 +72,15 @@ fn check(corridor: &Corridor, cones: &[Cone]) -> Result<(), LineError> {
         return Err(LineError::TurnsBack { x: at.x.round(), y: at.y.round() });
     }
     near.crossing().map_or(Ok(()), |at| Err(LineError::Crosses { x: at.x.round(), y: at.y.round() }))
+}
+
+/// Puts the stations of a loop, which smoothing draws inwards in bends, midway between its edges.
+fn centred(corridor: &Corridor) -> Result<Corridor, LineError> {
+    let middle = |station: &CrossSection| {
+        let half = 0.5 * (station.left + station.right);
+        (station.aside(0.5 * (station.left - station.right)), half, half)
+    };
+    Corridor::closed(&corridor.stations().iter().map(middle).collect::<Vec<_>>())
 }
 
 /// Rejects an edge with a gap in a bend, where the course of the track is unknown.
@@ -166,24 +176,32 @@ fn cross_each_other(one: &Segment, other: &Segment) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::race::{ConeColour, GeneratedTrack, TrackOptions, generate};
+    use crate::race::{ConeColour, GeneratedTrack, TrackOptions, generate, parse_eufs, write_eufs};
     use crate::random::Stream;
 
-    /// Reads a generated track with cones missing and added. Returns the length found and the true one.
+    /// Reads a track from a file from which rows are removed and to which others are added. Returns the length
+    /// found and the true one.
     fn spoiled(seed: u64, missing: f64, added: f64) -> (Result<f64, LineError>, f64) {
         let GeneratedTrack { track, corridor } = generate(seed, &TrackOptions::drawn(seed)).unwrap();
-        let start = track.start_pose().unwrap();
         let mut random = Stream::new(seed).child("spoiled", 0);
-        let mut cones = track.cones.clone();
-        cones.retain(|_| !random.chance(missing));
+        let written = write_eufs(&track);
+        let is_kept = |line: &&str| {
+            let is_cone = !line.starts_with("tag") && !line.starts_with("car_start");
+            !(is_cone && random.chance(missing))
+        };
+        let mut text: String = written.lines().filter(is_kept).flat_map(|line| [line, "\n"]).collect();
+        let mut random = Stream::new(seed).child("added", 0);
         for _ in 0..(added * track.cones.len() as f64) as usize {
             let station = corridor.stations()[random.below(corridor.stations().len())];
-            let colours = [ConeColour::Unknown, ConeColour::Blue, ConeColour::Yellow];
+            let colour = ["unknown", "blue", "yellow"][random.below(3)];
             let beyond = random.between(0.8, 3.0);
             let offset = if random.chance(0.5) { station.left + beyond } else { -station.right - beyond };
-            cones.push(Cone::new(station.aside(offset), colours[random.below(3)]));
+            let place = station.aside(offset);
+            text += &format!("{colour},{},{},0,0,0,0\n", place.x, place.y);
         }
-        (CentreLine::round_track(&cones, start).map(|line| line.corridor.length()), corridor.length())
+        let read = parse_eufs(&text, "spoiled.csv").unwrap();
+        let found = CentreLine::round_track(&read.cones, read.start_pose().unwrap());
+        (found.map(|line| line.corridor.length()), corridor.length())
     }
 
     /// Number of loops read from spoiled tracks, number of tracks, and descriptions of wrong loops.
@@ -191,13 +209,11 @@ mod tests {
         let (mut read, mut all, mut wrong) = (0, 0, Vec::new());
         let mut refusals = BTreeMap::<String, usize>::new();
         for seed in seeds {
-            for (missing, added) in [(0.0, 0.0), (0.05, 0.0), (0.1, 0.0), (0.2, 0.0), (0.0, 0.1), (0.1, 0.1)]
+            for (missing, added) in
+                [(0.0, 0.0), (0.05, 0.0), (0.1, 0.0), (0.2, 0.0), (0.0, 0.1), (0.0, 0.2), (0.1, 0.1)]
             {
                 let (found, truth) = spoiled(seed, missing, added);
                 all += 1;
-                // A smoothed centre line is slightly shorter in tight bends than the generated one.
-                let truth =
-                    spoiled(seed, 0.0, 0.0).0.map_or(truth, |whole| whole.clamp(0.95 * truth, 1.05 * truth));
                 match found {
                     Ok(length) if (length / truth - 1.0).abs() > 0.03 => {
                         wrong.push(format!("{seed}: {missing}, {added}: {length} m of {truth}"));
@@ -214,7 +230,7 @@ mod tests {
     #[test]
     fn a_track_without_some_cones_is_read_right_or_refused() {
         let (read, all, wrong) = read(0..12);
-        assert!(wrong.is_empty() && 2 * read > all, "{read} of {all}: {wrong:#?}");
+        assert!(wrong.is_empty() && 5 * read > 2 * all, "{read} of {all}: {wrong:#?}");
     }
 
     mod campaigns {
@@ -223,8 +239,8 @@ mod tests {
         #[test]
         #[ignore = "takes a minute: cargo test --release --all-features --lib round -- --ignored"]
         fn three_hundred_spoiled_tracks_are_read_right_or_refused() {
-            let (read, all, wrong) = read(100..150);
-            assert!(wrong.is_empty() && 2 * read > all, "{read} of {all}: {wrong:#?}");
+            let (read, all, wrong) = read(100..143);
+            assert!(wrong.is_empty() && 5 * read > 2 * all, "{read} of {all}: {wrong:#?}");
         }
     }
 

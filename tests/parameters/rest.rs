@@ -24,7 +24,7 @@ fn simulation(spec: RobotSpec, options: SimOptions) -> roverlab::io::Result<()> 
 #[test]
 fn the_simulator() {
     check!(SimOptions = SimOptions::default(), |p| simulation(RobotSpec::s4(), p)?,
-        { BoundedFromZero: light; Bounded: call_duration; NotNegative: time_limit; Positive: trail_interval; }
+        { BoundedFromZero: light; Bounded: call_duration, patience; NotNegative: time_limit; Positive: trail_interval; }
         but seed, noise, pushing, ideal_encoders);
     check!(NoiseModel = NoiseModel::real(),
         |p| simulation(RobotSpec::s4(), SimOptions { noise: p, ..SimOptions::default() })?,

@@ -24,9 +24,14 @@ fn assert_held_back(error: &Error) {
     assert!(error.to_string().contains("give each robot a running thread of its own"), "{error}");
 }
 
+/// Without a minute of patience.
+fn impatient() -> SimOptions {
+    SimOptions { patience: 0.2, ..SimOptions::ideal() }
+}
+
 #[test]
 fn two_robots_of_one_thread_are_an_error_and_no_deadlock() {
-    let (_simulation, mut robots) = simulation(2, SimOptions::ideal());
+    let (_simulation, mut robots) = simulation(2, impatient());
     let [a, b] = robots.get_disjoint_mut([0, 1]).unwrap();
     a.straight(1.0, 0.3).unwrap();
     b.straight(1.0, 0.3).unwrap();
@@ -38,7 +43,7 @@ fn two_robots_of_one_thread_are_an_error_and_no_deadlock() {
 
 #[test]
 fn a_robot_left_behind_in_the_thread_of_another_is_an_error_and_no_deadlock() {
-    let (_simulation, mut robots) = simulation(2, SimOptions::ideal());
+    let (_simulation, mut robots) = simulation(2, impatient());
     assert_held_back(&robots[0].wait(1.0).unwrap_err());
     // Whoever lets go of it drives on.
     drop(robots.pop());
@@ -47,7 +52,7 @@ fn a_robot_left_behind_in_the_thread_of_another_is_an_error_and_no_deadlock() {
 
 #[test]
 fn nor_is_one_that_was_taken_in_a_third_thread_and_never_used() {
-    let (_simulation, mut robots) = simulation(2, SimOptions::ideal());
+    let (_simulation, mut robots) = simulation(2, impatient());
     thread::scope(|scope| {
         scope.spawn(|| assert_held_back(&robots[0].wait(1.0).unwrap_err()));
     });

@@ -21,27 +21,21 @@ pub(super) trait Ticking {
 ///
 /// The world stays at tick `n` until every running program has made a request at tick `n + 1` or later; the
 /// last of them advances it. A program's readings at a tick therefore depend on ticks only, never on thread
-/// scheduling. The one exception is a program that makes no request for longer than the others' [`Patience`]
-/// in real time: their requests fail, as they would otherwise hang for ever if it is blocked.
+/// scheduling. The one exception is a program that makes no request for longer than the others' patience in
+/// real time: their requests fail, as they would otherwise hang for ever if it is blocked.
 #[derive(Debug)]
 pub(super) struct Lockstep<W> {
     state: Mutex<State<W>>,
     advanced: Condvar,
     /// Duration of a tick (ns).
     tick: u64,
-    patience: Patience,
+    /// Real time for which a program waits while the world stands still.
+    patience: Duration,
 }
 
-/// Real time for which a program waits while the world stands still.
-#[derive(Debug, Clone, Copy)]
-struct Patience {
-    /// For a robot that the waiting thread itself used last.
-    own: Duration,
-    /// For a robot of another thread, which may be computing.
-    others: Duration,
-}
-
-const PATIENCE: Patience = Patience { own: Duration::from_secs(10), others: Duration::from_secs(60) };
+/// Real time for which a program waits at most for a robot that its own thread used last: nobody else will
+/// drive it.
+const FOR_OWN: Duration = Duration::from_secs(10);
 
 #[derive(Debug)]
 pub(super) struct State<W> {
@@ -98,18 +92,19 @@ fn held_back(index: usize, other: usize, patience: Duration) -> Error {
     let message = format!(
         "robot {index} waits for robot {other}, whose program has let no time pass for {} s of real time; \
          give each robot a running thread of its own and drop robots that are done, or use a fleet",
-        patience.as_secs()
+        patience.as_secs_f64()
     );
     Error::new(ErrorKind::Other, message)
 }
 
 impl<W: Ticking> Lockstep<W> {
-    /// A world with ticks of `tick` seconds for a number of programs.
-    pub(super) fn new(world: W, tick: f64, programs: usize) -> Self {
+    /// A world with ticks of `tick` seconds for a number of programs, which wait for each other for at most
+    /// `patience` seconds of real time.
+    pub(super) fn new(world: W, tick: f64, programs: usize, patience: f64) -> Self {
         let seats = vec![Seat::default(); programs];
         let tick = nanoseconds(tick).max(1);
         let state = Mutex::new(State { world, seats });
-        Self { state, advanced: Condvar::new(), tick, patience: PATIENCE }
+        Self { state, advanced: Condvar::new(), tick, patience: Duration::from_secs_f64(patience) }
     }
 
     /// The world in its present state.
@@ -154,7 +149,7 @@ impl<W: Ticking> Lockstep<W> {
             let before = state.world.time();
             let holder = state.held_back_by(index);
             let own = holder.is_some_and(|(_, own)| own);
-            let patience = if own { self.patience.own } else { self.patience.others };
+            let patience = if own { self.patience.min(FOR_OWN) } else { self.patience };
             let (woken, waited) =
                 self.advanced.wait_timeout(state, patience).unwrap_or_else(PoisonError::into_inner);
             state = woken;

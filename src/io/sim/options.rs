@@ -1,6 +1,6 @@
-use super::{NoiseModel, TICK, TICKS_PER_SECOND};
+use super::{LONGEST, NoiseModel, TICK, TICKS_PER_SECOND};
 use crate::ParameterError;
-use crate::parameter::{require, require_not_negative};
+use crate::parameter::{require, require_not_negative, require_up_to};
 
 /// Options of a simulation.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +21,10 @@ pub struct SimOptions {
     pub call_duration: f64,
     /// Time after which every call fails with [`TimedOut`](crate::io::ErrorKind::TimedOut) (s).
     pub time_limit: Option<f64>,
+    /// Real time for which a call waits while another robot's program lets no simulated time pass; then it fails
+    /// and names that robot, instead of blocking for ever (s). For a robot that the waiting thread itself used
+    /// last it is at most 10 s.
+    pub patience: f64,
     /// Interval between the points of each robot's trail (s); `None` for no trail.
     pub trail_interval: Option<f64>,
 }
@@ -31,7 +35,7 @@ pub(super) fn ticks_in(seconds: f64) -> u64 {
 }
 
 impl Default for SimOptions {
-    /// Seed 1, the real robot's noise, 0.1 ms per call, no time limit.
+    /// Seed 1, the real robot's noise, 0.1 ms per call, no time limit, a minute of patience.
     fn default() -> Self {
         Self {
             seed: 1,
@@ -41,6 +45,7 @@ impl Default for SimOptions {
             ideal_encoders: false,
             call_duration: 1e-4,
             time_limit: None,
+            patience: 60.0,
             trail_interval: None,
         }
     }
@@ -63,6 +68,7 @@ impl SimOptions {
         require("light", self.light, (0.0..=100.0).contains(&self.light), "0 to 100")?;
         let limit = self.time_limit.unwrap_or(0.0);
         require_not_negative("time limit", limit)?;
+        require_up_to("patience", self.patience, LONGEST)?;
         let interval = self.trail_interval.unwrap_or(TICK);
         let good = interval.is_finite() && interval >= TICK;
         require("trail interval", interval, good, "at least one tick of 10 ms")?;

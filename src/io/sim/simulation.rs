@@ -13,9 +13,8 @@ use crate::world::Scene;
 /// are taken. A robot that nobody takes stands still; one whose handle is dropped keeps its last command.
 ///
 /// Neither threads nor load affect what a program sees, within one bound of real time: while the world stands
-/// still because one robot's program lets no time pass, the calls of the others wait for at most 60 s (10 s
-/// for a robot that the waiting thread itself used last), and then fail with an error that names that robot,
-/// instead of blocking for ever.
+/// still because one robot's program lets no time pass, the calls of the others wait for at most
+/// [`SimOptions::patience`], and then fail with an error that names that robot, instead of blocking for ever.
 #[derive(Debug, Clone)]
 pub struct Simulation {
     shared: Arc<Lockstep<Engine>>,
@@ -25,9 +24,10 @@ impl Simulation {
     /// A simulation of a scene. Fails for invalid options, an invalid description of a robot, or a drive that
     /// is not simulated.
     pub fn new(scene: &Scene, options: SimOptions) -> Result<Self> {
+        let patience = options.patience;
         let engine = Engine::new(scene, options)?;
         let robots = engine.bodies.len();
-        Ok(Self { shared: Arc::new(Lockstep::new(engine, TICK, robots)) })
+        Ok(Self { shared: Arc::new(Lockstep::new(engine, TICK, robots, patience)) })
     }
 
     /// Takes a robot by its index in the scene. Fails if it does not exist or is already taken.

@@ -27,14 +27,15 @@ const BEHIND: f64 = 1.0;
 
 impl EventCourse {
     /// The course among the cones of a track, for a car with an outline. `None` for laps, and if the cones
-    /// match no event.
+    /// match no event. A skidpad is recognised without its orange cones as well.
     ///
     /// The timing lines are the gates of the track, or else those between its large cones; for a skidpad, the
     /// line through its centre.
     pub fn of(track: &ConeTrack, outline: &CarOutline) -> Option<Self> {
         let start = track.start_pose()?;
         match track.event() {
-            Event::Laps => None,
+            // Without the orange cones of its lanes, a skidpad is one if all other cones say so.
+            Event::Laps => Self::skidpad(track, start).filter(|course| course.layout.is_whole(&track.cones)),
             Event::Acceleration => Self::acceleration(track, start, outline.nose),
             Event::Skidpad => Self::skidpad(track, start),
         }

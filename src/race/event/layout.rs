@@ -115,8 +115,9 @@ const AT_EDGE: f64 = 0.4;
 const GATE: f64 = 0.8;
 /// Metres by which cones of an edge stand beside it, and beyond which they count less.
 const PLACED: (f64, f64) = (0.1, 0.3);
-/// The shares of all cones that stand at edges where a layout is found, and as long as it is followed.
-const SHARES: [f64; 2] = [0.6, 0.4];
+/// The shares of all cones that stand at edges where a layout is found, as long as it is followed, and where
+/// nothing but the cones names the event.
+const SHARES: [f64; 3] = [0.6, 0.4, 0.9];
 /// How many cones these are at least.
 const FEWEST: usize = 3;
 /// Metres, metres and radians by which a layout may move from look to look in the frame of a map that drifts.
@@ -218,6 +219,16 @@ impl EventLayout {
             self.at_edges(cones).filter(|cone| side * self.pose.to_local(cone.position).y > 0.0).count()
         };
         on(1.0) >= fewest && on(-1.0) >= fewest
+    }
+
+    /// Whether nearly all cones are at the edges of a skidpad, also beyond the centres of both circles.
+    pub(super) fn is_whole(&self, cones: &[Cone]) -> bool {
+        let EventShape::Eight { apart, .. } = self.shape else { return false };
+        let beyond = |side: f64| {
+            let aside = |cone: &&Cone| side * self.pose.to_local(cone.position).y > apart;
+            self.at_edges(cones).filter(aside).count()
+        };
+        self.holds(cones, SHARES[2]) && beyond(1.0) >= FEWEST && beyond(-1.0) >= FEWEST
     }
 
     /// Follows the cones of a map, whose frame drifts.

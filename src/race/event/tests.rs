@@ -154,6 +154,13 @@ fn the_course_is_measured_out_among_the_cones() {
     let course = EventCourse::of(&skidpad(9.125, 7.625, 10.625), &OUTLINE).unwrap();
     let laps: Vec<usize> = course.timed().iter().map(|[begin, end]| end - begin).collect();
     assert_eq!((course.event(), laps), (Event::Skidpad, vec![224; 2]));
+    // Without its orange cones it is the same event, and it is none without one of its circles.
+    let mut bare = skidpad(9.125, 7.625, 10.625);
+    bare.cones.retain(|cone| cone.colour != ConeColour::Orange);
+    assert_eq!(EventCourse::of(&bare, &OUTLINE).unwrap().event(), Event::Skidpad);
+    let frame = course.layout().pose;
+    bare.cones.retain(|cone| frame.to_local(cone.position).y < 5.0);
+    assert!(EventCourse::of(&bare, &OUTLINE).is_none());
     // Laps of a circuit are no event, and neither is a random heap with orange cones.
     let mut track = strip(1.5, 5.0, 25.0);
     track.cones.retain(|cone| cone.colour != ConeColour::Orange);

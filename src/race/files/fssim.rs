@@ -15,6 +15,9 @@ const KEYS: [(&str, ConeColour); 4] = [
     ("cones_orange_big", ConeColour::BigOrange),
 ];
 
+/// Keys of a file, most of which are ignored.
+const MOST_KEYS: usize = 100;
+
 /// Metres from the rear axle to the front wing, where these files say that the car starts.
 const WING: f64 = 2.15;
 
@@ -45,6 +48,9 @@ pub fn parse_fssim(text: &str, file: &str) -> Result<ConeTrack, FormatError> {
             (Event::Scalar(key, ..), at) => (key.into_owned(), at),
             (event, at) => return Err(events.unexpected(&event, at, "a key")),
         };
+        if seen.len() == MOST_KEYS {
+            return Err(events.error(at, "one more key", format!("at most {MOST_KEYS} keys")));
+        }
         if seen.contains(&key) {
             return Err(events.error(at, format!("a second {}", shown(&key)), "each key once"));
         }

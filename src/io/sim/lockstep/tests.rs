@@ -31,7 +31,7 @@ const CALL: f64 = 0.0003;
 /// What each program reads, each in a thread of its own that `delays` hold up, started in some order.
 fn in_threads(scripts: &[Script], backwards: bool, delays: u64) -> Vec<Vec<(u64, u64)>> {
     let ledger = Ledger { told: vec![0; scripts.len()], ..Ledger::default() };
-    let shared = Arc::new(Lockstep::new(ledger, TICK, scripts.len()));
+    let shared = Arc::new(Lockstep::new(ledger, TICK, scripts.len(), 60.0));
     let programs: Vec<_> =
         (0..scripts.len()).map(|index| Program::claim(&shared, index, CALL, None).unwrap()).collect();
     thread::scope(|scope| {
@@ -112,7 +112,7 @@ fn a_program_that_has_ended_holds_nobody_back() {
 
 #[test]
 fn clocks_of_programs_that_wait_as_long_agree() {
-    let shared = Arc::new(Lockstep::new(Ledger { told: vec![0; 2], ..Ledger::default() }, TICK, 2));
+    let shared = Arc::new(Lockstep::new(Ledger { told: vec![0; 2], ..Ledger::default() }, TICK, 2, 60.0));
     let programs = [0, 1].map(|index| Program::claim(&shared, index, CALL, None).unwrap());
     let times = thread::scope(|scope| {
         programs
@@ -128,9 +128,9 @@ fn clocks_of_programs_that_wait_as_long_agree() {
 }
 
 /// Two programs, of which the first waits while the second is used as given. Returns what the first one gets.
-fn waiting(patience: Patience, second: impl FnOnce(Program<Ledger>) + Send) -> Result<u64> {
+fn waiting(patience: f64, second: impl FnOnce(Program<Ledger>) + Send) -> Result<u64> {
     let ledger = Ledger { told: vec![0; 2], ..Ledger::default() };
-    let shared = Arc::new(Lockstep { patience, ..Lockstep::new(ledger, TICK, 2) });
+    let shared = Arc::new(Lockstep::new(ledger, TICK, 2, patience));
     let [mut waits, other] = [0, 1].map(|index| Program::claim(&shared, index, CALL, None).unwrap());
     thread::scope(|scope| {
         scope.spawn(move || second(other));
@@ -141,23 +141,21 @@ fn waiting(patience: Patience, second: impl FnOnce(Program<Ledger>) + Send) -> R
 
 #[test]
 fn a_thread_may_compute_before_its_first_call() {
-    let patience = Patience { own: Duration::from_millis(1), others: Duration::from_secs(60) };
     let late = |program: Program<Ledger>| {
         thread::sleep(Duration::from_millis(100));
         program.look(|_, _| Ok(())).unwrap();
     };
-    assert_eq!(waiting(patience, late).unwrap(), 100);
+    assert_eq!(waiting(60.0, late).unwrap(), 100);
 }
 
 /// As when a main program uses one robot and then joins the thread that drives the other.
 #[test]
 fn a_wait_for_a_blocked_thread_ends_and_names_its_robot() {
-    let patience = Patience { others: Duration::from_millis(100), ..PATIENCE };
     let blocked = |program: Program<Ledger>| {
         program.look(|_, _| Ok(())).unwrap();
         // Longer than the other one's patience; a wait without an end would end here, without an error.
         thread::sleep(Duration::from_secs(1));
     };
-    let error = waiting(patience, blocked).unwrap_err().to_string();
+    let error = waiting(0.1, blocked).unwrap_err().to_string();
     assert!(error.contains("robot 0 waits for robot 1"), "{error}");
 }

@@ -34,12 +34,14 @@ pub struct Starman {
 
 /// Duration of a call on the robot's clock (s), so that time passes in a loop without a pause.
 const CALL: f64 = 1e-4;
+/// Seconds to wait for other programs in its world; there are none.
+const PATIENCE: f64 = 0.0;
 
 impl Starman {
     /// A Starman in its initial standing position. Fails for a specification out of range.
     pub fn new(spec: &StarmanSpec) -> Result<Self> {
         spec.validate()?;
-        let world = Arc::new(Lockstep::new(Figure::new(spec), spec.time_step, 1));
+        let world = Arc::new(Lockstep::new(Figure::new(spec), spec.time_step, 1, PATIENCE));
         Ok(Self {
             program: Program::claim(&world, 0, CALL, None)?,
             lcd: Lcd::new(),
