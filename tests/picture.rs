@@ -232,3 +232,23 @@ fn a_failed_write_is_reported_and_leaves_nothing_behind() {
     left.sort();
     assert_eq!(left, ["file", "taken.svg"]);
 }
+
+#[test]
+fn a_circle_without_filling_lies_above_the_object_in_it() {
+    let mut world = World::walled(2.0, 2.0);
+    world.objects.push(roverlab::world::Object::new(
+        std::sync::Arc::new(roverlab::world::ObjectKind::new(
+            "can",
+            roverlab::world::Shape::Cylinder { radius: 0.05, height: 0.1 },
+            Colour::new(9, 8, 7),
+        )),
+        Pose::new(1.0, 1.0, 0.0),
+    ));
+    let above = |fill: f64| {
+        let mut picture = Picture::new(&world);
+        picture.disc(Point::new(1.0, 1.0), 0.1, Style::new(Colour::new(1, 2, 3)).filled(fill));
+        let svg = picture.to_svg();
+        svg.find(&Colour::new(1, 2, 3).to_string()) > svg.find(&Colour::new(9, 8, 7).to_string())
+    };
+    assert!(above(0.0) && !above(0.5));
+}

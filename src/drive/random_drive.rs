@@ -1,10 +1,11 @@
 use std::f64::consts::{FRAC_PI_4, PI};
 use std::ops::ControlFlow;
 
+use super::WallSensors;
 use super::way::{AHEAD, ALIGNED, BRAKING, TURN_GAIN, Way};
 use crate::ParameterError;
-use crate::geometry::{Point, Pose, Twist, angle_difference, normalize_angle};
-use crate::io::control::{Behaviour, Decision, Halt, Senses};
+use crate::geometry::{Point, Pose, Twist, angle_difference, direction, normalize_angle};
+use crate::io::control::{Behaviour, Decision, Halt, SensedBy, Senses};
 use crate::io::{DistanceSensors, Error, ErrorKind, Lidar, LidarScan, Odometry, Psd, Result};
 use crate::parameter::require_positive;
 use crate::random::Stream;
@@ -81,6 +82,8 @@ pub struct RandomDrive {
 
 /// Directions that are drawn at a turn; the first with enough room is taken, or the one with the most.
 const DRAWN: usize = 12;
+/// Parts of an assumed wall between two points.
+const WALL_POINTS: u32 = 16;
 
 impl RandomDrive {
     /// Creates a robot about to drive, with its own random stream. Fails for parameters out of range.
@@ -116,6 +119,44 @@ impl RandomDrive {
         self.turning_to = Some(normalize_angle(pose.heading + turn));
         self.turns += 1;
         Ok(Twist::STOP)
+    }
+
+    /// The behaviour by three distance sensors, as in the book, on robots that need no lidar.
+    ///
+    /// ```
+    /// use roverlab::drive::{RandomDrive, RandomDriveParameters};
+    /// use roverlab::geometry::Pose;
+    /// use roverlab::io::control::run;
+    /// use roverlab::io::sim::{SimOptions, Simulation};
+    /// use roverlab::io::{Clock, DistanceSensors, Drive, Odometry, Result};
+    /// use roverlab::random::Stream;
+    /// use roverlab::world::{RobotSpec, Scene, World};
+    ///
+    /// fn wander(robot: &mut (impl Clock + Drive + Odometry + DistanceSensors)) -> Result<()> {
+    ///     let mut drive = RandomDrive::new(RandomDriveParameters::default(), Stream::new(1))?;
+    ///     run(robot, &mut drive.by_distance_sensors(), 60.0, |_, _, _| {})?;
+    ///     Ok(())
+    /// }
+    ///
+    /// # fn main() -> Result<()> {
+    /// let mut spec = RobotSpec::s4();
+    /// spec.lidar = None;
+    /// let scene = Scene::with_robot(World::walled(1.5, 1.5), spec, Pose::new(0.7, 0.7, 0.3));
+    /// let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
+    /// wander(&mut simulation.robot(0)?)?;
+    /// let truth = simulation.truth().robot(0)?;
+    /// assert!(truth.contacts == 0 && truth.path_length > 3.0);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn by_distance_sensors<R: DistanceSensors + Odometry + ?Sized>(
+        &mut self,
+    ) -> impl Senses<R, Observation = RandomDriveObservation, Command = Twist, Outcome = Halt> {
+        SensedBy::new(self, |robot: &mut R, _, seen: &mut RandomDriveObservation| {
+            seen.feel(robot)?;
+            seen.pose = robot.pose()?;
+            Ok(())
+        })
     }
 
     /// The heading of a random turn towards free floor, if there is any.
@@ -155,22 +196,37 @@ pub struct RandomDriveObservation {
 impl RandomDriveObservation {
     /// Reads the lidar, or the distance sensors of a robot without one.
     fn look<R: DistanceSensors + Lidar + ?Sized>(&mut self, robot: &mut R) -> Result<()> {
-        self.points.clear();
         match robot.scan_into(&mut self.scan) {
-            Ok(()) => self.points.extend(self.scan.points()),
-            Err(error) if error.kind() == ErrorKind::Unsupported => {
-                let sensors = super::WallSensors::default();
-                for (psd, mount) in
-                    [(Psd::FRONT, sensors.front), (Psd::LEFT, sensors.left), (Psd::RIGHT, sensors.right)]
-                {
-                    let range = robot.distance(psd)?;
-                    if range.is_finite() {
-                        self.points
-                            .push(mount.position() + crate::geometry::direction(mount.heading) * range);
-                    }
-                }
+            Ok(()) => {
+                self.points.clear();
+                self.points.extend(self.scan.points());
+                Ok(())
             }
-            Err(error) => return Err(error),
+            Err(error) if error.kind() == ErrorKind::Unsupported => self.feel(robot),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Reads the distance sensors ahead and to both sides. They see single points, so a straight wall is
+    /// assumed between the point ahead and each of the others: a robot that meets a wall at a small angle
+    /// would scrape along it otherwise.
+    fn feel<R: DistanceSensors + ?Sized>(&mut self, robot: &mut R) -> Result<()> {
+        let WallSensors { front, left, right, .. } = WallSensors::default();
+        let mut hit = |psd, mount: Pose| -> Result<Option<Point>> {
+            let range = robot.distance(psd)?;
+            Ok(range.is_finite().then(|| mount.position() + direction(mount.heading) * range))
+        };
+        let ahead = hit(Psd::FRONT, front)?;
+        let sides = [hit(Psd::LEFT, left)?, hit(Psd::RIGHT, right)?];
+        self.points.clear();
+        self.points.extend(ahead);
+        for side in sides.into_iter().flatten() {
+            self.points.push(side);
+            let wall = ahead.map(|ahead| {
+                (1..WALL_POINTS)
+                    .map(move |i| ahead + (side - ahead) * (f64::from(i) / f64::from(WALL_POINTS)))
+            });
+            self.points.extend(wall.into_iter().flatten());
         }
         Ok(())
     }
@@ -233,6 +289,32 @@ mod tests {
                     prop_assert!(behind_start || !ahead || (point - place).norm() > radius - 1e-9 || free < radius);
                 }
             }
+        }
+    }
+
+    /// Robots that see along three rays only meet walls at any angle, and touch none.
+    #[test]
+    fn three_distance_sensors_suffice_among_walls() {
+        use crate::io::control::run;
+        use crate::io::sim::{SimOptions, Simulation};
+        use crate::world::{RobotSpec, Scene, Wall, World};
+        let mut world = World::walled(2.0, 1.5);
+        world.walls.push(Wall::new(Point::new(0.0, 1.0), Point::new(0.5, 1.5)));
+        let spec = RobotSpec { lidar: None, ..RobotSpec::s4() };
+        for seed in 1..=20 {
+            let scene = Scene::with_robot(world.clone(), spec.clone(), Pose::new(1.0, 0.7, 0.3));
+            let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, seed)).unwrap();
+            let mut drive = RandomDrive::new(RandomDriveParameters::default(), Stream::new(seed)).unwrap();
+            run(&mut simulation.robot(0).unwrap(), &mut drive.by_distance_sensors(), 120.0, |_, _, _| {})
+                .unwrap();
+            let truth = simulation.truth().robot(0).unwrap();
+            println!(
+                "{seed}: {} contacts, {:.2} m, {} turns",
+                truth.contacts,
+                truth.path_length,
+                drive.turns()
+            );
+            assert!(truth.contacts == 0 && truth.path_length > 5.0, "seed {seed}: {truth:?}");
         }
     }
 

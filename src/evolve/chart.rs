@@ -4,11 +4,13 @@ use crate::picture::{Picture, Style};
 use crate::world::{Colour, World};
 
 /// Width of a panel (m on the sheet).
-const WIDTH: f64 = 1.6;
+const WIDTH: f64 = 2.0;
 /// Height of a panel (m on the sheet).
 const HEIGHT: f64 = 0.5;
-/// Margin around the panels, for the scales (m on the sheet).
-const MARGIN: f64 = 0.12;
+/// Margin around the panels (m on the sheet).
+const MARGIN: f64 = 0.2;
+/// Margin on their left, for the scale (m on the sheet).
+const LEFT: f64 = 0.5;
 
 /// Plots a run: best, mean and worst fitness per generation, and below them the diversity.
 ///
@@ -22,7 +24,7 @@ const MARGIN: f64 = 0.12;
 /// # Ok::<(), roverlab::io::Error>(())
 /// ```
 pub fn chart(history: &[GenerationStatistics]) -> Picture {
-    let sheet = World::empty(WIDTH + 2.0 * MARGIN, 2.0 * HEIGHT + 3.0 * MARGIN);
+    let sheet = World::empty(LEFT + WIDTH + MARGIN, 2.0 * HEIGHT + 3.0 * MARGIN);
     let mut picture = Picture::new(&sheet);
     picture.title("Evolution, generation by generation").without_scale();
     let fitness: [Curve<'_>; 3] = [
@@ -58,14 +60,14 @@ impl Panel<'_> {
         let last = self.history.len().saturating_sub(1).max(1) as f64;
         let at = |generation: f64, value: f64| {
             let up = ((value - least) / (most - least)).clamp(0.0, 1.0);
-            Point::new(MARGIN + WIDTH * generation / last, self.bottom + self.height * up)
+            Point::new(LEFT + WIDTH * generation / last, self.bottom + self.height * up)
         };
         picture.line([at(0.0, most), at(0.0, least), at(last, least)], Style::aid());
-        for (value, rise) in [(least, 0.0), (most, 0.5)] {
+        for value in [least, most] {
             let place = at(0.0, value);
-            picture.text(Point::new(place.x - 0.9 * MARGIN, place.y - 0.02 * rise), format!("{value:.3}"));
+            picture.text(Point::new(place.x - 0.5 * LEFT, place.y), format!("{value:.3}"));
         }
-        picture.text(Point::new(MARGIN + WIDTH, self.bottom - 0.4 * MARGIN), format!("{last}"));
+        picture.text(Point::new(LEFT + WIDTH, self.bottom - 0.4 * MARGIN), format!("{last}"));
         for &(name, colour, value) in curves {
             let points = (0..).zip(self.history).map(|(i, row)| at(f64::from(i), value(row)));
             picture.line(points, Style::new(colour).width(2.0).labelled(name));

@@ -21,7 +21,7 @@ impl Frame {
     /// Pixels of the plot's width at most.
     pub(super) const WIDEST: f64 = 560.0;
     /// Pixels of the plot's height at most.
-    const TALLEST: f64 = 480.0;
+    pub(super) const TALLEST: f64 = 480.0;
     /// No region is drawn flatter than this share of its longer side.
     const FLATTEST: f64 = 0.06;
 

@@ -1,10 +1,13 @@
+use super::frame::Frame;
 use super::items::{Figure, Picture};
-use super::{Mark, Style};
+use super::{Mark, Style, text};
 use crate::geometry::{Point, Vector};
 use crate::world::World;
 
-/// What is left between two panels, as a share of the larger side of the largest.
+/// Minimum gap between two panels, relative to the larger side of the largest.
 const GAP: f64 = 0.14;
+/// Minimum gap between two panels (pixels): a line of text, and the symbols at the panels' edges.
+const TITLE: f64 = 2.0 * text::LINE;
 
 impl Picture {
     /// Combines several pictures into one, in rows of `columns` from the upper left, each with its title
@@ -13,7 +16,7 @@ impl Picture {
         let columns = columns.clamp(1, panels.len().max(1));
         let rows = panels.len().div_ceil(columns);
         let extent = panels.iter().fold(Vector::zeros(), |most, panel| most.sup(&panel.region().size()));
-        let gap = GAP * extent.max();
+        let gap = gap(extent, columns, rows);
         let step = extent + Vector::repeat(gap);
         let size = Vector::new(step.x * columns as f64, step.y * rows as f64);
         let mut all = Self::new(&World::empty(size.x, size.y));
@@ -22,13 +25,13 @@ impl Picture {
             let (column, row) = (index % columns, rows - 1 - index / columns);
             let corner = Vector::new(column as f64 * step.x, row as f64 * step.y);
             let spare = step - panel.region().size();
-            let shift = corner + Vector::new(0.5 * spare.x, 0.65 * spare.y) - panel.region().min.coords;
-            all.take(panel, shift, 0.5 * gap);
+            let shift = corner + Vector::new(0.5 * spare.x, 0.75 * spare.y) - panel.region().min.coords;
+            all.take(panel, shift, 0.45 * gap);
         }
         all
     }
 
-    /// Adds the content of another picture, shifted by `shift`, with its title `below` metres below it.
+    /// Adds the content of another picture, shifted by `shift`, with the middle of its title `below` metres below it.
     fn take(&mut self, panel: &Self, shift: Vector, below: f64) {
         let bounds = panel.region();
         let (min, max) = (bounds.min + shift, bounds.max + shift);
@@ -49,13 +52,24 @@ impl Picture {
             item
         }));
         if let Some(title) = &panel.title {
-            let middle = Point::new(0.5 * (min.x + max.x), min.y - 0.7 * below);
+            let middle = Point::new(0.5 * (min.x + max.x), min.y - below);
             self.add(
                 Figure::Mark { mark: None::<Mark>, position: middle, text: Some(title.clone()) },
                 Style::aid(),
             );
         }
     }
+}
+
+/// Gap between panels (m) that has room for their titles on the page.
+fn gap(extent: Vector, columns: usize, rows: usize) -> f64 {
+    // With a gap g, the page's scale is room / (n (extent + g)); g is as many metres as TITLE is pixels there.
+    let needed = |room: f64, extent: f64, n: usize| {
+        let titles = (TITLE * n as f64).min(0.5 * room);
+        titles * extent / (room - titles)
+    };
+    let across = needed(Frame::WIDEST, extent.x, columns);
+    (GAP * extent.max()).max(across).max(needed(Frame::TALLEST, extent.y, rows))
 }
 
 impl Figure {
@@ -70,6 +84,24 @@ impl Figure {
                 pose.x += by.x;
                 pose.y += by.y;
             }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Aabb;
+
+    #[test]
+    fn titles_have_a_line_between_panels() {
+        for (extent, columns, rows) in [((3.0, 4.0), 4, 3), ((6.0, 1.0), 1, 2), ((257.0, 257.0), 2, 2)] {
+            let extent = Vector::new(extent.0, extent.1);
+            let gap = gap(extent, columns, rows);
+            let size =
+                (extent + Vector::repeat(gap)).component_mul(&Vector::new(columns as f64, rows as f64));
+            let page = Frame::around(Aabb { min: Point::origin(), max: Point::from(size) }, Point::origin());
+            assert!(page.length(gap) > TITLE - 1e-6, "{} pixels", page.length(gap));
         }
     }
 }

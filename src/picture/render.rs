@@ -104,8 +104,10 @@ enum Layer {
 }
 
 impl Layer {
-    fn of(figure: &Figure) -> Self {
-        match figure {
+    fn of(item: &Item) -> Self {
+        match &item.figure {
+            // A circle without a filling may surround an object, so it lies above the objects.
+            Figure::Disc { .. } if item.style.fill == 0.0 => Layer::Lines,
             Figure::Disc { .. } | Figure::Polygon(_) => Layer::Areas,
             Figure::Points(_) => Layer::Points,
             Figure::Line { .. } | Figure::Moving(_) => Layer::Lines,
@@ -120,7 +122,7 @@ impl Layer {
 fn plotted(picture: &Picture, frame: &Frame, film: Option<&Film>) -> Group {
     let top = picture.top_speed();
     let layer = |layer: Layer| {
-        let items = picture.items.iter().enumerate().filter(|(_, item)| Layer::of(&item.figure) == layer);
+        let items = picture.items.iter().enumerate().filter(|(_, item)| Layer::of(item) == layer);
         items.fold(Group::new(), |group, (index, item)| {
             let drawn = draw(picture, item, frame, film, (top, index));
             group.add(film.map_or(drawn.clone(), |film| film.seen(drawn, item.from, item.until)))

@@ -198,7 +198,7 @@ fn picture(scene: &Scene, run: &Run<Seen>, noise: f64, seed: u64) -> Picture {
             picture.disc(pose.to_world(corner.position), 0.04, style);
         }
         for (index, object) in objects.iter().enumerate() {
-            let style = Style::new(Colour::from_hex(0x80_20_a0)).filled(0.3);
+            let style = Style::new(Colour::from_hex(0x80_20_a0)).width(3.0);
             let style = if index == 0 { style.labelled("object") } else { style };
             picture.disc(pose.to_world(object.centre), object.radius, style);
         }

@@ -30,7 +30,7 @@ pub(crate) fn of(scene: &Scene, run: &Run<Finding>, noise: f64, seed: u64) -> Pi
     for (index, ((from, places), until)) in finding.history.iter().zip(ends).enumerate() {
         // The first hypotheses stay in the still picture, as the final ones were selected from them.
         let first =
-            Style::new(Colour::from_hex(0xe2_85_2b)).opacity(0.35).labelled("where it might be, by one scan");
+            Style::new(Colour::from_hex(0xe2_85_2b)).opacity(0.5).labelled("candidates of the first scan");
         let (style, until) = if index == 0 { (first, f64::INFINITY) } else { (guess(), until) };
         for &place in places {
             picture.during(*from..until).robot_with(place, &outline, style.clone());

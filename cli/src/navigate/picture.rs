@@ -17,7 +17,7 @@ pub(crate) fn of(course: &Course, run: &Run<Arrival>, conditions: &Conditions) -
     picture.title(format!("Navigation: {title}{contacts}")).caption(caption(course, run, conditions));
     if let Ok(arrival) = &run.ending {
         picture.line(arrival.plan.iter().copied(), Style::plan());
-        let style = Style::new(Colour::from_hex(0xc0_40_20)).labelled("seen, not told of");
+        let style = Style::new(Colour::from_hex(0xc0_40_20)).labelled("detected, not on the map");
         picture.points(arrival.seen.iter().copied(), style);
     }
     for other in &trip.scene.robots[1..] {
