@@ -41,6 +41,8 @@ mod terrain;
 mod terrain_plan;
 #[cfg(test)]
 mod tests;
+#[cfg(feature = "view")]
+mod view;
 mod wall_following;
 
 pub use commands::{Ended, main, options, run_words};
