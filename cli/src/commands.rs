@@ -14,6 +14,8 @@ use crate::common::{Heeds, Unheeded};
 use crate::maze_drive::{explore as maze_explore, left as maze_left, lidar as maze_lidar};
 #[cfg(feature = "native")]
 use crate::starman;
+#[cfg(feature = "view")]
+use crate::view;
 use crate::{
     a_to_b, ackermann, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug, dive,
     edges, follow_me, genetic, grid_benchmark, lane_keeping, lidar_scan, localise, micromouse, motion,
@@ -95,6 +97,8 @@ commands!(
     starman by run,
     summit by run,
     terrain_plan by run_plain,
+    #[cfg(feature = "view")]
+    view by run_printing,
     wall_following by run,
 );
 

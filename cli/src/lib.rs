@@ -42,6 +42,8 @@ mod terrain;
 mod terrain_plan;
 #[cfg(test)]
 mod tests;
+#[cfg(feature = "view")]
+mod view;
 mod wall_following;
 mod water;
 

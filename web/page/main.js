@@ -1,5 +1,6 @@
 // The page: what is shown, what is played, and what the buttons do.
 import { MESSAGE, Runner } from "./runner.js";
+import { Live } from "./live.js";
 import { Recording } from "./recording.js";
 import { View } from "./draw.js";
 import { attach } from "./pointer.js";
@@ -15,7 +16,7 @@ const view = new View($("stage"));
 const files = new Map();
 const layers = Object.fromEntries(Object.keys(LAYERS).map((name) => [name, true]));
 const run = { command: "distbug", values: {}, wishes: [], walls: [] };
-let runner, commands = [], recording = null, time = 0, playing = true, ended = null, dirty = true, fitted = null;
+let runner, live = null, commands = [], recording = null, time = 0, playing = true, ended = null, dirty = true, fitted = null;
 let held = null, sketch = null, selected = null, follows = false, drawing = false, started = 0, first = null;
 
 // ---- running
@@ -63,6 +64,8 @@ function hear(bytes, [message, at, length], from) {
     picture(text());
   } else if (message === MESSAGE.ended) {
     ended = { ...JSON.parse(text()), seconds: (performance.now() - started) / 1000 };
+  } else if (message === MESSAGE.beside) {
+    beside(JSON.parse(text()));
   } else if (message === MESSAGE.panicked) {
     ended = { status: 1, output: "", errors: text() };
   }
@@ -83,6 +86,18 @@ function scene(found, from) {
   selected = null;
   $("eyes").hidden = true;
   $("face").hidden = true;
+}
+
+// What runs beside the page. What happens now is shown, unless somebody looks back.
+function beside({ command, recording: isRecording = false }) {
+  const [name, ...words] = command.split(" ");
+  run.command = name;
+  run.values = Object.fromEntries(words.map((word) => word.replace(/^--/, "").split(/=(.*)/s)));
+  document.title = `${command} – roverlab`;
+  $("title").textContent = nameOf(run.command);
+  $("about").textContent = isRecording ? "A recording" : "Runs beside this page";
+  $("command").textContent = `roverlab ${command}`;
+  if (!isRecording) $("speed").value = "Infinity";
 }
 
 function over(failed) {
@@ -294,6 +309,7 @@ function devices(frame) {
 }
 
 function pressKey(key) {
+  if (live) return live.press(selected ?? 0, key);
   byHand({ time: round(time), key, of: selected ?? 0 });
 }
 
@@ -332,7 +348,7 @@ function set(values) {
 }
 
 attach($("stage"), {
-  view, moment, drawing: () => drawing, redraw: () => { dirty = true; },
+  view, moment, drawing: () => drawing, mayMove: () => live === null, redraw: () => { dirty = true; },
   loosen: () => { if (follows) toggle("follow"); },
   mayMoveGoal: () => takes("goal") && run.command !== "coverage",
   select: (robot) => { selected = robot; dirty = true; },
@@ -400,6 +416,7 @@ function open(found) {
 }
 
 async function take(list) {
+  if (live) return;
   const added = [];
   for (const file of list) {
     files.set(file.name, await file.arrayBuffer());
@@ -439,7 +456,7 @@ function toggle(id) {
   const on = $(id).getAttribute("aria-pressed") !== "true";
   $(id).setAttribute("aria-pressed", String(on));
   if (id === "follow") follows = on;
-  if (id === "draw") drawing = on;
+  if (id === "draw") drawing = on && live === null;
   dirty = true;
 }
 
@@ -499,7 +516,7 @@ function listen() {
   $("slider").addEventListener("input", () => { playing = false; seek(Number($("slider").value)); });
   $("file").addEventListener("change", () => { take([...$("file").files]); $("file").value = ""; });
   $("options").addEventListener("submit", (event) => event.preventDefault());
-  addEventListener("hashchange", () => open(fromHash(location.hash)));
+  addEventListener("hashchange", () => { if (!live) open(fromHash(location.hash)); });
   addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const { target } = event, typed = target.closest?.("input, select, textarea");
@@ -509,7 +526,7 @@ function listen() {
     event.preventDefault();
     act();
   });
-  addEventListener("dragover", (event) => { event.preventDefault(); $("drop").hidden = false; });
+  addEventListener("dragover", (event) => { event.preventDefault(); $("drop").hidden = live !== null; });
   addEventListener("dragleave", (event) => { if (!event.relatedTarget) $("drop").hidden = true; });
   addEventListener("drop", (event) => { event.preventDefault(); $("drop").hidden = true; take([...event.dataTransfer.files]); });
   new ResizeObserver(() => { dirty = true; }).observe($("stage"));
@@ -543,6 +560,11 @@ async function main() {
   view.readColours();
   listen();
   requestAnimationFrame(tick);
+  if (Live.isHere()) {
+    document.body.classList.add("beside");
+    live = new Live((bytes, entry) => hear(bytes, entry, 0), over);
+    return;
+  }
   try {
     runner = await Runner.load();
   } catch (error) {

@@ -21,7 +21,7 @@ export function attach(canvas, host) {
     }
     const at = place(event), world = view.toWorld(at);
     if (host.drawing()) action = { kind: "wall", ends: [...world, ...world] };
-    else action = grip(host, at, world) ?? { kind: "pan", moved: false };
+    else action = (host.mayMove() ? grip(host, at, world) : null) ?? { kind: "pan", moved: false };
     canvas.style.cursor = "grabbing";
   });
 

@@ -1,6 +1,6 @@
 // Loads the module, and runs jobs in workers: one at a time, and the newest wins.
 
-export const MESSAGE = { scene: 1, frame: 2, told: 3, ended: 4, panicked: 5, picture: 6, options: 7, overlay: 8 };
+export const MESSAGE = { scene: 1, frame: 2, told: 3, ended: 4, panicked: 5, picture: 6, options: 7, overlay: 8, beside: 9 };
 
 // In one file with the page, module and worker are elements; beside it, they are files.
 async function loaded(id, file) {

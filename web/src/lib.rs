@@ -3,15 +3,13 @@
 //!
 //! [`run`] does the work. The WebAssembly module exposes it through the functions in `exports`.
 
+mod digest;
 #[cfg(target_family = "wasm")]
 mod exports;
-mod frame;
 mod job;
-mod message;
-mod overlay;
 mod run;
-mod scene;
 
+pub use digest::Digest;
 pub use job::{Job, Thing, Wish};
-pub use message::{Digest, Message};
+pub use roverlab_view::Message;
 pub use run::run;

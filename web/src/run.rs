@@ -9,10 +9,10 @@ use roverlab::io::{LidarScan, Psd};
 use roverlab::picture::Picture;
 use roverlab::world::{Scene, Wall};
 use roverlab_cli::{Onlooker, run_words};
+use roverlab_view::{Frames, overlay_json, scene_json};
 use serde_json::json;
 
-use crate::frame::Frames;
-use crate::{Digest, Job, Message, Thing, Wish, overlay, scene};
+use crate::{Digest, Job, Message, Thing, Wish};
 
 /// Runs a job and reports its progress in messages.
 pub fn run(job: Job, tell: impl FnMut(Message, &[u8]) + Send + 'static) {
@@ -92,7 +92,7 @@ impl Onlooker for Page {
 
     fn scene(&mut self, scene: &mut Scene) -> Box<dyn Watcher> {
         scene.world.walls.extend(self.walls.iter().map(|&[a, b]| Wall::new(a, b)));
-        self.mouth.say(Message::Scene, scene::json(scene).to_string().as_bytes());
+        self.mouth.say(Message::Scene, scene_json(scene).to_string().as_bytes());
         Box::new(Camera {
             mouth: self.mouth.clone(),
             frames: Frames::new(scene),
@@ -105,7 +105,7 @@ impl Onlooker for Page {
 
     fn picture(&mut self, picture: &Picture) {
         if picture.is_to_scale() {
-            self.mouth.say(Message::Overlay, overlay::json(picture).to_string().as_bytes());
+            self.mouth.say(Message::Overlay, overlay_json(picture).to_string().as_bytes());
         }
         self.mouth.say(Message::Picture, picture.to_svg().as_bytes());
     }

@@ -105,7 +105,7 @@ pub(crate) fn recorded(args: &Args) -> Result<Entry, Failure> {
     let stage = args.common.stage_apart(&trip.scene, &conditions.sim_options(), bugs.len())?;
     let robots = (0..bugs.len()).map(|index| Ok((stage.robot(index)?, stage.truth(index)?)));
     let robots: Vec<(Driven, StageTruth)> = robots.collect::<Result<_, Failure>>()?;
-    if onlooker::is_there() {
+    if onlooker::stands_in() {
         return looked_at(setting, conditions, bugs, robots);
     }
     let rides = thread::scope(|scope| {

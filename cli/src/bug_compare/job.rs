@@ -12,7 +12,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     if args.campaign {
         return campaign::campaign(args);
     }
-    let is_recorded = args.common.record.is_some() || args.common.replay.is_some() || onlooker::is_there();
+    let is_recorded = args.common.record.is_some() || args.common.replay.is_some() || onlooker::stands_in();
     let entries = if is_recorded { vec![contest::recorded(args)?] } else { contest::entries(args)? };
     let rows = table::rows(&entries, args.common.noise);
     args.common.tell(table::text(&rows));

@@ -105,6 +105,11 @@ pub(crate) struct CommonArgs {
     #[arg(long)]
     pub(crate) supervised: bool,
 
+    /// The page beside the run.
+    #[cfg(feature = "view")]
+    #[command(flatten)]
+    pub(crate) view: super::view::ViewArgs,
+
     /// Description of the run, for recordings.
     #[arg(skip)]
     pub(crate) origin: Origin,
@@ -221,12 +226,18 @@ impl CommonArgs {
 
     /// Adds a still picture of the run to a report, and an animated one if requested.
     pub(crate) fn draw(&self, report: Report, name: &str, picture: impl FnOnce() -> Picture) -> Report {
-        if onlooker::is_there() {
-            onlooker::pictured(picture);
+        if onlooker::stands_in() {
+            onlooker::pictured(&picture());
             return report.field("picture", None::<&str>);
         }
         let files = (self.picture_file(name), self.animation.clone());
-        drawn(report, files, |file| self.tell(file), picture)
+        let tell = |file| self.tell(file);
+        if onlooker::is_there() {
+            let picture = picture();
+            onlooker::pictured(&picture);
+            return drawn(report, files, tell, || picture);
+        }
+        drawn(report, files, tell, picture)
     }
 
     /// File of the picture: the one of `--picture`, or one in the default folder.
@@ -237,7 +248,7 @@ impl CommonArgs {
     /// File for an output that no option names, in the default folder; `None` with `--json`, or if an option
     /// uses that very file for something else.
     pub(crate) fn unnamed_file(&self, name: &str) -> Option<PathBuf> {
-        let file = unnamed_file(self.json || onlooker::is_there(), name)?;
+        let file = unnamed_file(self.json || onlooker::stands_in(), name)?;
         let named = [&self.picture, &self.animation, &self.record, &self.replay, &self.world, &self.robot];
         let is_named = named.into_iter().flatten().any(|other| is_same_file(other, &file));
         (!is_named).then_some(file)

@@ -12,7 +12,7 @@ use super::outputs::check_outputs;
 use super::{CommonArgs, Failure, Heeds, Unheeded, heed, parser, stage};
 
 /// Options that do not affect a run.
-const NOT_RECORDED: [&str; 15] = [
+const NOT_RECORDED: [&str; 17] = [
     "record",
     "force",
     "fsync",
@@ -25,6 +25,8 @@ const NOT_RECORDED: [&str; 15] = [
     "timing",
     "realtime",
     "robios",
+    "view",
+    "no_wait",
     // How a run is computed, and where intermediate results are stored.
     "threads",
     "processes",
@@ -167,7 +169,9 @@ fn affects_run(command: &Command, option: &str) -> bool {
     let is_own = |value: &str| {
         value == recorded_name(name, Path::new(value)) || (name == "robot" && is_built_in(value))
     };
-    known && !NOT_RECORDED.contains(&name) && (!FILES.contains(&name) || value_of(option).is_some_and(is_own))
+    known
+        && !NOT_RECORDED.contains(&name.replace('-', "_").as_str())
+        && (!FILES.contains(&name) || value_of(option).is_some_and(is_own))
 }
 
 /// Whether it is a built-in robot's name, and no file has it.

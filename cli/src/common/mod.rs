@@ -81,6 +81,8 @@ mod stage;
 mod supervision;
 mod trip;
 mod values;
+#[cfg(feature = "view")]
+mod view;
 mod wall_clock;
 mod workers;
 
@@ -101,5 +103,7 @@ pub(crate) use stage::{Claimed, Driven, Stage, StageTruth};
 pub(crate) use supervision::DEADMAN;
 pub(crate) use trip::{StandIn, Trip};
 pub(crate) use values::{GoalOption, parse_noise, parse_picture, parse_point, parse_pose, parse_seconds};
+#[cfg(feature = "view")]
+pub(crate) use view::{announce, port_failure};
 pub(crate) use wall_clock::{Pacer, Progress, Stopwatch};
 pub(crate) use workers::{share_out, threads};

@@ -1,4 +1,4 @@
-//! An onlooker of a command, such as a web page, replaces terminal and files.
+//! An onlooker of a command, such as a web page, may replace terminal and files.
 
 use std::borrow::Cow;
 use std::cell::RefCell;
@@ -12,6 +12,11 @@ use roverlab::world::Scene;
 
 /// Observes a command at work.
 pub trait Onlooker: fmt::Debug {
+    /// Whether it replaces terminal and files. Otherwise it only looks on.
+    fn stands_in(&self) -> bool {
+        true
+    }
+
     /// Receives a line of output.
     fn told(&mut self, line: &str);
 
@@ -24,6 +29,9 @@ pub trait Onlooker: fmt::Debug {
 
     /// Receives the picture of the run at its end.
     fn picture(&mut self, picture: &Picture);
+
+    /// Receives the report as text, with the exit status.
+    fn reported(&mut self, _status: u8, _summary: &str) {}
 }
 
 thread_local! {
@@ -48,13 +56,25 @@ pub(crate) fn is_there() -> bool {
     ask(|_| ()).is_some()
 }
 
-/// Sends a line to the onlooker. Returns whether there is one.
-pub(crate) fn told(line: impl fmt::Display) -> bool {
-    ask(|onlooker| onlooker.told(&line.to_string())).is_some()
+/// Whether there is an onlooker in the place of terminal and files.
+pub(crate) fn stands_in() -> bool {
+    ask(|onlooker| onlooker.stands_in()).unwrap_or(false)
 }
 
-/// The onlooker's file, or its absence; `None` without an onlooker.
+/// Sends a line to the onlooker. Returns whether there is one in the place of the terminal.
+pub(crate) fn told(line: impl fmt::Display) -> bool {
+    ask(|onlooker| {
+        onlooker.told(&line.to_string());
+        onlooker.stands_in()
+    })
+    .unwrap_or(false)
+}
+
+/// The onlooker's file, or its absence; `None` without an onlooker in the place of files.
 pub(crate) fn file(path: &Path) -> Option<io::Result<Vec<u8>>> {
+    if !stands_in() {
+        return None;
+    }
     ask(|onlooker| onlooker.file(&path.display().to_string()).ok_or(io::ErrorKind::NotFound.into()))
 }
 
@@ -71,10 +91,12 @@ pub(crate) fn watched(scene: &Scene) -> (Cow<'_, Scene>, Option<Box<dyn Watcher>
     }
 }
 
-/// Shows the picture of a run to the onlooker. Returns whether there is one.
-pub(crate) fn pictured(picture: impl FnOnce() -> Picture) -> bool {
-    is_there() && {
-        let picture = picture();
-        ask(|onlooker| onlooker.picture(&picture)).is_some()
-    }
+/// Shows the picture of a run to the onlooker.
+pub(crate) fn pictured(picture: &Picture) {
+    ask(|onlooker| onlooker.picture(picture));
+}
+
+/// Shows the report to the onlooker.
+pub(crate) fn reported(status: u8, summary: impl FnOnce() -> String) {
+    ask(|onlooker| onlooker.reported(status, &summary()));
 }

@@ -7,7 +7,7 @@ use super::command_line::{self, Refusal};
 use super::outputs::check_outputs;
 use super::report::{Header, rounded};
 use super::wall_clock::Stopwatch;
-use super::{CommonArgs, Failure, Heeds, PlainArgs, Report, heed};
+use super::{CommonArgs, Failure, Heeds, PlainArgs, Report, heed, onlooker};
 
 /// Runs a command: parses the command line, does the work, prints the report or one message. Returns the exit
 /// status: 0 for a verdict, 1 for a failure, 2 for a wrong command line or input file.
@@ -30,7 +30,11 @@ where
         let common = args.as_ref();
         let stopwatch = Stopwatch::start();
         common.check()?;
-        completed(command, common, stopwatch, work(args)?)
+        let whole = || completed(command, common, stopwatch, work(args)?);
+        #[cfg(feature = "view")]
+        return super::view::beside(common, whole);
+        #[cfg(not(feature = "view"))]
+        whole()
     })
 }
 
@@ -52,7 +56,10 @@ fn completed(
     report.timing.insert(0, ("wall_time_s", rounded(stopwatch.seconds())));
     let (seed, timing) = (common.seed, common.timing);
     let noise = (!report.mixed_noise).then_some(common.noise);
-    Ok(report.printed(Header { command, seed, noise, timing }, common.json))
+    let header = || Header { command, seed, noise, timing };
+    let printed = report.printed(header(), common.json);
+    onlooker::reported(printed.status, || report.summary(header()));
+    Ok(printed)
 }
 
 /// Like [`run`], for a command that drives no robot.

@@ -19,7 +19,8 @@
 //! | `/scene` | `foxglove.SceneUpdate` | walls, objects and marks |
 //! | `/robot1/truth` | `roverlab.Call` | queries of the ground truth |
 //!
-//! Topics number robots from 1. A metadata record named `roverlab` contains the [`Header`].
+//! Topics number robots from 1. [`Log::messages`] has what is on them, [`RobotMessages`] writes the same for a
+//! run that is not recorded. A metadata record named `roverlab` contains the [`Header`].
 //!
 //! ```
 //! use roverlab::geometry::{Pose, Twist};
@@ -69,10 +70,12 @@ mod replay;
 mod scene;
 mod schema;
 mod shadow;
+mod sight;
 mod stamp;
 mod topics;
 mod truth;
 mod values;
+mod viewer;
 mod wire;
 mod writer;
 
@@ -89,7 +92,9 @@ pub use recorder::Recorder;
 pub use recording::Log;
 pub use recover::{Recovery, recover};
 pub use replay::Replay;
+pub use sight::{LogMessage, Seen, Sight};
 pub use truth::{RecordedTruth, ReplayTruth};
+pub use viewer::{RobotMessages, RobotTopic, Topic, scene_message};
 pub use writer::LogWriter;
 
 pub use super::{FleetIo, FleetStep, GroundTruth};

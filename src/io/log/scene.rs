@@ -33,7 +33,7 @@ impl<W: Write> LogWriter<W> {
 }
 
 /// Walls, objects and marks of a scene, as permanent entities.
-fn scene_update(out: &mut Fields<'_>, scene: &Scene) {
+pub(super) fn scene_update(out: &mut Fields<'_>, scene: &Scene) {
     let world = &scene.world;
     entity(out, "floor", |entity| {
         let size = world.floor.max - world.floor.min;

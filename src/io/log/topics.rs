@@ -30,6 +30,11 @@ pub(super) fn frame(track: usize) -> String {
     format!("robot{}", track + 1)
 }
 
+/// Topic of a robot; one that begins with a slash is shared.
+pub(super) fn full_topic(track: usize, topic: &str) -> String {
+    if topic.starts_with('/') { topic.to_owned() } else { format!("/{}/{topic}", frame(track)) }
+}
+
 /// Name of a robot's odometry frame.
 pub(super) fn odometry_frame(track: usize) -> String {
     format!("{}/odometry", frame(track))

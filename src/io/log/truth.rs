@@ -291,6 +291,24 @@ impl ReplayTruth {
     }
 }
 
+/// True poses in a recorded answer: the robot, each with its time if that is not the query's.
+pub(super) fn true_poses(call: &Call<'_>) -> Option<(usize, Vec<(Option<f64>, Pose)>)> {
+    let result = call.result.as_ref().ok()?;
+    match asked(call) {
+        ("pose", Some(robot)) => Some((robot, vec![(None, result.take()?)])),
+        ("in_space", Some(robot)) => {
+            let truth = result.take::<TruthInSpace>()?;
+            Some((robot, vec![(None, truth.pose.pose())]))
+        }
+        ("robot", Some(robot)) => {
+            let RobotTruth { pose, trail, .. } = result.take::<News>()?.truth;
+            let before = trail.into_iter().map(|point| (Some(point.time), point.pose));
+            Some((robot, before.chain([(None, pose)]).collect()))
+        }
+        _ => None,
+    }
+}
+
 /// The query of a recorded call.
 fn asked<'a>(call: &Call<'a>) -> Question<'a> {
     (call.method, call.arguments.take())

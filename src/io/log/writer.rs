@@ -10,7 +10,7 @@ use mcap::{McapError, WriteOptions, Writer};
 
 use super::header::{LIBRARY, METADATA};
 use super::stamp::Nanoseconds;
-use super::topics::{Channel, frame};
+use super::topics::{Channel, full_topic};
 use super::{Compression, Header};
 
 /// A recording being written: an MCAP file, into any byte sink.
@@ -279,11 +279,6 @@ impl<W: Write> Shared<W> {
         self.bytes += data.len();
         file.write_to_known_channel(&header, data)
     }
-}
-
-/// Topic of a robot; one that begins with a slash is shared.
-fn full_topic(track: usize, topic: &str) -> String {
-    if topic.starts_with('/') { topic.to_owned() } else { format!("/{}/{topic}", frame(track)) }
 }
 
 fn as_io(error: McapError) -> io::Error {

@@ -20,13 +20,79 @@ use std::fmt;
 
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder, RgbImage};
-use roverlab::geometry::Pose;
+use roverlab::geometry::{Point, Pose};
 use roverlab::io::sim::Onlooking;
 use roverlab::io::{LidarScan, Psd};
 use roverlab::world::Scene;
 
+/// The world that a frame shows. Robots and objects are identified by their indices in the scene.
+pub trait Shown {
+    /// Time since the start (s).
+    fn time(&self) -> f64;
+
+    /// A robot's pose.
+    fn pose(&self, robot: usize) -> Option<Pose>;
+
+    /// A robot's pose by odometry, relative to its start.
+    fn odometry(&self, robot: usize) -> Option<Pose>;
+
+    /// A robot's number of contacts, and the places of the first ones.
+    fn contacts(&self, robot: usize) -> Option<(u32, &[Point])>;
+
+    /// A robot's display, after the first drawing.
+    fn display(&self, robot: usize) -> Option<Displayed<'_>>;
+
+    /// An object's pose.
+    fn object(&self, object: usize) -> Option<Pose>;
+
+    /// Whether an object has been knocked over.
+    fn has_fallen(&self, object: usize) -> bool;
+}
+
+/// A robot's display.
+#[derive(Debug, Clone)]
+pub struct Displayed<'a> {
+    /// Number of drawings so far, from 1; the display is unchanged while this number is.
+    pub drawings: u64,
+    /// Its pixels.
+    pub image: &'a RgbImage,
+    /// The labels of the soft keys, with line feeds between.
+    pub menu: String,
+}
+
+impl Shown for Onlooking<'_> {
+    fn time(&self) -> f64 {
+        Onlooking::time(self)
+    }
+
+    fn pose(&self, robot: usize) -> Option<Pose> {
+        Onlooking::pose(self, robot)
+    }
+
+    fn odometry(&self, robot: usize) -> Option<Pose> {
+        Onlooking::odometry(self, robot)
+    }
+
+    fn contacts(&self, robot: usize) -> Option<(u32, &[Point])> {
+        Onlooking::contacts(self, robot)
+    }
+
+    fn display(&self, robot: usize) -> Option<Displayed<'_>> {
+        let (drawings, lcd) = Onlooking::display(self, robot)?;
+        Some(Displayed { drawings, image: lcd.frame(), menu: lcd.menu().join("\n") })
+    }
+
+    fn object(&self, object: usize) -> Option<Pose> {
+        Onlooking::object(self, object)
+    }
+
+    fn has_fallen(&self, object: usize) -> bool {
+        Onlooking::has_fallen(self, object)
+    }
+}
+
 /// Writes frames.
-pub(crate) struct Frames {
+pub struct Frames {
     starts: Vec<Pose>,
     objects: Vec<Pose>,
     robots: Vec<News>,
@@ -49,7 +115,7 @@ struct News {
 }
 
 /// Interval between images, and between displays, of a robot (s).
-const IMAGE_INTERVAL: f64 = 0.2;
+pub const IMAGE_INTERVAL: f64 = 0.2;
 
 impl fmt::Debug for Frames {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -58,7 +124,8 @@ impl fmt::Debug for Frames {
 }
 
 impl Frames {
-    pub(crate) fn new(scene: &Scene) -> Self {
+    /// Frames of a scene's run.
+    pub fn new(scene: &Scene) -> Self {
         Self {
             starts: scene.robots.iter().map(|robot| robot.pose).collect(),
             objects: scene.world.objects.iter().map(|object| object.pose).collect(),
@@ -67,11 +134,18 @@ impl Frames {
         }
     }
 
-    pub(crate) fn distance(&mut self, robot: usize, sensor: Psd, range: f64) {
+    /// Begins anew for somebody who has seen no frame of the run.
+    pub fn restart(&mut self) {
+        self.robots.fill_with(News::default);
+    }
+
+    /// A distance reading (m), for the next frame.
+    pub fn distance(&mut self, robot: usize, sensor: Psd, range: f64) {
         self.robots[robot].distances.insert(sensor.0, range as f32);
     }
 
-    pub(crate) fn scan(&mut self, robot: usize, scan: &LidarScan) {
+    /// A scan, for the next frame.
+    pub fn scan(&mut self, robot: usize, scan: &LidarScan) {
         let mut out = self.robots[robot].scan.take().unwrap_or_default();
         out.clear();
         let LidarScan { angle_min, angle_increment, mount, .. } = scan;
@@ -84,19 +158,20 @@ impl Frames {
         self.robots[robot].scan = Some(out);
     }
 
-    pub(crate) fn image(&mut self, robot: usize, image: &RgbImage) {
+    /// A camera image, for the next frame.
+    pub fn image(&mut self, robot: usize, image: &RgbImage) {
         self.robots[robot].image = Some(image.clone());
     }
 
     /// Skips contacts up to now, as the page knows them.
-    pub(crate) fn skip(&mut self, world: &Onlooking<'_>) {
+    pub fn skip(&mut self, world: &impl Shown) {
         for (index, news) in self.robots.iter_mut().enumerate() {
             news.contacts = world.contacts(index).map_or(0, |(_, places)| places.len());
         }
     }
 
     /// The current frame.
-    pub(crate) fn frame(&mut self, world: &Onlooking<'_>) -> &[u8] {
+    pub fn frame(&mut self, world: &impl Shown) -> &[u8] {
         let time = world.time();
         let mut out = std::mem::take(&mut self.bytes);
         out.clear();
@@ -143,7 +218,7 @@ impl Frames {
 }
 
 impl News {
-    fn write(&mut self, robot: usize, world: &Onlooking<'_>, put: &mut dyn FnMut(usize, &[u8])) {
+    fn write(&mut self, robot: usize, world: &impl Shown, put: &mut dyn FnMut(usize, &[u8])) {
         let time = world.time();
         if !self.distances.is_empty() {
             let mut out = Vec::new();
@@ -165,12 +240,11 @@ impl News {
             put(3, &png(&image));
         }
         if is_due(self.display_time)
-            && let Some((drawings, lcd)) = world.display(robot)
+            && let Some(Displayed { drawings, image, menu }) = world.display(robot)
             && drawings != self.drawings
         {
             (self.drawings, self.display_time) = (drawings, Some(time));
-            put(4, &png(lcd.frame()));
-            let menu = lcd.menu().join("\n");
+            put(4, &png(image));
             if menu != self.menu {
                 put(5, menu.as_bytes());
                 self.menu = menu;

@@ -3,7 +3,7 @@ use roverlab::world::{DriveSpec, Footprint, Object, RobotPlacement, Scene, Shape
 use serde_json::{Value, json};
 
 /// A scene for the page, in metres and radians.
-pub(crate) fn json(scene: &Scene) -> Value {
+pub fn scene_json(scene: &Scene) -> Value {
     let world = &scene.world;
     json!({
         "floor": corners(&world.floor),

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 /// The additions of a run's picture besides robots, their paths and the page's own marks: what the robot
 /// knew, and when. Points are lists of alternating x and y.
-pub(crate) fn json(picture: &Picture) -> Value {
+pub fn overlay_json(picture: &Picture) -> Value {
     Value::from(picture.items().iter().filter(|item| !is_known(item)).filter_map(item).collect::<Vec<_>>())
 }
 
