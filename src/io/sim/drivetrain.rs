@@ -6,24 +6,94 @@ use super::drive_mechanics::Mechanics;
 use super::wheels::{WheelSpec, Wheels};
 use crate::geometry::{Pose, Twist};
 use crate::io::Result;
-use crate::kinematics::{Differential, Displacement, WheelSpeeds};
+use crate::kinematics::{Differential, Displacement, Omni, PlanarMotion, PlanarTwist, WheelSpeeds};
 use crate::random::Stream;
 use crate::world::MotorSpec;
 
-/// Two driven wheels side by side: commands in, true motion and encoder counts out.
+/// Speeds of a robot from those of its `N` wheels, and back. Rolls and displacements relate likewise.
+pub(super) trait WheelModel<const N: usize> {
+    fn wheels(&self, twist: Twist) -> [f64; N];
+
+    /// The wheel speeds of the nearest twist that needs none above `limit`.
+    fn wheels_limited(&self, twist: Twist, limit: f64) -> [f64; N];
+
+    fn twist(&self, wheels: [f64; N]) -> Twist;
+}
+
+impl WheelModel<2> for Differential {
+    fn wheels(&self, twist: Twist) -> [f64; 2] {
+        let WheelSpeeds { left, right } = self.inverse(twist);
+        [left, right]
+    }
+
+    fn wheels_limited(&self, twist: Twist, limit: f64) -> [f64; 2] {
+        let WheelSpeeds { left, right } = self.inverse_limited(twist, limit);
+        [left, right]
+    }
+
+    fn twist(&self, [left, right]: [f64; 2]) -> Twist {
+        self.forward(WheelSpeeds { left, right })
+    }
+}
+
+impl WheelModel<4> for Omni<4> {
+    fn wheels(&self, twist: Twist) -> [f64; 4] {
+        self.inverse(twist.into())
+    }
+
+    fn wheels_limited(&self, twist: Twist, limit: f64) -> [f64; 4] {
+        self.inverse_limited(twist.into(), limit)
+    }
+
+    fn twist(&self, wheels: [f64; 4]) -> Twist {
+        let PlanarTwist { forward, angular, .. } = self.forward(wheels);
+        Twist::new(forward, angular)
+    }
+}
+
+/// Driven wheels that do not steer: commands in, true motion and encoder counts out.
 ///
 /// The true motion differs from the wheels' roll by the true wheel radii, the true track and slip.
 #[derive(Debug, Clone)]
-pub(super) struct Drivetrain {
-    nominal: Differential,
-    actual: Differential,
-    wheels: Wheels<2>,
-    autopilot: Autopilot<2>,
+pub(super) struct Drivetrain<M, const N: usize> {
+    nominal: M,
+    wheels: Wheels<N>,
+    autopilot: Autopilot<N>,
     odometry: Course,
-    errors: DriveErrors<2>,
+    errors: DriveErrors<N>,
 }
 
-impl Drivetrain {
+/// Two wheels side by side.
+pub(super) type TwoWheels = Drivetrain<Differential, 2>;
+
+/// Four Mecanum wheels. The v-omega interface drives them like two wheels; sideways motion needs motor
+/// commands.
+pub(super) type MecanumWheels = Drivetrain<Omni<4>, 4>;
+
+impl<M: WheelModel<N>, const N: usize> Drivetrain<M, N> {
+    fn of(
+        nominal: M,
+        wheels: &WheelSpec,
+        motor: MotorSpec,
+        ideal_encoders: bool,
+        errors: DriveErrors<N>,
+    ) -> Self {
+        Self {
+            nominal,
+            wheels: Wheels::new(wheels, motor, ideal_encoders),
+            autopilot: Autopilot::new(),
+            odometry: Course::new(Pose::default()),
+            errors,
+        }
+    }
+
+    /// Roll of each wheel in a motion along one arc.
+    fn rolls_for(&self, motion: Displacement) -> [f64; N] {
+        self.nominal.wheels(Twist::new(motion.length, motion.angle))
+    }
+}
+
+impl TwoWheels {
     pub(super) fn new(
         nominal: Differential,
         wheels: &WheelSpec,
@@ -32,15 +102,7 @@ impl Drivetrain {
         ideal_encoders: bool,
         stream: Stream,
     ) -> Self {
-        let errors = DriveErrors::of_two_wheels(noise, stream);
-        Self {
-            nominal,
-            actual: Differential { track: nominal.track * errors.size() },
-            wheels: Wheels::new(wheels, motor, ideal_encoders),
-            autopilot: Autopilot::new(),
-            odometry: Course::new(Pose::default()),
-            errors,
-        }
+        Self::of(nominal, wheels, motor, ideal_encoders, DriveErrors::of_two_wheels(noise, stream))
     }
 
     /// Lets the motors follow their commands for one tick; returns the robot's true motion.
@@ -54,24 +116,52 @@ impl Drivetrain {
         if left != 0.0 || right != 0.0 {
             self.odometry.advance(self.nominal.displacement(left, right).into());
         }
-        self.errors.motion(self.actual.track, rolled)
-    }
-
-    /// Roll of each wheel in a motion along one arc.
-    fn rolls_for(&self, motion: Displacement) -> [f64; 2] {
-        let wheels = self.nominal.inverse(Twist::new(motion.length, motion.angle));
-        [wheels.left, wheels.right]
+        let track = self.nominal.track * self.errors.size();
+        self.errors.motion(track, rolled)
     }
 }
 
-impl Mechanics for Drivetrain {
+impl MecanumWheels {
+    pub(super) fn new(
+        nominal: Omni<4>,
+        wheels: &WheelSpec,
+        motor: MotorSpec,
+        noise: &NoiseModel,
+        ideal_encoders: bool,
+        stream: Stream,
+    ) -> Self {
+        Self::of(nominal, wheels, motor, ideal_encoders, DriveErrors::of_four_wheels(noise, stream))
+    }
+
+    /// Lets the motors follow their commands for one tick; returns the robot's true motion.
+    pub(super) fn step(&mut self) -> PlanarMotion {
+        let command = self.autopilot.command(&self.wheels);
+        if self.wheels.rest(&command) {
+            return PlanarMotion::default();
+        }
+        let rolled = self.wheels.follow(command);
+        let counted = self.wheels.measure();
+        if counted != [0.0; 4] {
+            self.odometry.advance(self.nominal.displacement(counted));
+        }
+        let motion = self.nominal.displacement(self.errors.ground_travel(rolled));
+        let [length, angle] = self.errors.command_factors();
+        PlanarMotion {
+            forward: motion.forward * length,
+            left: motion.left * length,
+            // A larger wheel distance than described reduces the turn.
+            angle: motion.angle * angle / self.errors.size(),
+        }
+    }
+}
+
+impl<M: WheelModel<N>, const N: usize> Mechanics for Drivetrain<M, N> {
     fn begin_command(&mut self) {
         self.errors.begin_command();
     }
 
     fn set_twist(&mut self, twist: Twist) {
-        let wheels = self.nominal.inverse_limited(twist, self.wheels.speed_limit());
-        self.autopilot.set_speeds([wheels.left, wheels.right]);
+        self.autopilot.set_speeds(self.nominal.wheels_limited(twist, self.wheels.speed_limit()));
     }
 
     fn least_seconds(&self, motion: Displacement, speed: f64) -> Result<f64> {
@@ -87,7 +177,7 @@ impl Mechanics for Drivetrain {
     }
 
     fn motors(&self) -> usize {
-        2
+        N
     }
 
     fn is_done(&self) -> bool {
@@ -103,8 +193,7 @@ impl Mechanics for Drivetrain {
     }
 
     fn twist(&self) -> Twist {
-        let [left, right] = self.wheels.speeds();
-        self.nominal.forward(WheelSpeeds { left, right })
+        self.nominal.twist(self.wheels.speeds())
     }
 
     fn odometry(&self) -> Pose {
@@ -128,11 +217,11 @@ mod tests {
     use crate::kinematics::advance;
     use proptest::prelude::*;
 
-    fn s4(ideal_encoders: bool) -> Drivetrain {
+    fn s4(ideal_encoders: bool) -> TwoWheels {
         let wheels =
             WheelSpec { diameter: 0.054, max_speed: units::from_deg(3600.0), ticks_per_turn: 1100.0 };
         let (noise, stream) = (NoiseModel::ideal(), Stream::new(1));
-        Drivetrain::new(
+        TwoWheels::new(
             Differential { track: 0.09 },
             &wheels,
             MotorSpec::default(),
@@ -143,7 +232,7 @@ mod tests {
     }
 
     /// Runs a manoeuvre to its end; returns the true pose and the duration (s).
-    fn run(drive: &mut Drivetrain, motion: Displacement, speed: f64) -> (Pose, f64) {
+    fn run(drive: &mut TwoWheels, motion: Displacement, speed: f64) -> (Pose, f64) {
         drive.start(motion, speed);
         let mut pose = Pose::default();
         let mut ticks = 0;

@@ -1,9 +1,8 @@
 use super::bicycle::Bicycle;
 use super::car::Car;
 use super::drive_mechanics::Mechanics;
-use super::drivetrain::Drivetrain;
+use super::drivetrain::{MecanumWheels, TwoWheels};
 use super::marine::CraftDrive;
-use super::omni::OmniDrive;
 use super::wheels::WheelSpec;
 use super::{NoiseModel, TICK};
 
@@ -17,9 +16,9 @@ use crate::world::{DriveSpec, RobotSpec};
 #[derive(Debug, Clone)]
 #[allow(clippy::large_enum_variant, reason = "nearly all robots have this one, and it is stepped most")]
 pub(super) enum Powertrain {
-    Differential(Drivetrain),
+    Differential(TwoWheels),
     Car(Box<Car>),
-    Omni(Box<OmniDrive>),
+    Omni(Box<MecanumWheels>),
     Craft(Box<CraftDrive>),
 }
 
@@ -43,11 +42,11 @@ impl Powertrain {
         Ok(match spec.drive {
             DriveSpec::Differential { track, .. } => {
                 let drive = Differential { track };
-                Self::Differential(Drivetrain::new(drive, &wheels, motor, noise, ideal_encoders, stream))
+                Self::Differential(TwoWheels::new(drive, &wheels, motor, noise, ideal_encoders, stream))
             }
             DriveSpec::Tracked { track, length, width, .. } => {
                 let drive = Tracked::new(track, length, width).map_err(invalid)?.equivalent();
-                Self::Differential(Drivetrain::new(drive, &wheels, motor, noise, ideal_encoders, stream))
+                Self::Differential(TwoWheels::new(drive, &wheels, motor, noise, ideal_encoders, stream))
             }
             DriveSpec::Ackermann { track, wheelbase, max_steering, dynamics, .. } => {
                 let drive = Ackermann::new(wheelbase, track, max_steering).map_err(invalid)?;
@@ -58,7 +57,7 @@ impl Powertrain {
             }
             DriveSpec::Omni { track, wheelbase, .. } => {
                 let drive = Omni::mecanum(track, wheelbase).map_err(invalid)?;
-                Self::Omni(Box::new(OmniDrive::new(drive, &wheels, motor, noise, ideal_encoders, stream)))
+                Self::Omni(Box::new(MecanumWheels::new(drive, &wheels, motor, noise, ideal_encoders, stream)))
             }
             DriveSpec::Craft(ref craft) => {
                 let craft = Craft::new(craft, TICK).map_err(invalid)?;

@@ -42,7 +42,6 @@ mod marine;
 mod mechanics;
 mod movable;
 mod noise;
-mod omni;
 mod options;
 mod pushing;
 mod robot;
