@@ -37,31 +37,34 @@
 //!
 //! # Chapters and modules
 //!
-//! Topics that are not listed are not implemented yet.
+//! The README lists which parts of these chapters are missing, and the command that shows each system.
 //!
 //! | chapter | topic | module |
 //! |---|---|---|
-//! | 1 Robots and simulation | simulated worlds and robots | [`io::sim`] |
-//! | 1 Robots and simulation | EyeSim files: `.sim`, `.wld`, `.maz`, `.robi`, `.esObj` | [`world::formats`] |
-//! | 2 Sensors and programs | robot capabilities: distance sensors, camera, keys, display, radio | [`io`] |
-//! | 3 Driving | v-omega drive, encoders; random drive, coverage, point to point, path followers, PID | [`io`], [`drive`] |
-//! | 4 Lidar | scans, features, noise filters; localisation in a known world | [`io`], [`scan`] |
+//! | 1 Robots and simulation | simulated worlds and robots; random worlds | [`io::sim`], [`world`], [`world::generate`] |
+//! | 1 Robots and simulation | EyeSim's files, ROS maps and others | [`world::formats`] |
+//! | 2 Sensors and programs | robot capabilities; the loop of all behaviours; wrappers that add noise or faults | [`io`], [`io::control`], [`io::wrappers`], [`io::delegate`] |
+//! | 3 Driving | random drive, coverage, point to point, path followers, PID | [`drive`], [`kinematics`] |
+//! | 4 Lidar | scans, features, noise filters; localisation in a known world | [`scan`] |
 //! | 5 Swarms | any number of robots in one world; followers, chains, formations | [`io::sim`], [`drive`] |
 //! | 6 Wall following | walls of any shape, by distance sensors, PID or lidar | [`drive`] |
-//! | 7 Alternative drives | cars and omnidirectional drives: kinematics, control, simulation | [`kinematics`], [`drive`], [`io::sim`] |
-//! | 7 Alternative drives | hills: height fields, rigid bodies on them, tracked robots, sensors and cameras in space | [`world::HeightField`], [`io::sim`] |
-//! | 9 Mazes | models and files, flood fill, exploration, time-optimal runs | [`maze`] |
-//! | 10 Navigation | DistBug, scan matching, reachable goals; ROS maps | [`nav`], [`scan`], [`world::formats`] |
-//! | 10 Navigation | planning on grid maps: A\*, Dijkstra, jump point search, any-angle paths, quadtrees | [`nav::grid`], [`world`] |
-//! | 11 Robot vision | edges, colours, motion, blobs, lines | [`vision`] |
-//! | 12 Evolution | genetic algorithms, CMA evolution strategy | [`evolve`] |
-//! | 13 Driverless cars | roads and their files, the lane by camera, the referee of Free Drive | [`world::road`], [`vision::lane_markings`], [`drive`] |
-//! | 14 Formula SAE | cone tracks, centre lines, racing lines, referee; racing cars | [`race`], [`io::sim`] |
+//! | 7 Alternative drives | cars, Mecanum wheels, tracks: kinematics, control, simulation | [`kinematics`], [`drive`], [`io::sim`] |
+//! | 7 Alternative drives | hills: height fields, bodies in space, plans, the search for the summit | [`world::space`], [`nav::elevation`], [`nav`], [`drive::terrain`] |
+//! | 8 Boats and subs | craft in water and their control | [`kinematics::marine`], [`drive::marine`] |
+//! | 9 Mazes | models, files and generators, flood fill, exploration, time-optimal runs, a simulator's protocol | [`maze`], [`maze::files`], [`maze::generate`], [`maze::mms`] |
+//! | 10 Navigation | bug algorithms, navigation in a known world, reachable goals | [`nav`] |
+//! | 10 Navigation | planning on grid maps and graphs: A\*, Dijkstra, jump points, any angle, quadtrees | [`nav::grid`], [`nav::graph`] |
+//! | 11 Robot vision | edges, colours, blobs, lines, motion; driving by colour and by motion | [`vision`], [`vision::images`], [`vision::motion`], [`drive::colour`], [`drive::motion_watch`] |
+//! | 12 Evolution | genetic algorithms, CMA evolution strategy; a walking robot | [`evolve`], `evolve::checkpoint`, `io::sim::starman` |
+//! | 13 Driverless cars | roads and their files, the lane by camera, the referee of Free Drive | [`world::road`], [`vision::lane_markings`], [`drive::lane_keeping`], [`drive::traffic`] |
+//! | 14 Formula SAE | cone tracks, centre lines, racing lines, racing cars, referee | [`race`] |
 //! | 14 Formula SAE | safety: state machine, monitors, stopping distance | [`safety`] |
 //!
-//! Besides the chapters: [`ParameterError`] is the error of constructors; [`geometry`] has poses, angles and
-//! units; [`random`] has seeded random streams; [`world`] describes worlds and robots, with random courses in
-//! [`world::generate`]; [`picture`] draws worlds and runs.
+//! Besides the chapters: [`ParameterError`] is the error of constructors; [`geometry`] has poses and angles,
+//! [`geometry::units`] conversions, and [`geometry::math`] functions with equal bits on every platform;
+//! [`random`] has seeded streams; [`picture`] draws worlds and runs; `io::log` records and replays them;
+//! `io::robios` drives a real EyeBot; `testing` helps to test your own planners. Those without a link are
+//! features that are off by default.
 //!
 //! # Conventions
 //!

@@ -4,6 +4,10 @@ use super::genome::Genome;
 use crate::random::Stream;
 
 /// Recombines two parents into two children.
+///
+/// # For implementers
+///
+/// Draw from `random` alone, and keep genomes at their length.
 pub trait Crossover<G>: Debug + Send + Sync {
     /// Turns copies of two parents of equal length into children, in place.
     fn cross(&self, a: &mut G, b: &mut G, random: &mut Stream);

@@ -36,6 +36,11 @@ impl Trial {
 }
 
 /// Computes the fitness of individuals.
+///
+/// # For implementers
+///
+/// Return one number per genome, in order. The result may depend on the genome and its [`Trial`] alone,
+/// not on order or threads.
 pub trait Evaluator<G> {
     /// Returns the fitness of each genome, in order. Greater is fitter.
     ///

@@ -6,6 +6,10 @@ use super::stop::{StopReason, StopRules};
 use crate::io::Result;
 
 /// A run of evolution, independent of the method.
+///
+/// # For implementers
+///
+/// `step` appends one line to the history. After an error it can be called again.
 pub trait Evolution<G: Genome> {
     /// The present generation and the history of the run.
     fn population(&self) -> &Population<G>;

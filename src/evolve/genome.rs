@@ -1,6 +1,10 @@
 use std::fmt::Debug;
 
 /// A number in a genome.
+///
+/// # For implementers
+///
+/// `read` must invert `write` to the bit: checkpoints and other processes rely on it.
 pub trait Gene: Copy + PartialEq + Debug + Send + Sync + Into<f64> + 'static {
     /// Appends its bytes, most significant first, for hashes and other processes.
     fn write(self, bytes: &mut Vec<u8>);
@@ -33,6 +37,10 @@ impl Gene for f64 {
 /// A string of genes; all genomes of a population have the same length.
 ///
 /// Byte strings and real vectors are genomes. Implement the trait for other types that consist of genes.
+///
+/// # For implementers
+///
+/// `from_genes` must accept whatever `genes` returns.
 pub trait Genome: Clone + Debug + Send + Sync + 'static {
     /// Type of one gene.
     type Gene: Gene;

@@ -4,6 +4,10 @@ use super::genome::Genome;
 use crate::random::Stream;
 
 /// Changes the children of a generation at random.
+///
+/// # For implementers
+///
+/// Draw from `random` alone, and keep genes within their bounds and genomes at their length.
 pub trait Mutation<G>: Debug + Send + Sync {
     /// Changes some of the children.
     fn mutate(&self, children: &mut [G], random: &mut Stream);

@@ -2,6 +2,11 @@ use super::Result;
 
 /// Motors driven one by one, below the v-omega interface. They are numbered from 1: left, right; or front
 /// left, front right, back left, back right.
+///
+/// # For implementers
+///
+/// Return at once; the last command holds until the next one of this motor or of
+/// [`Drive`](super::Drive). Fail for a motor that does not exist and for fractions outside -1 to 1.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Motors {
@@ -10,6 +15,11 @@ pub trait Motors {
 }
 
 /// Servos, numbered from 1.
+///
+/// # For implementers
+///
+/// Return at once: the servo moves on its own. Fail for a servo that does not exist and for positions
+/// outside -1 to 1.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Servos {
@@ -18,6 +28,10 @@ pub trait Servos {
 }
 
 /// Encoders on the motor shafts, numbered like the motors.
+///
+/// # For implementers
+///
+/// Count in both directions; forward is positive. Fail for a motor that does not exist.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Encoders {

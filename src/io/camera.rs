@@ -62,6 +62,11 @@ impl Resolution {
 ///
 /// Images are RGB with 8 bits per channel, top row first. [`Servos`](super::Servos) turn a camera on a
 /// pan-tilt head.
+///
+/// # For implementers
+///
+/// `image_into` must leave an image of the current resolution, whatever size it receives.
+/// `set_resolution` fails for a resolution that the camera lacks.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Camera {

@@ -3,6 +3,11 @@ use super::Result;
 /// A robot's clock, an algorithm's only source of time.
 ///
 /// In the simulator it is virtual: it advances when the program waits, and slightly with every call.
+///
+/// # For implementers
+///
+/// Time never runs backwards, and `wait` advances it by at least the given number of seconds: control
+/// loops end with an error if it stands still. Fail for a number that is not finite.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Clock {

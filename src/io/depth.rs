@@ -1,6 +1,10 @@
 use super::Result;
 
 /// A pressure sensor that tells how deep under water the robot is.
+///
+/// # For implementers
+///
+/// Return the depth of the sensor, not that of the robot's centre, and 0 above the surface.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait DepthSensor {

@@ -152,6 +152,11 @@ impl<'a> From<&'a GrayImage> for DisplayImage<'a> {
 /// A colour display with text and graphics, as in RoBIOS (book, appendix, LCD functions).
 ///
 /// All drawing is clipped: parts outside the display are ignored without an error.
+///
+/// # For implementers
+///
+/// Clip whatever lies outside and return no error for it. [`Lcd`](super::Lcd) implements all of it in
+/// memory, for robots that only need to show the result.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Display {

@@ -2,6 +2,12 @@ use super::{Error, Result};
 use crate::geometry::{Pose, Twist, math};
 
 /// Velocity control, common to all drives.
+///
+/// # For implementers
+///
+/// Return at once; the last command holds until the next one. Scale both parts of a velocity beyond the
+/// limits by one factor. Fail for numbers that are not finite. Override `stop` where a halt needs more
+/// than zero speed.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Drive {
@@ -16,6 +22,12 @@ pub trait Drive {
 }
 
 /// Pose and velocity as measured by the wheels.
+///
+/// # For implementers
+///
+/// Integrate all motion from the wheels' encoders, also that of manoeuvres and single motors.
+/// `set_pose` must not move the robot. Return no pose from elsewhere: algorithms model the drift of
+/// odometry.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Odometry {
@@ -35,6 +47,11 @@ pub trait Odometry {
 /// [`wait_done`](Manoeuvres::wait_done) blocks until it ends.
 /// [`Manoeuvring`](crate::io::wrappers::Manoeuvring) implements them for a robot with velocity control and
 /// odometry.
+///
+/// # For implementers
+///
+/// A new manoeuvre or velocity replaces the running one. `remaining` decreases to 0 and stays there;
+/// `is_done` then holds. A stalled manoeuvre must not block `wait_done` for ever.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Manoeuvres {
@@ -67,6 +84,11 @@ pub trait Manoeuvres {
 }
 
 /// Detects that a robot is held.
+///
+/// # For implementers
+///
+/// Report a stall only while the wheels are commanded to move. Behaviours end as blocked when it
+/// persists.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait StallDetector {

@@ -34,6 +34,10 @@ pub type FleetStep<'a> = Box<dyn FnMut(&mut dyn RobotIo) -> Result<ControlFlow<(
 /// # Ok(())
 /// # }
 /// ```
+///
+/// # For implementers
+///
+/// Step each behaviour when it is due by simulated time, in an order that is the same in equal runs.
 pub trait FleetIo<'a> {
     /// Number of robots.
     fn robots(&self) -> usize;

@@ -33,6 +33,11 @@ impl Attitude {
 }
 
 /// An inertial measurement unit.
+///
+/// # For implementers
+///
+/// Fail for quantities that the unit does not measure, instead of returning zeros. Return readings with
+/// their bias: algorithms model it.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Inertial {

@@ -19,6 +19,10 @@ impl Key {
 }
 
 /// Soft keys and touch screen.
+///
+/// # For implementers
+///
+/// Keep presses and touches in order until they are read. Only `wait_key` may block.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Keys {

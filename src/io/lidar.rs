@@ -93,6 +93,12 @@ impl LidarSettings {
 }
 
 /// A laser scanner.
+///
+/// # For implementers
+///
+/// Replace the scan's whole content and keep its memory. Beams without a return are infinity.
+/// `configure_lidar` fails for settings out of range ([`LidarSettings::validate`]) and for those that
+/// the lidar lacks.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Lidar {

@@ -6,11 +6,36 @@
 //!
 //! # Your own robot
 //!
-//! Implement the traits of the devices that the robot has, and no others. [`Clock`] and [`Drive`] suffice for
-//! a behaviour without sensing; [`Odometry`] and the traits of the sensors enable the others. A behaviour
-//! that needs more than the robot has does not compile. [`wrappers::Manoeuvring`] adds [`Manoeuvres`] and a
-//! [`StallDetector`]. No method makes up a value: where a program requires a full [`RobotIo`], missing
-//! devices return [`Error::unsupported`].
+//! Implement the traits of the devices that the robot has, and no others. A behaviour that needs more does not
+//! compile. [`wrappers::Manoeuvring`] adds [`Manoeuvres`] and a [`StallDetector`] to a drive with odometry. No
+//! method makes up a value: where a program requires a full [`RobotIo`], missing devices return
+//! [`Error::unsupported`].
+//!
+//! # Which traits a behaviour needs
+//!
+//! All need [`Clock`]. With [`control::SensedBy`] a behaviour takes its observations from other sensors, and
+//! needs the traits of these instead.
+//!
+//! | behaviour | traits |
+//! |---|---|
+//! | [`Tour`](crate::drive::Tour) | [`Drive`], [`Odometry`] |
+//! | [`Chase::after`](crate::drive::Chase::after) | [`Drive`], [`Odometry`], [`StallDetector`] |
+//! | [`AToB`](crate::drive::AToB), [`AToB::by`](crate::drive::AToB::by) | [`Drive`], [`Odometry`], [`Manoeuvres`], [`StallDetector`] |
+//! | [`RandomDrive::by_distance_sensors`](crate::drive::RandomDrive::by_distance_sensors) | [`Drive`], [`Odometry`], [`DistanceSensors`] |
+//! | [`RandomDrive`](crate::drive::RandomDrive) | [`Drive`], [`Odometry`], [`DistanceSensors`], [`Lidar`] |
+//! | [`AlongWall<WallFollower>`](crate::drive::WallFollower), [`AlongWall<PidWallFollower>`](crate::drive::PidWallFollower), [`AlongWall<TwoLevelWallFollower>`](crate::drive::TwoLevelWallFollower), [`MazeRunner`](crate::maze::MazeRunner) | [`Drive`], [`Odometry`], [`DistanceSensors`], [`StallDetector`] |
+//! | [`LeftHand`](crate::maze::LeftHand) | [`Drive`], [`Odometry`], [`DistanceSensors`], [`Manoeuvres`], [`StallDetector`] |
+//! | [`AlongWall<LidarWallFollower>`](crate::drive::LidarWallFollower) | [`Drive`], [`Lidar`], [`StallDetector`] |
+//! | [`LidarLeft`](crate::maze::LidarLeft), every [`Bug`](crate::nav::Bug), [`Navigator`](crate::nav::Navigator), [`Racer`](crate::race::Racer), [`EventRacer`](crate::race::EventRacer) | [`Drive`], [`Odometry`], [`Lidar`] |
+//! | [`SummitSearch`](crate::nav::SummitSearch) | [`Drive`], [`Odometry`], [`Lidar`], [`Inertial`] |
+//! | [`Ascent`](crate::drive::terrain::Ascent) | [`Drive`], [`Odometry`], [`Lidar`], [`DistanceSensors`], [`Inertial`] |
+//! | [`LaneKeeper`](crate::drive::lane_keeping::LaneKeeper), [`BookLaneKeeper`](crate::drive::lane_keeping::BookLaneKeeper), [`MotionWatch`](crate::drive::motion_watch::MotionWatch) | [`Drive`], [`Odometry`], [`Camera`] |
+//! | [`ColourTracker`](crate::drive::colour::ColourTracker), [`PushHome`](crate::drive::colour::PushHome) | [`Drive`], [`Odometry`], [`Camera`], [`Lidar`], [`StallDetector`] |
+//! | [`CarToB`](crate::drive::CarToB) | [`Motors`], [`Servos`], [`Odometry`], [`StallDetector`] |
+//! | [`GapDriver`](crate::race::GapDriver) | [`Motors`], [`Servos`], [`Lidar`] |
+//! | [`OmniPilot`](crate::drive::OmniPilot) | [`Motors`], [`Odometry`] |
+//! | [`Dive`](crate::drive::marine::Dive) | [`Motors`], [`DepthSensor`], [`Inertial`] |
+//! | [`GaitWalk`](crate::evolve::GaitWalk) | [`Servos`] |
 
 mod actuators;
 mod camera;
@@ -56,6 +81,10 @@ pub use radio::{Radio, RadioMessage};
 pub use truth::{GroundTruth, Mishap, RobotTruth, TrailPoint, TruthInSpace};
 
 /// A full robot with every capability.
+///
+/// # For implementers
+///
+/// Implement the single traits; this one follows.
 pub trait RobotIo:
     Clock
     + Drive

@@ -32,6 +32,11 @@ impl fmt::Display for Psd {
 }
 
 /// Distance sensors with one ray each.
+///
+/// # For implementers
+///
+/// Return metres from the sensor, not from the robot's outline. Nothing in range is infinity, never 0
+/// or a maximum; a sensor that does not exist is [`Error::unsupported`](super::Error::unsupported).
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait DistanceSensors {

@@ -10,6 +10,11 @@ pub struct RadioMessage {
 }
 
 /// Messages between robots, which are numbered from 1 in the order of their placement.
+///
+/// # For implementers
+///
+/// Deliver the messages between two robots in order and whole, or not at all. `send` fails for an
+/// unknown receiver; `receive` must not block.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Radio {

@@ -2,6 +2,11 @@ use super::Result;
 use crate::geometry::{Point, Pose, Pose3};
 
 /// Ground truth of a world: a simulator, or the recording of one.
+///
+/// # For implementers
+///
+/// Return the true state of the same moment from all methods. Fail for a robot or an object that does
+/// not exist.
 pub trait GroundTruth {
     /// Time since the start of the world (s).
     fn time(&mut self) -> Result<f64>;

@@ -37,6 +37,11 @@ pub struct Heartbeat {
 }
 
 /// The remote end: operator, buttons, base station.
+///
+/// # For implementers
+///
+/// Return at once, whether or not the vehicle has been heard: `exchange` is part of the safety loop.
+/// Return the base station's counter as last received; a counter that stops changing is a lost link.
 pub trait Station {
     /// Takes the vehicle's heartbeat and answers with the inputs. `now` is the vehicle's time (s).
     fn exchange(&mut self, now: f64, heartbeat: Heartbeat) -> Panel;

@@ -27,7 +27,8 @@ impl HueRange {
     }
 
     /// The hues less than `threshold` away from `hue`, on a circle of 255 as in the book's Program 11.9, or
-    /// of 180 on the OpenCV scale.
+    /// of 180 on the OpenCV scale. A colour has another hue on each scale: red is 42 and 0. For the hue of a
+    /// colour use [`like`](Self::like).
     ///
     /// # Errors
     ///

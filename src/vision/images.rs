@@ -1,18 +1,17 @@
 //! The kernels on images of the crate `image` (feature `image`). Each takes images and returns a new one,
 //! with the result of the `_into` function named. They fail for images without pixels.
 //!
-//! From a camera image to its red regions:
+//! From an image to its red regions:
 //!
 //! ```
 //! use image::{Rgb, RgbImage};
-//! use roverlab::vision::{Components, HueLimits, HueRange, HueScale, images};
+//! use roverlab::vision::images;
 //!
 //! # fn main() -> Result<(), roverlab::vision::ImageError> {
 //! let red_box = |x, y| (10..14).contains(&x) && (4..9).contains(&y);
 //! let photo = RgbImage::from_fn(20, 12, |x, y| if red_box(x, y) { Rgb([200, 30, 20]) } else { Rgb([90, 90, 90]) });
-//! let red = HueRange::like([255, 0, 0], 10, HueScale::OpenCv)?;
-//! let mask = images::hue_match(&photo, red, HueScale::OpenCv, HueLimits::default())?;
-//! let blobs = Components::new().find((&mask).try_into()?, 4).to_vec();
+//! let red = images::colour_match(&photo, [255, 0, 0], 20)?;
+//! let blobs = images::blobs(&red, 4)?;
 //! assert_eq!((blobs.len(), blobs[0].area, blobs[0].min), (1, 20, (10, 4)));
 //! # Ok(())
 //! # }
@@ -21,10 +20,10 @@
 use image::{GrayImage, RgbImage};
 
 use super::{
-    Border, Canny, CannyThresholds, GaussianKernel, GrayView, GrayViewMut, GrayWeights, HueLimits, HueRange,
-    HueScale, ImageError, RgbView, RgbViewMut, SobelScale, absolute_difference_into, gaussian_into,
-    gray_into, gray_to_rgb_into, hsv_into, hsv_to_rgb_into, hue_into, hue_match_into, laplace_into,
-    overlay_gray_into, sobel_l1_into, sobel_l2_into, threshold_into,
+    Blob, Border, Canny, CannyThresholds, Components, GaussianKernel, GrayView, GrayViewMut, GrayWeights,
+    HueLimits, HueRange, HueScale, ImageError, RgbView, RgbViewMut, SobelScale, absolute_difference_into,
+    gaussian_into, gray_into, gray_to_rgb_into, hsv_into, hsv_to_rgb_into, hue_into, hue_match_into,
+    laplace_into, overlay_gray_into, sobel_l1_into, sobel_l2_into, threshold_into,
 };
 
 impl<'a> TryFrom<&'a GrayImage> for GrayView<'a> {
@@ -222,6 +221,34 @@ pub fn hue_match(
     limits: HueLimits,
 ) -> Result<GrayImage, ImageError> {
     gray_image(image.dimensions(), |output| hue_match_into(image.try_into()?, output, range, scale, limits))
+}
+
+/// 255 where the hue is less than `threshold` away from that of a sample, 0 elsewhere; see
+/// [`HueRange::like`]. Hues are those of RoBIOS, a circle of 252. Dark and pale pixels have none
+/// ([`HueLimits::default`]).
+///
+/// ```
+/// use roverlab::vision::images;
+/// let two = image::RgbImage::from_fn(2, 1, |x, _| image::Rgb(if x == 0 { [200, 20, 20] } else { [20, 20, 200] }));
+/// assert_eq!(images::colour_match(&two, [255, 0, 0], 20)?.into_raw(), [255, 0]);
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
+pub fn colour_match(image: &RgbImage, sample: [u8; 3], threshold: u8) -> Result<GrayImage, ImageError> {
+    let scale = HueScale::Robios;
+    hue_match(image, HueRange::like(sample, threshold, scale)?, scale, HueLimits::default())
+}
+
+/// Connected groups of at least `min_area` pixels that are not 0; see [`Components::find`]. For image
+/// sequences, keep a [`Components`].
+///
+/// ```
+/// let mask = image::GrayImage::from_fn(6, 1, |x, _| image::Luma([if x % 3 < 2 { 255 } else { 0 }]));
+/// let blobs = roverlab::vision::images::blobs(&mask, 2)?;
+/// assert_eq!(blobs.iter().map(|blob| blob.min).collect::<Vec<_>>(), [(0, 0), (3, 0)]);
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
+pub fn blobs(mask: &GrayImage, min_area: usize) -> Result<Vec<Blob>, ImageError> {
+    Ok(Components::new().find(mask.try_into()?, min_area).to_vec())
 }
 
 /// Hue, saturation and value of each pixel; see [`hsv_into`].

@@ -8,6 +8,11 @@ use crate::io::{DistanceSensors, Lidar, LidarScan, Odometry, Psd, Result, StallD
 use crate::kinematics::{Displacement, advance};
 
 /// A controller that steers along walls.
+///
+/// # For implementers
+///
+/// `steer` is called once per period, with the time since its last call. Stop rather than fail where no
+/// wall is found.
 #[auto_impl::auto_impl(&mut)]
 pub trait FollowsWalls {
     /// Input of the controller.
@@ -27,6 +32,10 @@ pub trait FollowsWalls {
 }
 
 /// Observation that a wall-following controller reads from a robot.
+///
+/// # For implementers
+///
+/// Overwrite the whole observation. Do not wait and do not move the robot.
 pub trait WallReading<R: ?Sized> {
     /// Reads the sensors into the observation.
     fn read(&mut self, robot: &mut R) -> Result<()>;

@@ -5,6 +5,11 @@ use crate::io::Result;
 /// Decides how a robot moves, step by step.
 ///
 /// `time` is the robot's clock (s); it increases from step to step.
+///
+/// # For implementers
+///
+/// `step` decides from its arguments and its own state alone: no clock, no robot, no global state.
+/// `period` is positive and constant. A step may come late.
 pub trait Behaviour {
     /// Input of a step, in a reused buffer.
     type Observation: Default;
@@ -29,6 +34,11 @@ pub trait Behaviour {
 pub type Decision<B> = Result<ControlFlow<<B as Behaviour>::Outcome, <B as Behaviour>::Command>>;
 
 /// A behaviour that reads its observations from robots of type `R`.
+///
+/// # For implementers
+///
+/// Bound `R` by the traits that the sensors need, and no more. Overwrite the whole observation: the
+/// buffer holds the last one. Do not wait and do not move the robot.
 pub trait Senses<R: ?Sized>: Behaviour {
     /// Sets up the robot before the first step, such as its camera's resolution.
     fn prepare(&mut self, _robot: &mut R) -> Result<()> {
@@ -40,6 +50,11 @@ pub trait Senses<R: ?Sized>: Behaviour {
 }
 
 /// A command for robots of type `R`.
+///
+/// # For implementers
+///
+/// `apply` must return at once. `stop` must stop everything that commands of the type can move; it is
+/// also called after errors.
 pub trait Command<R: ?Sized> {
     /// Applies the command.
     fn apply(&self, robot: &mut R) -> Result<()>;
@@ -83,6 +98,10 @@ macro_rules! halts {
 pub(crate) use halts;
 
 /// Return value of an observer after a step: nothing, whether to continue, or an error.
+///
+/// # For implementers
+///
+/// The library implements it for everything that an observer may return; other types need not.
 pub trait Verdict {
     /// Whether to continue.
     fn verdict(self) -> Result<ControlFlow<()>>;

@@ -39,6 +39,11 @@ use crate::io::{Key, Lcd, LidarScan, Psd, Result};
 /// # Ok(())
 /// # }
 /// ```
+///
+/// # For implementers
+///
+/// The simulation waits for `tick`, so keep it short. Its changes depend on the tick alone if runs are
+/// to be reproducible.
 pub trait Watcher: Debug + Send {
     /// The world at a tick, before anything moves; first at the tick at which watching begins.
     fn tick(&mut self, world: &mut Onlooking<'_>);

@@ -10,6 +10,11 @@ use crate::io::{Lidar, Odometry, Result};
 ///
 /// Every bug drives towards the goal until an obstacle blocks it, follows the obstacle's boundary, and leaves
 /// it again. The algorithms differ in when they leave, turn back and give up.
+///
+/// # For implementers
+///
+/// Return [`BugOutcome::Unreachable`] only with a proof. State in `guarantee` what is proved; tests
+/// compare it with the runs.
 pub trait Bug:
     Behaviour<Observation = LidarObservation, Command = Twist, Outcome = BugOutcome> + Debug
 {

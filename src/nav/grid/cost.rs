@@ -9,6 +9,10 @@ use std::f64::consts::SQRT_2;
 use crate::world::GridCell;
 
 /// What the steps of a [`GridSearch`](super::GridSearch) or a [`DStarLite`](super::DStarLite) cost.
+///
+/// # For implementers
+///
+/// Return the same cost for the same step: searches and heuristics rely on the lower bound, the length.
 pub trait StepCosts {
     /// The cost of a step from a cell to one beside it, in edges of a cell: no less than its length, which is
     /// 1 or the square root of 2, and no more than 10,000; what lies beyond, and what is no number, counts as

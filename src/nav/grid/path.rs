@@ -84,6 +84,11 @@ impl std::fmt::Display for End {
 }
 
 /// A planner of paths through a grid, between the centres of cells.
+///
+/// # For implementers
+///
+/// Return a path from `start` to `goal` that touches no blocked cell, or an error; the module `testing`
+/// has checks for it. A planner is used for many queries.
 pub trait GridPlanner {
     /// Finds a path. Fails if an end is outside the map or blocked, or no path exists.
     fn plan(&mut self, start: GridCell, goal: GridCell) -> Result<GridPath, PlanError>;

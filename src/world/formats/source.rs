@@ -16,6 +16,11 @@ pub struct SourceFile {
 }
 
 /// Source of files named in other files.
+///
+/// # For implementers
+///
+/// Read no more than `limit` bytes: descriptions may name any file. Fail with
+/// [`std::io::ErrorKind::NotFound`] for a file that does not exist.
 pub trait FileSource {
     /// Finds and reads the file that `referrer` calls `reference`, up to a length of `limit` bytes.
     fn read(&mut self, reference: &str, referrer: &str, limit: u64) -> io::Result<SourceFile>;
