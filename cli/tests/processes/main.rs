@@ -1,7 +1,9 @@
-//! The program `roverlab` as a process: robots behind the library of RoBIOS, and runs that are killed.
+//! The program `roverlab` as a process: robots behind the library of RoBIOS, runs that are killed, and the page.
 
 mod killed;
 mod robios;
+#[cfg(feature = "view")]
+mod view;
 
 use std::process::Command;
 

@@ -63,7 +63,8 @@ fn a_program_gets_the_keys_of_the_page_and_shows_its_display_there() {
     let output = runner.wait_with_output().unwrap();
     let mut rest = String::new();
     errors.read_to_string(&mut rest).unwrap();
-    let report: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {rest}"));
+    let report: Value =
+        serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {rest}"));
     assert_eq!(pressed, 3);
     assert_eq!((&report["outcome"], &report["lcd_text"]), (&"finished".into(), &"2 end".into()), "{report}");
     assert!(ended.contains("finished"), "{ended}");
