@@ -58,5 +58,6 @@ pub mod process;
 pub mod report;
 pub mod robios;
 pub mod screen;
+pub mod showing;
 mod walker;
 pub mod wire;

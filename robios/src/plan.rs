@@ -90,6 +90,8 @@ pub mod names {
     pub const SHARED: &str = "ROBIOS_SHARED";
     /// File descriptor of the socket for typed keys.
     pub const KEYBOARD: &str = "ROBIOS_KEYBOARD";
+    /// File descriptor of the socket for the display.
+    pub const SCREEN: &str = "ROBIOS_SCREEN";
     /// File of the library, for `eye.py`.
     pub const LIBRARY: &str = "ROBIOS_LIBRARY";
     /// The runner's [`BUILD`](super::BUILD).

@@ -17,6 +17,8 @@ mod hills;
 mod library;
 #[path = "programs/limits.rs"]
 mod limits;
+#[path = "programs/page.rs"]
+mod page;
 #[path = "programs/scripts.rs"]
 mod scripts;
 #[path = "programs/sight.rs"]

@@ -14,6 +14,8 @@ use crate::{Displayed, Frames, Message, Shown, scene_json};
 
 /// Interval between frames (s).
 const INTERVAL: f64 = 0.04;
+/// Part of an interval by which the end may be off.
+const ROUNDING: f64 = 1e-6;
 /// Longest gap in a true path over which a robot is shown on the line between (s).
 const GAP: f64 = 1.0;
 /// Distance around paths that a world without a description reaches (m).
@@ -44,7 +46,7 @@ pub(crate) fn messages(log: &Log, command: &str) -> Vec<Vec<u8>> {
     let mut moment = Moment { time: 0.0, starts, robots, displays: BTreeMap::new() };
     let mut frames = Frames::new(&scene);
     let end = log.span().map_or(0.0, |(_, end)| end);
-    let (mut next, count) = (seen.into_iter().peekable(), (end / INTERVAL).ceil() as u64);
+    let (mut next, count) = (seen.into_iter().peekable(), (end / INTERVAL - ROUNDING).ceil() as u64);
     for number in 0..=count {
         moment.time = INTERVAL * number as f64;
         while let Some(Seen { robot, sight, .. }) = next.next_if(|seen| seen.time <= moment.time) {

@@ -1,5 +1,5 @@
 // What is known of a run: its scene, frames by time, and what came between them. The bytes of a frame are described in
-// `web/src/frame.rs`.
+// `view/src/frame.rs`.
 
 const ROBOT = 28;
 const OBJECT = 16;

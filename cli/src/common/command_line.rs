@@ -92,14 +92,14 @@ fn matches(
     Ok((matches, Facts { program: name.into(), options, log }))
 }
 
-/// Fails if a recording is requested for a run that cannot be recorded.
+/// Fails if a recording or a page is requested for a run that cannot be recorded.
 fn check_recorded(matches: &ArgMatches) -> Result<(), Failure> {
     let given = |name: &&&str| {
         matches.try_contains_id(name).is_ok_and(|known| known)
             && matches.value_source(name) == Some(ValueSource::CommandLine)
     };
     let unrecorded = UNRECORDED.iter().find(given);
-    match (["record", "replay"].iter().find(given), unrecorded) {
+    match (["record", "replay", "view"].iter().find(given), unrecorded) {
         (Some(option), Some(other)) => Err(Failure::input(format!(
             "--{option}: found no robot that drives with --{other}; expected a run that can be recorded"
         ))),

@@ -27,8 +27,6 @@ pub(crate) const OF_ONE_RUN: &[&str] = &[
     "picture",
     "animation",
     "robios",
-    #[cfg(feature = "view")]
-    "view",
     "quantised",
     "realtime",
     "fault",

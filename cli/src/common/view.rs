@@ -67,8 +67,8 @@ pub(crate) fn port_failure(option: &str, port: u16, error: &std::io::Error) -> F
 
 /// Prints the address of a page.
 pub(crate) fn announce(address: &str) {
-    // Without standard error nobody can be informed.
-    let _ = writeln!(std::io::stderr(), "view: {address}");
+    // In one piece, for programs that read it. Without standard error nobody can be informed.
+    let _ = std::io::stderr().write_all(format!("view: {address}\n").as_bytes());
 }
 
 /// The page as onlooker, beside terminal and files.

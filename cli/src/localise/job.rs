@@ -51,7 +51,7 @@ pub(crate) struct Args {
 }
 
 crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
-    ("campaign", &["robot", "start", "goal", "picture", "animation", "robios", #[cfg(feature = "view")] "view", "quantised", "realtime", "fault", "supervised"]),
+    ("campaign", &["robot", "start", "goal", "picture", "animation", "robios", "quantised", "realtime", "fault", "supervised"]),
     ("!campaign", &["starts"]),
 ]);
 

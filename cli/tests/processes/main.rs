@@ -1,7 +1,10 @@
-//! The program `roverlab` as a process: its warnings, robots behind the library of RoBIOS, and runs that are killed.
+//! The program `roverlab` as a process: its warnings, robots behind the library of RoBIOS, runs that are killed, and
+//! the page.
 
 mod killed;
 mod robios;
+#[cfg(feature = "view")]
+mod view;
 
 use std::path::Path;
 use std::process::Command;

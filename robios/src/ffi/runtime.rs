@@ -19,6 +19,7 @@ use crate::memory::Memory;
 use crate::plan::{Plan, names};
 use crate::report::{Report, ReportFile, Stage};
 use crate::robios::{Outlets, Robios};
+use crate::showing::Showing;
 
 use super::computing;
 use super::globals::publish_points;
@@ -192,7 +193,8 @@ fn born() -> State {
 
 fn robot() -> std::result::Result<Robios, String> {
     let report = memory().map(|memory| ReportFile::new(Arc::clone(memory)));
-    let outlets = Outlets { report, lcd: env::var_os(names::LCD).map(PathBuf::from) };
+    let showing = inherited(names::SCREEN)?.map(Showing::new);
+    let outlets = Outlets { report, lcd: env::var_os(names::LCD).map(PathBuf::from), showing };
     let plan = Plan::from_environment()?;
     computing::set_factor(plan.cpu_time);
     Robios::new(link(&plan)?, keys()?, plan.costs.clone(), outlets).map_err(|error| error.to_string())

@@ -27,6 +27,7 @@ use crate::keys::KeyDesk;
 use crate::link::Link;
 use crate::report::{NOTES, Report, ReportFile, Stage};
 use crate::screen::Screen;
+use crate::showing::Showing;
 
 pub(crate) use system::Callback;
 
@@ -71,6 +72,7 @@ pub struct Robios {
     file: Option<ReportFile>,
     text_changed: bool,
     lcd_file: Option<std::path::PathBuf>,
+    showing: Option<Showing>,
 }
 
 /// Last setting of `LCDImageSize`.
@@ -108,6 +110,8 @@ pub struct Outlets {
     pub report: Option<ReportFile>,
     /// File for the final picture of the display.
     pub lcd: Option<std::path::PathBuf>,
+    /// Who watches the display.
+    pub showing: Option<Showing>,
 }
 
 impl Robios {
@@ -146,6 +150,7 @@ impl Robios {
             file: outlets.report,
             text_changed: false,
             lcd_file: outlets.lcd,
+            showing: outlets.showing,
         })
     }
 
@@ -205,6 +210,10 @@ impl Robios {
 
     /// Writes the report, if there is a writer.
     pub(crate) fn publish(&mut self) {
+        let now = self.now();
+        if let Some(showing) = &mut self.showing {
+            showing.show(&self.screen.lcd, now);
+        }
         let Some(file) = &mut self.file else { return };
         self.report.time = self.link.now() + self.debt as f64 / NANOSECONDS;
         self.report.sounds = self.sounds;
@@ -241,6 +250,9 @@ impl Robios {
             self.report.later_contacts = self.report.contacts.saturating_sub(contacts);
             self.report.contacts = contacts;
             file.write(&self.report);
+        }
+        if let Some(showing) = &mut self.showing {
+            showing.show_last(&self.screen.lcd);
         }
         if let Some(path) = &self.lcd_file {
             let _ = self.screen.lcd.frame().save(path);

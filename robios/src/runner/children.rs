@@ -18,6 +18,7 @@ use eyesim::report::{Report, Stage};
 use roverlab::world::Scene;
 
 use super::options::{Options, whole};
+use super::panels::Panels;
 use super::programs::{Program, home, is_python, library};
 use super::verdict::{Ending, Stopwatch, Truth, Verdict};
 use super::work_folder::WorkFolder;
@@ -56,7 +57,7 @@ pub(crate) fn run_alone(
         (plan.robot, plan.start) = (None, None);
     }
     let variables = plan.variables().into_iter().map(|(name, value)| (name, OsString::from(value))).collect();
-    let (ending, report) = match start(program, variables, options, folder, Stopwatch::start())? {
+    let (ending, report) = match start(program, variables, options, folder, Stopwatch::start(), None)? {
         Ok(running) => running.wait(options.real_limit),
         Err(message) => (Ending::NotStarted(message), Report::default()),
     };
@@ -84,6 +85,7 @@ pub(crate) fn start(
     options: &Options,
     folder: &WorkFolder,
     stopwatch: Stopwatch,
+    panels: Option<&Panels>,
 ) -> Result<Result<Running, String>, String> {
     let file = match &program.file {
         Ok(file) => file,
@@ -104,8 +106,9 @@ pub(crate) fn start(
         .env(names::COSTS, options.costs_by_whole_name())
         .env(names::FRAME_RATE, options.frame_rate.to_string());
     command.env(names::CPU_TIME, options.cpu_time.to_string());
-    command.env_remove(names::KEYBOARD);
-    let keyboard = if options.is_live() { keyboard(program, &mut command)? } else { None };
+    command.env_remove(names::KEYBOARD).env_remove(names::SCREEN);
+    let keyboard = if options.is_live() { keyboard(program, &mut command, panels)? } else { None };
+    let screen = panels.map(|panels| screen(program, &mut command, panels)).transpose()?;
     command.env(names::LIBRARY, &library).env(names::BUILD, BUILD).env("PYTHONDONTWRITEBYTECODE", "1");
     if let Some(lcd) = &options.lcd {
         command.env(names::LCD, whole(lcd));
@@ -120,7 +123,7 @@ pub(crate) fn start(
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
     }
     let files: Vec<BorrowedFd<'_>> =
-        [file_of_memory.as_fd()].into_iter().chain(keyboard.iter().map(AsFd::as_fd)).collect();
+        [file_of_memory.as_fd()].into_iter().chain(keyboard.iter().chain(&screen).map(AsFd::as_fd)).collect();
     match process::start(&mut command, &files, &memory) {
         Err(error) => Ok(Err(format!("{}: cannot be started: {error}", file.display()))),
         Ok(mut child) => {
@@ -132,14 +135,37 @@ pub(crate) fn start(
     }
 }
 
-/// Socket for typed keys of the first program; the others' keys are automatic.
-fn keyboard(program: &Program, command: &mut Command) -> Result<Option<UnixStream>, String> {
+/// A socket for a program, whose number there is in a variable: our end, and the program's.
+fn socket(name: &str, command: &mut Command) -> Result<(UnixStream, UnixStream), String> {
+    let (ours, theirs) = UnixStream::pair().map_err(|error| format!("no socket: {error}"))?;
+    command.env(name, theirs.as_raw_fd().to_string());
+    Ok((ours, theirs))
+}
+
+/// Socket for the display of a program with a page beside it.
+fn screen(program: &Program, command: &mut Command, panels: &Panels) -> Result<UnixStream, String> {
+    let (ours, theirs) = socket(names::SCREEN, command)?;
+    panels.connect_display(program.robot, ours);
+    Ok(theirs)
+}
+
+/// Socket for keys that are pressed in the page, or typed for the first program; the others' keys are automatic
+/// then.
+fn keyboard(
+    program: &Program,
+    command: &mut Command,
+    panels: Option<&Panels>,
+) -> Result<Option<UnixStream>, String> {
+    if let Some(panels) = panels {
+        let (ours, theirs) = socket(names::KEYBOARD, command)?;
+        panels.connect_keys(program.robot, ours);
+        return Ok(Some(theirs));
+    }
     if !program.is_first {
         command.env(names::KEYS, "AUTO");
         return Ok(None);
     }
-    let (mut ours, theirs) = UnixStream::pair().map_err(|error| format!("no socket: {error}"))?;
-    command.env(names::KEYBOARD, theirs.as_raw_fd().to_string());
+    let (mut ours, theirs) = socket(names::KEYBOARD, command)?;
     thread::spawn(move || {
         // Ends with the input, with the program, or with this process.
         let _ = std::io::copy(&mut std::io::stdin().lock(), &mut ours);

@@ -15,9 +15,11 @@ use roverlab::io::log::{Header, LogFile, LogWriter};
 use roverlab::io::sim::{SimOptions, Simulation, TICK, Truth as World};
 use roverlab::io::{self, Clock, ErrorKind, RobotIo};
 use roverlab::world::Scene;
+use roverlab_view::serve::Beside;
 
 use super::children::{Running, start};
 use super::options::Options;
+use super::panels::Panels;
 use super::picture;
 use super::programs::Program;
 use super::verdict::{Ending, Stopwatch, Truth, Verdict};
@@ -50,6 +52,7 @@ pub(crate) fn run_together(
     scene: &Scene,
     options: &Options,
     folder: &WorkFolder,
+    page: Option<&Beside>,
 ) -> Result<Vec<Verdict>, String> {
     let trail = options.picture.is_some().then_some(TRAIL);
     let sim_options = SimOptions { trail_interval: trail, ..plan.options() };
@@ -69,6 +72,7 @@ pub(crate) fn run_together(
     });
     let seats = seats.collect::<io::Result<Vec<_>>>().map_err(|error| error.to_string())?;
 
+    let panels = page.map(|page| watched(page, &simulation, scene, options));
     let stopwatch = Stopwatch::start();
     let (sender, results) = mpsc::channel();
     let mut processes = Vec::new();
@@ -77,7 +81,7 @@ pub(crate) fn run_together(
         let (seed, index) = (options.seed.to_string().into(), program.robot.to_string().into());
         let variables =
             BTreeMap::from([(names::SHARED, patience), (names::SEED, seed), (names::INDEX, index)]);
-        Ok((seat, start(program, variables, options, folder, stopwatch)?))
+        Ok((seat, start(program, variables, options, folder, stopwatch, panels.as_ref())?))
     });
     for (number, (seat, running)) in tables.collect::<Result<Vec<_>, String>>()?.into_iter().enumerate() {
         processes.extend(running.as_ref().ok().map(Running::id));
@@ -115,6 +119,17 @@ pub(crate) fn run_together(
         Verdict::new(program, served.ending, &served.report, truth)
     });
     Ok(verdicts.collect())
+}
+
+/// Puts a page beside a world, and waits for somebody who looks unless told not to. Returns what the page has
+/// of the programs.
+fn watched(page: &Beside, simulation: &Simulation, scene: &Scene, options: &Options) -> Panels {
+    let panels = Panels::default();
+    simulation.watch(page.scene_with(scene, Some(Box::new(panels.clone()))));
+    if !options.no_wait {
+        page.wait();
+    }
+    panels
 }
 
 /// Waits for the ends of programs, and ends them all at the real-time limit.

@@ -4,6 +4,7 @@ mod children;
 mod host;
 mod install;
 mod options;
+mod panels;
 mod picture;
 mod programs;
 mod verdict;
@@ -15,6 +16,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use options::{Command, Options};
+use roverlab_view::serve::{Beside, Opening};
 use verdict::Summary;
 
 /// Exit status for a wrong command line or input file.
@@ -92,15 +94,34 @@ fn run(options: &Options, warnings: &mut Vec<String>) -> Result<Summary, String>
     let folder = work_folder::WorkFolder::new()?;
     let programs = programs::of(options, &scene, &folder)?;
     warn(warnings, programs.iter().filter_map(|program| program.warning.clone()));
-    let watched = options.picture.is_some() || options.record.is_some();
+    let page = options.view.map(|port| page(options, port)).transpose()?;
+    let watched = options.picture.is_some() || options.record.is_some() || page.is_some();
     let own_world = programs.len() == 1 && !watched;
-    let mut verdicts = if own_world {
+    let verdicts = if own_world {
         children::run_alone(&programs[0], &plan, &scene, options, &folder)
     } else {
-        host::run_together(&programs, &plan, &scene, options, &folder)
-    }?;
+        host::run_together(&programs, &plan, &scene, options, &folder, page.as_ref())
+    };
+    if let (Some(page), Err(message)) = (&page, &verdicts) {
+        page.ended(WRONG, "", message);
+    }
+    let mut verdicts = verdicts?;
     verdict::name_deadlocks(&mut verdicts);
     warn(warnings, verdicts.iter().flat_map(verdict::Verdict::warnings));
     let (warnings, wall_time) = (std::mem::take(warnings), options.timing.then(|| stopwatch.seconds()));
-    Ok(Summary { verdicts, warnings, seed: plan.seed, noise: plan.noise, wall_time })
+    let summary = Summary { verdicts, warnings, seed: plan.seed, noise: plan.noise, wall_time };
+    if let Some(page) = page {
+        page.ended(summary.status(), &summary.words(), "");
+    }
+    Ok(summary)
+}
+
+/// The page beside the programs. Prints its address.
+fn page(options: &Options, port: u16) -> Result<Beside, String> {
+    let command = format!("robios {}", options.program.display());
+    let page = Beside::open(&Opening { port, command })
+        .map_err(|error| format!("--view={port}: {error}; expected a free port, or none"))?;
+    // In one piece, for programs that read it. Without standard error nobody can be informed.
+    let _ = std::io::stderr().write_all(format!("view: {}\n", page.address()).as_bytes());
+    Ok(page)
 }

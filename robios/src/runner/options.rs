@@ -1,5 +1,7 @@
 use std::path::{Path, PathBuf};
 
+use clap::builder::ArgPredicate;
+
 use eyesim::costs::Costs;
 use eyesim::keys::KeyPlan;
 use eyesim::plan::{FRAME_RATE, Plan, parse_pose};
@@ -57,8 +59,11 @@ pub(crate) struct Options {
     #[arg(long, value_name = "FACTOR", default_value_t = 0.0, value_parser = parse_factor)]
     pub(crate) cpu_time: f64,
 
-    /// Time limit of a program and its run, in real seconds.
-    #[arg(long, value_name = "S", default_value = "60", value_parser = parse_seconds)]
+    /// Time limit of a program and its run, in real seconds [a day with --view].
+    #[arg(
+        long, value_name = "S", default_value = "60", value_parser = parse_seconds,
+        default_value_if("view", ArgPredicate::IsPresent, "86400")
+    )]
     pub(crate) real_limit: f64,
 
     /// Real seconds without a call after which the others stop waiting for a program; its time then passes
@@ -67,8 +72,12 @@ pub(crate) struct Options {
     pub(crate) hang_limit: f64,
 
     /// Keys: AUTO; NONE; presses such as `KEY1@2s,KEY4@60s,TOUCH:120:80@3s,IRTV_OK@4s`; or TERMINAL: the
-    /// digits 1 to 4 and Enter press the first robot's soft keys, in real time.
-    #[arg(long, value_name = "PLAN", default_value = "AUTO", value_parser = parse_keys)]
+    /// digits 1 to 4 and Enter press the first robot's soft keys, in real time. With --view, TERMINAL is the
+    /// default, and the page presses the keys of all robots.
+    #[arg(
+        long, value_name = "PLAN", default_value = "AUTO", value_parser = parse_keys,
+        default_value_if("view", ArgPredicate::IsPresent, "TERMINAL")
+    )]
     pub(crate) keys: String,
 
     /// Draw the robots' paths to a .svg or .png file.
@@ -86,6 +95,14 @@ pub(crate) struct Options {
     /// Wait until each second of a recording is on the disk.
     #[arg(long, requires = "record")]
     pub(crate) fsync: bool,
+
+    /// Show the run in a page, whose local address is printed: at this port, or at a free one.
+    #[arg(long, value_name = "PORT", num_args = 0..=1, require_equals = true, default_missing_value = "0")]
+    pub(crate) view: Option<u16>,
+
+    /// Start before anybody has opened the page of --view.
+    #[arg(long, requires = "view")]
+    pub(crate) no_wait: bool,
 
     /// Save the display of the last robot that has one as a .png file.
     #[arg(long, value_name = "FILE.png")]

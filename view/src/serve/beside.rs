@@ -4,16 +4,17 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use image::RgbImage;
+use roverlab::geometry::{Point, Pose};
 use roverlab::io::log::{RobotMessages, RobotTopic, Topic, scene_message};
 use roverlab::io::sim::{Onlooking, Watcher};
-use roverlab::io::{LidarScan, Psd};
+use roverlab::io::{Key, LidarScan, Psd};
 use roverlab::picture::Picture;
 use roverlab::world::Scene;
 use serde_json::json;
 
 use super::hub::{Channel, Hub, Keep};
 use super::server::{Opening, Server};
-use crate::{Frames, IMAGE_INTERVAL, Message, Shown, overlay_json, scene_json};
+use crate::{Displayed, Frames, IMAGE_INTERVAL, Message, Shown, overlay_json, scene_json};
 
 /// The page beside a run, and other viewers. When it is dropped, they get the rest, and their connections end.
 pub struct Beside {
@@ -28,6 +29,26 @@ impl fmt::Debug for Beside {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Beside").field("address", &self.address()).finish_non_exhaustive()
     }
+}
+
+/// What is outside of a simulated world: displays and keys of programs that drive its robots.
+pub trait Devices: fmt::Debug + Send {
+    /// A robot's display, after the first drawing.
+    fn face(&self, robot: usize) -> Option<Face>;
+
+    /// Presses a soft key of a robot.
+    fn press(&self, robot: usize, key: Key);
+}
+
+/// A display outside of the world.
+#[derive(Debug, Clone)]
+pub struct Face {
+    /// Number of changes so far, from 1.
+    pub drawings: u64,
+    /// Its pixels.
+    pub image: Arc<RgbImage>,
+    /// The labels of the soft keys, with line feeds between.
+    pub menu: String,
 }
 
 /// Number of a run's last lines that a page gets which comes later.
@@ -65,6 +86,11 @@ impl Beside {
 
     /// The scene before robots drive in it. Returns what has to watch it.
     pub fn scene(&self, scene: &Scene) -> Box<dyn Watcher> {
+        self.scene_with(scene, None)
+    }
+
+    /// The same, with devices that are not in the world.
+    pub fn scene_with(&self, scene: &Scene, devices: Option<Box<dyn Devices>>) -> Box<dyn Watcher> {
         let hub = &self.server.hub;
         hub.forget(&self.page);
         self.introduce();
@@ -79,6 +105,8 @@ impl Beside {
             Robot { channels, messages, drawings: 0, shown: None }
         });
         Box::new(Camera {
+            faces: Vec::new(),
+            devices,
             robots: robots.collect(),
             hub: Arc::clone(hub),
             page: self.page.clone(),
@@ -127,6 +155,9 @@ struct Camera {
     hub: Arc<Hub>,
     page: Channel,
     robots: Vec<Robot>,
+    devices: Option<Box<dyn Devices>>,
+    /// The devices' displays at the last frame.
+    faces: Vec<Option<Face>>,
     time: Arc<AtomicU64>,
     frames: Frames,
     /// Number of pages that had come at the last frame.
@@ -157,8 +188,11 @@ impl Watcher for Camera {
         let time = world.time();
         self.time.store(time.to_bits(), Ordering::Relaxed);
         for (robot, key) in self.hub.take_keys() {
-            // A missing robot has no keys.
-            let _ = world.press_key(robot, key);
+            match &self.devices {
+                Some(devices) => devices.press(robot, key),
+                // A missing robot has no keys.
+                None => drop(world.press_key(robot, key)),
+            }
         }
         if self.ticks.is_multiple_of(TICKS) {
             self.look(world, nanoseconds(time));
@@ -187,6 +221,10 @@ impl Watcher for Camera {
 
 impl Camera {
     fn look(&mut self, world: &Onlooking<'_>, time: u64) {
+        if let Some(devices) = &self.devices {
+            self.faces = (0..self.robots.len()).map(|robot| devices.face(robot)).collect();
+        }
+        let world = &Look { world, faces: self.devices.is_some().then_some(&self.faces) };
         if self.page.is_wanted() {
             let pages = self.hub.pages();
             if pages != self.pages {
@@ -215,6 +253,44 @@ impl Camera {
             let time = f64::from_bits(self.time.load(Ordering::Relaxed));
             self.hub.publish(channel, nanoseconds(time), &message(messages, time), Keep::No);
         }
+    }
+}
+
+/// A world with displays of its own, or those of devices.
+struct Look<'a, 'e> {
+    world: &'a Onlooking<'e>,
+    faces: Option<&'a Vec<Option<Face>>>,
+}
+
+impl Shown for Look<'_, '_> {
+    fn time(&self) -> f64 {
+        self.world.time()
+    }
+
+    fn pose(&self, robot: usize) -> Option<Pose> {
+        self.world.pose(robot)
+    }
+
+    fn odometry(&self, robot: usize) -> Option<Pose> {
+        self.world.odometry(robot)
+    }
+
+    fn contacts(&self, robot: usize) -> Option<(u32, &[Point])> {
+        self.world.contacts(robot)
+    }
+
+    fn display(&self, robot: usize) -> Option<Displayed<'_>> {
+        let Some(faces) = self.faces else { return Shown::display(self.world, robot) };
+        let Face { drawings, image, menu } = faces.get(robot)?.as_ref()?;
+        Some(Displayed { drawings: *drawings, image, menu: menu.clone() })
+    }
+
+    fn object(&self, object: usize) -> Option<Pose> {
+        self.world.object(object)
+    }
+
+    fn has_fallen(&self, object: usize) -> bool {
+        self.world.has_fallen(object)
     }
 }
 
