@@ -17,7 +17,7 @@ use crate::starman;
 #[cfg(feature = "view")]
 use crate::view;
 use crate::{
-    a_to_b, ackermann, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug, dive,
+    a_to_b, ackermann, boat, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug, dive,
     edges, follow_me, genetic, grid_benchmark, lane_keeping, lidar_scan, localise, micromouse, motion,
     navigate, omni, pool_wall, quadtree, random_drive, replay, safety, summit, terrain_plan, wall_following,
 };
@@ -66,6 +66,7 @@ macro_rules! commands {
 commands!(
     a_to_b by run,
     ackermann by run,
+    boat by run,
     bug_compare by run,
     camera by run,
     color_tracking by run,

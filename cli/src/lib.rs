@@ -5,6 +5,7 @@
 
 mod a_to_b;
 mod ackermann;
+mod boat;
 mod bug_compare;
 mod camera;
 mod color_tracking;

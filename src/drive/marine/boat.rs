@@ -1,9 +1,10 @@
 use std::ops::ControlFlow;
 
 use super::helm::{Helm, Push};
+use super::legs::{Guided, Legs};
 use super::reckoning::Reckoning;
 use super::{DepthHoldParameters, DiveObservation, Thrust};
-use crate::geometry::{Point, Pose, Vector, Vector3, angle_difference, math};
+use crate::geometry::{Point, Pose, Vector, Vector3, math};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
 use crate::io::{Attitude, Error, Inertial, Odometry, Result};
 use crate::kinematics::marine::CraftSpec;
@@ -58,8 +59,8 @@ halts!(BoatOutcome { Arrived: "the time on station is over" });
 
 /// A boat with two thrusters on a course of waypoints, and on station at the last one.
 ///
-/// On a leg it steers by line of sight with integral action, which takes out wind and current (Fossen 2021,
-/// section 12.3), and slows down before a waypoint. On station a force towards the place, with an integral,
+/// On a leg it steers by line of sight with integral action (Fossen 2021, section 12.3), and slows down before
+/// a waypoint. On station a force towards the place, with an integral,
 /// says where the bow points and what the thrusters push.
 ///
 /// ```
@@ -87,23 +88,13 @@ pub struct Boat {
     parameters: BoatParameters,
     helm: Helm,
     reckoning: Reckoning,
-    /// Where the course began and its waypoints, in the world.
-    course: Vec<Point>,
-    /// The waypoint ahead, by its index; the number of all of them on station.
-    next: usize,
-    /// The integral of the cross-track error (m).
-    offset: f64,
+    legs: Legs,
     /// The force (N) that wind and current take on station, and when the boat came there.
     against: Vector,
     since: f64,
     heading: f64,
 }
 
-/// The share of the speed at which a waypoint is passed, and the seconds in which it is slowed to.
-const PASSING: f64 = 0.3;
-const SLOWING: f64 = 2.5;
-/// The share of the lookahead distance that the integral counts for, per second.
-const INTEGRAL: f64 = 0.15;
 /// Stiffness, damping and integral of the hold of a place: 1/s², 1/s and 1/s³ times the mass.
 const STIFF: f64 = 0.15;
 const DAMPED: f64 = 0.8;
@@ -138,9 +129,7 @@ impl Boat {
         Ok(Self {
             helm: Helm::new(craft, 0.8, parameters.period, DepthHoldParameters::default())?,
             reckoning: Reckoning::at(start),
-            course: all().collect(),
-            next: 1,
-            offset: 0.0,
+            legs: Legs::new(all().collect(), parameters.speed, parameters.lookahead, parameters.reached),
             against: Vector::zeros(),
             since: 0.0,
             heading: start.heading,
@@ -150,59 +139,31 @@ impl Boat {
 
     /// The index of the waypoint ahead; their number when the boat is on station.
     pub fn leg(&self) -> usize {
-        self.next - 1
+        self.legs.leg()
     }
 
     fn notice(&mut self, time: f64, seen: &BoatObservation) -> Result<()> {
         let BoatObservation { attitude, rates, odometry } = *seen;
         self.helm.observe(time, &DiveObservation { depth: 0.0, attitude, rates })?;
         self.reckoning.advance(odometry, self.helm.heading(), self.helm.seconds());
-        let (place, last) = (self.reckoning.pose().position(), self.course.len());
-        while self.next < last && self.is_passed(place) {
-            (self.next, self.offset, self.since) = (self.next + 1, 0.0, time);
-            self.heading = self.helm.heading();
+        if self.legs.pass(self.reckoning.pose().position()) {
+            (self.since, self.heading) = (time, self.helm.heading());
         }
         Ok(())
     }
 
-    /// Whether the waypoint ahead is reached.
-    fn is_passed(&self, place: Point) -> bool {
-        (place - self.course[self.next]).norm() < self.parameters.reached
-    }
-
     /// The push along the leg.
     fn sail(&mut self) -> Push {
-        let BoatParameters { speed, lookahead, .. } = self.parameters;
-        let (from, to) = (self.course[self.next - 1], self.course[self.next]);
-        let pose = self.reckoning.pose();
-        let leg = to - from;
-        let along = leg.try_normalize(1e-9).unwrap_or_else(Vector::x);
-        let across = Vector::new(-along.y, along.x);
-        let left = (pose.position() - from).dot(&across);
-        let ahead = (to - pose.position()).dot(&along);
-        // Near its end, and beyond it, the leg is the way to the waypoint itself.
-        let direct = to - pose.position();
-        let goal = if ahead < lookahead {
-            math::atan2(direct.y, direct.x)
-        } else {
-            // The integral grows less the farther the boat is from the leg.
-            let aim = left + self.offset;
-            let share = lookahead * lookahead / (lookahead * lookahead + aim * aim);
-            self.offset += INTEGRAL * left * share * self.helm.seconds();
-            math::atan2(leg.y, leg.x) - math::atan2(aim, lookahead)
-        };
-        let off = angle_difference(goal, self.helm.heading());
-        let slow = PASSING * speed + (direct.norm() - self.parameters.reached).max(0.0) / SLOWING;
-        let wanted = speed.min(slow) * math::cos(off).max(0.0);
-        let ahead = self.helm.push(self.reckoning.velocity().x, wanted, 0.0).ahead;
-        Push { ahead, turn: self.helm.turn_to(goal) }
+        let Guided { heading, speed } = self.legs.guide(&self.reckoning.pose(), self.helm.seconds());
+        let ahead = self.helm.push(self.reckoning.velocity().x, speed, 0.0).ahead;
+        Push { ahead, turn: self.helm.turn_to(heading) }
     }
 
     /// The push that keeps the boat at the last waypoint.
     fn stay(&mut self) -> Push {
         let pose = self.reckoning.pose();
         let mass = self.helm.inertia()[0];
-        let off = self.course[self.course.len() - 1] - pose.position();
+        let off = self.legs.end() - pose.position();
         let speed = pose.to_world(Point::from(self.reckoning.velocity())) - pose.position();
         self.against += off * (LEARNT * mass * self.helm.seconds());
         let learnt = self.against.norm();
@@ -234,7 +195,7 @@ impl Behaviour for Boat {
             return Err(Error::invalid_input("observed pose", format!("{odometry:?}"), "finite numbers"));
         }
         self.notice(time, seen)?;
-        let push = if self.next < self.course.len() {
+        let push = if !self.legs.is_over() {
             self.sail()
         } else if time - self.since >= self.parameters.station {
             return Ok(ControlFlow::Break(BoatOutcome::Arrived));

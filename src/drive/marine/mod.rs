@@ -1,22 +1,30 @@
-//! Craft in water (book, chapter 8): diving, along the sides of a pool, and boats on a course.
+//! Craft in water (book, chapter 8): diving, along the sides of a pool, surveys of its floor, and
+//! boats on a course.
 //!
 //! - [`Dive`]: to a depth, and there level on a heading, by pressure sensor and inertial unit;
 //! - [`PoolWall`]: along the sides of a pool at a depth, by distance sensors;
+//! - [`Survey`]: lanes over the floor, with its place by walls, Doppler log and compass, and [`DepthMap`];
 //! - [`Boat`]: a boat on a course, and on its station at the end;
 //! - [`DepthHold`]: the controller of depth inside them;
 //! - [`Thrust`]: what a behaviour tells a craft's thrusters.
 
 mod boat;
 mod depth_hold;
+mod depth_map;
 mod dive;
+mod fix;
 mod helm;
+mod legs;
 mod pool_wall;
 mod reckoning;
+mod survey;
 mod thrust;
 mod wall_memory;
 
 pub use boat::{Boat, BoatObservation, BoatOutcome, BoatParameters};
 pub use depth_hold::{DepthHold, DepthHoldParameters};
+pub use depth_map::{CellDepth, DepthMap, Sounding};
 pub use dive::{Dive, DiveObservation, DiveOutcome, DiveParameters};
 pub use pool_wall::{PoolWall, PoolWallObservation, PoolWallOutcome, PoolWallParameters};
+pub use survey::{Survey, SurveyObservation, SurveyOutcome, SurveyParameters};
 pub use thrust::Thrust;

@@ -41,7 +41,7 @@ impl Default for PoolWallParameters {
             speed: 0.3,
             side: WallSide::Left,
             laps: 1,
-            lookahead: 1.0,
+            lookahead: 0.8,
             period: 0.1,
             hold: DepthHoldParameters::default(),
         }
@@ -142,7 +142,7 @@ const SLIP: f64 = 0.6;
 /// Turn rate for an angle to the place that is steered for (1/s), and the share of the momentary slip in that
 /// angle: of what a turn does to the way, the larger part comes later, so all of the slip would make it swing.
 const GAIN: f64 = 1.0;
-const MOMENTARY: f64 = 0.4;
+const MOMENTARY: f64 = 0.45;
 /// Metres between the walls nearest here and there within which the way leads round a corner.
 const PIVOT: f64 = 0.2;
 /// Steps in which a direction is looked for (rad).

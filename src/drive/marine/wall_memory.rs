@@ -28,8 +28,8 @@ const WINDOWS: [f64; 5] = [1.8, 1.2, 0.8, 0.5, 0.3];
 /// The root mean square of what a wall's points are off (m): sensors' errors are less.
 const FITS: f64 = 0.03;
 /// The newest points of a wall, and the most (m) that these may be off in the mean: it begins to bend.
-const LAST: usize = 6;
-const DRIFT: f64 = 0.012;
+const LAST: usize = 4;
+const DRIFT: f64 = 0.008;
 /// Metres by which a wall is continued, and between its points.
 const ONWARD: f64 = 1.3;
 const SPACING: f64 = 0.1;

@@ -1,0 +1,69 @@
+use std::num::NonZero;
+
+use roverlab::geometry::Point;
+use roverlab::geometry::units::from_mm;
+
+use crate::common::{CommonArgs, OF_ONE_RUN};
+
+/// Command line of `boat`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    about = "Steers the solar raft along a course in wind, current and waves, and keeps its station at the end",
+    after_help = "\
+Without --world, the raft is on a lake of 40 x 30 m with islands; --seed chooses these, the wind of up to 4 m/s, the current of
+up to 0.2 m/s, waves of up to 0.15 m, and the course if --course does not. A world needs water: a line `water_level MM`. The raft
+has a Doppler log and an inertial unit, and begins where it is told that it does.
+
+With --campaign, 200 lakes with a course each.
+
+JSON fields:
+  waypoints                   how many were passed
+  max_miss_mm                 the most that the raft missed a waypoint by
+  cross_track_rms_mm          of the distance from the legs
+  station_rms_mm              of the distance from the last waypoint, from 20 s after arrival on, or null
+  course_mm                   the waypoints
+  picture
+  rows                        with --campaign only: the table
+Outcomes: arrived, missed, timed_out, failed; with --campaign: passed, wrong. Aground is a contact."
+)]
+pub(crate) struct Args {
+    /// Waypoints.
+    #[arg(long, value_name = "X,Y;X,Y...", value_parser = parse_course, allow_hyphen_values = true)]
+    pub(crate) course: Option<Course>,
+
+    /// Sail many courses and print a table.
+    #[arg(long)]
+    pub(crate) campaign: bool,
+
+    /// Courses of a campaign.
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
+    pub(crate) runs: u64,
+
+    /// Threads of a campaign [default: one for each core].
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub(crate) threads: Option<NonZero<usize>>,
+
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+/// Waypoints of the command line.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Course(pub(crate) Vec<Point>);
+
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
+    ("always", &["goal"]),
+    ("campaign", OF_ONE_RUN),
+    ("campaign", &["course"]),
+    ("!campaign", &["runs", "threads"]),
+]);
+
+fn parse_course(text: &str) -> Result<Course, String> {
+    let point = |text: &str| {
+        let (x, y) = text.split_once(',')?;
+        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.abs() <= 1e9);
+        Some(Point::new(from_mm(number(x)?), from_mm(number(y)?)))
+    };
+    let points: Option<Vec<Point>> = text.trim().trim_end_matches(';').split(';').map(point).collect();
+    points.map(Course).ok_or_else(|| "expected waypoints in mm, such as 5000,4000;9000,8000".into())
+}

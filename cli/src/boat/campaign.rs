@@ -1,0 +1,51 @@
+use roverlab::geometry::units;
+use serde_json::json;
+
+use super::Args;
+use super::job::limit;
+use super::lake::{Lake, lake};
+use super::voyage::{Voyage, sail};
+use crate::common::{Failure, Outcome, Report, millimetres, share_out, threads};
+use crate::driving::{Conditions, RESERVE};
+
+const LISTED: usize = 10;
+
+/// The campaign's work.
+pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
+    let voyages = share_out("courses", args.runs, threads(args.threads), |index| {
+        let seed = args.common.seed.wrapping_add(index);
+        let Lake { scene, course } = lake(seed)?;
+        let limit = args.common.time_limit.unwrap_or_else(|| limit(&scene, &course));
+        let conditions =
+            Conditions { seed, common: None, reserve: RESERVE, ..Conditions::new(&args.common, limit)? };
+        let mut voyage = sail(&scene, &course, &conditions, |_| {})?;
+        (voyage.run.trail, voyage.run.odometry_path, voyage.run.in_space) = Default::default();
+        Ok((seed, voyage))
+    })?;
+    let worst = |of: fn(&Voyage) -> Option<f64>| {
+        voyages.iter().map(|(_, voyage)| of(voyage).unwrap_or(f64::INFINITY)).fold(0.0, f64::max)
+    };
+    let (miss, track, station) = (worst(|v| v.miss), worst(|v| v.cross_track), worst(|v| v.station));
+    let contacts: u64 = voyages.iter().map(|(_, voyage)| u64::from(voyage.run.truth.contacts)).sum();
+    let wrong: Vec<u64> = voyages.iter().filter(|(_, v)| !v.is_good()).map(|(seed, _)| *seed).collect();
+    let good = voyages.len() - wrong.len();
+    args.common.tell(format_args!(
+        "courses   good  contacts  worst miss  worst cross-track rms  worst station rms\n\
+         {:>7}  {good:>5}  {contacts:>8}  {:>7.0} mm  {:>18.0} mm  {:>14.0} mm\n\
+         good: every waypoint within 500 mm, cross-track rms within 250 mm, station within 300 mm, not aground",
+        voyages.len(),
+        units::to_mm(miss),
+        units::to_mm(track),
+        units::to_mm(station)
+    ));
+    if !wrong.is_empty() {
+        args.common.tell(format_args!("  amiss with seeds {:?}", &wrong[..wrong.len().min(LISTED)]));
+    }
+    let outcome = if wrong.is_empty() { Outcome::verdict("passed") } else { Outcome::failure("wrong") };
+    let row = json!({
+        "courses": voyages.len(), "good": good, "contacts": contacts, "max_miss_mm": millimetres(miss),
+        "max_cross_track_rms_mm": millimetres(track), "max_station_rms_mm": millimetres(station),
+        "wrong_seeds": &wrong[..wrong.len().min(LISTED)],
+    });
+    Ok(Report { collisions: Some(contacts), ..Report::new(outcome) }.table("rows", vec![row]))
+}

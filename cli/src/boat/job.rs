@@ -1,0 +1,78 @@
+use roverlab::drive::marine::BoatOutcome;
+use roverlab::geometry::{Point, units};
+use roverlab::picture::{Mark, Picture, Style};
+use roverlab::world::Scene;
+
+use super::Args;
+use super::campaign::campaign;
+use super::lake::{Lake, lake, raft};
+use super::voyage::{Voyage, sail};
+use crate::common::{Failure, Outcome, Report, millimetres, point_in_mm};
+use crate::driving::{Conditions, paced};
+use crate::water::afloat;
+
+/// Seconds for a metre of the course, and besides.
+const PACE: f64 = 8.0;
+const BESIDES: f64 = 180.0;
+
+/// Seconds for a course.
+pub(super) fn limit(scene: &Scene, course: &[Point]) -> f64 {
+    let start = scene.robots[0].pose.position();
+    let from = std::iter::once(start).chain(course.iter().copied());
+    let length: f64 = from.zip(course).map(|(from, to)| (to - from).norm()).sum();
+    PACE * length + BESIDES
+}
+
+/// The work of the command.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    if args.campaign {
+        return campaign(args);
+    }
+    let common = &args.common;
+    common.check_picture()?;
+    let Lake { scene, course } = lake(common.seed)?;
+    if common.world.is_some() && args.course.is_none() {
+        return Err(Failure::input("--world: found no course; expected --course X,Y;X,Y..."));
+    }
+    let scene = afloat(common, &raft(), || scene)?;
+    let course = args.course.as_ref().map_or(course, |given| given.0.clone());
+    let floor = scene.world.bounds();
+    if let Some(&outside) = course.iter().find(|&&point| !floor.contains(point)) {
+        let [x, y] = point_in_mm(outside);
+        return Err(Failure::input(format!("--course: found {x},{y}, outside of the world; expected places in it")));
+    }
+    let conditions = Conditions::new(common, limit(&scene, &course))?;
+    let voyage = sail(&scene, &course, &conditions, paced(common))?;
+    let run = &voyage.run;
+    let report = run
+        .report(|outcome| match outcome {
+            BoatOutcome::Arrived if voyage.is_good() || run.truth.contacts > 0 => Outcome::verdict("arrived"),
+            BoatOutcome::Arrived => Outcome::failure("missed"),
+            _ => Outcome::failure("timed_out"),
+        })
+        .field("waypoints", voyage.passed)
+        .field("max_miss_mm", voyage.miss.map(millimetres))
+        .field("cross_track_rms_mm", voyage.cross_track.map(millimetres))
+        .field("station_rms_mm", voyage.station.map(millimetres))
+        .field("course_mm", course.iter().copied().map(point_in_mm).collect::<Vec<_>>());
+    Ok(common.draw(report, "boat.svg", || picture(&scene, &course, &voyage)))
+}
+
+fn picture(scene: &Scene, course: &[Point], voyage: &Voyage) -> Picture {
+    let run = &voyage.run;
+    let mut picture = Picture::new(&scene.world);
+    picture.title("Solar raft on its course");
+    let mm = |value: Option<f64>| value.map_or("no".into(), |value| format!("{:.0} mm", units::to_mm(value)));
+    let (wind, current) = (scene.world.water.wind.norm(), scene.world.water.current_at(0.0).norm());
+    picture.caption(format!(
+        "{} off the legs, {} off the station, {} from a waypoint at most; wind {wind:.1} m/s, current {current:.2} m/s",
+        mm(voyage.cross_track), mm(voyage.station), mm(voyage.miss)
+    ));
+    let start = scene.robots[0].pose.position();
+    picture.line(std::iter::once(start).chain(course.iter().copied()), Style::plan());
+    run.draw(&mut picture, &scene.robots[0].spec);
+    for &waypoint in course {
+        picture.mark(Mark::Goal, waypoint);
+    }
+    picture
+}

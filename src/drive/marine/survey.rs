@@ -1,0 +1,265 @@
+use std::ops::ControlFlow;
+
+use super::fix::Fix;
+use super::helm::{Helm, Push};
+use super::legs::{Guided, Legs};
+use super::{DepthHoldParameters, DiveObservation, Sounding, Thrust};
+use crate::geometry::{Aabb, Point, Pose, Vector};
+use crate::io::control::{Behaviour, Decision, Senses, halts};
+use crate::io::{DepthSensor, DistanceSensors, Error, Inertial, Odometry, Psd, Result};
+use crate::parameter::{require_not_negative, require_positive};
+use crate::world::{DriveSpec, RobotSpec};
+
+/// Parameters of [`Survey`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurveyParameters {
+    /// Metres between lanes.
+    pub spacing: f64,
+    /// Metres that the middle of the craft keeps from the border of the area: enough to turn on the spot.
+    pub margin: f64,
+    /// Depth of the sensor on the way (m).
+    pub depth: f64,
+    /// Speed on a lane (m/s).
+    pub speed: f64,
+    /// Seconds between steps.
+    pub period: f64,
+    /// The controller of depth.
+    pub hold: DepthHoldParameters,
+}
+
+impl Default for SurveyParameters {
+    /// Lanes a metre apart, half a metre deep, at 0.4 m/s.
+    fn default() -> Self {
+        Self {
+            spacing: 1.0,
+            margin: 1.0,
+            depth: 0.5,
+            speed: 0.4,
+            period: 0.1,
+            hold: DepthHoldParameters::default(),
+        }
+    }
+}
+
+/// What [`Survey`] goes by.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SurveyObservation {
+    /// Depth, attitude and turn rates.
+    pub dive: DiveObservation,
+    /// The way by the log.
+    pub odometry: Pose,
+    /// Readings ahead, to the left, to the right and behind (m).
+    pub ranges: [f64; 4],
+    /// Reading of the sensor that looks down (m).
+    pub down: f64,
+}
+
+/// How a survey ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SurveyOutcome {
+    /// All lanes are done.
+    Covered,
+    /// The time was over.
+    TimedOut,
+    /// Who watched had seen enough.
+    Stopped,
+}
+
+halts!(SurveyOutcome { Covered: "all lanes are done" });
+
+/// Lanes over the ground of a pool or of open water at a depth, with a sounding at each step (book, section
+/// 8.5).
+///
+/// The place is that of the Doppler log and the compass, corrected by the distances to the four sides of a
+/// pool, with its covariance. [`DepthMap`](super::DepthMap) makes a map of the soundings.
+///
+/// ```
+/// use roverlab::drive::marine::{DepthMap, Survey, SurveyOutcome, SurveyParameters};
+/// use roverlab::geometry::{Aabb, Point, Pose};
+/// use roverlab::io::control::run;
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::world::{RobotSpec, Scene, World};
+///
+/// let area = Aabb::new(Point::origin(), Point::new(6.0, 5.0));
+/// let pool = World { water_level: Some(2.0), ..World::walled(6.0, 5.0) };
+/// let mako = RobotSpec { dvl: Some(10.0), ..RobotSpec::mako() };
+/// let start = Pose::new(3.0, 2.5, 0.0);
+/// let simulation = Simulation::new(&Scene::with_robot(pool, mako.clone(), start), SimOptions::with_noise(1.0, 1))?;
+/// let mut survey = Survey::new(&mako, start, area, true, SurveyParameters::default())?;
+/// let mut map = DepthMap::new(area, 1.0)?;
+/// let outcome = run(&mut simulation.robot(0)?, &mut survey, 400.0, |_, survey, _| {
+///     survey.sounding().into_iter().for_each(|sounding| map.add(sounding));
+/// })?;
+/// assert_eq!((outcome, simulation.truth().robot(0)?.contacts), (SurveyOutcome::Covered, 0));
+/// assert!((map.cell(3, 2).expect("a depth").depth - 2.0).abs() < 0.03);
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Survey {
+    parameters: SurveyParameters,
+    helm: Helm,
+    fix: Fix,
+    legs: Legs,
+    /// The sensors around, in the craft's frame.
+    around: [Pose; 4],
+    /// Metres from the sensor that looks down up to the depth sensor, and ahead of the craft's origin.
+    down: Point,
+    sounding: Option<Sounding>,
+    ready: bool,
+}
+
+/// The sensors that look around, and the one that looks down.
+const AROUND: [Psd; 4] = [Psd::FRONT, Psd::LEFT, Psd::RIGHT, Psd::BACK];
+const DOWN: Psd = Psd(6);
+/// Metres from the depth at which lanes begin, and from a waypoint at which it is reached.
+const BEGIN: f64 = 0.1;
+const REACHED: f64 = 0.2;
+/// Metres ahead at which the craft steers.
+const LOOKAHEAD: f64 = 1.5;
+/// The most tilt (rad) with which the sensor looks down.
+const LEVEL: f64 = 0.15;
+
+impl Survey {
+    /// A survey of an area by a craft that starts at a pose, with distance sensors to all sides and down.
+    /// `sides` says whether the area ends at walls, by which the craft finds its place.
+    ///
+    /// Fails if there is no room for a lane.
+    pub fn new(
+        robot: &RobotSpec,
+        start: Pose,
+        area: Aabb,
+        sides: bool,
+        parameters: SurveyParameters,
+    ) -> Result<Self> {
+        let DriveSpec::Craft(craft) = &robot.drive else {
+            return Err(Error::invalid_input("robot", &robot.name, "a craft"));
+        };
+        let SurveyParameters { spacing, margin, depth, speed, period, hold } = parameters;
+        require_positive("spacing", spacing)?;
+        require_not_negative("margin", margin)?;
+        require_not_negative("depth", depth)?;
+        require_positive("speed", speed)?;
+        require_positive("period", period)?;
+        let mount = |psd: Psd| {
+            let spec = robot.psds.iter().find(|spec| spec.id == psd.0);
+            spec.map(|spec| spec.mount).ok_or_else(|| Error::unsupported(psd))
+        };
+        let sensor = |psd: Psd| mount(psd).map(|mount| Pose::new(mount.x, mount.y, mount.yaw));
+        let down = mount(DOWN)?;
+        let up = robot.depth_sensor.ok_or_else(|| Error::unsupported("depth sensor"))?.z;
+        let lanes = lanes(&area, start.position(), spacing, margin)?;
+        Ok(Self {
+            helm: Helm::new(craft, 0.8, period, hold)?,
+            fix: Fix::new(start, sides.then_some(area)),
+            legs: Legs::new(lanes, speed, LOOKAHEAD, REACHED),
+            around: [sensor(AROUND[0])?, sensor(AROUND[1])?, sensor(AROUND[2])?, sensor(AROUND[3])?],
+            down: Point::new(down.x, up - down.z),
+            sounding: None,
+            ready: false,
+            parameters,
+        })
+    }
+
+    /// The sounding of the last step; `None` while the craft is tilted, or without an echo.
+    pub fn sounding(&self) -> Option<Sounding> {
+        self.sounding
+    }
+
+    /// The pose in the pool's frame as the craft believes it, and the standard deviation of its place (m).
+    pub fn belief(&self) -> (Pose, f64) {
+        (self.fix.pose(), self.fix.sigma())
+    }
+
+    fn notice(&mut self, time: f64, seen: &SurveyObservation) -> Result<()> {
+        self.helm.observe(time, &seen.dive)?;
+        self.fix.advance(seen.odometry, self.helm.heading(), self.helm.seconds());
+        for (sensor, &range) in self.around.iter().zip(&seen.ranges) {
+            if range.is_finite() {
+                self.fix.see(sensor, range);
+            }
+        }
+        let pose = self.fix.pose();
+        let tilt = seen.dive.attitude.pitch.abs().max(seen.dive.attitude.roll.abs());
+        let is_good = tilt < LEVEL && seen.down.is_finite();
+        self.sounding = is_good.then(|| Sounding {
+            place: pose.to_world(Point::new(self.down.x, 0.0)),
+            depth: seen.dive.depth + self.down.y + seen.down,
+            sigma: self.fix.sigma(),
+        });
+        self.ready |= (seen.dive.depth - self.parameters.depth).abs() < BEGIN;
+        Ok(())
+    }
+}
+
+/// The lanes of an area, along its longer side, from the corner nearest to a place on.
+fn lanes(area: &Aabb, start: Point, spacing: f64, margin: f64) -> Result<Vec<Point>> {
+    let (low, size) = (area.min + Vector::repeat(margin), area.size() - Vector::repeat(2.0 * margin));
+    if !(size.x > 0.0 && size.y > 0.0) {
+        let found = format!("{} x {} m", area.size().x, area.size().y);
+        return Err(Error::invalid_input("area", found, "room for a lane between its margins"));
+    }
+    let (long, short) = if size.x >= size.y { (size.x, size.y) } else { (size.y, size.x) };
+    let count = (short / spacing).ceil() as usize;
+    let place = |along: f64, aside: f64| {
+        low + if size.x >= size.y { Vector::new(along, aside) } else { Vector::new(aside, along) }
+    };
+    // The four corners at which a tour may begin.
+    let corner = |far: bool, other: bool| place(if far { long } else { 0.0 }, if other { short } else { 0.0 });
+    let choices = [(false, false), (false, true), (true, false), (true, true)];
+    let distance = |choice: &(bool, bool)| (corner(choice.0, choice.1) - start).norm();
+    let best = choices.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let &(far, other) = best.unwrap_or(&choices[0]);
+    let mut points = vec![start];
+    for lane in 0..=count {
+        let share = lane as f64 / count as f64;
+        let aside = short * if other { 1.0 - share } else { share };
+        let ends = if (lane % 2 == 0) == far { [long, 0.0] } else { [0.0, long] };
+        points.extend(ends.map(|along| place(along, aside)));
+    }
+    Ok(points)
+}
+
+impl Behaviour for Survey {
+    type Observation = SurveyObservation;
+    type Command = Thrust;
+    type Outcome = SurveyOutcome;
+
+    fn period(&self) -> f64 {
+        self.parameters.period
+    }
+
+    fn step(&mut self, time: f64, seen: &SurveyObservation) -> Decision<Self> {
+        seen.dive.check()?;
+        if !seen.odometry.is_finite() {
+            return Err(Error::invalid_input("observed pose", format!("{:?}", seen.odometry), "finite numbers"));
+        }
+        if let Some(range) = seen.ranges.iter().chain([&seen.down]).find(|range| range.is_nan() || **range < 0.0) {
+            return Err(Error::invalid_input("observed distance", range, "at least 0"));
+        }
+        self.notice(time, seen)?;
+        let pose = self.fix.pose();
+        self.legs.pass(pose.position());
+        if self.legs.is_over() {
+            return Ok(ControlFlow::Break(SurveyOutcome::Covered));
+        }
+        let Guided { heading, speed } = self.legs.guide(&pose, self.helm.seconds());
+        let wanted = if self.ready { speed } else { 0.0 };
+        let ahead = self.helm.push(self.fix.velocity().x, wanted, 0.0).ahead;
+        // The helm turns to headings that the compass reads.
+        let turn = self.helm.turn_to(heading + self.helm.heading() - pose.heading);
+        Ok(ControlFlow::Continue(self.helm.thrust(self.parameters.depth, Push { ahead, turn })?))
+    }
+}
+
+impl<R: DepthSensor + Inertial + Odometry + DistanceSensors + ?Sized> Senses<R> for Survey {
+    fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut SurveyObservation) -> Result<()> {
+        seen.dive.read(robot)?;
+        seen.odometry = robot.pose()?;
+        for (range, psd) in seen.ranges.iter_mut().zip(AROUND) {
+            *range = robot.distance(psd)?;
+        }
+        seen.down = robot.distance(DOWN)?;
+        Ok(())
+    }
+}
