@@ -17,8 +17,8 @@ use crate::starman;
 #[cfg(feature = "view")]
 use crate::view;
 use crate::{
-    a_to_b, ackermann, boat, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug, dive,
-    edges, follow_me, genetic, grid_benchmark, lane_keeping, lidar_scan, localise, micromouse, motion,
+    a_to_b, ackermann, boat, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug,
+    dive, edges, follow_me, genetic, grid_benchmark, lane_keeping, lidar_scan, localise, micromouse, motion,
     navigate, omni, pool_wall, quadtree, random_drive, replay, safety, summit, terrain_plan, wall_following,
 };
 

@@ -205,7 +205,8 @@ fn lanes(area: &Aabb, start: Point, spacing: f64, margin: f64) -> Result<Vec<Poi
         low + if size.x >= size.y { Vector::new(along, aside) } else { Vector::new(aside, along) }
     };
     // The four corners at which a tour may begin.
-    let corner = |far: bool, other: bool| place(if far { long } else { 0.0 }, if other { short } else { 0.0 });
+    let corner =
+        |far: bool, other: bool| place(if far { long } else { 0.0 }, if other { short } else { 0.0 });
     let choices = [(false, false), (false, true), (true, false), (true, true)];
     let distance = |choice: &(bool, bool)| (corner(choice.0, choice.1) - start).norm();
     let best = choices.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
@@ -232,9 +233,15 @@ impl Behaviour for Survey {
     fn step(&mut self, time: f64, seen: &SurveyObservation) -> Decision<Self> {
         seen.dive.check()?;
         if !seen.odometry.is_finite() {
-            return Err(Error::invalid_input("observed pose", format!("{:?}", seen.odometry), "finite numbers"));
+            return Err(Error::invalid_input(
+                "observed pose",
+                format!("{:?}", seen.odometry),
+                "finite numbers",
+            ));
         }
-        if let Some(range) = seen.ranges.iter().chain([&seen.down]).find(|range| range.is_nan() || **range < 0.0) {
+        if let Some(range) =
+            seen.ranges.iter().chain([&seen.down]).find(|range| range.is_nan() || **range < 0.0)
+        {
             return Err(Error::invalid_input("observed distance", range, "at least 0"));
         }
         self.notice(time, seen)?;

@@ -35,6 +35,15 @@ impl Topic {
 }
 
 /// The message of a scene on the topic `/scene`.
+///
+/// ```
+/// use roverlab::io::log::{Topic, scene_message};
+/// use roverlab::world::{Scene, World};
+///
+/// let message = scene_message(&Scene::new(World::walled(2.0, 1.0)));
+/// assert_eq!(Topic::scene().name, "/scene");
+/// assert!(message.len() > 4 * 3 * 8, "the coordinates of four walls");
+/// ```
 pub fn scene_message(scene: &Scene) -> Vec<u8> {
     let mut message = Vec::new();
     super::scene::scene_update(&mut Fields(&mut message), scene);

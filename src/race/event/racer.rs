@@ -293,14 +293,19 @@ impl EventRacer {
 
     fn drive(&mut self, speed: Twist, fresh: &[Cone]) -> Twist {
         self.adapt();
+        // Behind the finish there may be no cones any more: the car stops as soon as it sees none.
+        let is_over = self.blind >= self.parameters.patience[1] && self.is_behind_finish();
+        if (is_over || self.remaining() < STRIDE) && speed.linear.abs() < STILL {
+            self.phase = EventPhase::Finished;
+            return Twist::default();
+        }
+        if is_over {
+            return self.brake(speed);
+        }
         if self.blind >= self.parameters.patience[1] {
             self.phase = EventPhase::Lost;
         }
         let command = self.follow(speed);
-        if self.is_at_end() && speed.linear.abs() < STILL {
-            self.phase = EventPhase::Finished;
-            return Twist::default();
-        }
         self.before_cones(command, fresh)
     }
 
@@ -326,10 +331,16 @@ impl EventRacer {
         line.step(pose, speed).map_or(Twist::default(), |(twist, _)| twist)
     }
 
-    fn is_at_end(&self) -> bool {
-        let Some(line) = &self.line else { return false };
-        let left = &line.profile().lengths[line.passed()..line.points().len() - 1];
-        left.iter().sum::<f64>() < STRIDE
+    /// Length of the line ahead (m).
+    fn remaining(&self) -> f64 {
+        self.line.as_ref().map_or(f64::INFINITY, |line| {
+            line.profile().lengths[line.passed()..line.points().len() - 1].iter().sum()
+        })
+    }
+
+    fn is_behind_finish(&self) -> bool {
+        let stop = self.parameters.stop;
+        self.remaining() < if matches!(self.event, EventShape::Strip { .. }) { stop[0] } else { stop[1] }
     }
 
     /// Limits a command so that the car stops before obstacles, such as the cones at the end of a lane.
