@@ -36,7 +36,7 @@
 //! run(&mut car, &mut book, 0.5, |_, _, _| ())?;
 //! # Ok(())
 //! # }
-//! The book's lane keeper, for another half second.
+//! // The book's lane keeper, for another half second.
 
 mod book;
 mod keeper;
