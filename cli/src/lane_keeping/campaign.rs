@@ -4,12 +4,12 @@ use super::course::Setting;
 use super::{Args, drive, is_clean};
 use crate::common::{Failure, Outcome, Report, Stage, millimetres, rounded};
 
-/// The share of courses that have to be driven without a fault.
+/// Share of courses that must be driven without a fault.
 const ENOUGH: f64 = 0.98;
-/// Seconds of Duckietown's survival.
+/// Limit of Duckietown's survival time (s).
 const MINUTE: f64 = 60.0;
 
-/// Drives on so many courses, from the seed on.
+/// Drives on a number of courses, with consecutive seeds.
 pub(super) fn run(args: &Args) -> Result<Report, Failure> {
     let (mut clean, mut survived) = (0_u64, 0_u64);
     let (mut distances, mut unclean) = (Vec::new(), Vec::new());

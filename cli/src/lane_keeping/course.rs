@@ -1,4 +1,4 @@
-//! The course that is driven, and what it looks like.
+//! The course and its appearance.
 
 use std::path::Path;
 
@@ -22,7 +22,7 @@ pub(super) struct Setting {
 }
 
 impl Setting {
-    /// What a command line describes.
+    /// The course of a command line.
     pub(super) fn of(args: &Args) -> Result<Self, Failure> {
         let (name, seed) = (args.course.clone(), args.common.seed);
         let course = if let Ok(seed) = name.parse::<u64>() {
@@ -42,7 +42,7 @@ impl Setting {
         Ok(setting)
     }
 
-    /// The one of a campaign with a seed: its own course, light, and wear.
+    /// The course of a seed in a campaign, with its own light and wear.
     pub(super) fn drawn(seed: u64) -> Result<Self, Failure> {
         let mut random = Stream::new(seed).child("lane keeping", 0);
         let light = random.between(0.5, 1.5);
@@ -57,7 +57,7 @@ impl Setting {
         Ok(setting)
     }
 
-    /// Fails where the car does not fit in its lane.
+    /// Fails if the car does not fit in its lane.
     fn check(&self) -> Result<(), Failure> {
         let outline = RobotSpec::road_car().footprint;
         let width = match outline {

@@ -1,4 +1,4 @@
-//! The picture of a drive: the road from above, and the way of the car.
+//! Picture of a drive: the road from above, and the path of the car.
 
 use roverlab::geometry::Point;
 use roverlab::picture::{Figure, Mark, Picture, Style};
@@ -8,10 +8,10 @@ use roverlab::world::{Colour, RobotSpec, World};
 use super::course::Setting;
 use super::drive::Drive;
 
-/// Metres from point to point of a line.
+/// Distance between points of a line (m).
 const STEP: f64 = 0.1;
 
-/// The road's lines, the lane's middle, and the way of the car coloured by speed.
+/// The road's lines, the lane's centre line, and the path of the car, coloured by speed.
 pub(super) fn picture(setting: &Setting, drive: &Drive) -> Picture {
     let course = &setting.course;
     let mut picture = Picture::new(&World { floor: course.floor(), ..World::empty(1.0, 1.0) });

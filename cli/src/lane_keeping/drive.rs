@@ -1,4 +1,4 @@
-//! One drive, with the referee who looks on.
+//! One drive under the referee.
 
 use roverlab::drive::lane_keeping::{
     BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters, LaneObservation, LaneOutcome,
@@ -18,17 +18,17 @@ use super::{Args, Driver, rules};
 use crate::common::{Driven, Failure, Stage, StageTruth};
 use crate::driving::paced;
 
-/// What came of a drive.
+/// Result of a drive.
 #[derive(Debug, Clone)]
 pub(super) struct Drive {
     pub(super) score: FreeDriveScore,
     pub(super) truth: RobotTruth,
     pub(super) ending: Result<(), String>,
-    /// When the car was where, and how fast.
+    /// Path of the car: time, pose and speed.
     pub(super) trail: Vec<(f64, Pose, f64)>,
 }
 
-/// Drives on a course for as long as the command line says.
+/// Drives on a course for the duration of the command line.
 pub(super) fn drive(args: &Args, setting: &Setting, stage: &Stage) -> Result<Drive, Failure> {
     let spec = RobotSpec::road_car();
     let camera = spec.camera.as_ref().map(RoadCamera::from);
@@ -68,7 +68,7 @@ pub(super) fn drive(args: &Args, setting: &Setting, stage: &Stage) -> Result<Dri
     })
 }
 
-/// Who looks on: the referee, and the hand at the remote control.
+/// The observers: the referee, and the operator of the remote control.
 struct Watch<'c> {
     truth: StageTruth,
     referee: FreeDrive,
@@ -76,17 +76,17 @@ struct Watch<'c> {
     pace: Box<dyn FnMut(f64) + 'c>,
 }
 
-/// Seconds for which a car stands still before it is driven by remote control, and before it is given back.
+/// Standstill before remote control begins, and before control is returned (s).
 const STILL: f64 = 1.0;
-/// Metres per second by remote control at most.
+/// Maximum speed under remote control (m/s).
 const REMOTE: f64 = 0.3;
-/// Seconds from one command of the remote control to the next.
+/// Control period of the remote control (s).
 const PERIOD: f64 = 0.05;
-/// Metres and radians within which a car is back in its lane.
+/// Distance (m) and angle (rad) within which a car is back in its lane.
 const BACK: (f64, f64) = (0.04, 0.1);
 
 impl Watch<'_> {
-    /// Lets a behaviour drive until time is over, and takes the car back into its lane where it strays.
+    /// Runs a behaviour until the time is over, and returns the car to its lane if it strays.
     fn keep<B>(
         &mut self,
         car: &mut Driven,
@@ -111,7 +111,7 @@ impl Watch<'_> {
         }
     }
 
-    /// Looks at the car. Returns whether it has to be taken over.
+    /// Observes the car. Returns whether it has to be taken over.
     fn look(&mut self) -> io::Result<bool> {
         let (time, pose) = (self.truth.time()?, self.truth.pose(0)?);
         let speed = self.trail.last().map_or(0.0, |(before, last, _)| {
@@ -123,7 +123,7 @@ impl Watch<'_> {
         Ok(self.referee.see(time, &pose))
     }
 
-    /// Drives a car back into its lane by remote control, as the rules say: it stands before and after.
+    /// Returns a car to its lane by remote control. By the rules, it stands before and after.
     fn bring_back(&mut self, car: &mut Driven, seconds: f64) -> io::Result<()> {
         car.stop()?;
         self.wait(car, STILL)?;
@@ -143,7 +143,7 @@ impl Watch<'_> {
         Ok(())
     }
 
-    /// Lets time pass while the referee looks on.
+    /// Waits while the referee observes.
     fn wait(&mut self, car: &mut Driven, seconds: f64) -> io::Result<()> {
         for _ in 0..(seconds / PERIOD).round() as u32 {
             car.wait(PERIOD)?;

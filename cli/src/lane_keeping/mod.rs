@@ -26,16 +26,16 @@ With --campaign, many courses, each with worn paint, patches of light, and a lig
 
 JSON fields:
   course, course_length_m, driver, sensors, light
-  distance_m                  along the lane, without what was driven by remote control
-  result_m                    the same less 5 m for each departure and each intervention, and less the metres outside
-  departures, interventions   how often two wheels left the lane, and how often the car was taken over
-  offset_rms_mm, deviation_mm root of the mean squared distance of the car's middle from its lane's, and the mean one
-  autonomy_percent            share of the time, where an intervention costs 6 s
+  distance_m                  along the lane, without distance under remote control
+  result_m                    the same minus 5 m per departure and intervention, and minus the distance outside
+  departures, interventions   number of times that two wheels left the lane; interventions by remote control
+  offset_rms_mm, deviation_mm root mean square and mean offset of the car's centre from the lane's centre
+  autonomy_percent            of the time; an intervention costs 6 s
   survival_s                  seconds to the first departure, or to the end
   picture
-  courses, clean, unclean     campaign: how many, those without departure and intervention, and the seeds of the others
+  courses, clean, unclean     campaign: number of courses, those without departure and intervention, seeds of the others
   distance_median_m           campaign: of all courses
-  survived                    campaign: how many survived the first minute
+  survived                    campaign: number that survived the first minute
 Outcomes: kept, departed (of lanes), failed; with --campaign: passed (at least 98 % are clean), wrong."
 )]
 pub(crate) struct Args {
@@ -47,15 +47,15 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 2.0, value_parser = minutes, allow_hyphen_values = true)]
     pub(crate) minutes: f64,
 
-    /// What the car sees its lane by.
+    /// Sensors for the lane.
     #[arg(long, value_enum, default_value = "camera")]
     pub(crate) sensors: Sensors,
 
-    /// Who drives.
+    /// Driver.
     #[arg(long, value_enum, default_value = "ours")]
     pub(crate) driver: Driver,
 
-    /// Fastest speed in m/s [default: 2.6, 0.5 for the book's driver].
+    /// Maximum speed in m/s [default: 2.6, 0.5 for the book's driver].
     #[arg(long, value_name = "M/S", value_parser = speed, allow_hyphen_values = true)]
     pub(crate) speed: Option<f64>,
 
@@ -63,11 +63,11 @@ pub(crate) struct Args {
     #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = light, allow_hyphen_values = true)]
     pub(crate) light: f64,
 
-    /// Drive on many courses, from --seed on, and print how many went well.
+    /// Drive on many courses, from --seed on, and print how many were driven without a fault.
     #[arg(long)]
     pub(crate) campaign: bool,
 
-    /// Courses of a campaign.
+    /// Number of courses in a campaign.
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=100_000), allow_hyphen_values = true)]
     pub(crate) courses: u64,
 
@@ -82,14 +82,14 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("!campaign", &["courses"]),
 ]);
 
-/// What a car sees its lane by.
+/// Sensors for the lane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Sensors {
-    /// Its camera alone.
+    /// The camera alone.
     Camera,
 }
 
-/// Who drives.
+/// Driver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Driver {
     /// A road fitted to the markings.
@@ -124,7 +124,7 @@ fn light(text: &str) -> Result<f64, String> {
     within(text, 0.0, 10.0)
 }
 
-/// The work of the command.
+/// Runs the command.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     if args.campaign {
         return campaign::run(args);
@@ -138,12 +138,12 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(common.draw(report, "lane_keeping.svg", || drawing::picture(&setting, &drive)))
 }
 
-/// The rules that the referee goes by.
+/// The referee's rules.
 fn rules() -> FreeDriveRules {
     FreeDriveRules::default()
 }
 
-/// Whether a car has kept its lane all the time.
+/// Whether a car kept its lane all the time.
 fn is_clean(score: &FreeDriveScore) -> bool {
     score.departures + score.interventions == 0
 }

@@ -1,4 +1,4 @@
-//! What the commands on hills share: the world with a robot in it, and what was true on the way.
+//! Shared by the commands on hills: the world with a robot, and the ground truth of a run.
 
 use std::sync::Arc;
 
@@ -19,8 +19,7 @@ pub(crate) struct Hike {
 }
 
 impl Hike {
-    /// The scene that the options describe, or the command's own; a robot of this kind drives where the world
-    /// has none.
+    /// The scene of the options, or the command's own. If the world has no robot, one of this kind drives.
     pub(crate) fn of(
         common: &CommonArgs,
         spec: &RobotSpec,
@@ -68,13 +67,13 @@ impl Hike {
     }
 }
 
-/// What was true in a run on hills.
+/// Ground truth of a run on hills.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Ride {
     pub(crate) end: TruthInSpace,
-    /// Radians.
+    /// Angle (rad).
     pub(crate) max_tilt: f64,
-    /// How far the robot moved otherwise than its wheels said, as a share of the way by them.
+    /// Slip: motion of the robot that its wheels did not report (fraction of the distance by the wheels).
     pub(crate) slip: f64,
 }
 
@@ -98,7 +97,7 @@ impl Ride {
     }
 }
 
-/// A mishap as outcomes name it.
+/// A mishap's name in outcomes.
 pub(crate) fn word(mishap: Mishap) -> &'static str {
     match mishap {
         Mishap::Tipped => "tipped",
@@ -108,17 +107,17 @@ pub(crate) fn word(mishap: Mishap) -> &'static str {
     }
 }
 
-/// An angle as fields show it.
+/// An angle in fields.
 pub(crate) fn degrees(radians: f64) -> f64 {
     (units::to_deg(radians) * 100.0).round() / 100.0
 }
 
-/// A share as fields show it.
+/// A fraction in fields.
 pub(crate) fn percent(share: f64) -> f64 {
     rounded((share * 10_000.0).round() / 100.0)
 }
 
-/// The middle one of some numbers; 0 of none.
+/// Median; 0 of no numbers.
 pub(crate) fn median(mut numbers: Vec<f64>) -> f64 {
     numbers.sort_by(f64::total_cmp);
     numbers.get(numbers.len() / 2).copied().unwrap_or(0.0)

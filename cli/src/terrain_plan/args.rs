@@ -7,7 +7,7 @@ use roverlab::world::RobotSpec;
 
 use crate::common::{Failure, PlainArgs, parse_point, parse_pose};
 
-/// How a way is found.
+/// Planner of the path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 #[value(rename_all = "snake_case")]
 pub(crate) enum Planner {
@@ -19,7 +19,7 @@ pub(crate) enum Planner {
     AnyAngle,
 }
 
-/// What a way is to cost little of.
+/// Quantity to minimise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Cost {
     /// Millimetres along the ground.
@@ -33,7 +33,7 @@ pub(crate) enum Cost {
 impl Cost {
     pub(crate) const ALL: [Self; 3] = [Self::Length, Self::Energy, Self::Time];
 
-    /// The objective for a robot.
+    /// The planner's objective for a robot.
     pub(crate) fn objective(self, spec: &RobotSpec) -> Objective {
         let speed = 0.5 * spec.drive.top_speed();
         match self {
@@ -43,7 +43,7 @@ impl Cost {
         }
     }
 
-    /// What a report's cost is for one of the planner's, and its unit.
+    /// Factor from the planner's cost to the report's, and its unit.
     pub(crate) fn unit(self, spec: &RobotSpec) -> (f64, &'static str) {
         match self {
             Self::Length => (1000.0, "mm"),
@@ -53,30 +53,29 @@ impl Cost {
     }
 }
 
-/// The force that rolling on belts takes, as a share of the weight; and the climbing speed as a share of that
-/// on level ground: up a slope of 10 degrees a robot is as fast as on level ground.
+/// Rolling resistance of belts (fraction of the weight), and speed of climbing relative to level ground: up a
+/// slope of 10 degrees a robot is as fast as on level ground.
 const RESISTANCE: f64 = 0.1;
 const CLIMB: f64 = 0.17;
 
 /// The command line of `terrain-plan`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
-    about = "Plans a way over hills that is short, takes little energy or little time, where a robot does not tip or slip",
+    about = "Plans a path over hills with minimum length, energy or time, on which a robot neither tips nor slips",
     after_help = "\
-Without --world, the hills are generated; --seed says which. Without --goal, the way leads to the highest place that can be
-reached.
+Without --world, the hills are generated from --seed. Without --goal, the path leads to the highest reachable place.
 
 JSON fields:
-  cost, unit                  of the way, uphill and downhill
-  cost_back                   of the way back, or null
-  length_mm, climb_mm         along the ground, and all that it rises
-  turns                       places where it turns or steps
-  samples, open_percent       of the hills; the share on which the robot can stand
+  cost, unit                  of the path, uphill and downhill
+  cost_back                   of the path back, or null
+  length_mm, climb_mm         along the ground, and sum of all ascents
+  turns                       number of points of the path
+  samples, open_percent       of the hills; the part on which the robot can stand
   highest_reachable_mm        within the slope limit
   slope_limit_deg
   expanded                    nodes taken off the queue
   timing                      with --timing: prepare_ms, plan_ms
-  runs, changes, equal        with --campaign only: plans of A* and of D* Lite that cost what Dijkstra's and fresh ones do
+  runs, changes, equal        with --campaign only: plans of A* and D* Lite with the costs of Dijkstra's and of new plans
 Outcomes: found, unreachable; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
@@ -84,39 +83,39 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     pub(crate) world: Option<PathBuf>,
 
-    /// The built-in robot that is to drive.
+    /// Built-in robot.
     #[arg(long, value_name = "NAME", default_value = "Blizzard", value_parser = parse_robot)]
     pub(crate) robot: Box<RobotSpec>,
 
-    /// Where the way begins [default: the start of the world].
+    /// Start of the path [default: the start of the world].
     #[arg(long, value_name = "X,Y,DEG", value_parser = parse_pose, allow_hyphen_values = true)]
     pub(crate) start: Option<Pose>,
 
-    /// Where it ends [default: on the highest place that can be reached].
+    /// Goal of the path [default: the highest reachable place].
     #[arg(long, value_name = "X,Y", value_parser = parse_point, allow_hyphen_values = true)]
     pub(crate) goal: Option<Point>,
 
-    /// What it is to cost little of.
+    /// Quantity to minimise.
     #[arg(long, value_enum, default_value_t = Cost::Length)]
     pub(crate) cost: Cost,
 
-    /// How it is found.
+    /// Planner of the path.
     #[arg(long, value_enum, default_value_t = Planner::AnyAngle)]
     pub(crate) planner: Planner,
 
-    /// The steepest ground [default: seven tenths of where the robot would slip or tip].
+    /// Steepest slope [default: 70 % of the slope at which the robot slips or tips].
     #[arg(long, value_name = "DEG", value_parser = parse_slope, allow_hyphen_values = true)]
     pub(crate) slope: Option<f64>,
 
-    /// Plan on many hills, and hold the planners against each other.
+    /// Plan on many hills, and compare the planners.
     #[arg(long)]
     pub(crate) campaign: bool,
 
-    /// Hills of a campaign; each has the next seed.
+    /// Number of hills in a campaign, with consecutive seeds.
     #[arg(long, value_name = "N", default_value_t = 50, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) runs: u64,
 
-    /// How many threads plan in a campaign [default: one for each core].
+    /// Number of threads in a campaign [default: one per core].
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) threads: Option<NonZero<usize>>,
 
@@ -138,7 +137,7 @@ impl Args {
     }
 }
 
-/// A failed way as an answer.
+/// Outcome of a failed plan.
 pub(crate) fn refused(error: impl std::fmt::Display) -> Failure {
     Failure::input(error.to_string())
 }

@@ -10,24 +10,24 @@ use super::job::{plan, surface};
 use crate::common::{Failure, Outcome, Report, Stopwatch, share_out, threads};
 use crate::terrain::median;
 
-/// What came of the planners on some hills.
+/// Results of the planners on some hills.
 #[derive(Debug, Clone, Copy, Default)]
 struct Trial {
-    /// Plans that were held against others, and those that cost as much.
+    /// Number of compared plans, and of those with equal costs.
     compared: u32,
     equal: u32,
     changes: u32,
-    /// Seconds.
+    /// Durations (s).
     time: f64,
 }
 
-/// Samples along a side, for plans by A*; and of the smaller hills that change.
+/// Samples along a side for plans by A*, and for the smaller hills that change.
 const SAMPLES: usize = 512;
 const CHANGING: usize = 65;
-/// Changes of some hills.
+/// Number of changes of some hills.
 const CHANGES: u32 = 20;
 
-/// The campaign's work.
+/// Runs the campaign.
 pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
     let trials = share_out("hills", args.runs, threads(args.threads), |index| {
         trial(args, args.plain.seed.wrapping_add(index))
@@ -87,7 +87,7 @@ fn ends(map: &ElevationMap) -> (Point, Point) {
     (nearest(area.min), nearest(area.max))
 }
 
-/// D* Lite beside fresh plans, while the hills change.
+/// Compares D* Lite with new plans while the hills change.
 fn changed(args: &Args, seed: u64, trial: &mut Trial) -> Result<(), Failure> {
     let mut stream = Stream::new(seed).child("changes", 0);
     let first = ground(seed, CHANGING)?;

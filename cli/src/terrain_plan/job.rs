@@ -14,7 +14,7 @@ use super::campaign::campaign;
 use crate::common::{Failure, Outcome, Report, Stopwatch, millimetres, rounded};
 use crate::terrain::{degrees, percent};
 
-/// The work of the command.
+/// Runs the command.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     if args.campaign {
         return campaign(args);
@@ -58,7 +58,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(args.plain.draw(report, "terrain_plan.svg", || picture(&world, args, path.as_ref().ok(), start, goal)))
 }
 
-/// The world, and where the way begins.
+/// The world and the start of the path.
 fn hills(args: &Args) -> Result<(World, Point), Failure> {
     let Some(file) = &args.world else {
         let options = ReliefOptions::of(ReliefKind::Range);

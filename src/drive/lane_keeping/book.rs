@@ -10,16 +10,16 @@ use crate::vision::{
     LineSegment, RgbView, SegmentParameters, gaussian_into, gray_into,
 };
 
-/// Parameters of the book's lane keeper. The defaults are those of its programs, where they state any.
+/// Parameters of the book's lane keeper. The defaults are those of its programs where they state any.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BookLaneParameters {
-    /// Seconds from one step to the next.
+    /// Control period (s).
     pub period: f64,
-    /// Metres per second.
+    /// Speed (m/s).
     pub speed: f64,
-    /// The curvature, in 1/m, that is steered for a lane whose middle is at the edge of the picture.
+    /// Curvature commanded for a lane whose centre is at the edge of the image (1/m).
     pub gain: f64,
-    /// The share of the picture, from its top, in which no lines are looked for.
+    /// Upper part of the image without line detection (fraction of the height).
     pub horizon: f64,
 }
 
@@ -29,10 +29,10 @@ impl Default for BookLaneParameters {
     }
 }
 
-/// The book's lane keeper: gray, smooth, edges, the lower part of the picture, straight lines, the mean of
-/// those that lean to the right and of those that lean to the left, and a steering in proportion to how far
-/// the middle between them is aside. Where one side is missing, it is taken to be as far away as it was;
-/// where both are, the steering stays as it is.
+/// The book's lane keeper: gray, smoothing, edges, the lower part of the image, straight lines, the mean of
+/// those that lean to the right and of those that lean to the left, and curvature proportional to the offset
+/// of the middle between them. A missing side is assumed at its last distance; if both are missing, the
+/// curvature stays.
 #[derive(Debug)]
 pub struct BookLaneKeeper {
     parameters: BookLaneParameters,
@@ -41,17 +41,17 @@ pub struct BookLaneKeeper {
     hough: HoughSegments,
     gray: Vec<u8>,
     smooth: Vec<u8>,
-    /// The last distance between the two lines in the lowest row, in pixels.
+    /// Last distance between the two lines in the lowest row (pixels).
     width: Option<f64>,
-    /// The curvature that is steered.
+    /// Commanded curvature (1/m).
     bend: f64,
 }
 
-/// A line is one along the road if it leans by less than this from upright, as a slope of columns for rows.
+/// Maximum slope of a line along the road (columns per row).
 const LEANS: f64 = 3.0;
 
 impl BookLaneKeeper {
-    /// A keeper. Fails where a parameter makes no sense.
+    /// Creates a lane keeper. Fails for parameters out of range.
     pub fn new(parameters: BookLaneParameters) -> Result<Self, ImageError> {
         require_positive("control period", parameters.period)?;
         require_positive("speed", parameters.speed)?;
@@ -70,7 +70,7 @@ impl BookLaneKeeper {
         })
     }
 
-    /// The straight lines of the picture's lower part.
+    /// Straight lines in the lower part of the image.
     pub fn lines(&mut self, image: &image::RgbImage) -> Result<Vec<LineSegment>, ImageError> {
         let (width, height) = (image.width() as usize, image.height() as usize);
         self.gray.resize(width * height, 0);
@@ -88,7 +88,7 @@ impl BookLaneKeeper {
         Ok(self.hough.find(GrayView::new(&self.gray, width, height)?, parameters))
     }
 
-    /// The curvature to steer for the lines of a picture of a size.
+    /// Curvature for the lines in an image of a given size (1/m).
     fn steer(&mut self, lines: &[LineSegment], (width, height): (f64, f64)) -> f64 {
         let [left, right] = [-1.0, 1.0].map(|side| mean_line(lines, side, (width, height)));
         let (left, right) = match (left, right, self.width) {
@@ -106,8 +106,9 @@ impl BookLaneKeeper {
     }
 }
 
-/// Where the mean of the lines to one side, -1 for the left and 1 for the right, meets the row a quarter up
-/// the picture. A line to the left of a camera leans to the right, and counts by its length.
+/// Column at which the mean of the lines on one side, -1 for the left and 1 for the right, crosses the row a
+/// quarter above the bottom of the image. A line to the left of a camera leans to the right. Lines count by
+/// their length.
 fn mean_line(lines: &[LineSegment], side: f64, (width, height): (f64, f64)) -> Option<f64> {
     let (mut sum, mut weight) = (0.0, 0.0);
     for line in lines {
@@ -118,7 +119,7 @@ fn mean_line(lines: &[LineSegment], side: f64, (width, height): (f64, f64)) -> O
         }
         let slope = across / down;
         let meets = a.0 + slope * (0.75 * height - a.1);
-        // Lines of the other lanes are beyond the picture's edges.
+        // Lines of the other lanes are beyond the edges of the image.
         let is_own = slope * side > 0.05 && meets > -0.5 * width && meets < 1.5 * width;
         if is_own {
             let long = math::hypot(across, down);

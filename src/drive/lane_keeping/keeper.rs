@@ -12,24 +12,24 @@ use crate::vision::{GrayView, GrayViewMut, GrayWeights, ImageError, RgbView, gra
 /// Parameters of a [`LaneKeeper`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LaneKeeperParameters {
-    /// Seconds from one step to the next: one image each.
+    /// Control period, one image each (s).
     pub period: f64,
-    /// The fastest speed in m/s.
+    /// Maximum speed (m/s).
     pub speed: f64,
-    /// The greatest acceleration across in bends, in m/s².
+    /// Maximum lateral acceleration in bends (m/s²).
     pub across: f64,
-    /// The deceleration before bends, in m/s².
+    /// Deceleration before bends (m/s²).
     pub brake: f64,
-    /// Metres in which an offset is steered away at low speed, and how many more for each m/s.
+    /// Distance in which an offset is corrected: at standstill (m), and in addition per speed (m per m/s).
     pub settling: [f64; 2],
-    /// Seconds from a command to its effect.
+    /// Time from a command to its effect (s).
     pub delay: f64,
-    /// Metres of the road that are seen ahead, at most, to be driven by.
+    /// Maximum distance of the road ahead that counts (m).
     pub sight: f64,
 }
 
 impl Default for LaneKeeperParameters {
-    /// For a model car in 1:10 with a camera of 30 images a second.
+    /// For a model car at a scale of 1:10 with a camera of 30 images per second.
     fn default() -> Self {
         Self {
             period: 1.0 / 30.0,
@@ -56,8 +56,8 @@ impl LaneKeeperParameters {
     }
 }
 
-/// Keeps a car, or a robot on two wheels, in the middle of its lane by its camera and its odometry. Where the
-/// lane is lost, it stands and looks.
+/// Keeps a car, or a two-wheeled robot, in the centre of its lane by camera and odometry. If the lane is
+/// lost, it stops and continues to look.
 #[derive(Debug, Clone)]
 pub struct LaneKeeper {
     parameters: LaneKeeperParameters,
@@ -68,13 +68,13 @@ pub struct LaneKeeper {
     lane: Option<LaneEstimate>,
 }
 
-/// Metres from place to place at which the road ahead is looked at for its bends.
+/// Spacing of the places ahead at which curvature is examined (m).
 const STRIDE: f64 = 0.1;
-/// Metres per second with which the road is driven where next to nothing of it is known.
+/// Speed where hardly anything of the road is known (m/s).
 const CREEP: f64 = 0.3;
 
 impl LaneKeeper {
-    /// A keeper for a camera and a road. Fails where a parameter makes no sense.
+    /// Creates a keeper for a camera and a road. Fails for parameters out of range.
     pub fn new(
         camera: RoadCamera,
         road: RoadModel,
@@ -85,7 +85,7 @@ impl LaneKeeper {
         Ok(Self { parameters, finder, gray: Vec::new(), before: None, lane: None })
     }
 
-    /// What it knows of the lane since the last step.
+    /// The lane as estimated in the last step.
     pub fn lane(&self) -> Option<&LaneEstimate> {
         self.lane.as_ref()
     }
@@ -95,13 +95,13 @@ impl LaneKeeper {
         &self.finder
     }
 
-    /// Forgets the road: for a car that has been carried away.
+    /// Discards the road, for a car that has been moved.
     pub fn forget(&mut self) {
         self.finder.forget();
         self.before = None;
     }
 
-    /// Looks at an image, taken at a pose of odometry.
+    /// Processes an image taken at an odometry pose.
     pub fn see(&mut self, image: &image::RgbImage, odometry: Pose) -> Result<&LaneEstimate, ImageError> {
         let (width, height) = (image.width() as usize, image.height() as usize);
         self.gray.resize(width * height, 0);
@@ -116,14 +116,14 @@ impl LaneKeeper {
         Ok(self.lane.insert(lane))
     }
 
-    /// The command for what is known of the lane, at a speed.
+    /// The command for the estimated lane at a speed.
     fn steer(&self, lane: &LaneEstimate, speed: f64) -> Twist {
         let p = &self.parameters;
         if lane.lost {
             return Twist::STOP;
         }
         let wanted = self.fastest(lane, speed);
-        // Where the car will be when the command acts.
+        // Pose of the car when the command takes effect.
         let ahead = (p.delay * speed).max(0.0);
         let settling = p.settling[0] + p.settling[1] * speed.max(0.0);
         let offset = lane.offset + ahead * math::sin(lane.heading);
@@ -132,7 +132,7 @@ impl LaneKeeper {
         Twist::new(wanted, wanted * bend)
     }
 
-    /// The fastest speed that bends ahead and sight allow.
+    /// Maximum speed for the bends ahead and the visible distance.
     fn fastest(&self, lane: &LaneEstimate, speed: f64) -> f64 {
         let p = &self.parameters;
         let mut most = p.speed;
@@ -142,7 +142,7 @@ impl LaneKeeper {
             let free = (ahead - p.delay * speed).max(0.0);
             most = most.min((p.across / bend + 2.0 * p.brake * free).sqrt());
         }
-        // A lane that is known by guess is driven slowly.
+        // Drive slowly where the lane is extrapolated.
         let doubt = lane.sigmas[0] / 0.03 + lane.sigmas[1] / 0.08;
         (most / (1.0 + doubt * doubt)).max(CREEP.min(p.speed))
     }

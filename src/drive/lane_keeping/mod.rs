@@ -1,4 +1,4 @@
-//! Keeping the lane by what a camera sees (book, section 13.3).
+//! Lane keeping by camera (book, section 13.3).
 //!
 //! [`LaneKeeper`] steers by the road that
 //! [`LaneMarkingFinder`](crate::vision::lane_markings::LaneMarkingFinder) fits to the markings: ahead by the
@@ -36,7 +36,7 @@
 //! run(&mut car, &mut book, 0.5, |_, _, _| ())?;
 //! # Ok(())
 //! # }
-//! ```
+//! // The book's lane keeper, for another half second.
 
 mod book;
 mod keeper;

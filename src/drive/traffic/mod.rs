@@ -1,4 +1,4 @@
-//! Driving in traffic (book, chapter 13), and who judges it.
+//! Driving in traffic (book, chapter 13): the referee.
 
 mod referee;
 

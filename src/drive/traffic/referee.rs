@@ -2,79 +2,77 @@ use crate::geometry::{Point, Pose};
 use crate::world::road::{LanePose, RoadCourse};
 use crate::world::{DriveSpec, RobotSpec};
 
-/// The rules of Free Drive that are open in their text, or differ from release to release.
+/// Rules of Free Drive that its text leaves open, or that differ between releases.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FreeDriveRules {
-    /// Whether metres outside the own lane are subtracted: so in the release of 2025, no longer in that of
+    /// Whether the distance outside the own lane is subtracted: yes in the release of 2025, no in that of
     /// 2026.
     pub subtract_outside: bool,
-    /// Metres that leaving the lane with two wheels costs, as does each time that the car is taken over by
-    /// remote control.
+    /// Penalty for leaving the lane with two wheels, and for each intervention by remote control (m).
     pub penalty: f64,
-    /// Seconds that an intervention costs in the measure of autonomy (M. Bojarski et al., "End to end
-    /// learning for self-driving cars", 2016).
+    /// Penalty for an intervention in the measure of autonomy (s; M. Bojarski et al., "End to end learning
+    /// for self-driving cars", 2016).
     pub intervention: f64,
-    /// The farthest that the car's middle may be from its lane's middle, in widths of a lane, before it is
-    /// taken over.
+    /// Offset of the car's centre from the lane's centre at which the car is taken over (lane widths).
     pub astray: f64,
-    /// Seconds for which a car may stand before it is taken over.
+    /// Standstill after which the car is taken over (s).
     pub standing: f64,
 }
 
 impl Default for FreeDriveRules {
-    /// Those of 2025.
+    /// The rules of 2025.
     fn default() -> Self {
         Self { subtract_outside: true, penalty: 5.0, intervention: 6.0, astray: 1.0, standing: 5.0 }
     }
 }
 
-/// What a car has done in Free Drive.
+/// Record of a car in Free Drive.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FreeDriveScore {
-    /// Seconds since the start.
+    /// Time since the start (s).
     pub time: f64,
-    /// Metres along the lane, those under remote control aside.
+    /// Distance along the lane, without that under remote control (m).
     pub distance: f64,
-    /// Metres of these with two wheels outside.
+    /// Part of it with two wheels outside the lane (m).
     pub outside: f64,
-    /// How often the lane was left with two wheels or more.
+    /// Number of times that the car left the lane with at least two wheels.
     pub departures: u32,
-    /// How often the car had to be taken over.
+    /// Number of interventions.
     pub interventions: u32,
-    /// Seconds to the first departure, or to the end (Duckietown's survival time).
+    /// Time to the first departure, or to the end (s; Duckietown's survival time).
     pub survival: f64,
-    /// The sum of squared offsets from the lane's middle by metres driven, and of absolute ones (Duckietown's
-    /// deviation).
+    /// Integrals of the squared and of the absolute offset from the lane's centre over the distance driven
+    /// (Duckietown's deviation).
     squares: f64,
     deviation: f64,
 }
 
 impl FreeDriveScore {
-    /// The root of the mean squared offset of the car's middle from its lane's, in metres.
+    /// Root mean square offset of the car's centre from the lane's centre (m).
     pub fn offset_rms(&self) -> f64 {
         (self.squares / self.distance.max(1e-9)).sqrt()
     }
 
-    /// The mean distance of the car's middle from its lane's, in metres.
+    /// Mean absolute offset of the car's centre from the lane's centre (m).
     pub fn mean_deviation(&self) -> f64 {
         self.deviation / self.distance.max(1e-9)
     }
 
-    /// The result in metres: the distance with what is subtracted.
+    /// The result: the distance minus the penalties (m).
     pub fn result(&self, rules: &FreeDriveRules) -> f64 {
         let outside = if rules.subtract_outside { self.outside } else { 0.0 };
         let faults = self.departures + self.interventions;
         (self.distance - outside - rules.penalty * f64::from(faults)).max(0.0)
     }
 
-    /// The share of the time that is driven without help, in percent.
+    /// Share of the time driven without interventions (percent).
     pub fn autonomy(&self, rules: &FreeDriveRules) -> f64 {
         let helped = rules.intervention * f64::from(self.interventions);
         100.0 * (1.0 - helped / self.time.max(1e-9)).max(0.0)
     }
 }
 
-/// The referee of Free Drive: sees the true pose of a car on a course, and never tells it.
+/// The referee of Free Drive. It sees the true pose of a car on a course and does not reveal it to the car.
 ///
 /// ```
 /// use roverlab::drive::traffic::{FreeDrive, FreeDriveRules};
@@ -96,22 +94,23 @@ impl FreeDriveScore {
 pub struct FreeDrive {
     course: RoadCourse,
     rules: FreeDriveRules,
-    /// Where the wheels touch the ground, in the car's frame, and its middle.
+    /// Points where the wheels touch the ground, and the centre, in the car's frame.
     wheels: [Point; 4],
     middle: Point,
     score: FreeDriveScore,
     lane: LanePose,
-    /// Whether two wheels are outside, since when the car stands, and whether it is under remote control.
+    /// Whether two wheels are outside, the time at which the car stopped, and whether it is under remote
+    /// control.
     is_outside: bool,
     stands_since: Option<f64>,
     is_remote: bool,
 }
 
-/// Metres per second below which a car stands.
+/// Speed below which a car stands (m/s).
 const STANDS: f64 = 0.02;
 
 impl FreeDrive {
-    /// A referee for a car that starts at the beginning of a course.
+    /// Creates the referee of a car that starts at the beginning of a course.
     pub fn new(course: RoadCourse, car: &RobotSpec, rules: FreeDriveRules) -> Self {
         let (length, track) = match car.drive {
             DriveSpec::Ackermann { wheelbase, track, .. } | DriveSpec::Omni { wheelbase, track, .. } => {
@@ -137,12 +136,12 @@ impl FreeDrive {
         }
     }
 
-    /// What the car has done so far.
+    /// Record so far.
     pub fn score(&self) -> &FreeDriveScore {
         &self.score
     }
 
-    /// Where the car's middle is on its lane.
+    /// Lane position of the car's centre.
     pub fn lane(&self) -> &LanePose {
         &self.lane
     }
@@ -152,7 +151,7 @@ impl FreeDrive {
         self.is_remote
     }
 
-    /// Looks at the car at a time. Returns whether it has to be taken over now.
+    /// Observes the car at a time (s). Returns whether it has to be taken over now.
     pub fn see(&mut self, time: f64, pose: &Pose) -> bool {
         let passed = time - self.score.time;
         self.score.time = time;
@@ -160,7 +159,7 @@ impl FreeDrive {
         self.lane = self.on_lane(pose, self.middle);
         let around = self.course.line.length();
         let metres = self.lane.along - before.along;
-        // The shorter way around.
+        // The shorter way around the course.
         let metres = metres - around * (metres / around).round();
         if self.is_remote {
             return false;
@@ -181,7 +180,7 @@ impl FreeDrive {
         is_over
     }
 
-    /// The car is given back: it drives by itself again.
+    /// Returns control to the car.
     pub fn give_back(&mut self) {
         (self.is_remote, self.is_outside, self.stands_since) = (false, false, None);
     }
@@ -205,7 +204,7 @@ impl FreeDrive {
         self.is_outside = is_outside;
     }
 
-    /// Where a point of the car is on its lane.
+    /// Lane position of a point of the car.
     fn on_lane(&self, car: &Pose, point: Point) -> LanePose {
         let place = car.to_world(point);
         self.course.locate(&Pose::new(place.x, place.y, car.heading), Some(self.lane.along))
@@ -223,11 +222,11 @@ mod tests {
         FreeDrive::new(course, &RobotSpec::road_car(), FreeDriveRules::default())
     }
 
-    /// Drives along a lane at 1 m/s, at offsets that a function gives.
+    /// Drives along a lane at 1 m/s with given offsets.
     fn drive(referee: &mut FreeDrive, metres: f64, offset: impl Fn(f64) -> f64) -> Option<f64> {
         let course = referee.course.clone();
         (0..=(100.0 * metres) as u32).map(|i| 0.01 * f64::from(i)).find(|&time| {
-            // The rear axle is behind the middle.
+            // The rear axle is behind the centre.
             let at = course.pose(time, offset(time));
             referee.see(time, &at)
         })
@@ -247,7 +246,7 @@ mod tests {
     #[test]
     fn two_wheels_over_the_line_are_one_departure_until_they_are_back() {
         let mut referee = referee();
-        // The right wheels are 82.5 mm to the right of the middle, and the line 210 mm.
+        // The right wheels are 82.5 mm to the right of the centre, and the line 210 mm.
         let offset = |time: f64| if (2.0..3.0).contains(&time) || time > 4.0 { -0.14 } else { 0.0 };
         assert_eq!(drive(&mut referee, 5.0, offset), None);
         let score = referee.score();

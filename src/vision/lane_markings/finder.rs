@@ -6,44 +6,44 @@ use crate::geometry::{Point, Pose, math};
 use crate::parameter::require;
 use crate::vision::GrayView;
 
-/// What is known of a road before it is seen.
+/// Known properties of a road.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RoadModel {
-    /// Metres of the road for each metre of the rules: 1, or 0.5 at a scale of 2:1.
+    /// Scale of the road relative to the rules: 1, or 0.5 at a scale of 2:1.
     pub size: f64,
-    /// Metres across a marking.
+    /// Width of a marking (m).
     pub line_width: f64,
-    /// Whether cars keep to the left.
+    /// Whether traffic keeps to the left.
     pub left_hand: bool,
 }
 
 impl Default for RoadModel {
-    /// A road of the rules' size, and traffic on the right.
+    /// A road of the rules' size with traffic on the right.
     fn default() -> Self {
         Self { size: 1.0, line_width: 0.02, left_hand: false }
     }
 }
 
-/// Where a car is on its lane, and how the lane goes on.
+/// Position of a car in its lane, and the course of the lane ahead.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LaneEstimate {
-    /// Metres to the left of the lane's middle.
+    /// Offset to the left of the lane's centre (m).
     pub offset: f64,
-    /// Radians to the left of the lane's direction.
+    /// Heading relative to the lane, positive to the left (rad).
     pub heading: f64,
-    /// The curvature of the lane's middle, in 1/m; positive to the left.
+    /// Curvature of the lane's centre line, positive to the left (1/m).
     pub curvature: f64,
-    /// The standard deviations of these three.
+    /// Standard deviations of these three.
     pub sigmas: [f64; 3],
-    /// Metres from the road's middle to the middle of an edge line.
+    /// Distance from the road's centre line to the centre of an edge line (m).
     pub edge: f64,
-    /// Radians by which the camera looks higher than it is said to.
+    /// Pitch of the camera relative to its nominal tilt, positive upwards (rad).
     pub pitch: f64,
-    /// How many points of lines fit within a metre and a half.
+    /// Number of fitting points of lines within 1.5 m.
     pub support: f64,
-    /// Whether the road has not been seen for longer than a gap may be.
+    /// Whether the road has been out of sight for longer than a gap can be.
     pub lost: bool,
-    /// Curvatures of the road's middle ahead, and metres to the lane's middle.
+    /// Curvatures of the road's centre line ahead, and distance to the lane's centre (m).
     bends: [f64; super::curve::KNOTS],
     middle: f64,
     size: f64,
@@ -51,14 +51,13 @@ pub struct LaneEstimate {
 }
 
 impl LaneEstimate {
-    /// The curvature of the lane's middle some metres ahead along the road.
+    /// Curvature of the lane's centre line at a distance ahead along the road (1/m).
     pub fn curvature_at(&self, ahead: f64) -> f64 {
         let bend = bend_at(&self.bends, ahead / self.size) / self.size;
         bend / (1.0 - bend * self.middle)
     }
 
-    /// A place of the lane's middle some metres ahead along the road, in the robot's frame, with the lane's
-    /// direction.
+    /// Pose on the lane's centre line at a distance ahead along the road (m), in the robot's frame.
     pub fn place(&self, ahead: f64) -> Pose {
         let (point, forward) = Curve::new(&self.bends).at(ahead / self.size);
         let left = self.middle / self.size;
@@ -70,7 +69,7 @@ impl LaneEstimate {
     }
 }
 
-/// Finds the lane in images, and tracks it while the car drives.
+/// Finds the lane in images and tracks it while the car drives.
 ///
 /// ```
 /// use roverlab::vision::lane_markings::{LaneMarkingFinder, RoadCamera, RoadModel};
@@ -87,26 +86,26 @@ impl LaneEstimate {
 pub struct LaneMarkingFinder {
     road_model: RoadModel,
     filter: MarkingFilter,
-    /// The camera in the rules' size.
+    /// The camera at the scale of the rules.
     camera: RoadCamera,
     points: Vec<MarkingPoint>,
     road: Option<Road>,
-    /// Metres driven since the road was seen.
+    /// Distance driven since the road was last seen (m).
     blind: f64,
 }
 
-/// Metres of ground that are looked at, ahead of the camera.
+/// Distance ahead of the camera that is searched (m).
 const REACH: f64 = 2.2;
-/// Points that are enough to see a road by.
+/// Number of points that suffice to see a road.
 const ENOUGH: f64 = 7.0;
-/// Metres without lines after which the road is lost: a gap of 1 m, and a crossing.
+/// Distance without lines after which the road is lost (m): a gap of 1 m and a crossing.
 const BLIND: f64 = 1.6;
-/// Metres within which points count while the road is tracked, and when it is looked for.
+/// Distance from a line within which points count, while the road is tracked and while it is searched (m).
 const TRACKED: f64 = 0.05;
 const SOUGHT: f64 = 0.08;
 
 impl LaneMarkingFinder {
-    /// A finder for a camera. Fails where camera or road make no sense.
+    /// Creates a finder for a camera. Fails for a camera or road out of range.
     pub fn new(camera: RoadCamera, road_model: RoadModel) -> Result<Self, ParameterError> {
         let size = road_model.size;
         require("size of the road", size, (0.1..=10.0).contains(&size), "0.1 to 10")?;
@@ -115,7 +114,7 @@ impl LaneMarkingFinder {
         Ok(Self { road_model, filter, camera: own, points: Vec::new(), road: None, blind: 0.0 })
     }
 
-    /// The points of lines in the last image, in the robot's frame.
+    /// Points of lines in the last image, in the robot's frame.
     pub fn points(&self) -> impl Iterator<Item = MarkingPoint> {
         let size = self.road_model.size;
         self.points.iter().map(move |&MarkingPoint { place, contrast, pixel }| MarkingPoint {
@@ -125,14 +124,14 @@ impl LaneMarkingFinder {
         })
     }
 
-    /// Forgets the road, and looks for it anew in the next image.
+    /// Discards the road; the next image starts a new search.
     pub fn forget(&mut self) {
         self.road = None;
         self.blind = 0.0;
     }
 
-    /// Looks at an image after the car has driven some metres and turned by some radians since the last one.
-    /// Takes the car to be about in its lane when it looks for the road.
+    /// Processes an image after the car has driven some distance (m) and turned by an angle (rad) since the
+    /// last one. A search assumes that the car is approximately in its lane.
     pub fn see(&mut self, image: GrayView<'_>, (metres, turn): (f64, f64)) -> LaneEstimate {
         let size = self.road_model.size;
         self.filter.find(image, &mut self.points);
@@ -150,12 +149,12 @@ impl LaneMarkingFinder {
         let support = road.see(&self.points, &self.camera, wide);
         self.blind = if support < ENOUGH { self.blind + metres.abs() } else { 0.0 };
         let lane = self.estimate(&road, support);
-        // What has not been seen at first is looked for again.
+        // A road that was not found in the first image is searched again.
         self.road = (support >= ENOUGH || wide == TRACKED).then_some(road);
         lane
     }
 
-    /// The likeliest road for a car that is about in its lane.
+    /// Most likely road for a car that is approximately in its lane.
     fn acquire(&self) -> Road {
         let middle = 0.5 * self.side() * Road::new(0.0, 0.0, 0.0, None).edge();
         let mut best = (f64::NEG_INFINITY, Road::new(middle, 0.0, 0.0, None));
@@ -173,7 +172,7 @@ impl LaneMarkingFinder {
         best.1
     }
 
-    /// 1 if the own lane is to the left of the road's middle, -1 to the right.
+    /// 1 if the own lane is to the left of the road's centre line, -1 if to the right.
     fn side(&self) -> f64 {
         if self.road_model.left_hand { 1.0 } else { -1.0 }
     }

@@ -1,6 +1,5 @@
-//! The road as a state with its covariance: where the car is on it, how it bends ahead, how wide it is, and
-//! by how much the camera is tilted otherwise than it is said to be. All lengths are those of the rules'
-//! size.
+//! State of the road with its covariance: pose of the car on it, curvatures ahead, width, and the camera's
+//! pitch error. All lengths are at the scale of the rules.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -8,8 +7,8 @@ use super::curve::{Bends, Curve, Foot, KNOTS, SPACING, bend_at};
 use super::{MarkingPoint, RoadCamera};
 use crate::geometry::{Point, Vector, math};
 
-/// Metres to the left of the road's middle; radians to the left of its direction; curvatures; metres from its
-/// middle to an edge line; radians of the camera's pitch.
+/// Offset to the left of the road's centre line (m), heading to the left of it (rad), curvatures (1/m),
+/// distance from the centre line to an edge line (m), pitch of the camera (rad).
 pub(super) const STATES: usize = KNOTS + 4;
 const OFFSET: usize = 0;
 const HEADING: usize = 1;
@@ -20,14 +19,14 @@ const PITCH: usize = EDGE + 1;
 pub(super) type State = SVector<f64, STATES>;
 pub(super) type Covariance = SMatrix<f64, STATES, STATES>;
 
-/// What is believed of the road.
+/// Estimate of the road.
 #[derive(Debug, Clone)]
 pub(super) struct Road {
     pub(super) state: State,
     pub(super) covariance: Covariance,
 }
 
-/// How a point goes into the fit.
+/// A point's contribution to the fit.
 struct Measured {
     residual: f64,
     slope: State,
@@ -35,29 +34,28 @@ struct Measured {
     along: f64,
 }
 
-/// What is known at first: deviations of offset, heading, curvatures, edge and pitch.
+/// Initial standard deviations of offset, heading, curvatures, edge and pitch.
 const FIRST: [f64; 5] = [0.12, 0.12, 0.7, 0.035, 0.01];
-/// Metres from the road's middle to an edge line, of a road that has not been seen.
+/// Initial distance from the road's centre line to an edge line (m).
 const EDGE_AT_FIRST: f64 = 0.42;
-/// Deviations that grow with the root of the metres driven.
+/// Process noise: deviations per square root of the distance driven.
 const DRIFT: [f64; 5] = [0.010, 0.020, 0.25, 0.003, 0.0005];
-/// Curvatures of a road that has not come into view yet: their deviation, and metres in which they are
-/// forgotten.
+/// Curvature of a road that is not yet in view: its deviation (1/m), and the distance in which it decays (m).
 const UNSEEN: (f64, f64) = (0.6, 1.5);
-/// The tightest bend of a road, and how sharply that is meant; and the same of its edges, from least to most.
+/// Soft limits: largest curvature of a road (1/m) and range of its edge (m), each with its deviation.
 const TIGHTEST: (f64, f64) = (1.0, 0.1);
 const EDGES: ([f64; 2], f64) = ([0.36, 0.48], 0.01);
-/// Metres by which a line's middle is uncertain: at any place, and as a share of a pixel.
+/// Uncertainty of a line's centre: constant (m), and as a fraction of a pixel.
 const BLUR: (f64, f64) = (0.006, 0.6);
-/// Metres by which a line between knots is not as the model says, for the square of the metres ahead.
+/// Deviation of a line between knots from the model, per square of the distance ahead (m per m²).
 const ROUGH: f64 = 0.010;
-/// Points of one frame err together, by the camera and by the model; so many count as one.
+/// Number of points that count as one: points of a frame share the errors of camera and model.
 const TOGETHER: f64 = 8.0;
-/// Metres between the lines of a pair.
+/// Distance between the lines of a pair (m).
 const PAIR: f64 = 0.02;
 
 impl Road {
-    /// A road that has not been seen: the car's offset from its middle, and its heading.
+    /// The estimate before the road is seen, from the car's offset and heading.
     pub(super) fn new(offset: f64, heading: f64, bend: f64, edge: Option<f64>) -> Self {
         let mut state = State::zeros();
         state[OFFSET] = offset;
@@ -91,14 +89,14 @@ impl Road {
         std::array::from_fn(|knot| self.state[BENDS + knot])
     }
 
-    /// The deviation of a sum of offset and a share of the edge, of the heading, and of the curvature.
+    /// Standard deviations of the offset plus a multiple of the edge, of the heading, and of the curvature.
     pub(super) fn sigmas(&self, share: f64) -> [f64; 3] {
         let p = &self.covariance;
         let offset = p[(OFFSET, OFFSET)] + 2.0 * share * p[(OFFSET, EDGE)] + share * share * p[(EDGE, EDGE)];
         [offset, p[(HEADING, HEADING)], p[(BENDS, BENDS)]].map(|variance| variance.max(0.0).sqrt())
     }
 
-    /// The car drives some metres, and turns to the left by some radians.
+    /// Predicts the state after the car has driven a distance (m) and turned to the left by an angle (rad).
     pub(super) fn drive(&mut self, metres: f64, turn: f64) {
         let (offset, heading) = (self.state[OFFSET], self.state[HEADING] + 0.5 * turn);
         let (sin, cos) = math::sin_cos(heading);
@@ -124,7 +122,7 @@ impl Road {
         self.forget(along.abs());
     }
 
-    /// What comes into view is not known: the curvature farthest ahead goes back to none by and by.
+    /// The part that comes into view is unknown: the farthest curvature decays towards zero.
     fn forget(&mut self, along: f64) {
         let last = BENDS + KNOTS - 1;
         let kept = math::exp(-along / UNSEEN.1);
@@ -136,7 +134,7 @@ impl Road {
         self.covariance[(last, last)] += (1.0 - kept * kept) * UNSEEN.0 * UNSEEN.0;
     }
 
-    /// Adds what is known of all roads: how tightly they bend, and how wide they are.
+    /// Adds the prior of all roads: how tight their bends are, and how wide they are.
     fn bound(&self, information: &mut Covariance, pull: &mut State) {
         let mut keep = |index: usize, [least, most]: [f64; 2], sigma: f64| {
             let excess = self.state[index] - self.state[index].clamp(least, most);
@@ -149,8 +147,8 @@ impl Road {
         keep(EDGE, EDGES.0, EDGES.1);
     }
 
-    /// Fits it to points, with weights that leave out what no line of the road is. `wide` are the metres
-    /// within which points count at first. Returns the weight of the points within a metre and a half.
+    /// Fits the state to points; weights exclude points of no line of the road. `wide` is the initial
+    /// distance within which points count (m). Returns the weight of the points within 1.5 m.
     pub(super) fn see(&mut self, points: &[MarkingPoint], camera: &RoadCamera, wide: f64) -> f64 {
         let Some(prior) = self.covariance.cholesky().map(|root| root.inverse()) else { return 0.0 };
         let before = self.state;
@@ -182,7 +180,7 @@ impl Road {
         support
     }
 
-    /// How well points fit, without fitting: each counts up to 1.
+    /// Quality of fit without fitting: each point counts up to 1.
     pub(super) fn score(&self, points: &[MarkingPoint], camera: &RoadCamera) -> f64 {
         let curve = Curve::new(&self.bends());
         let fits = points.iter().filter_map(|point| {
@@ -193,8 +191,7 @@ impl Road {
         fits.sum()
     }
 
-    /// A point as the road sees it: its distance from the line that it is nearest to, and how that changes
-    /// with the state.
+    /// Residual of a point: its distance from the nearest line, and the derivative by the state.
     fn measure(&self, curve: &Curve, point: &MarkingPoint, camera: &RoadCamera) -> Option<Measured> {
         let lift = camera.lift(point.place);
         let place = point.place + lift * self.pitch();
@@ -203,7 +200,7 @@ impl Road {
         let own = turned(place.coords);
         let Foot { along, left, normal, slopes } = curve.foot(Point::new(own.x, self.offset() + own.y))?;
         let edge = self.edge();
-        // The nearest line: the left edge, the right one, or the middle, which may be a pair of lines.
+        // The nearest line: left edge, right edge, or centre, which may be a pair of lines.
         let (line, per_edge) = match left / edge {
             share if share > 0.5 => (edge, 1.0),
             share if share < -0.5 => (-edge, -1.0),

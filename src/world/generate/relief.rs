@@ -4,12 +4,12 @@ use crate::parameter::{require, require_up_to};
 use crate::random::Stream;
 use crate::world::{HeightField, Terrain, World};
 
-/// What kind of hills [`relief`] draws.
+/// Kind of hills that [`relief`] generates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ReliefKind {
-    /// Hills and mesas, some of them too steep, one of which is the highest.
+    /// Hills and mesas, some of them too steep; one is the highest.
     Range,
-    /// A ring around a hollow, which is filled with water (book, section 7.3).
+    /// A ring around a hollow filled with water (book, section 7.3).
     Crater,
     /// A ramp up, a bank and a ramp down, inside a high rim (book, section 7.3).
     Ramp,
@@ -18,22 +18,22 @@ pub enum ReliefKind {
 }
 
 impl ReliefKind {
-    /// All of them.
+    /// All kinds.
     pub const ALL: [Self; 4] = [Self::Range, Self::Crater, Self::Ramp, Self::Steps];
 }
 
-/// What [`relief`] draws.
+/// Options of [`relief`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReliefOptions {
-    /// The kind of hills.
+    /// Kind of hills.
     pub kind: ReliefKind,
-    /// The length of the square's sides in metres.
+    /// Side length of the square (m).
     pub side: f64,
-    /// The elevation of the highest place in metres.
+    /// Elevation of the highest place (m).
     pub top: f64,
-    /// The slope in radians of ramps, and about which the sides of hills are as steep.
+    /// Slope of ramps, and approximately of the sides of hills (rad).
     pub slope: f64,
-    /// Samples along a side.
+    /// Number of samples along a side.
     pub samples: usize,
 }
 
@@ -48,7 +48,7 @@ impl ReliefOptions {
         Self { kind, side, top, slope: 0.27, samples: 257 }
     }
 
-    /// Fails with the name of the option that is out of range.
+    /// Fails for an option out of range; the error names it.
     pub fn validate(&self) -> Result<(), ParameterError> {
         require("side", self.side, (1.0..=1e4).contains(&self.side), "1 to 10000 m")?;
         require_up_to("top", self.top, 0.25 * self.side)?;
@@ -70,16 +70,15 @@ impl ReliefOptions {
 pub struct Relief {
     /// The hills, without walls; craters with their water.
     pub world: World,
-    /// A gentle place near the border from which a robot starts, and the way it looks: before a ramp's foot,
-    /// up.
+    /// Start pose on gentle ground near the border; before a ramp, facing up.
     pub start: Pose,
-    /// The middle line of a ramp's way: foot, top, bank's end, foot. Empty for other kinds.
+    /// Centre line of a ramp: foot, top, end of the bank, foot. Empty for other kinds.
     pub way: Vec<Point>,
 }
 
-/// Draws hills. The same stream gives the same hills on every platform.
+/// Generates hills. The same stream gives the same hills on every platform.
 ///
-/// What of them a robot can reach, and how high that is, tells `nav::elevation::ElevationMap`.
+/// `nav::elevation::ElevationMap` determines what a robot can reach on them, and how high that is.
 ///
 /// ```
 /// use roverlab::random::Stream;
@@ -111,7 +110,7 @@ fn world(options: &ReliefOptions, height: impl FnMut(Point) -> f64) -> Result<Wo
 struct Hill {
     middle: Point,
     height: f64,
-    /// Along and across, in metres.
+    /// Along and across (m).
     size: Vector,
     along: Vector,
     mesa: bool,
@@ -159,12 +158,12 @@ fn ground_of(world: &World) -> &HeightField {
     surface.expect("a world that was made with a surface")
 }
 
-/// Places drawn for a start.
+/// Number of places drawn for a start.
 const DRAWN: usize = 200;
-/// The share of the side that a start is away from the border.
+/// Distance of a start from the border (fraction of the side).
 const INSIDE: f64 = 0.12;
 
-/// The lowest of some places near the border whose surroundings are gentle; a way to look that is drawn too.
+/// The lowest of several places near the border with gentle surroundings, with a random heading.
 fn low_start(stream: &mut Stream, options: &ReliefOptions, ground: &HeightField) -> Pose {
     let side = options.side;
     let inside = |share: f64| (INSIDE + (1.0 - 2.0 * INSIDE) * share) * side;
@@ -216,10 +215,10 @@ fn crater(stream: &mut Stream, options: &ReliefOptions) -> Result<Relief, Parame
     Ok(Relief { world, start, way: Vec::new() })
 }
 
-/// The most of the side that a ramp to the top may be long: there is room before its foot, and behind the
-/// bank.
+/// Maximum length of the ramp to the top (fraction of the side), which leaves room before its foot and behind
+/// the bank.
 const ROOM: f64 = 0.47;
-/// The share of the side that the rim around ramps and steps is wide.
+/// Width of the rim around ramps and steps (fraction of the side).
 const RIM: f64 = 0.03;
 
 fn is_rim(point: Point, side: f64) -> bool {

@@ -1,25 +1,25 @@
-//! What makes a course one of the rules.
+//! Checks a course against the rules.
 
 use super::course::{CourseError, RoadCourse, RoadMarkKind};
 use super::crossings;
 use crate::geometry::{math, units};
 
-/// Metres of a course from the shortest to the longest, in the size of the rules.
+/// Shortest and longest course (m at the scale of the rules).
 const LENGTHS: [f64; 2] = [6.0, 500.0];
-/// Metres across a lane by the rules.
+/// Width of a lane (m).
 const LANES: [f64; 2] = [0.35, 0.45];
-/// Metres of a line's width that are accepted: 18 to 20 mm by the rules.
+/// Accepted width of a line (m); 18 to 20 mm by the rules.
 const LINES: [f64; 2] = [0.015, 0.025];
-/// The least radius of a road's middle.
+/// Smallest radius of the centre line (m).
 const RADIUS: f64 = 1.0;
-/// What is missing to the closing of a road and spread over it: metres and radians.
+/// Largest closing error that is spread over the road (m, rad).
 const CLOSING: (f64, f64) = (0.10, 0.0524);
-/// Marks at most.
+/// Largest number of marks.
 const MARKS: usize = 10_000;
 
 impl RoadCourse {
-    /// Fails unless the road is closed, nowhere too tight, and crosses itself at crossings alone, and lanes
-    /// and marks are as the rules say.
+    /// Fails unless the road is closed, has no tighter bend than the rules allow, and crosses itself only at
+    /// crossings, and lanes and marks follow the rules.
     pub fn check(&self) -> Result<(), CourseError> {
         let size = self.size;
         let within = |[least, most]: [f64; 2], value: f64| (least * size..=most * size).contains(&value);
@@ -28,7 +28,7 @@ impl RoadCourse {
             let [least, most] = LENGTHS.map(|length| length * size);
             return Err(CourseError::Length { length, least, most });
         }
-        // Rounding of millimetres is none.
+        // Tolerance for rounding to millimetres.
         if !within([LANES[0] - 1e-9, LANES[1] + 1e-9], self.lane_width) {
             let [least, most] = LANES.map(|width| width * size);
             return Err(CourseError::LaneWidth { width: self.lane_width, least, most });

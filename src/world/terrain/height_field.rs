@@ -128,23 +128,24 @@ impl HeightField {
         f64::from(self.heights[row * self.columns + column])
     }
 
-    /// Samples in a metre along x and along y.
+    /// Number of samples per metre along x and y.
     pub(crate) fn per_metre(&self) -> Vector {
         self.per_metre
     }
 
-    /// The level of the smallest block of `1 << level` cells each way that holds all cells.
+    /// Level of the smallest block of `1 << level` cells in each direction that contains all cells.
     pub(crate) fn top_level(&self) -> u32 {
         self.pyramid.top()
     }
 
-    /// The lowest and the highest elevation of the block of `1 << level` cells each way that holds a cell.
+    /// Lowest and highest elevation of the block of `1 << level` cells in each direction that contains a
+    /// cell.
     pub(crate) fn bounds(&self, level: u32, column: usize, row: usize) -> (f64, f64) {
         let bounds = self.pyramid.block(level, column, row);
         (f64::from(bounds.low), f64::from(bounds.high))
     }
 
-    /// The lowest elevation in metres.
+    /// Lowest elevation (m).
     pub fn lowest(&self) -> f64 {
         f64::from(self.pyramid.whole().low)
     }
@@ -154,8 +155,8 @@ impl HeightField {
         f64::from(self.pyramid.whole().high)
     }
 
-    /// No place of a rectangle is higher than this; some place not much farther away may be as high. Beyond
-    /// the surface there is nothing: -∞. O(1).
+    /// Upper bound of the elevation in a rectangle; some place not much farther away reaches it. -∞ beyond
+    /// the surface. O(1).
     pub fn upper_bound(&self, area: &Aabb) -> f64 {
         let (low, high) = (area.min.sup(&self.area.min), area.max.inf(&self.area.max));
         if !(low.x <= high.x && low.y <= high.y) {
@@ -177,7 +178,7 @@ impl HeightField {
         f64::from(highest)
     }
 
-    /// The elevation at a point in metres; `None` beyond the surface.
+    /// Elevation at a point (m); `None` beyond the surface.
     #[inline]
     pub fn height(&self, point: Point) -> Option<f64> {
         self.spot(point).map(|spot| self.height_at(&spot))

@@ -11,7 +11,7 @@ use crate::kinematics::{PlanarMotion, PlanarTwist};
 use crate::world::space::Space;
 use crate::world::{DriveSpec, HeightField, RobotPlacement, World};
 
-/// The ground of a world with hills, the water over it, and how robots are on the one and in the other.
+/// The ground of a world with hills, the water above it, and the robots on the ground and in the water.
 #[derive(Debug)]
 pub(in crate::io::sim) struct Hills {
     ground: Arc<HeightField>,
@@ -42,7 +42,7 @@ const STILL: f64 = 1e-11;
 const STANDING: f64 = 2e-3;
 
 impl Hills {
-    /// The hills of a world, if it has any; for craft, a level floor does as well.
+    /// The hills of a world, if it has any. Craft need none: for them, a level floor counts as well.
     pub(in crate::io::sim) fn of(
         world: &World,
         robots: &[RobotPlacement],
@@ -77,7 +77,7 @@ impl Hills {
         Mover::Riding(Box::new(Rider { carriage, body, watch }))
     }
 
-    /// Their surface.
+    /// Surface of the ground.
     pub(in crate::io::sim) fn ground(&self) -> &HeightField {
         &self.ground
     }
@@ -87,7 +87,7 @@ impl Hills {
         self.movers[robot].pose()
     }
 
-    /// Metres of water above a place so many metres above a robot's origin.
+    /// Depth of the water above a point that is a given height above a robot's origin (m).
     pub(in crate::io::sim) fn depth(&self, robot: usize, up: f64, time: f64) -> f64 {
         let place = self.pose(robot).to_world(Point3::new(0.0, 0.0, up));
         (self.waters.surface(place.xy(), time) - place.z).max(0.0)
@@ -101,19 +101,19 @@ impl Hills {
         }
     }
 
-    /// The elevation of the ground under a point; beyond the hills, that of the floor.
+    /// Elevation of the ground under a point (m); beyond the hills, that of the floor.
     pub(in crate::io::sim) fn ground_level(&self, point: Point) -> f64 {
         self.ground.height(point).unwrap_or(0.0)
     }
 
-    /// The elevation on which an object stands at a point: the ground, or the water if it floats.
+    /// Elevation on which an object stands at a point (m): the ground, or the water if it floats.
     pub(in crate::io::sim) fn level(&self, point: Point, object: &Movable) -> f64 {
         let ground = self.ground_level(point);
         let draught = object.draught(self.waters.density());
         draught.map_or(ground, |draught| ground.max(self.waters.level() - draught))
     }
 
-    /// Puts a robot on the ground or in the water, or so many metres above the ground.
+    /// Places a robot on the ground, in the water, or at a height above the ground (m).
     pub(in crate::io::sim) fn place(&mut self, robot: usize, pose: Pose, elevation: f64) {
         match &mut self.movers[robot] {
             Mover::Riding(rider) => {
@@ -124,8 +124,8 @@ impl Hills {
         }
     }
 
-    /// Lets all robots move for a tick, and puts how their frames move over the plane in place of how their
-    /// wheels turned. Returns whether any moves.
+    /// Moves all robots for one tick, and replaces the motion of their wheels by that of their frames in the
+    /// plane. Returns whether any robot moves.
     pub(in crate::io::sim) fn ride(
         &mut self,
         bodies: &mut [Body],

@@ -6,7 +6,7 @@ use crate::io::sim::TICK;
 use crate::kinematics::PlanarTwist;
 use crate::world::HeightField;
 
-/// Who watches a robot for mishaps.
+/// Detects mishaps of a robot.
 #[derive(Debug, Clone)]
 pub(super) struct Watch {
     height: f64,

@@ -36,21 +36,21 @@ struct Contact {
     impulse: Vector3,
 }
 
-/// What an impulse at a foot does to a body, along one direction.
+/// Effect of an impulse at a foot on a body, along one direction.
 #[derive(Debug, Clone, Copy, Default)]
 struct Axis {
     direction: Vector3,
-    /// Its moment about the middle of the mass, and how fast it spins the body.
+    /// Its moment about the centre of mass, and the change of angular velocity.
     moment: Vector3,
     spin: Vector3,
-    /// The speed that it gives the foot.
+    /// The change of the foot's speed.
     effort: f64,
 }
 
-/// Rounds over all contacts, at most, in each look at the ground of a tick: the first says about where feet
-/// will be, and there the second looks.
+/// Maximum number of solver iterations per contact search of a tick: the first search estimates the positions
+/// of the feet, and the second one uses them.
 const ROUNDS: [usize; 2] = [10, 60];
-/// The change of an impulse below which rounds end, in m/s.
+/// Change of an impulse at which the iteration ends (m/s).
 const SETTLED: f64 = 1e-9;
 /// Height above which feet of a body at rest are not considered (m).
 const MARGIN: f64 = 2e-3;
@@ -212,7 +212,7 @@ impl RigidBody {
             let mut change = 0.0_f64;
             for contact in &mut self.contacts {
                 change = change.max(contact.press(&mut speeds, softness, tick));
-                // Nothing rubs that is not pressed.
+                // No friction without pressure.
                 if contact.held > 0 && contact.impulse != Vector3::zeros() {
                     change = change.max(contact.rub(&mut speeds, carriage.friction));
                 }
@@ -328,14 +328,14 @@ fn turn(by: Vector3) -> UnitQuaternion<f64> {
 }
 
 impl Axis {
-    /// The axis along a direction at a foot on an arm from the middle of the mass.
+    /// The axis along a direction at a foot with a lever arm from the centre of mass.
     fn new(direction: Vector3, arm: &Vector3, gyration: f64) -> Self {
         let moment = arm.cross(&direction);
         let effort = 1.0 + moment.norm_squared() / gyration;
         Self { direction, moment, spin: moment / gyration, effort }
     }
 
-    /// How fast a foot moves along the axis.
+    /// Speed of a foot along the axis (m/s).
     #[inline]
     fn speed(&self, (velocity, spin): &(Vector3, Vector3)) -> f64 {
         self.direction.dot(velocity) + self.moment.dot(spin)

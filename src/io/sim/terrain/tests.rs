@@ -271,8 +271,8 @@ fn a_robot_drives_up_a_ramp_and_falls_off_a_ledge() {
     assert!(flew && down.x > 1.9 && down.z < 0.15, "{down:?}");
 }
 
-/// Where a robot comes to in some seconds, if the drive comes to its speed within a second; with a whole
-/// tick, a half and a quarter of one.
+/// Poses of a robot after some seconds, with ticks of full, half and quarter length; the drive reaches its
+/// speed within a second.
 fn ends(spec: &RobotSpec, ground: &HeightField, start: Pose, drive: PlanarTwist, seconds: u32) -> [Pose3; 3] {
     [1, 2, 4].map(|parts| {
         let mut robot = Robot::resting(spec, ground, start);
@@ -285,7 +285,7 @@ fn ends(spec: &RobotSpec, ground: &HeightField, start: Pose, drive: PlanarTwist,
     })
 }
 
-/// Metres and degrees between the ends of pairs, at most.
+/// Maximum distance (m) and angle (degrees) between the ends of pairs.
 fn apart(ends: &[Pose3; 3]) -> (f64, f64) {
     ends.windows(2).fold((0.0, 0.0), |(far, turned), pair| {
         let turn = crate::geometry::angle_difference(pair[1].pose().heading, pair[0].pose().heading);
@@ -319,8 +319,8 @@ fn the_tick_matters_little_to_skidding_robots_on_a_plane() {
     }
 }
 
-/// Lets a robot go above the ground, turned and moving as chance has it, and looks at it for 2 s. Fails if it
-/// gains energy or sinks into the ground.
+/// Drops a robot above the ground with random attitude and motion, and observes it for 2 s. Fails if it gains
+/// energy or sinks into the ground.
 fn let_go(ground: &HeightField, spec: &RobotSpec, stream: &mut Stream) -> Result<(), String> {
     let carriage = Undercarriage::of(spec);
     let mut between = |most: f64| stream.between(-most, most);
@@ -357,7 +357,7 @@ proptest! {
     }
 }
 
-/// What takes minutes: `cargo test --release --lib -- --ignored terrain::tests::campaigns`.
+/// These take minutes: `cargo test --release --lib -- --ignored terrain::tests::campaigns`.
 mod campaigns {
     use super::*;
 
@@ -389,7 +389,7 @@ mod campaigns {
             for tick in 0..2000 {
                 robot.step(&ground, drive);
                 let at = robot.pose().position;
-                // Who drives off the hills falls beside them.
+                // A robot that leaves the hills falls beside them.
                 if at.x.abs().max(at.y.abs()) > 3.5 {
                     break;
                 }
