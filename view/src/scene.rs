@@ -1,11 +1,11 @@
-use roverlab::geometry::{Aabb, Pose};
-use roverlab::world::{DriveSpec, Footprint, Object, RobotPlacement, Scene, Shape, Wall};
+use roverlab::geometry::{Aabb, Point, Pose};
+use roverlab::world::{DriveSpec, Footprint, HeightField, Object, RobotPlacement, Scene, Shape, Wall};
 use serde_json::{Value, json};
 
 /// A scene for the page, in metres and radians.
 pub fn scene_json(scene: &Scene) -> Value {
     let world = &scene.world;
-    json!({
+    let mut json = json!({
         "floor": corners(&world.floor),
         "bounds": corners(&world.bounds()),
         "walls": world.walls.iter().map(wall).collect::<Vec<_>>(),
@@ -23,7 +23,30 @@ pub fn scene_json(scene: &Scene) -> Value {
             "at": [place.position.x, place.position.y],
         })).collect::<Vec<_>>(),
         "robots": scene.robots.iter().map(robot).collect::<Vec<_>>(),
-    })
+    });
+    if let Some(surface) = world.terrain.as_ref().and_then(|terrain| terrain.surface.as_deref()) {
+        json["relief"] = relief(surface);
+    }
+    json
+}
+
+/// Hills as elevations in whole millimetres, row by row from the lower left.
+fn relief(surface: &HeightField) -> Value {
+    /// Maximum number of samples along a side.
+    const MOST: usize = 160;
+    let area = surface.area();
+    let [columns, rows] = [surface.columns(), surface.rows()].map(|samples| samples.min(MOST));
+    let at = |low: f64, high: f64, index: usize, samples: usize| {
+        low + (high - low) * index as f64 / (samples - 1) as f64
+    };
+    let heights = (0..rows).flat_map(|row| {
+        (0..columns).map(move |column| {
+            let x = at(area.min.x, area.max.x, column, columns);
+            let y = at(area.min.y, area.max.y, row, rows);
+            surface.height(Point::new(x, y)).map_or(0.0, |height| (1000.0 * height).round())
+        })
+    });
+    json!({ "area": corners(&area), "columns": columns, "heights": heights.collect::<Vec<_>>() })
 }
 
 fn corners(bounds: &Aabb) -> [f64; 4] {

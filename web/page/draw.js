@@ -1,4 +1,5 @@
 // Draws a moment of a recording from above.
+import { shaded } from "./relief.js";
 
 export class View {
   constructor(canvas) {
@@ -119,6 +120,7 @@ export class View {
     const { context, colours } = this, [left, bottom, right, top] = scene.floor;
     context.fillStyle = colours.floor;
     context.fillRect(left, bottom, right - left, top - bottom);
+    if (scene.relief) this.relief(scene.relief);
     const step = [0.1, 0.5, 1, 5, 10, 50, 100].find((step) => step * this.scale >= 24);
     if (!step || (right - left) / step > 400) return;
     context.beginPath();
@@ -127,6 +129,18 @@ export class View {
     context.strokeStyle = colours.grid;
     context.lineWidth = this.px(1);
     context.stroke();
+  }
+
+  // Hills in light from the upper left, lighter the higher. The picture is made once a scene.
+  relief(relief) {
+    const { context } = this, [left, bottom, right, top] = relief.area;
+    this.hills = this.hills?.relief === relief ? this.hills : { relief, picture: shaded(relief) };
+    context.save();
+    // The rows of a picture go down.
+    context.translate(left, top);
+    context.scale(1, -1);
+    context.drawImage(this.hills.picture, 0, 0, right - left, top - bottom);
+    context.restore();
   }
 
   // Paths of walls by colour and thickness, made once a scene.

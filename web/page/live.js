@@ -1,5 +1,5 @@
 // A run that takes place elsewhere: the page is beside it, and hears of it by Foxglove's WebSocket protocol.
-const SUBSCRIPTION = 1, DATA = 1, HEAD = 13;
+const SUBSCRIPTION = 1, DATA = 1, CONTENT = 13;
 
 export class Live {
   // Whether the page has been served from beside a run.
@@ -17,7 +17,7 @@ export class Live {
     this.socket.binaryType = "arraybuffer";
     this.socket.onmessage = ({ data }) => {
       if (typeof data === "string") this.told(JSON.parse(data));
-      else if (new DataView(data).getUint8(0) === DATA) hear(data, [new DataView(data).getUint8(HEAD), HEAD + 1, data.byteLength - HEAD - 1]);
+      else if (new DataView(data).getUint8(0) === DATA) hear(data, [new DataView(data).getUint8(CONTENT), CONTENT + 1, data.byteLength - CONTENT - 1]);
     };
     this.socket.onclose = () => end("The program has ended, or its connection is lost.");
   }

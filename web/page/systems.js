@@ -6,6 +6,7 @@ export const CHAPTERS = [
   ["Swarms", ["follow-me"]],
   ["Walls", ["wall-following"]],
   ["Other drives", ["ackermann", "omni"]],
+  ["Hills", ["summit"]],
   ["Mazes", ["maze-left", "maze-lidar", "maze-explore", "micromouse"]],
   ["Navigation", ["distbug", "bug-compare", "navigate"]],
   ["Robot vision", ["camera", "edges", "color-tracking", "motion"]],
@@ -17,7 +18,7 @@ export const CHAPTERS = [
 const NAMES = {
   "a-to-b": "From A to B", "color-tracking": "Colour tracking", ackermann: "A car", omni: "Mecanum wheels", distbug: "DistBug",
   "bug-compare": "Eleven bugs", motion: "Motion detection", genetic: "Evolved wall follower", "cone-race": "Cone race",
-  "maze-left": "Left hand", "maze-lidar": "Left wall by lidar", "maze-explore": "Exploring a maze", safety: "Safety system",
+  summit: "To the summit", "maze-left": "Left hand", "maze-lidar": "Left wall by lidar", "maze-explore": "Exploring a maze", safety: "Safety system",
   "lidar-scan": "Lidar scan", "follow-me": "Follow me", edges: "Edges in images",
 };
 

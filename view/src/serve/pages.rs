@@ -17,6 +17,7 @@ const SCRIPTS: &[File] = scripts![
     "options.js",
     "pointer.js",
     "recording.js",
+    "relief.js",
     "runner.js",
     "systems.js"
 ];
