@@ -1,7 +1,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::sight_map::SightMap;
-use crate::geometry::{Point3, Vector};
+use crate::geometry::{Point3, Vector, Vector3};
 
 /// How a look has to be moved to lie on the map: along both axes, upwards, about the upright axis, and by how
 /// much it rises in a metre along both axes.
@@ -23,12 +23,38 @@ const ENOUGH: usize = 100;
 /// How far dead reckoning may be off, as standard deviations: along both axes, upwards, about the upright
 /// axis.
 const EXPECTED: [f64; 4] = [0.3, 0.3, 0.1, 0.05];
+/// Shares of its way since the last look by which a robot may have slipped back, the likeliest first.
+const SLIPPED: [f64; 6] = [0.0, 0.25, 0.5, 0.75, 1.0, 1.25];
+/// By how much more of the ground has to lie on the map for all of its way to be believed to be slip.
+const UNLIKELY: f64 = 0.05;
 
-/// Fits points around a robot to the map by least squares on their heights, with little weight for outliers.
-/// `tilt` is by how much the look may be tilted, in radians. `None` if they do not lie on it.
-pub(super) fn align(map: &SightMap, robot: Point3, points: &[Point3], tilt: f64) -> Option<Shift> {
+/// Fits points around a robot to the map. `before` is where it looked last: belts may slip on the way from
+/// there. `tilt` is by how much the look may be tilted, in radians. `None` if they do not lie on the map.
+pub(super) fn align(
+    map: &SightMap,
+    robot: Point3,
+    before: Point3,
+    points: &[Point3],
+    tilt: f64,
+) -> Option<Shift> {
+    let fits = SLIPPED.iter().filter_map(|slipped| {
+        let shift = fit(map, robot, points, tilt, (before - robot) * *slipped)?;
+        Some((lies(map, robot, points, &shift) - UNLIKELY * slipped, shift))
+    });
+    let mut fits = fits.peekable();
+    if fits.peek().is_none() {
+        // So little of it has been seen before that it may lie anywhere.
+        return Some(Shift::default());
+    }
+    fits.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(share, _)| *share > MOST).map(|(_, shift)| shift)
+}
+
+/// The least squares of the heights, with little weight for outliers, from a first guess on. `None` if too
+/// few of the points are within the map.
+fn fit(map: &SightMap, robot: Point3, points: &[Point3], tilt: f64, guess: Vector3) -> Option<Shift> {
     let prior = [EXPECTED[0], EXPECTED[1], EXPECTED[2], EXPECTED[3], tilt, tilt];
-    let mut fit = SVector::<f64, 6>::zeros();
+    let guess = SVector::<f64, 6>::from([guess.x, guess.y, guess.z, 0.0, 0.0, 0.0]);
+    let mut fit = guess;
     for outlier in OUTLIERS {
         let mut normal = SMatrix::<f64, 6, 6>::zeros();
         let mut right = SVector::<f64, 6>::zeros();
@@ -49,42 +75,44 @@ pub(super) fn align(map: &SightMap, robot: Point3, points: &[Point3], tilt: f64)
             count += 1;
         }
         if count < ENOUGH {
-            // So little of it has been seen before that it may lie anywhere.
-            return Some(Shift::default());
+            return None;
         }
         for (index, expected) in prior.iter().enumerate() {
             // Neighbouring points err together.
             let weight = PRIOR / (expected * expected);
             normal[(index, index)] += weight;
-            right[index] -= fit[index] * weight;
+            right[index] -= (fit[index] - guess[index]) * weight;
         }
         let Some(step) = normal.cholesky().map(|factors| factors.solve(&right)) else { break };
         fit += step;
     }
-    let shift = Shift {
+    Some(Shift {
         place: Vector::new(fit[0], fit[1]),
         up: fit[2],
         turn: fit[3],
         tilt: Vector::new(fit[4], fit[5]),
-    };
-    (lies(map, robot, points, &shift) > MOST).then_some(shift)
+    })
 }
 
-/// The share of the points within the map that lie on it.
+/// The share of the ground within the map that lies on it.
 fn lies(map: &SightMap, robot: Point3, points: &[Point3], shift: &Shift) -> f64 {
-    let (mut on, mut count) = (0_u32, 0_u32);
+    let (mut on, mut all) = (0.0, 0.0);
     for point in points {
         let arm = point - robot;
         let moved = arm.xy() + Vector::new(-arm.y, arm.x) * shift.turn;
         let Some((height, _)) = map.surface(robot.xy() + moved + shift.place) else { continue };
         let z = point.z + shift.up + shift.tilt.dot(&arm.xy());
-        on += u32::from((height - z).abs() < 2.0 * OUTLIER);
-        count += 1;
+        // Points are the farther apart the farther they are away.
+        let share = arm.xy().norm();
+        all += share;
+        if (height - z).abs() < 2.0 * OUTLIER {
+            on += share;
+        }
     }
-    f64::from(on) / f64::from(count.max(1))
+    on / f64::max(all, f64::MIN_POSITIVE)
 }
 
-/// The share of points that lie on the map after a fit which is right.
+/// The share of the ground that lies on the map after a fit which is right.
 const MOST: f64 = 0.7;
 /// The number of neighbouring points that say no more than one of them.
 const PRIOR: f64 = 20.0;

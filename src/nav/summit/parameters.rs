@@ -72,7 +72,7 @@ impl SummitParameters {
             stride: 0.8,
             resolution: 0.05,
             extent: 7.0,
-            tolerance: 0.01,
+            tolerance: 0.004,
             lowest: None,
             fence: None,
             period: 0.05,

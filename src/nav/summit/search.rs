@@ -57,6 +57,8 @@ pub struct SummitSearch {
     state: State,
     looks: u32,
     first_heading: f64,
+    /// Where it was at the last look.
+    looked_from: Point3,
     /// From where it has looked around.
     views: Vec<Point>,
     /// What it wanted to see when it looked last.
@@ -134,6 +136,8 @@ const NEXT: f64 = 0.7;
 const LOST_SIGHT: f64 = 0.15;
 /// Metres from a place from which another look around shows nothing new.
 const VIEW: f64 = 0.4;
+/// Metres by which a place has to be higher for a look from there to be better.
+const WORTH_CLIMBING: f64 = 0.04;
 /// Metres from what it is after that belong to it.
 const SAME: f64 = 0.4;
 /// The most ways on the top, each after another look.
@@ -154,6 +158,7 @@ impl SummitSearch {
             state: State::Settling { until: None },
             looks: 0,
             first_heading: 0.0,
+            looked_from: Point3::origin(),
             views: Vec::new(),
             target: None,
             unknown: 0,
@@ -251,7 +256,7 @@ impl SummitSearch {
         let robot = self.reckoning.in_space(sweep.attitude());
         let near = sweep.fans(&robot, &lidar).flatten().filter(|beam| beam.range < NEAR);
         let points: Vec<Point3> = near.filter_map(|beam| beam.end()).collect();
-        let shift = align(&self.map, robot.position, &points, tilt)?;
+        let shift = align(&self.map, robot.position, self.looked_from, &points, tilt)?;
         self.reckoning.correct(&shift);
         Some(shift)
     }
@@ -279,7 +284,8 @@ impl SummitSearch {
         for fan in sweep.fans(&robot, &self.parameters.lidar) {
             self.map.add_fan(fan);
         }
-        self.map.stand(self.reckoning.pose.position(), self.reckoning.elevation);
+        self.map.stand(robot.position.xy(), robot.position.z);
+        self.looked_from = robot.position;
     }
 
     fn decide(&mut self, time: f64) -> ControlFlow<SummitOutcome, Twist> {
@@ -297,7 +303,7 @@ impl SummitSearch {
             // The view is better from above.
             let (above, place) = (level - self.reckoning.elevation, self.map.place(top));
             let new = self.views.iter().all(|view| (view - place).norm() > VIEW);
-            let climbs = new && above > 4.0 * self.parameters.tolerance;
+            let climbs = new && above > WORTH_CLIMBING;
             if higher.is_empty() {
                 return self.approach(time, &chart, start, top);
             }

@@ -54,11 +54,11 @@ struct Filled {
 const MEASURED: f64 = 0.06;
 const NOISE: f64 = 0.01;
 /// Square metres of a patch that is worth a look.
-const PATCH: f64 = 0.04;
+const PATCH: f64 = 0.02;
 /// Metres below what a slope could lead to that are a drop, and metres that the robot keeps from one beside
 /// its own size.
 const DROP: f64 = 0.04;
-const CAUTION: f64 = 0.2;
+const CAUTION: f64 = 0.05;
 
 impl SightMap {
     pub(super) fn new(resolution: f64, extent: f64) -> Self {
