@@ -7,7 +7,7 @@ use super::{DepthHoldParameters, DiveObservation, Sounding, Thrust};
 use crate::geometry::{Aabb, Point, Pose, Vector};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
 use crate::io::{DepthSensor, DistanceSensors, Error, Inertial, Odometry, Psd, Result};
-use crate::parameter::{require_not_negative, require_positive};
+use crate::parameter::{require, require_not_negative, require_positive};
 use crate::world::{DriveSpec, RobotSpec};
 
 /// Parameters of [`Survey`].
@@ -115,6 +115,8 @@ const DOWN: Psd = Psd(6);
 /// Metres from the depth at which lanes begin, and from a waypoint at which it is reached.
 const BEGIN: f64 = 0.1;
 const REACHED: f64 = 0.2;
+/// The most lanes.
+const MOST_LANES: f64 = 1e4;
 /// Metres ahead at which the craft steers.
 const LOOKAHEAD: f64 = 1.5;
 /// The most tilt (rad) with which the sensor looks down.
@@ -200,7 +202,9 @@ fn lanes(area: &Aabb, start: Point, spacing: f64, margin: f64) -> Result<Vec<Poi
         return Err(Error::invalid_input("area", found, "room for a lane between its margins"));
     }
     let (long, short) = if size.x >= size.y { (size.x, size.y) } else { (size.y, size.x) };
-    let count = (short / spacing).ceil() as usize;
+    let count = (short / spacing).ceil();
+    require("number of lanes", count, count <= MOST_LANES, "at most 10000")?;
+    let count = count as usize;
     let place = |along: f64, aside: f64| {
         low + if size.x >= size.y { Vector::new(along, aside) } else { Vector::new(aside, along) }
     };
