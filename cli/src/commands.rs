@@ -15,9 +15,10 @@ use crate::maze_drive::{explore as maze_explore, left as maze_left, lidar as maz
 #[cfg(feature = "native")]
 use crate::starman;
 use crate::{
-    a_to_b, ackermann, boat, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug, dive,
-    edges, follow_me, genetic, grid_benchmark, lane_keeping, lidar_scan, localise, micromouse, motion,
-    navigate, omni, pool_wall, quadtree, random_drive, replay, safety, summit, survey, terrain_plan, wall_following,
+    a_to_b, ackermann, boat, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug,
+    dive, edges, follow_me, genetic, grid_benchmark, lane_keeping, lidar_scan, localise, micromouse, motion,
+    navigate, omni, pool_wall, quadtree, random_drive, replay, safety, summit, survey, terrain_plan,
+    wall_following,
 };
 
 /// Runs a command with its command line and its two output streams. Returns the exit status.

@@ -215,7 +215,6 @@ pub fn reliefs(kind: ReliefKind) -> impl Strategy<Value = Relief> {
 /// }).unwrap();
 /// ```
 pub fn pools() -> impl Strategy<Value = Pool> {
-    (any::<u64>(), prop::sample::select(&PoolKind::ALL[..])).prop_filter_map("no pool of this seed", |(seed, kind)| {
-        pool(&mut Stream::new(seed), kind).ok()
-    })
+    (any::<u64>(), prop::sample::select(&PoolKind::ALL[..]))
+        .prop_filter_map("no pool of this seed", |(seed, kind)| pool(&mut Stream::new(seed), kind).ok())
 }

@@ -39,7 +39,9 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let floor = scene.world.bounds();
     if let Some(&outside) = course.iter().find(|&&point| !floor.contains(point)) {
         let [x, y] = point_in_mm(outside);
-        return Err(Failure::input(format!("--course: found {x},{y}, outside of the world; expected places in it")));
+        return Err(Failure::input(format!(
+            "--course: found {x},{y}, outside of the world; expected places in it"
+        )));
     }
     let conditions = Conditions::new(common, limit(&scene, &course))?;
     let voyage = sail(&scene, &course, &conditions, paced(common))?;

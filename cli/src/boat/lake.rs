@@ -46,7 +46,9 @@ pub(super) fn lake(seed: u64) -> Result<Lake, Failure> {
     while points.len() <= count {
         let place = Point::new(stream.between(0.0, width), stream.between(0.0, height));
         let is_good = match points.last() {
-            Some(&last) => (LEG[0]..=LEG[1]).contains(&(place - last).norm()) && is_clear(&shore, last, place),
+            Some(&last) => {
+                (LEG[0]..=LEG[1]).contains(&(place - last).norm()) && is_clear(&shore, last, place)
+            }
             None => is_wet(&world, place) && is_clear(&shore, place, place),
         };
         if is_good {
@@ -60,7 +62,8 @@ pub(super) fn lake(seed: u64) -> Result<Lake, Failure> {
 }
 
 fn weather(stream: &mut Stream) -> Water {
-    let mut blown = |most: f64| -> Vector { direction(stream.between(-3.1, 3.1)) * stream.between(0.0, most) };
+    let mut blown =
+        |most: f64| -> Vector { direction(stream.between(-3.1, 3.1)) * stream.between(0.0, most) };
     let (current, wind) = (blown(CURRENT), blown(WIND));
     let waves = Waves {
         height: stream.between(0.02, WAVES),

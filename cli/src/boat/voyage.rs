@@ -47,8 +47,7 @@ pub(super) fn sail(
     let DriveSpec::Craft(craft) = &robot.spec.drive else {
         return Err(Failure::input("found a robot with another drive; expected a craft"));
     };
-    let mut boat =
-        Boat::new(craft, robot.pose, course, BoatParameters::default()).map_err(Failure::input)?;
+    let mut boat = Boat::new(craft, robot.pose, course, BoatParameters::default()).map_err(Failure::input)?;
     let mut legs = Vec::new();
     let run = conditions.run(scene, watch, |robot, step| {
         control::run(robot, &mut boat, conditions.time_limit, |_, boat, _| {

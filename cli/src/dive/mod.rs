@@ -265,10 +265,7 @@ fn picture(plan: &Plan, done: &Dived) -> Picture {
     side.title("From the side, over 80 s");
     let at = |time: f64, depth: f64| Point::new(0.2 + 5.6 * time / 80.0, 2.7 - 2.4 * depth / LEVEL);
     side.line([at(0.0, 0.0), at(80.0, 0.0)], Style::new(Colour::from_hex(0x70_c0_d8)).labelled("surface"));
-    side.line(
-        [at(0.0, LEVEL), at(80.0, LEVEL)],
-        Style::new(Colour::from_hex(0x60_50_40)).labelled("floor"),
-    );
+    side.line([at(0.0, LEVEL), at(80.0, LEVEL)], Style::new(Colour::from_hex(0x60_50_40)).labelled("floor"));
     side.line([at(0.0, plan.depth), at(80.0, plan.depth)], Style::plan());
     side.true_path(done.trail.iter().map(|(time, depth, _)| at(*time, *depth)));
     let mut both = Picture::panels(&[above, side], 1);

@@ -73,7 +73,8 @@ pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
 fn trial(args: &Args, seed: u64) -> Result<Trial, Failure> {
     let scene = generated(seed)?;
     let limit = args.common.time_limit.unwrap_or(LAP * f64::from(LAPS));
-    let conditions = Conditions { seed, common: None, reserve: RESERVE, ..Conditions::new(&args.common, limit)? };
+    let conditions =
+        Conditions { seed, common: None, reserve: RESERVE, ..Conditions::new(&args.common, limit)? };
     let parameters = PoolWallParameters { laps: LAPS, ..PoolWallParameters::default() };
     let done = round(&scene, parameters, &conditions, |_| {})?;
     let laps = match done.run.ending {

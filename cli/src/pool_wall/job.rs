@@ -57,7 +57,11 @@ fn picture(scene: &Scene, done: &Round) -> Picture {
     let mut picture = Picture::new(&scene.world);
     picture.title("Along the sides of a pool");
     let rms = errors.rms().map_or("never beside a side".into(), |rms| {
-        format!("{:.0} mm off in the root mean square, {:.0} mm at most", units::to_mm(rms), units::to_mm(errors.largest))
+        format!(
+            "{:.0} mm off in the root mean square, {:.0} mm at most",
+            units::to_mm(rms),
+            units::to_mm(errors.largest)
+        )
     });
     picture.caption(format!("{:.1} m in {:.0} s, {rms}", run.truth.path_length, run.sim_time));
     run.draw(&mut picture, &scene.robots[0].spec);

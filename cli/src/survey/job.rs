@@ -76,7 +76,8 @@ fn picture(scene: &Scene, cell: f64, done: &Tour) -> Picture {
     });
     let mut all = Picture::panels(&[way, found, there], 3);
     all.title("Survey of a floor");
-    let mm = |value: Option<f64>| value.map_or("unknown".into(), |value| format!("{:.0} mm", units::to_mm(value)));
+    let mm =
+        |value: Option<f64>| value.map_or("unknown".into(), |value| format!("{:.0} mm", units::to_mm(value)));
     all.caption(format!(
         "{:.1} % covered; 95 % within {} in depth and {} in place; depths from {:.0} to {:.0} mm",
         100.0 * done.quality.coverage,

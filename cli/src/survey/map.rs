@@ -32,8 +32,11 @@ pub(super) fn save(map: &DepthMap, cell: f64, picture: &Path) -> Result<(), Fail
 
 /// The shallowest and the deepest cell.
 pub(super) fn range(map: &DepthMap) -> (f64, f64) {
-    let all = (0..map.rows()).flat_map(|row| (0..map.columns()).filter_map(move |column| map.cell(column, row)));
-    all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), cell| (low.min(cell.depth), high.max(cell.depth)))
+    let all =
+        (0..map.rows()).flat_map(|row| (0..map.columns()).filter_map(move |column| map.cell(column, row)));
+    all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), cell| {
+        (low.min(cell.depth), high.max(cell.depth))
+    })
 }
 
 /// Each cell by its depth: dark is deep. The first row of pixels has the largest y.
@@ -60,7 +63,8 @@ fn grid(map: &DepthMap, cell: f64) -> String {
         rounded(to_mm(cell))
     );
     for row in (0..map.rows()).rev() {
-        let depth = |column| map.cell(column, row).map_or(NO_DATA, |cell| (10.0 * to_mm(cell.depth)).round() / 10.0);
+        let depth =
+            |column| map.cell(column, row).map_or(NO_DATA, |cell| (10.0 * to_mm(cell.depth)).round() / 10.0);
         let line: Vec<String> = (0..map.columns()).map(|column| depth(column).to_string()).collect();
         text += &(line.join(" ") + "\n");
     }

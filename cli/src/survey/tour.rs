@@ -71,8 +71,8 @@ pub(super) fn tour(
 ) -> Result<Tour, Failure> {
     let robot = &scene.robots[0];
     let site = Site::of(&scene.world, parameters.depth)?;
-    let mut survey = Survey::new(&robot.spec, robot.pose, site.area, site.by_walls, parameters)
-        .map_err(Failure::input)?;
+    let mut survey =
+        Survey::new(&robot.spec, robot.pose, site.area, site.by_walls, parameters).map_err(Failure::input)?;
     let cells = site.area.inflated(-OFF);
     let mut map = DepthMap::new(cells, parameters.spacing).map_err(Failure::input)?;
     let mut beliefs = Vec::new();

@@ -26,7 +26,9 @@ pub(crate) fn afloat(
     let mut scene = common.scene_or(own)?;
     let name = common.world.as_ref().map_or(String::new(), |file| format!("{}: ", file.display()));
     let Some(level) = scene.world.water_level else {
-        return Err(Failure::input(format!("{name}found a world without water; expected a line `water_level MM`")));
+        return Err(Failure::input(format!(
+            "{name}found a world without water; expected a line `water_level MM`"
+        )));
     };
     if scene.robots.is_empty() && common.start.is_none() && scene.world.start.is_none() {
         scene.world.start = widest(&scene.world, level);
@@ -37,7 +39,9 @@ pub(crate) fn afloat(
     let robot = &scene.robots[0];
     if !is_craft(&robot.spec) {
         let found = &robot.spec.name;
-        return Err(Failure::input(format!("{name}found robot {found} with another drive; expected a craft")));
+        return Err(Failure::input(format!(
+            "{name}found robot {found} with another drive; expected a craft"
+        )));
     }
     let floor = ground(&scene.world).map_or(Some(0.0), |ground| ground.height(robot.pose.position()));
     if floor.is_none_or(|floor| floor >= level) {
@@ -60,7 +64,8 @@ fn widest(world: &World, level: f64) -> Option<Pose> {
     for cell in 0..CELLS * CELLS {
         let share = |index: usize| (index as f64 + 0.5) / CELLS as f64;
         let place = Point::new(low.x + size.x * share(cell % CELLS), low.y + size.y * share(cell / CELLS));
-        let is_wet = ground(world).is_none_or(|ground| ground.height(place).is_some_and(|floor| floor < 0.5 * level));
+        let is_wet =
+            ground(world).is_none_or(|ground| ground.height(place).is_some_and(|floor| floor < 0.5 * level));
         let room = shore.distance(place).unwrap_or(0.0);
         if is_wet && best.is_none_or(|(most, _)| room > most) {
             best = Some((room, place));

@@ -92,11 +92,6 @@ impl Helm {
         self.seconds
     }
 
-    /// Mass and moments of inertia, with those of the water that moves along.
-    pub(super) fn inertia(&self) -> [f64; 6] {
-        self.craft.inertia()
-    }
-
     /// The angle (rad) from the heading to the way of a craft that keeps turning at a speed: it slips until the
     /// water holds it.
     pub(super) fn slip(&self, speed: f64, turn_rate: f64) -> f64 {

@@ -176,7 +176,8 @@ impl PoolWall {
         let side = wall_sensor(parameters.side);
         let place = |psd: Psd| {
             let spec = robot.psds.iter().find(|spec| spec.id == psd.0);
-            spec.map(|spec| Point::new(spec.mount.x, spec.mount.y.abs())).ok_or_else(|| Error::unsupported(psd))
+            spec.map(|spec| Point::new(spec.mount.x, spec.mount.y.abs()))
+                .ok_or_else(|| Error::unsupported(psd))
         };
         let helm = Helm::new(craft, 0.8, parameters.period, parameters.hold)?;
         Ok(Self {
@@ -300,7 +301,11 @@ impl Behaviour for PoolWall {
     fn step(&mut self, time: f64, seen: &PoolWallObservation) -> Decision<Self> {
         seen.dive.check()?;
         if !seen.odometry.is_finite() {
-            return Err(Error::invalid_input("observed pose", format!("{:?}", seen.odometry), "finite numbers"));
+            return Err(Error::invalid_input(
+                "observed pose",
+                format!("{:?}", seen.odometry),
+                "finite numbers",
+            ));
         }
         for range in [seen.front, seen.side] {
             if range.is_nan() || range < 0.0 {

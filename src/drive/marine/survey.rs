@@ -1,8 +1,8 @@
 use std::ops::ControlFlow;
 
 use super::fix::Fix;
-use super::helm::{Helm, Push};
-use super::legs::{Guided, Legs};
+use super::helm::Helm;
+use super::legs::{Legs, Steered, over_ground, steer};
 use super::{DepthHoldParameters, DiveObservation, Sounding, Thrust};
 use crate::geometry::{Aabb, Point, Pose, Vector};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
@@ -209,7 +209,8 @@ fn lanes(area: &Aabb, start: Point, spacing: f64, margin: f64) -> Result<Vec<Poi
         low + if size.x >= size.y { Vector::new(along, aside) } else { Vector::new(aside, along) }
     };
     // The four corners at which a tour may begin.
-    let corner = |far: bool, other: bool| place(if far { long } else { 0.0 }, if other { short } else { 0.0 });
+    let corner =
+        |far: bool, other: bool| place(if far { long } else { 0.0 }, if other { short } else { 0.0 });
     let choices = [(false, false), (false, true), (true, false), (true, true)];
     let distance = |choice: &(bool, bool)| (corner(choice.0, choice.1) - start).norm();
     let best = choices.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
@@ -236,9 +237,15 @@ impl Behaviour for Survey {
     fn step(&mut self, time: f64, seen: &SurveyObservation) -> Decision<Self> {
         seen.dive.check()?;
         if !seen.odometry.is_finite() {
-            return Err(Error::invalid_input("observed pose", format!("{:?}", seen.odometry), "finite numbers"));
+            return Err(Error::invalid_input(
+                "observed pose",
+                format!("{:?}", seen.odometry),
+                "finite numbers",
+            ));
         }
-        if let Some(range) = seen.ranges.iter().chain([&seen.down]).find(|range| range.is_nan() || **range < 0.0) {
+        if let Some(range) =
+            seen.ranges.iter().chain([&seen.down]).find(|range| range.is_nan() || **range < 0.0)
+        {
             return Err(Error::invalid_input("observed distance", range, "at least 0"));
         }
         self.notice(time, seen)?;
@@ -247,12 +254,11 @@ impl Behaviour for Survey {
         if self.legs.is_over() {
             return Ok(ControlFlow::Break(SurveyOutcome::Covered));
         }
-        let Guided { heading, speed } = self.legs.guide(&pose, self.helm.seconds());
-        let wanted = if self.ready { speed } else { 0.0 };
-        let ahead = self.helm.push(self.fix.velocity().x, wanted, 0.0).ahead;
-        // The helm turns to headings that the compass reads.
-        let turn = self.helm.turn_to(heading + self.helm.heading() - pose.heading);
-        Ok(ControlFlow::Continue(self.helm.thrust(self.parameters.depth, Push { ahead, turn })?))
+        let velocity = self.fix.velocity();
+        let wanted = self.legs.guide(pose.position(), self.helm.seconds());
+        let Steered { turn, speed } = steer(&pose, over_ground(&pose, velocity), wanted);
+        let push = self.helm.push(velocity.x, if self.ready { speed } else { 0.0 }, turn);
+        Ok(ControlFlow::Continue(self.helm.thrust(self.parameters.depth, push)?))
     }
 }
 

@@ -48,7 +48,8 @@ impl WallMemory {
             points.drain(..points.len().saturating_sub(KEPT));
         }
         self.run = self.run.min(self.side.len());
-        (self.onward, self.bend) = WINDOWS.iter().find_map(|&length| self.continued(length)).unwrap_or_default();
+        (self.onward, self.bend) =
+            WINDOWS.iter().find_map(|&length| self.continued(length)).unwrap_or_default();
     }
 
     /// The nearest place of a wall that is known or goes on.
@@ -84,7 +85,8 @@ impl WallMemory {
         let points: Vec<Vector> = run.iter().map(local).collect();
         let bend = if length >= 0.8 { parabola(&points)? } else { Vector3::zeros() };
         let height = |along: f64| bend.dot(&Vector3::new(1.0, along, along * along));
-        let squares: f64 = points.iter().map(|point| (point.y - height(point.x)) * (point.y - height(point.x))).sum();
+        let squares: f64 =
+            points.iter().map(|point| (point.y - height(point.x)) * (point.y - height(point.x))).sum();
         let last = &points[..points.len().min(LAST)];
         let drift = last.iter().map(|point| point.y - height(point.x)).sum::<f64>() / last.len() as f64;
         if (squares / points.len() as f64).sqrt() > FITS || drift.abs() > DRIFT {
@@ -132,7 +134,11 @@ mod tests {
     fn a_wall_that_ends_does_not_go_on() {
         let mut memory = WallMemory::default();
         for i in 0..40 {
-            memory.add(Point::new(0.03 * f64::from(i), 0.0), Some(Point::new(0.03 * f64::from(i), 0.8)), None);
+            memory.add(
+                Point::new(0.03 * f64::from(i), 0.0),
+                Some(Point::new(0.03 * f64::from(i), 0.8)),
+                None,
+            );
         }
         let on = Point::new(1.9, 0.8);
         assert!(memory.clearance(on) < 0.06);

@@ -99,9 +99,8 @@ impl Sides {
     fn draw(stream: &mut Stream, kind: PoolKind) -> Self {
         let turned = direction(stream.between(0.0, std::f64::consts::TAU));
         let corners = |points: &[(f64, f64)]| {
-            let turn = |&(x, y): &(f64, f64)| {
-                Point::new(turned.x * x - turned.y * y, turned.y * x + turned.x * y)
-            };
+            let turn =
+                |&(x, y): &(f64, f64)| Point::new(turned.x * x - turned.y * y, turned.y * x + turned.x * y);
             Self::Polygon(points.iter().map(turn).collect())
         };
         let (length, width) = (stream.between(7.0, 12.0), stream.between(5.0, 8.0));
@@ -126,7 +125,9 @@ impl Sides {
         match self {
             Self::Polygon(corners) => {
                 let first = corners[0];
-                let all = corners.iter().fold(Aabb::new(first, first), |all, &next| all.union(&Aabb::new(next, next)));
+                let all = corners
+                    .iter()
+                    .fold(Aabb::new(first, first), |all, &next| all.union(&Aabb::new(next, next)));
                 (all.min, all.max)
             }
             Self::Arc { radius, half, width } => {
