@@ -6,7 +6,9 @@ use std::ops::ControlFlow;
 
 use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
 use roverlab::drive::lane_keeping::{BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters};
-use roverlab::drive::marine::{Dive, DiveParameters};
+use roverlab::drive::marine::{
+    Boat, BoatParameters, Dive, DiveParameters, PoolWall, PoolWallParameters, Survey, SurveyParameters,
+};
 use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
 use roverlab::drive::terrain::{Ascent, AscentParameters, SlopeSensor};
 use roverlab::drive::{
@@ -16,7 +18,7 @@ use roverlab::drive::{
     TwoLevelWallFollower, WallFollower, WallFollowerParameters,
 };
 use roverlab::evolve::Gait;
-use roverlab::geometry::{Point, Pose, Twist};
+use roverlab::geometry::{Aabb, Point, Pose, Twist};
 use roverlab::io::control::{Behaviour, Command, Decision, Halt, Run, Senses, run, until};
 use roverlab::io::sim::{Fleet, SimOptions, SimRobot, Simulation};
 use roverlab::io::wrappers::Faulty;
@@ -58,7 +60,7 @@ where
     Ok(format!("{outcome:?}"))
 }
 
-const CASES: [Case; 30] = [
+const CASES: [Case; 33] = [
     ("lane", RobotSpec::s4, |robot, limit, stop| {
         let camera = RobotSpec::s4().camera.as_ref().unwrap().into();
         let mut behaviour = LaneKeeper::new(camera, RoadModel::default(), LaneKeeperParameters::default())?;
@@ -93,6 +95,19 @@ const CASES: [Case; 30] = [
     }),
     ("dive", RobotSpec::mako, |robot, limit, stop| {
         driven(robot, &mut Dive::new(&CraftSpec::mako(), DiveParameters::default())?, limit, stop)
+    }),
+    ("pool wall", RobotSpec::mako, |robot, limit, stop| {
+        driven(robot, &mut PoolWall::new(&RobotSpec::mako(), PoolWallParameters::default())?, limit, stop)
+    }),
+    ("survey", RobotSpec::mako, |robot, limit, stop| {
+        let area = Aabb::new(Point::origin(), Point::new(8.0, 8.0));
+        let parameters = SurveyParameters::default();
+        driven(robot, &mut Survey::new(&RobotSpec::mako(), START, area, true, parameters)?, limit, stop)
+    }),
+    ("boat", RobotSpec::solar_raft, |robot, limit, stop| {
+        let course = [Point::new(9.0, 3.0)];
+        let mut boat = Boat::new(&CraftSpec::solar_raft(), START, &course, BoatParameters::default())?;
+        driven(robot, &mut boat, limit, stop)
     }),
     ("tour", RobotSpec::s4, |robot, limit, stop| {
         let corners = [START.position(), Point::new(5.0, 5.0), Point::new(1.0, 5.0)];

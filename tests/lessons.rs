@@ -36,6 +36,7 @@ macro_rules! lessons {
 lessons!(
     a_to_b,
     ackermann,
+    boat,
     bug_compare,
     camera,
     color_tracking,
@@ -71,6 +72,7 @@ lessons!(
     #[cfg(feature = "physics")]
     starman,
     summit,
+    survey,
     two_robots,
     wall_following,
     world_files,

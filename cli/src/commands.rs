@@ -19,7 +19,8 @@ use crate::view;
 use crate::{
     a_to_b, ackermann, boat, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug,
     dive, edges, follow_me, genetic, grid_benchmark, lane_keeping, lidar_scan, localise, micromouse, motion,
-    navigate, omni, pool_wall, quadtree, random_drive, replay, safety, summit, terrain_plan, wall_following,
+    navigate, omni, pool_wall, quadtree, random_drive, replay, safety, summit, survey, terrain_plan,
+    wall_following,
 };
 
 /// Runs a command with its command line and its two output streams. Returns the exit status.
@@ -97,6 +98,7 @@ commands!(
     #[cfg(feature = "native")]
     starman by run,
     summit by run,
+    survey by run,
     terrain_plan by run_plain,
     #[cfg(feature = "view")]
     view by run_printing,

@@ -39,6 +39,7 @@ mod safety;
 #[cfg(feature = "native")]
 mod starman;
 mod summit;
+mod survey;
 mod terrain;
 mod terrain_plan;
 #[cfg(test)]

@@ -1,6 +1,9 @@
 use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
 use roverlab::drive::lane_keeping::{BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters};
-use roverlab::drive::marine::{DepthHoldParameters, Dive, DiveParameters};
+use roverlab::drive::marine::{
+    Boat, BoatParameters, DepthHoldParameters, Dive, DiveParameters, PoolWall, PoolWallParameters, Survey,
+    SurveyParameters,
+};
 use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
 use roverlab::drive::terrain::{Ascent, AscentParameters, SlopeSensor};
 use roverlab::drive::{
@@ -178,4 +181,14 @@ fn diving() {
     check!(DepthHoldParameters = DepthHoldParameters::default(),
         |p| dive(DiveParameters { hold: p, ..DiveParameters::default() })?,
         { Positive: speed, approach, control, observer; });
+    check!(PoolWallParameters = PoolWallParameters::default(), |p| PoolWall::new(&RobotSpec::mako(), p)?,
+        { NotNegative: depth; Bounded: lookahead; Positive: distance, speed, period; } but side, laps, hold);
+    let area = Aabb::new(Point::origin(), Point::new(25.0, 50.0));
+    let start = Pose::new(2.0, 2.0, 0.0);
+    check!(SurveyParameters = SurveyParameters::default(),
+        |p| Survey::new(&RobotSpec::mako(), start, area, true, p)?,
+        { BoundedFromZero: margin; NotNegative: depth; Positive: spacing, speed, period; } but hold);
+    check!(BoatParameters = BoatParameters::default(),
+        |p| Boat::new(&CraftSpec::solar_raft(), start, &[Point::new(9.0, 9.0)], p)?,
+        { NotNegative: station; Positive: speed, lookahead, reached, period; });
 }

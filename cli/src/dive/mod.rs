@@ -1,7 +1,6 @@
 //! The command `dive`.
 
 mod campaign;
-mod pool;
 
 use std::sync::Arc;
 
@@ -14,7 +13,7 @@ use roverlab::picture::{Mark, Picture, Style};
 use roverlab::world::{Colour, DriveSpec, RobotSpec, Scene, Water, World};
 
 use crate::common::{Failure, Outcome, PlainArgs, Report, millimetres, rounded};
-use pool::pool;
+use crate::water::{LEVEL, pool};
 
 /// Command line of `dive`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -178,9 +177,9 @@ fn craft(plan: &Plan) -> RobotSpec {
 /// Dives as planned.
 fn dive(plan: &Plan) -> Result<Dived, Failure> {
     let spec = craft(plan);
-    let (up, level) = (sensor(&spec), pool::LEVEL);
+    let (up, level) = (sensor(&spec), LEVEL);
     let water = Water { current: vec![(0.0, plan.current)], ..Water::default() };
-    let mut scene = Scene::with_robot(World { water, ..pool() }, spec, Pose::new(12.5, 25.0, 0.0));
+    let mut scene = Scene::with_robot(World { water, ..pool(|_| 0.0) }, spec, Pose::new(12.5, 25.0, 0.0));
     if let Some(depth) = plan.start {
         scene.robots[0].elevation = level - depth - up;
     }
@@ -264,12 +263,9 @@ fn picture(plan: &Plan, done: &Dived) -> Picture {
     let mut side = Picture::new(&World::empty(6.0, 3.0));
     // Twenty seconds are 1.4 m, and the pool's depth 2.4 m.
     side.title("From the side, over 80 s");
-    let at = |time: f64, depth: f64| Point::new(0.2 + 5.6 * time / 80.0, 2.7 - 2.4 * depth / pool::LEVEL);
+    let at = |time: f64, depth: f64| Point::new(0.2 + 5.6 * time / 80.0, 2.7 - 2.4 * depth / LEVEL);
     side.line([at(0.0, 0.0), at(80.0, 0.0)], Style::new(Colour::from_hex(0x70_c0_d8)).labelled("surface"));
-    side.line(
-        [at(0.0, pool::LEVEL), at(80.0, pool::LEVEL)],
-        Style::new(Colour::from_hex(0x60_50_40)).labelled("floor"),
-    );
+    side.line([at(0.0, LEVEL), at(80.0, LEVEL)], Style::new(Colour::from_hex(0x60_50_40)).labelled("floor"));
     side.line([at(0.0, plan.depth), at(80.0, plan.depth)], Style::plan());
     side.true_path(done.trail.iter().map(|(time, depth, _)| at(*time, *depth)));
     let mut both = Picture::panels(&[above, side], 1);

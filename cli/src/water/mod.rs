@@ -1,5 +1,6 @@
 //! What the commands in water share: the world with a craft in it, and its shores.
 
+mod pool;
 mod shore;
 
 use std::sync::Arc;
@@ -9,6 +10,7 @@ use roverlab::world::{DriveSpec, HeightField, RobotSpec, Scene, World};
 
 use crate::common::{CommonArgs, Failure, StandIn};
 
+pub(crate) use pool::{LEVEL, pool};
 pub(crate) use shore::Shore;
 
 /// Cells along a side of the grid on which a start is looked for.

@@ -1,4 +1,4 @@
-use roverlab::geometry::{Point, Segment, Vector};
+use roverlab::geometry::{Aabb, Point, Segment, Vector};
 use roverlab::world::{HeightField, World};
 
 use super::ground;
@@ -21,6 +21,16 @@ impl Shore {
             sides.extend(contour(ground, height));
         }
         Self { sides }
+    }
+
+    /// The box around it; `None` if there is no side.
+    pub(crate) fn bounds(&self) -> Option<Aabb> {
+        Aabb::around(self.points())
+    }
+
+    /// The ends of its sides.
+    pub(crate) fn points(&self) -> impl Iterator<Item = Point> {
+        self.sides.iter().flat_map(|side| [side.a, side.b])
     }
 
     /// Metres from a point to the nearest side; `None` without any.

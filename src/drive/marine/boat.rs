@@ -1,10 +1,10 @@
 use std::ops::ControlFlow;
 
 use super::helm::{Helm, Push};
-use super::legs::{Guided, Legs};
+use super::legs::{Legs, Steered, over_ground, steer};
 use super::reckoning::Reckoning;
 use super::{DepthHoldParameters, DiveObservation, Thrust};
-use crate::geometry::{Point, Pose, Vector, Vector3, math};
+use crate::geometry::{Point, Pose, Vector, Vector3};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
 use crate::io::{Attitude, Error, Inertial, Odometry, Result};
 use crate::kinematics::marine::CraftSpec;
@@ -60,8 +60,8 @@ halts!(BoatOutcome { Arrived: "the time on station is over" });
 /// A boat with two thrusters on a course of waypoints, and on station at the last one.
 ///
 /// On a leg it steers by line of sight with integral action (Fossen 2021, section 12.3), and slows down before
-/// a waypoint. On station a force towards the place, with an integral,
-/// says where the bow points and what the thrusters push.
+/// a waypoint. It points beyond the velocity that it wants by a share of what is missing, as only its thrust
+/// takes out a drift aside. On station it comes back to the place and learns what drives it off.
 ///
 /// ```
 /// use roverlab::drive::marine::{Boat, BoatOutcome, BoatParameters};
@@ -89,20 +89,17 @@ pub struct Boat {
     helm: Helm,
     reckoning: Reckoning,
     legs: Legs,
-    /// The force (N) that wind and current take on station, and when the boat came there.
-    against: Vector,
+    /// The velocity (m/s) against what drives the boat off its station, and when it came there.
+    drift: Vector,
     since: f64,
-    heading: f64,
 }
 
-/// Stiffness, damping and integral of the hold of a place: 1/s², 1/s and 1/s³ times the mass.
-const STIFF: f64 = 0.15;
-const DAMPED: f64 = 0.8;
-const LEARNT: f64 = 0.015;
-/// Newtons below which a force does not turn the bow.
-const LITTLE: f64 = 2.0;
-/// Newtons that the hold of a place learns at most.
-const MOST: f64 = 60.0;
+/// How fast the boat comes back to its station (1/s), at most (m/s), how fast it learns what drives it off
+/// (1/s²), and the most of that (m/s).
+const RETURN: f64 = 0.25;
+const MOST_RETURN: f64 = 0.3;
+const LEARNT: f64 = 0.03;
+const MOST_DRIFT: f64 = 0.4;
 
 impl Boat {
     /// A course from a start through waypoints of the world. Odometry begins at the start.
@@ -130,9 +127,8 @@ impl Boat {
             helm: Helm::new(craft, 0.8, parameters.period, DepthHoldParameters::default())?,
             reckoning: Reckoning::at(start),
             legs: Legs::new(all().collect(), parameters.speed, parameters.lookahead, parameters.reached),
-            against: Vector::zeros(),
+            drift: Vector::zeros(),
             since: 0.0,
-            heading: start.heading,
             parameters,
         })
     }
@@ -147,36 +143,37 @@ impl Boat {
         self.helm.observe(time, &DiveObservation { depth: 0.0, attitude, rates })?;
         self.reckoning.advance(odometry, self.helm.heading(), self.helm.seconds());
         if self.legs.pass(self.reckoning.pose().position()) {
-            (self.since, self.heading) = (time, self.helm.heading());
+            self.since = time;
         }
         Ok(())
     }
 
-    /// The push along the leg.
-    fn sail(&mut self) -> Push {
-        let Guided { heading, speed } = self.legs.guide(&self.reckoning.pose(), self.helm.seconds());
-        let ahead = self.helm.push(self.reckoning.velocity().x, speed, 0.0).ahead;
-        Push { ahead, turn: self.helm.turn_to(heading) }
+    /// The velocity over ground that keeps the boat at the last waypoint.
+    fn stay(&mut self) -> Vector {
+        let off = self.legs.end() - self.reckoning.pose().position();
+        self.drift += off * (LEARNT * self.helm.seconds());
+        self.drift = shortened(self.drift, MOST_DRIFT);
+        shortened(off * RETURN, MOST_RETURN) + self.drift
     }
 
-    /// The push that keeps the boat at the last waypoint.
-    fn stay(&mut self) -> Push {
+    fn push(&mut self) -> Push {
         let pose = self.reckoning.pose();
-        let mass = self.helm.inertia()[0];
-        let off = self.legs.end() - pose.position();
-        let speed = pose.to_world(Point::from(self.reckoning.velocity())) - pose.position();
-        self.against += off * (LEARNT * mass * self.helm.seconds());
-        let learnt = self.against.norm();
-        if learnt > MOST {
-            self.against *= MOST / learnt;
-        }
-        let lasting = self.against + off * (STIFF * mass);
-        if lasting.norm() > LITTLE {
-            self.heading = math::atan2(lasting.y, lasting.x);
-        }
-        let force = lasting - speed * (DAMPED * mass);
-        Push { ahead: force.dot(&pose.forward()), turn: self.helm.turn_to(self.heading) }
+        let velocity = self.reckoning.velocity();
+        let (wanted, stays) = if self.legs.is_over() {
+            (self.stay(), true)
+        } else {
+            (self.legs.guide(pose.position(), self.helm.seconds()), false)
+        };
+        let Steered { turn, speed } = steer(&pose, over_ground(&pose, velocity), wanted);
+        // On station it may go astern.
+        let speed = if stays { wanted.dot(&pose.forward()) } else { speed };
+        self.helm.push(velocity.x, speed, turn)
     }
+}
+
+/// A vector no longer than so many metres.
+fn shortened(vector: Vector, most: f64) -> Vector {
+    vector * (most / vector.norm().max(most))
 }
 
 impl Behaviour for Boat {
@@ -195,13 +192,10 @@ impl Behaviour for Boat {
             return Err(Error::invalid_input("observed pose", format!("{odometry:?}"), "finite numbers"));
         }
         self.notice(time, seen)?;
-        let push = if !self.legs.is_over() {
-            self.sail()
-        } else if time - self.since >= self.parameters.station {
+        if self.legs.is_over() && time - self.since >= self.parameters.station {
             return Ok(ControlFlow::Break(BoatOutcome::Arrived));
-        } else {
-            self.stay()
-        };
+        }
+        let push = self.push();
         Ok(ControlFlow::Continue(self.helm.afloat(push)?))
     }
 }

@@ -92,11 +92,6 @@ impl Helm {
         self.seconds
     }
 
-    /// Mass and moments of inertia, with those of the water that moves along.
-    pub(super) fn inertia(&self) -> [f64; 6] {
-        self.craft.inertia()
-    }
-
     /// The angle (rad) from the heading to the way of a craft that keeps turning at a speed: it slips until the
     /// water holds it.
     pub(super) fn slip(&self, speed: f64, turn_rate: f64) -> f64 {
@@ -149,18 +144,9 @@ impl Helm {
         let along = Wrench { force: Vector3::x() * push.ahead, moment: Vector3::z() * push.turn };
         let along = self.allocation.share(&along);
         let both = upright.commands.iter().zip(&along.commands);
-        let commands: Vec<f64> = both.map(|(a, b)| combined(*a, *b)).collect();
+        let commands: Vec<f64> = both.map(|(a, b)| (a + b).clamp(-1.0, 1.0)).collect();
         Thrust::new(&commands[..self.craft.thrusters().len()])
     }
-}
-
-/// The command whose force, by the square, is that of two commands together.
-fn combined(a: f64, b: f64) -> f64 {
-    if a == 0.0 || b == 0.0 {
-        return a + b;
-    }
-    let force = a * a.abs() + b * b.abs();
-    force.abs().sqrt().min(1.0).copysign(force)
 }
 
 /// An angle between what is expected and what is read.

@@ -1,4 +1,4 @@
-use crate::geometry::{Point, Pose, Vector, angle_difference, math};
+use crate::geometry::{Point, Pose, Vector, angle_difference, direction, math};
 
 /// Line-of-sight guidance along the legs of a course, with integral action, which takes out wind and current
 /// (Fossen 2021, section 12.3).
@@ -13,15 +13,6 @@ pub(super) struct Legs {
     speed: f64,
     lookahead: f64,
     reached: f64,
-}
-
-/// Where to head, and how fast to move.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Guided {
-    /// Radians.
-    pub(super) heading: f64,
-    /// Metres per second.
-    pub(super) speed: f64,
 }
 
 /// The share of the speed at which a waypoint is passed, and the seconds in which it is slowed to.
@@ -60,13 +51,14 @@ impl Legs {
         self.next > before
     }
 
-    /// How to move on along the leg, `seconds` after the step before. The course must not be over.
-    pub(super) fn guide(&mut self, pose: &Pose, seconds: f64) -> Guided {
+    /// The velocity over ground by which to move on along the leg, `seconds` after the step before. The course
+    /// must not be over.
+    pub(super) fn guide(&mut self, place: Point, seconds: f64) -> Vector {
         let (from, to) = (self.points[self.next - 1], self.points[self.next]);
         let leg = to - from;
         let along = leg.try_normalize(1e-9).unwrap_or_else(Vector::x);
-        let left = (pose.position() - from).dot(&Vector::new(-along.y, along.x));
-        let direct = to - pose.position();
+        let left = (place - from).dot(&Vector::new(-along.y, along.x));
+        let direct = to - place;
         // Near its end, and beyond it, the leg is the way to the waypoint itself.
         let heading = if direct.dot(&along) < self.lookahead {
             math::atan2(direct.y, direct.x)
@@ -78,7 +70,37 @@ impl Legs {
             math::atan2(leg.y, leg.x) - math::atan2(aim, self.lookahead)
         };
         let slow = PASSING * self.speed + (direct.norm() - self.reached).max(0.0) / SLOWING;
-        let off = angle_difference(heading, pose.heading);
-        Guided { heading, speed: self.speed.min(slow) * math::cos(off).max(0.0) }
+        direction(heading) * self.speed.min(slow)
     }
+}
+
+/// How a craft that pushes only ahead comes to a velocity over ground.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Steered {
+    /// Turn rate (rad/s).
+    pub(super) turn: f64,
+    /// Speed ahead (m/s).
+    pub(super) speed: f64,
+}
+
+/// Turn rate for an angle (1/s), and the fastest (rad/s).
+const GAIN: f64 = 1.2;
+const FASTEST: f64 = 0.6;
+/// The share of the missing velocity by which a craft points beyond the wanted one: without a keel, only its
+/// thrust takes out a drift aside.
+const LEAD: f64 = 1.5;
+/// The speed (m/s) below which there is nothing to point for.
+const LITTLE: f64 = 0.03;
+
+/// Steers a craft, which moves over ground, for another velocity.
+pub(super) fn steer(pose: &Pose, moves: Vector, wanted: Vector) -> Steered {
+    let aim = wanted + (wanted - moves) * LEAD;
+    let points = aim.norm() > LITTLE;
+    let off = if points { angle_difference(math::atan2(aim.y, aim.x), pose.heading) } else { 0.0 };
+    Steered { turn: (GAIN * off).clamp(-FASTEST, FASTEST), speed: wanted.norm() * math::cos(off).max(0.0) }
+}
+
+/// A velocity in a craft's frame as the world sees it.
+pub(super) fn over_ground(pose: &Pose, velocity: Vector) -> Vector {
+    pose.to_world(Point::from(velocity)) - pose.position()
 }

@@ -1,13 +1,13 @@
 use std::ops::ControlFlow;
 
 use super::fix::Fix;
-use super::helm::{Helm, Push};
-use super::legs::{Guided, Legs};
+use super::helm::Helm;
+use super::legs::{Legs, Steered, over_ground, steer};
 use super::{DepthHoldParameters, DiveObservation, Sounding, Thrust};
 use crate::geometry::{Aabb, Point, Pose, Vector};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
 use crate::io::{DepthSensor, DistanceSensors, Error, Inertial, Odometry, Psd, Result};
-use crate::parameter::{require_not_negative, require_positive};
+use crate::parameter::{require, require_not_negative, require_positive};
 use crate::world::{DriveSpec, RobotSpec};
 
 /// Parameters of [`Survey`].
@@ -115,6 +115,8 @@ const DOWN: Psd = Psd(6);
 /// Metres from the depth at which lanes begin, and from a waypoint at which it is reached.
 const BEGIN: f64 = 0.1;
 const REACHED: f64 = 0.2;
+/// The most lanes.
+const MOST_LANES: f64 = 1e4;
 /// Metres ahead at which the craft steers.
 const LOOKAHEAD: f64 = 1.5;
 /// The most tilt (rad) with which the sensor looks down.
@@ -200,7 +202,9 @@ fn lanes(area: &Aabb, start: Point, spacing: f64, margin: f64) -> Result<Vec<Poi
         return Err(Error::invalid_input("area", found, "room for a lane between its margins"));
     }
     let (long, short) = if size.x >= size.y { (size.x, size.y) } else { (size.y, size.x) };
-    let count = (short / spacing).ceil() as usize;
+    let count = (short / spacing).ceil();
+    require("number of lanes", count, count <= MOST_LANES, "at most 10000")?;
+    let count = count as usize;
     let place = |along: f64, aside: f64| {
         low + if size.x >= size.y { Vector::new(along, aside) } else { Vector::new(aside, along) }
     };
@@ -250,12 +254,11 @@ impl Behaviour for Survey {
         if self.legs.is_over() {
             return Ok(ControlFlow::Break(SurveyOutcome::Covered));
         }
-        let Guided { heading, speed } = self.legs.guide(&pose, self.helm.seconds());
-        let wanted = if self.ready { speed } else { 0.0 };
-        let ahead = self.helm.push(self.fix.velocity().x, wanted, 0.0).ahead;
-        // The helm turns to headings that the compass reads.
-        let turn = self.helm.turn_to(heading + self.helm.heading() - pose.heading);
-        Ok(ControlFlow::Continue(self.helm.thrust(self.parameters.depth, Push { ahead, turn })?))
+        let velocity = self.fix.velocity();
+        let wanted = self.legs.guide(pose.position(), self.helm.seconds());
+        let Steered { turn, speed } = steer(&pose, over_ground(&pose, velocity), wanted);
+        let push = self.helm.push(velocity.x, if self.ready { speed } else { 0.0 }, turn);
+        Ok(ControlFlow::Continue(self.helm.thrust(self.parameters.depth, push)?))
     }
 }
 

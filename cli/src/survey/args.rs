@@ -1,0 +1,83 @@
+use std::num::NonZero;
+use std::path::PathBuf;
+
+use roverlab::geometry::units;
+
+use crate::common::{CommonArgs, OF_ONE_RUN};
+
+/// Command line of `survey`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    about = "Maps the floor of a pool in lanes under water, with the uncertainty of each depth",
+    after_help = "\
+Without --world, Mako surveys the book's pool of 25 x 50 m; --seed chooses a floor that slopes, steps, or is a bowl. A world needs
+water: a line `water_level MM`. Mako has a Doppler log, a compass and distance sensors; where the water ends at four straight
+sides, it finds its place by these too. It starts where the water is widest unless the world or --start says otherwise.
+
+Cells are as wide as the lanes are apart; those count whose border is at least half a metre off the sides. --map writes a
+colour picture, and beside it the depths as an ESRI grid (.asc) and all cells with their uncertainty as a table (.csv), in mm.
+
+With --campaign, floors of all kinds.
+
+JSON fields:
+  coverage_percent            cells with a depth
+  depth_error_p95_mm          95 % of the depths are less far from the true mean of their cell
+  position_error_p95_mm       the same of the place on the way
+  inside_2_sigma_percent      depths within two of their own standard deviations
+  way_ratio                   length of the way over area by spacing
+  by_walls                    whether the place came from the sides
+  map, picture
+  rows                        with --campaign only: the table
+Outcomes: covered, timed_out, failed; with --campaign: passed, wrong."
+)]
+pub(crate) struct Args {
+    /// Distance between lanes.
+    #[arg(long, value_name = "MM", default_value = "1000", value_parser = parse_spacing, allow_hyphen_values = true)]
+    pub(crate) spacing: f64,
+
+    /// Depth of the craft's sensor on the way.
+    #[arg(long, value_name = "MM", default_value = "500", value_parser = parse_depth, allow_hyphen_values = true)]
+    pub(crate) depth: f64,
+
+    /// Write the map to a .png file, and beside it .asc and .csv.
+    #[arg(long, value_name = "OUT.png", value_parser = parse_map)]
+    pub(crate) map: Option<PathBuf>,
+
+    /// Survey several floors and print a table.
+    #[arg(long)]
+    pub(crate) campaign: bool,
+
+    /// Floors of a campaign.
+    #[arg(long, value_name = "N", default_value_t = 12, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
+    pub(crate) runs: u64,
+
+    /// Threads of a campaign [default: one for each core].
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub(crate) threads: Option<NonZero<usize>>,
+
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
+    ("always", &["goal"]),
+    ("campaign", OF_ONE_RUN),
+    ("campaign", &["map"]),
+    ("!campaign", &["runs", "threads"]),
+]);
+
+fn parse_spacing(text: &str) -> Result<f64, String> {
+    let spacing = text.trim().parse().ok().filter(|spacing: &f64| (200.0..=100_000.0).contains(spacing));
+    spacing.map(units::from_mm).ok_or_else(|| "expected 200 to 100000 mm".into())
+}
+
+fn parse_depth(text: &str) -> Result<f64, String> {
+    let depth = text.trim().parse().ok().filter(|depth: &f64| (300.0..=100_000.0).contains(depth));
+    depth.map(units::from_mm).ok_or_else(|| "expected 300 to 100000 mm".into())
+}
+
+fn parse_map(text: &str) -> Result<PathBuf, String> {
+    let file = PathBuf::from(text);
+    let is_png = file.extension().is_some_and(|end| end.eq_ignore_ascii_case("png"));
+    if is_png { Ok(file) } else { Err("expected a name that ends in .png".into()) }
+}

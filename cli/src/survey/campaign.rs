@@ -1,0 +1,95 @@
+use roverlab::drive::marine::{SurveyOutcome, SurveyParameters};
+use roverlab::geometry::units;
+use serde_json::json;
+
+use super::Args;
+use super::floor::{Floor, scene};
+use super::job::limit;
+use super::tour::{Quality, Site, tour};
+use crate::common::{Failure, Outcome, Report, millimetres, rounded, share_out, threads};
+use crate::driving::{Conditions, RESERVE};
+use crate::terrain::percent;
+
+/// The least share of cells with a depth, and the most errors in 95 % (m): depth and place; shares within two
+/// standard deviations; and the longest way.
+const COVERED: f64 = 0.99;
+const DEPTH: f64 = 0.03;
+const POSITION: f64 = 0.2;
+const INSIDE: [f64; 2] = [0.93, 0.97];
+const WAY: f64 = 1.3;
+
+/// A survey and what came of it.
+#[derive(Debug, Clone)]
+struct Trial {
+    seed: u64,
+    contacts: u32,
+    covered: bool,
+    quality: Quality,
+}
+
+impl Trial {
+    /// Whether it did as it should, apart from what it says of its own errors.
+    fn is_good(&self) -> bool {
+        let Quality { coverage, depth, position, way, .. } = self.quality;
+        self.covered
+            && self.contacts == 0
+            && coverage >= COVERED
+            && depth.is_some_and(|error| error <= DEPTH)
+            && position.is_some_and(|error| error <= POSITION)
+            && way <= WAY
+    }
+}
+
+/// The campaign's work.
+pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
+    let trials = share_out("surveys", args.runs, threads(args.threads), |index| {
+        trial(args, args.common.seed.wrapping_add(index))
+    })?;
+    args.common.tell("floor  surveys  good  covered  depth p95  place p95  within 2 sigma  way");
+    let mut rows = Vec::new();
+    for floor in Floor::ALL {
+        let of = || trials.iter().filter(move |trial| Floor::of(trial.seed) == floor);
+        let (count, good) = (of().count(), of().filter(|trial| trial.is_good()).count());
+        let least = |part: fn(&Quality) -> f64| of().map(|trial| part(&trial.quality)).fold(1.0, f64::min);
+        let most = |part: fn(&Quality) -> f64| of().map(|trial| part(&trial.quality)).fold(0.0, f64::max);
+        let inside = of().map(|trial| trial.quality.inside).sum::<f64>() / count.max(1) as f64;
+        let (coverage, way) = (least(|q| q.coverage), most(|q| q.way));
+        let depth = most(|q| q.depth.unwrap_or(f64::INFINITY));
+        let position = most(|q| q.position.unwrap_or(f64::INFINITY));
+        args.common.tell(format_args!(
+            "{:<5}  {count:>7}  {good:>4}  {:>5.1} %  {:>6.0} mm  {:>6.0} mm  {:>12.1} %  {way:.2}",
+            floor.name(),
+            100.0 * coverage,
+            units::to_mm(depth),
+            units::to_mm(position),
+            100.0 * inside
+        ));
+        rows.push(json!({
+            "floor": floor.name(), "surveys": count, "good": good, "least_coverage_percent": percent(coverage),
+            "depth_error_p95_mm": millimetres(depth), "position_error_p95_mm": millimetres(position),
+            "inside_2_sigma_percent": percent(inside), "way_ratio": rounded(way),
+        }));
+    }
+    let inside = trials.iter().map(|trial| trial.quality.inside).sum::<f64>() / trials.len().max(1) as f64;
+    let wrong: Vec<u64> = trials.iter().filter(|trial| !trial.is_good()).map(|trial| trial.seed).collect();
+    let good = wrong.is_empty() && (INSIDE[0]..=INSIDE[1]).contains(&inside);
+    let outcome = if good { Outcome::verdict("passed") } else { Outcome::failure("wrong") };
+    let contacts: u32 = trials.iter().map(|trial| trial.contacts).sum();
+    Ok(Report { collisions: Some(contacts.into()), ..Report::new(outcome) }
+        .field("inside_2_sigma_percent", percent(inside))
+        .field("wrong_seeds", wrong)
+        .table("rows", rows))
+}
+
+fn trial(args: &Args, seed: u64) -> Result<Trial, Failure> {
+    let scene = scene(seed);
+    let site = Site::of(&scene.world, args.depth)?;
+    let limit = args.common.time_limit.unwrap_or_else(|| limit(&site, args.spacing));
+    let conditions =
+        Conditions { seed, common: None, reserve: RESERVE, ..Conditions::new(&args.common, limit)? };
+    let parameters =
+        SurveyParameters { spacing: args.spacing, depth: args.depth, ..SurveyParameters::default() };
+    let done = tour(&scene, parameters, &conditions, |_| {})?;
+    let covered = done.run.ending == Ok(SurveyOutcome::Covered);
+    Ok(Trial { seed, contacts: done.run.truth.contacts, covered, quality: done.quality })
+}

@@ -1,0 +1,111 @@
+use roverlab::drive::marine::{DepthMap, SurveyOutcome, SurveyParameters};
+use roverlab::geometry::{Point, Vector, units};
+use roverlab::picture::{Picture, Style, ramp};
+use roverlab::world::{Scene, World};
+
+use super::Args;
+use super::campaign::campaign;
+use super::floor::{scene, surveyor};
+use super::map;
+use super::tour::{Site, Tour, tour, true_depth};
+use crate::common::{Failure, Outcome, Report, check_writable, millimetres, rounded};
+use crate::driving::{Conditions, paced};
+use crate::terrain::percent;
+use crate::water::afloat;
+
+/// Seconds for a metre of lanes, and besides.
+const PACE: f64 = 5.0;
+const BESIDES: f64 = 300.0;
+
+/// Seconds for the lanes of a site.
+pub(super) fn limit(site: &Site, spacing: f64) -> f64 {
+    let size = site.area.size();
+    PACE * (size.x * size.y / spacing + size.x + size.y) + BESIDES
+}
+
+/// The work of the command.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    if args.campaign {
+        return campaign(args);
+    }
+    let common = &args.common;
+    common.check_picture()?;
+    for file in args.map.iter().flat_map(|file| map::files(file)) {
+        check_writable("--map", &file)?;
+    }
+    let scene = afloat(common, &surveyor(), || scene(common.seed))?;
+    let parameters =
+        SurveyParameters { spacing: args.spacing, depth: args.depth, ..SurveyParameters::default() };
+    let site = Site::of(&scene.world, args.depth)?;
+    let conditions = Conditions::new(common, limit(&site, args.spacing))?;
+    let done = tour(&scene, parameters, &conditions, paced(common))?;
+    let quality = &done.quality;
+    let mut report = done
+        .run
+        .report(|outcome| match outcome {
+            SurveyOutcome::Covered => Outcome::verdict("covered"),
+            _ => Outcome::failure("timed_out"),
+        })
+        .field("coverage_percent", percent(quality.coverage))
+        .field("depth_error_p95_mm", quality.depth.map(millimetres))
+        .field("position_error_p95_mm", quality.position.map(millimetres))
+        .field("inside_2_sigma_percent", percent(quality.inside))
+        .field("way_ratio", rounded(quality.way))
+        .field("by_walls", quality.by_walls)
+        .field("map", &args.map);
+    if let Some(file) = &args.map {
+        map::save(&done.map, args.spacing, file)?;
+    }
+    report = common.draw(report, "survey.svg", || picture(&scene, args.spacing, &done));
+    Ok(report)
+}
+
+/// The way over the pool, the map, and the truth.
+fn picture(scene: &Scene, cell: f64, done: &Tour) -> Picture {
+    let mut way = Picture::new(&scene.world);
+    way.title("Way");
+    done.run.draw(&mut way, &scene.robots[0].spec);
+    let (low, high) = map::range(&done.map);
+    let measured = |column, row| done.map.cell(column, row).map(|cell| cell.depth);
+    let truth = |column, row| true_depth(&scene.world, done.map.centre(column, row), cell);
+    let found = cells("Map", &scene.world, &done.map, cell, |column, row| {
+        Some((measured(column, row)? - low) / (high - low).max(1e-3))
+    });
+    let there = cells("Truth", &scene.world, &done.map, cell, |column, row| {
+        Some((truth(column, row)? - low) / (high - low).max(1e-3))
+    });
+    let mut all = Picture::panels(&[way, found, there], 3);
+    all.title("Survey of a floor");
+    let mm =
+        |value: Option<f64>| value.map_or("unknown".into(), |value| format!("{:.0} mm", units::to_mm(value)));
+    all.caption(format!(
+        "{:.1} % covered; 95 % within {} in depth and {} in place; depths from {:.0} to {:.0} mm",
+        100.0 * done.quality.coverage,
+        mm(done.quality.depth),
+        mm(done.quality.position),
+        units::to_mm(low),
+        units::to_mm(high)
+    ));
+    all
+}
+
+fn cells(
+    title: &str,
+    world: &World,
+    map: &DepthMap,
+    cell: f64,
+    share: impl Fn(usize, usize) -> Option<f64>,
+) -> Picture {
+    let size = world.floor.size();
+    let mut picture = Picture::new(&World::empty(size.x, size.y));
+    picture.title(title);
+    for (column, row) in (0..map.rows()).flat_map(|row| (0..map.columns()).map(move |column| (column, row))) {
+        let Some(deep) = share(column, row) else { continue };
+        let centre: Point = map.centre(column, row);
+        let corner = |x: f64, y: f64| centre + Vector::new(x, y) * (0.5 * cell);
+        let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+        let colour = ramp((1.0 - deep).clamp(0.0, 1.0));
+        picture.polygon(corners, Style::new(colour).width(0.0).filled(1.0));
+    }
+    picture
+}

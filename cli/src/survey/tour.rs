@@ -1,0 +1,139 @@
+use roverlab::drive::marine::{DepthMap, Survey, SurveyOutcome, SurveyParameters};
+use roverlab::geometry::{Aabb, Point, Vector};
+use roverlab::io::control;
+use roverlab::world::{Scene, World};
+
+use crate::common::Failure;
+use crate::driving::{Conditions, Run};
+use crate::water::{Shore, ground};
+
+/// A survey, its map, and how good it is.
+#[derive(Debug, Clone)]
+pub(super) struct Tour {
+    pub(super) run: Run<SurveyOutcome>,
+    pub(super) map: DepthMap,
+    pub(super) quality: Quality,
+}
+
+/// What a map is like.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Quality {
+    /// Shares of cells: with a depth, and of these within two standard deviations.
+    pub(super) coverage: f64,
+    pub(super) inside: f64,
+    /// Metres, of 95 %.
+    pub(super) depth: Option<f64>,
+    pub(super) position: Option<f64>,
+    /// Length of the way over area by spacing.
+    pub(super) way: f64,
+    pub(super) by_walls: bool,
+}
+
+/// What is to be surveyed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Site {
+    /// Between the sides.
+    pub(super) area: Aabb,
+    /// Whether these are straight, so that they tell the place.
+    pub(super) by_walls: bool,
+}
+
+/// Metres off the sides at which cells begin.
+const OFF: f64 = 0.5;
+/// Metres that sides may be off straight ones.
+const STRAIGHT: f64 = 0.05;
+/// Points of a cell along each side, of which its true depth is the mean.
+const POINTS: u32 = 6;
+
+impl Site {
+    /// The water of a world at a depth.
+    pub(super) fn of(world: &World, depth: f64) -> Result<Self, Failure> {
+        let level = world.water_level.unwrap_or_default();
+        let shore = Shore::of(world, level - depth);
+        let Some(area) = shore.bounds() else {
+            return Ok(Self { area: world.bounds(), by_walls: false });
+        };
+        let inset = |point: Point| {
+            let (low, high) = (point - area.min, area.max - point);
+            low.x.min(low.y).min(high.x).min(high.y)
+        };
+        let by_walls = shore.points().all(|point| inset(point) < STRAIGHT);
+        Ok(Self { area, by_walls })
+    }
+}
+
+/// Surveys a scene's water.
+pub(super) fn tour(
+    scene: &Scene,
+    parameters: SurveyParameters,
+    conditions: &Conditions,
+    watch: impl FnMut(f64),
+) -> Result<Tour, Failure> {
+    let robot = &scene.robots[0];
+    let site = Site::of(&scene.world, parameters.depth)?;
+    let mut survey =
+        Survey::new(&robot.spec, robot.pose, site.area, site.by_walls, parameters).map_err(Failure::input)?;
+    let cells = site.area.inflated(-OFF);
+    let mut map = DepthMap::new(cells, parameters.spacing).map_err(Failure::input)?;
+    let mut beliefs = Vec::new();
+    let run = conditions.run(scene, watch, |robot, step| {
+        control::run(robot, &mut survey, conditions.time_limit, |_, survey, _| {
+            step();
+            beliefs.push(survey.belief().0);
+            survey.sounding().into_iter().for_each(|sounding| map.add(sounding));
+        })
+    })?;
+    let errors = run.trail.iter().skip(1).zip(&beliefs);
+    let errors = errors.map(|((_, pose), belief)| (pose.position() - belief.position()).norm()).collect();
+    let size = site.area.size();
+    let quality = Quality {
+        position: percentile(errors),
+        way: run.truth.path_length * parameters.spacing / (size.x * size.y),
+        by_walls: site.by_walls,
+        ..judged(&scene.world, &map, parameters.spacing)
+    };
+    Ok(Tour { run, map, quality })
+}
+
+/// The true mean depth of a cell; `None` where it is not all water.
+pub(super) fn true_depth(world: &World, centre: Point, cell: f64) -> Option<f64> {
+    let level = world.water_level?;
+    let mut sum = 0.0;
+    for point in 0..POINTS * POINTS {
+        let share = |index: u32| (f64::from(index) + 0.5) / f64::from(POINTS) - 0.5;
+        let at = centre + Vector::new(share(point % POINTS), share(point / POINTS)) * cell;
+        let floor = ground(world).map_or(Some(0.0), |ground| ground.height(at))?;
+        sum += level - floor;
+        if floor >= level {
+            return None;
+        }
+    }
+    Some(sum / f64::from(POINTS * POINTS))
+}
+
+fn judged(world: &World, map: &DepthMap, cell: f64) -> Quality {
+    let (mut cells, mut inside, mut errors) = (0_u32, 0_u32, Vec::new());
+    for (column, row) in (0..map.rows()).flat_map(|row| (0..map.columns()).map(move |column| (column, row))) {
+        let Some(depth) = true_depth(world, map.centre(column, row), cell) else { continue };
+        cells += 1;
+        let Some(measured) = map.cell(column, row) else { continue };
+        let error = (measured.depth - depth).abs();
+        errors.push(error);
+        inside += u32::from(error <= 2.0 * measured.sigma);
+    }
+    let known = errors.len() as f64;
+    Quality {
+        coverage: known / f64::from(cells.max(1)),
+        inside: f64::from(inside) / known.max(1.0),
+        depth: percentile(errors),
+        position: None,
+        way: 0.0,
+        by_walls: false,
+    }
+}
+
+/// What 95 % of some numbers are at most.
+fn percentile(mut numbers: Vec<f64>) -> Option<f64> {
+    numbers.sort_by(f64::total_cmp);
+    numbers.get((0.95 * numbers.len() as f64) as usize).copied()
+}
