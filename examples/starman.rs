@@ -16,7 +16,7 @@ use roverlab::world::World;
 fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
     // Ten control points for five servos each; at first, each byte is within 40 of the one before.
     let mut random = Stream::new(1);
-    let genomes = (0..10).map(|_| Gait::near_middle(LIMBS, 10, 40, &mut random)).collect();
+    let genomes = (0..10).map(|_| Gait::near_middle(LIMBS, 10, 40, &mut random)).collect::<Result<_>>()?;
     let mut evolution = Genetic::new(genomes, Recipe::book(24), 1)?;
     // The book's wheel of fitness needs positive numbers.
     let fitness = |bytes: &Vec<u8>, _: Trial| Ok(1.0 + units::to_mm(walk(bytes, |_| {})?.abs()));

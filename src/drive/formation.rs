@@ -81,15 +81,18 @@ impl Formation {
         let bearing = math::atan2(aim.y, aim.x);
         let way = Way { radius: self.radius, margin: self.margin };
         let (towards, _) = way.towards(points, bearing, AHEAD);
-        let most = ((way.free(points, 0.0) - self.margin) / BRAKING).clamp(0.0, self.speed);
+        let most = ((way.free(points, 0.0) - self.margin) / BRAKING).max(0.0).min(self.speed.max(0.0));
         // A follower in position waits for a standing leader without turning.
         let waits = leader_speed.abs() < 0.01 && behind.coords.norm() < 0.05;
         if waits {
             return Twist::STOP;
         }
         let facing = math::cos(towards).max(0.0);
-        let linear = ((leader_speed + behind.x / BRAKING) * facing).clamp(0.0, most);
-        Twist::new(linear, (TURN_GAIN * towards).clamp(-self.turn_rate, self.turn_rate))
+        let linear = ((leader_speed + behind.x / BRAKING) * facing).max(0.0).min(most);
+        let rate = self.turn_rate.max(0.0);
+        let twist = Twist::new(linear, (TURN_GAIN * towards).clamp(-rate, rate));
+        // Without its own pose or the leader's there is no place to keep.
+        if twist.is_finite() { twist } else { Twist::STOP }
     }
 }
 

@@ -224,6 +224,10 @@ impl Path {
     /// The point at a distance from the start (m); the path continues straight beyond both ends.
     pub fn at(&self, distance: f64) -> PathPoint {
         let (first, last) = (self.points[0], self.points[self.points.len() - 1]);
+        if distance.is_nan() {
+            let pose = Pose::new(distance, distance, distance);
+            return PathPoint { pose, curvature: distance, distance };
+        }
         if distance <= 0.0 || distance >= last.distance {
             let end = if distance <= 0.0 { first } else { last };
             let ahead = end.pose.position() + end.pose.forward() * (distance - end.distance);
@@ -251,6 +255,7 @@ impl Path {
     pub fn nearest(&self, point: Point, from: f64, to: f64) -> f64 {
         let first = self.points.partition_point(|p| p.distance < from).saturating_sub(1);
         let last = self.points.partition_point(|p| p.distance <= to).min(self.points.len() - 1);
+        let last = last.max(first);
         let pieces = self.points[first..=last].windows(2).map(|pair| {
             let (a, b) = (pair[0], pair[1]);
             let along = b.pose.position() - a.pose.position();

@@ -88,23 +88,35 @@ impl Settings {
     }
 }
 
+/// Genes of a search at most: the covariance has a number for each pair.
+const MOST_GENES: usize = 2000;
+/// Individuals of a generation at most.
+const MOST_INDIVIDUALS: usize = 10_000;
+
 impl CmaEs {
     /// A search that starts at `mean` with step size `sigma` and `individuals` individuals per generation.
     ///
     /// # Errors
     ///
-    /// If there are no genes, a number is not finite, `sigma` is not positive, or there are fewer than four
-    /// individuals.
+    /// If there are no genes or more than 2000, a number is not finite, `sigma` is not positive, or there are
+    /// fewer than 4 individuals or more than 10,000.
     pub fn new(mean: Vec<f64>, sigma: f64, individuals: usize, seed: u64) -> Result<Self> {
         let n = mean.len();
+        if !(1..=MOST_GENES).contains(&n) {
+            return Err(Error::invalid_input("genes", n, &format!("1 to {MOST_GENES}")));
+        }
+        if !(4..=MOST_INDIVIDUALS).contains(&individuals) {
+            return Err(Error::invalid_input(
+                "individuals",
+                individuals,
+                &format!("4 to {MOST_INDIVIDUALS}"),
+            ));
+        }
         let mut covariance = vec![0.0; n * n];
         (0..n).for_each(|i| covariance[i * n + i] = 1.0);
         let distribution =
             Distribution { mean, sigma, covariance, sigma_path: vec![0.0; n], covariance_path: vec![0.0; n] };
         distribution.validate()?;
-        if individuals < 4 {
-            return Err(Error::invalid_input("individuals", individuals, "at least 4"));
-        }
         let genomes = distribution.sample(individuals, &mut Stream::new(seed).child("breeding", 0));
         Self::resume(Population::new(genomes, seed)?, distribution)
     }

@@ -24,6 +24,9 @@ pub struct Gait {
     leading: usize,
 }
 
+/// Bytes of a gait at most.
+const MOST: usize = 1_000_000;
+
 impl Gait {
     /// Time for which a control point is held (s).
     pub const PERIOD: f64 = 0.25;
@@ -38,7 +41,9 @@ impl Gait {
     ///
     /// If the bytes are not whole control points, or none of them is repeated.
     pub fn from_bytes(bytes: &[u8], servos: usize, leading: usize) -> Result<Self> {
-        let whole = servos > 0 && bytes.len().is_multiple_of(servos) && bytes.len() > leading * servos;
+        let whole = servos > 0
+            && bytes.len().is_multiple_of(servos)
+            && leading.checked_mul(servos).is_some_and(|once| bytes.len() > once);
         if !whole {
             let expected = format!("a multiple of {servos} servos, more than {leading} control points");
             return Err(Error::invalid_input(
@@ -53,7 +58,15 @@ impl Gait {
 
     /// Random bytes near the middle: each control point differs from the one before by at most `step` (5 in
     /// the book).
-    pub fn near_middle(servos: usize, points: usize, step: u8, random: &mut Stream) -> Vec<u8> {
+    ///
+    /// # Errors
+    ///
+    /// If these are more than a million bytes.
+    pub fn near_middle(servos: usize, points: usize, step: u8, random: &mut Stream) -> Result<Vec<u8>> {
+        if servos.saturating_mul(points.max(1)) > MOST {
+            let found = format!("{servos} servos at {points} control points");
+            return Err(Error::invalid_input("length of a gait", found, &format!("at most {MOST} bytes")));
+        }
         let mut bytes = vec![Self::MIDDLE as u8; servos];
         let changes = 2 * usize::from(step) + 1;
         for i in servos..servos * points {
@@ -61,7 +74,7 @@ impl Gait {
             bytes.push((i32::from(bytes[i - servos]) + change).clamp(0, 255) as u8);
         }
         bytes.truncate(servos * points);
-        bytes
+        Ok(bytes)
     }
 
     /// Servo positions, -1 to 1, at a control point of the endless sequence.
@@ -193,7 +206,7 @@ mod tests {
         #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn near_the_middle_steps_are_small(step in 0..20_u8, points in 1..12_usize, seed: u64) {
-            let bytes = Gait::near_middle(5, points, step, &mut Stream::new(seed));
+            let bytes = Gait::near_middle(5, points, step, &mut Stream::new(seed)).unwrap();
             prop_assert_eq!(bytes.len(), 5 * points);
             prop_assert!(bytes[..5].iter().all(|&byte| byte == 128));
             prop_assert!(bytes.windows(6).all(|w| w[0].abs_diff(w[5]) <= step));

@@ -1,6 +1,9 @@
 use crate::io::{Error, Result};
 use crate::random::Stream;
 
+/// Individuals of a tournament at most.
+const LARGEST: usize = 10_000;
+
 /// Selection of parents.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Selection {
@@ -9,7 +12,7 @@ pub enum Selection {
     Wheel,
     /// Tournament: the fittest of `size` individuals drawn at random.
     Tournament {
-        /// Tournament size, at least 1.
+        /// Tournament size, 1 to 10,000.
         size: usize,
     },
     /// Linear ranking: the fittest is selected `pressure` times as often as the average, the least fit
@@ -28,8 +31,8 @@ impl Selection {
     /// If one is out of range.
     pub fn validate(&self) -> Result<()> {
         match *self {
-            Selection::Tournament { size: 0 } => {
-                Err(Error::invalid_input("tournament size", 0, "at least 1"))
+            Selection::Tournament { size } if !(1..=LARGEST).contains(&size) => {
+                Err(Error::invalid_input("tournament size", size, &format!("1 to {LARGEST}")))
             }
             Selection::Rank { pressure } if !(1.0..=2.0).contains(&pressure) => {
                 Err(Error::invalid_input("rank pressure", pressure, "1 to 2"))
@@ -61,6 +64,9 @@ pub struct Selector<'a> {
 impl Selector<'_> {
     /// Draws the index of a parent; 0 if there are no individuals.
     pub fn select(&self, random: &mut Stream) -> usize {
+        if self.fitness.is_empty() {
+            return 0;
+        }
         match self.selection {
             Selection::Tournament { size } => self.tournament(size, random),
             Selection::Wheel | Selection::Rank { .. } => self.spin(random),
@@ -69,7 +75,7 @@ impl Selector<'_> {
 
     fn tournament(&self, size: usize, random: &mut Stream) -> usize {
         let mut best = random.below(self.fitness.len());
-        for _ in 1..size {
+        for _ in 1..size.min(LARGEST) {
             let rival = random.below(self.fitness.len());
             if self.fitness[rival] > self.fitness[best] {
                 best = rival;

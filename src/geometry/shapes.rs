@@ -55,6 +55,9 @@ impl Segment {
 /// assert_eq!(room.size(), Vector::new(2.0, 1.0));
 /// assert!(!room.contains(Point::new(2.1, 0.5)) && room.inflated(0.2).contains(Point::new(2.1, 0.5)));
 /// assert_eq!(room, Aabb::new(corners[1], corners[0]));
+/// // The middle half of a line through it is in it.
+/// let through = roverlab::geometry::Segment::new(Point::new(-1.0, 0.5), Point::new(3.0, 0.5));
+/// assert_eq!(room.span(&through), Some([0.25, 0.75]));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Aabb {
@@ -86,6 +89,28 @@ impl Aabb {
     /// Whether a point lies inside or on the border.
     pub fn contains(&self, point: Point) -> bool {
         self.min.x <= point.x && point.x <= self.max.x && self.min.y <= point.y && point.y <= self.max.y
+    }
+
+    /// The fractions of a segment between which it lies in the box; `None` if it misses the box, or an end is not
+    /// finite.
+    pub fn span(&self, line: &Segment) -> Option<[f64; 2]> {
+        let (mut begin, mut end) = (0.0_f64, 1.0_f64);
+        for axis in 0..2 {
+            let (from, along) = (line.a[axis], line.b[axis] - line.a[axis]);
+            if along == 0.0 {
+                if !(self.min[axis]..=self.max[axis]).contains(&from) {
+                    return None;
+                }
+                continue;
+            }
+            let [one, other] = [self.min[axis], self.max[axis]].map(|side| (side - from) / along);
+            if one.is_nan() || other.is_nan() {
+                return None;
+            }
+            begin = begin.max(one.min(other));
+            end = end.min(one.max(other));
+        }
+        (begin <= end).then_some([begin, end])
     }
 
     /// The box extended by `margin` (m) on every side.

@@ -119,7 +119,8 @@ impl Ackermann {
             self.steering_for(twist.angular / twist.linear)
         };
         let outer = 1.0 + 0.5 * self.track * self.curvature(steering).abs();
-        let fastest = limit / outer;
+        // A limit that is no number lets the car stand.
+        let fastest = (limit / outer).max(0.0);
         CarState { speed: twist.linear.clamp(-fastest, fastest), steering }
     }
 

@@ -29,7 +29,7 @@ impl Direction {
     /// The direction after a number of quarter turns to the right.
     #[must_use]
     pub const fn turned_right(self, quarters: usize) -> Self {
-        Self::ALL[(self as usize + quarters) % 4]
+        Self::ALL[(self as usize + quarters % 4) % 4]
     }
 
     /// A quarter turn to the right.

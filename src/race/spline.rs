@@ -31,6 +31,9 @@ pub struct SplinePoint {
     pub curvature: f64,
 }
 
+/// Points at equal distances at most.
+const MOST: usize = 1_000_000;
+
 impl ClosedSpline {
     /// The spline through at least four points; the last one is joined to the first. O(n).
     ///
@@ -71,7 +74,7 @@ impl ClosedSpline {
     /// The point at a fraction (0 to 1) of a piece.
     pub fn at(&self, piece: usize, share: f64) -> SplinePoint {
         let n = self.points.len();
-        let (i, j) = (piece % n, (piece + 1) % n);
+        let (i, j) = (piece % n, (piece % n + 1) % n);
         let (h, b) = (self.chords[i], share);
         let a = 1.0 - b;
         let (p, q, m, k) = (self.points[i], self.points[j], self.second[i], self.second[j]);
@@ -84,7 +87,7 @@ impl ClosedSpline {
     }
 
     /// Points at equal distances of about `step` metres along the whole loop, equal up to the error of
-    /// Simpson's rule.
+    /// Simpson's rule; at least 4 and at most a million.
     pub fn resample(&self, step: f64) -> Vec<SplinePoint> {
         self.even(step).map(|(piece, share)| self.at(piece, share)).collect()
     }
@@ -97,7 +100,7 @@ impl ClosedSpline {
     fn even(&self, step: f64) -> impl Iterator<Item = (usize, f64)> {
         let lengths: Vec<f64> = (0..self.pieces()).map(|piece| self.length_to(piece, 1.0)).collect();
         let total: f64 = lengths.iter().sum();
-        let count = ((total / step).round() as usize).max(4);
+        let count = ((total / step).round() as usize).clamp(4, MOST);
         let spacing = total / count as f64;
         let (mut piece, mut passed) = (0, 0.0);
         (0..count).map(move |index| {

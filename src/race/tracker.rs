@@ -147,6 +147,9 @@ impl LineTracker {
         parameters: LineTrackerParameters,
     ) -> Result<Self, ParameterError> {
         parameters.validate()?;
+        let (found, speeds) = (points.len(), profile.speeds.len());
+        let expected = "2 or more, as many as the profile has";
+        require("points of the line", found as f64, found >= 2 && found == speeds, expected)?;
         Ok(Self { parameters, points, profile, closed, nearest: 0, started: false, reached: !closed })
     }
 

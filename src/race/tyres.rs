@@ -71,7 +71,7 @@ impl Tyres {
         let circle = self.circle(along);
         // The axle that saturates first bounds both.
         let most = MOST * self.front.min(1.0) / share;
-        let strained = (across / (share * circle)).clamp(-most, most);
+        let strained = (across / (share * circle)).max(-most).min(most);
         strained * circle / (self.stiffness * (1.0 - strained * strained).sqrt())
     }
 
@@ -166,7 +166,7 @@ impl Tyres {
             }
             found = (half + sign * free.sqrt()) / square;
         }
-        Some(found.clamp(-rear.sqrt(), rear.sqrt()))
+        Some(found.max(-rear.sqrt()).min(rear.sqrt()))
     }
 
     /// Longitudinal acceleration left of a push, because the lateral tyre forces are slanted.

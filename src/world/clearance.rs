@@ -1,6 +1,6 @@
 //! Distance from every point of the floor to the nearest solid.
 
-use super::{Object, Shape, Wall, World};
+use super::{BitGrid, Object, Shape, Wall, World};
 use crate::ParameterError;
 use crate::geometry::{Aabb, Point, Segment, Vector, direction, math};
 use crate::parameter::require_positive;
@@ -25,8 +25,8 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// Largest number of cells.
-    pub const MAX_CELLS: f64 = 5e7;
+    /// Largest number of cells: as many as a grid may have.
+    pub const MAX_CELLS: f64 = BitGrid::MAX_CELLS as f64;
 
     /// Cells of `resolution` metres over a box; the last column and row may extend beyond it.
     pub fn over(bounds: Aabb, resolution: f64) -> Result<Self, ParameterError> {
@@ -88,6 +88,9 @@ impl Raster {
     /// Neighbours of a cell across its edges: right, left, above, below.
     #[inline]
     pub fn edge_neighbours(&self, cell: usize) -> [Option<usize>; 4] {
+        if cell >= self.cells() {
+            return [None; 4];
+        }
         let column = cell % self.columns;
         [
             (column + 1 < self.columns).then(|| cell + 1),
@@ -181,10 +184,10 @@ impl Clearance {
         self.limit
     }
 
-    /// Distance from a cell's centre to the nearest solid, at most the limit (m).
+    /// Distance from a cell's centre to the nearest solid, at most the limit (m); 0 outside of the raster.
     #[inline]
     pub fn at(&self, cell: usize) -> f64 {
-        self.distances[cell]
+        self.distances.get(cell).copied().unwrap_or(0.0)
     }
 
     /// Clearance of the cell that contains a point, at most the limit (m); `None` outside of the raster.

@@ -45,7 +45,8 @@ fn compare(args: &Args, seed: u64, init: Init, name: &'static str) -> Result<Row
         Parallel::new(args.threads.into(), move |bytes: &Vec<u8>, _: Trial| trials.fitness(bytes))?;
     let evolved = evolution::run(args, seed, init, &mut threads, 0)?;
     let mut random = Stream::new(seed).child("random search", 0);
-    let gaits: Vec<Vec<u8>> = (0..evolved.evaluations).map(|_| trials.beginning(init, &mut random)).collect();
+    let gaits = (0..evolved.evaluations).map(|_| trials.beginning(init, &mut random));
+    let gaits = gaits.collect::<Result<Vec<_>, _>>()?;
     let found = threads.evaluate(&gaits, Round { seed, generation: 0 })?;
     Ok(Row {
         init: name,

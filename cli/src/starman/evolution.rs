@@ -72,11 +72,11 @@ impl Trials {
     }
 
     /// A random initial gait.
-    pub(crate) fn beginning(&self, init: Init, random: &mut Stream) -> Vec<u8> {
+    pub(crate) fn beginning(&self, init: Init, random: &mut Stream) -> Result<Vec<u8>> {
         let points = self.leading + CYCLE;
         match init {
             Init::Neutral => Gait::near_middle(LIMBS, points, STEP, random),
-            Init::Uniform => (0..LIMBS * points).map(|_| random.below(256) as u8).collect(),
+            Init::Uniform => Ok((0..LIMBS * points).map(|_| random.below(256) as u8).collect()),
         }
     }
 }
@@ -198,5 +198,6 @@ fn kept(
 fn first(args: &Args, seed: u64, init: Init) -> Result<Population<Vec<u8>>> {
     let trials = args.trials();
     let mut random = Stream::new(seed).child("first generation", 0);
-    Population::new((0..args.population).map(|_| trials.beginning(init, &mut random)).collect(), seed)
+    let gaits = (0..args.population).map(|_| trials.beginning(init, &mut random));
+    Population::new(gaits.collect::<Result<_>>()?, seed)
 }

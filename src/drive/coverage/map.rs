@@ -1,5 +1,5 @@
 use crate::ParameterError;
-use crate::geometry::Point;
+use crate::geometry::{Aabb, Point, Segment};
 use crate::io::{Error, ErrorKind, Result};
 use crate::parameter::{require, require_positive, require_up_to};
 use crate::world::{Clearance, Raster, World};
@@ -182,11 +182,18 @@ impl CoverageMap {
 
     /// Marks the floor along a line as covered by a robot with a cross-track error of up to `error` metres.
     pub fn cover_line(&mut self, from: Point, to: Point, error: f64) {
-        let disc = self.disc((self.parameters.radius - error).max(0.0));
+        let disc = self.disc((self.parameters.radius - error).clamp(0.0, self.parameters.radius));
         let length = (to - from).norm();
-        let steps = (length / self.raster.resolution()).ceil().max(1.0) as usize;
-        for step in 0..=steps {
-            self.cover_by(from + (to - from) * (step as f64 / steps as f64), &disc);
+        let steps = (length / self.raster.resolution()).ceil().max(1.0);
+        if !steps.is_finite() {
+            return;
+        }
+        // Only what is in the map counts, however long the line.
+        let ends = [0, self.raster.cells().saturating_sub(1)].map(|cell| self.raster.centre(cell));
+        let map = Aabb::new(ends[0], ends[1]).inflated(self.raster.resolution());
+        let Some([begin, end]) = map.span(&Segment::new(from, to)) else { return };
+        for step in (begin * steps).floor() as usize..=(end * steps).ceil().min(steps) as usize {
+            self.cover_by(from + (to - from) * (step as f64 / steps), &disc);
         }
     }
 

@@ -66,7 +66,7 @@ struct Shared<W: Write> {
     /// `None` once the recording is finished.
     file: Option<Writer<NoSeek<W>>>,
     failure: Option<io::Error>,
-    tracks: Vec<Track>,
+    tracks: BTreeMap<usize, Track>,
     /// Maximum number of bytes by which a robot may be ahead of the others.
     most_ahead: Option<usize>,
     /// Number of each channel in the file and of its next message, by robot and topic.
@@ -77,7 +77,7 @@ struct Shared<W: Write> {
 }
 
 /// Messages of one robot that are not yet in the file.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Track {
     /// Whether the robot is still driving, so that the others' messages wait for its.
     open: bool,
@@ -97,6 +97,8 @@ struct Message {
 
 /// Maximum size of a chunk (bytes).
 const CHUNK_BYTES: usize = 1 << 20;
+/// Bytes that wait for robots that record nothing, at most.
+const MOST_WAITING: usize = 64 << 20;
 /// Maximum duration of a chunk (ns): one second.
 const SECOND: u64 = 1_000_000_000;
 
@@ -131,7 +133,7 @@ impl<W: Write> LogWriter<W> {
         let shared = Shared {
             file: Some(file),
             failure: None,
-            tracks: Vec::new(),
+            tracks: BTreeMap::new(),
             most_ahead: None,
             channels: BTreeMap::new(),
             second: 0,
@@ -150,9 +152,7 @@ impl<W: Write> LogWriter<W> {
     /// not recorded.
     pub fn finish(self) -> io::Result<W> {
         let mut shared = self.lock();
-        for index in 0..shared.tracks.len() {
-            shared.tracks[index].open = false;
-        }
+        shared.tracks.values_mut().for_each(|track| track.open = false);
         shared.drain();
         let file = shared.file.take();
         if let Some(failure) = shared.failure.take() {
@@ -184,8 +184,7 @@ impl<W: Write> LogWriter<W> {
         let alone = shared
             .tracks
             .iter()
-            .enumerate()
-            .all(|(other, state)| state.queue.is_empty() && (other == track || !state.open));
+            .all(|(other, state)| state.queue.is_empty() && (*other == track || !state.open));
         if alone {
             shared.write(track, time, channel, data);
             return;
@@ -193,6 +192,7 @@ impl<W: Write> LogWriter<W> {
         let state = shared.track(track);
         state.queue.push_back(Message { time, channel, data: data.to_vec() });
         state.waiting += data.len();
+        shared.let_go();
         shared.drain();
         self.written.notify_all();
         while shared.is_recording() && shared.is_far_ahead(track) {
@@ -208,7 +208,7 @@ impl<W: Write> LogWriter<W> {
     /// Marks a robot as finished: the others need not wait for it.
     pub(super) fn close(&self, track: usize) {
         let mut shared = self.lock();
-        shared.tracks[track].open = false;
+        shared.track(track).open = false;
         shared.drain();
         self.written.notify_all();
     }
@@ -217,10 +217,7 @@ impl<W: Write> LogWriter<W> {
 impl<W: Write> Shared<W> {
     /// Track of a robot; closed unless the robot drives.
     fn track(&mut self, index: usize) -> &mut Track {
-        while self.tracks.len() <= index {
-            self.tracks.push(Track { open: false, last: 0, queue: VecDeque::new(), waiting: 0 });
-        }
-        &mut self.tracks[index]
+        self.tracks.entry(index).or_default()
     }
 
     fn is_recording(&self) -> bool {
@@ -228,20 +225,32 @@ impl<W: Write> Shared<W> {
     }
 
     fn is_far_ahead(&self, track: usize) -> bool {
-        self.most_ahead.is_some_and(|most| self.tracks[track].waiting > most)
+        self.most_ahead.is_some_and(|most| self.tracks.get(&track).is_some_and(|track| track.waiting > most))
+    }
+
+    /// Where too much waits for robots that record nothing, nothing waits for them any more: a recorder that is
+    /// taken and never driven must not fill the memory. Their messages, if there are any, then come late in
+    /// the file.
+    fn let_go(&mut self) {
+        if self.tracks.values().map(|track| track.waiting).sum::<usize>() > MOST_WAITING {
+            let silent = self.tracks.values_mut().filter(|track| track.queue.is_empty());
+            silent.for_each(|track| track.open = false);
+        }
     }
 
     /// Writes the messages whose order is certain: the earliest one, once every driving robot has one
     /// waiting.
     fn drain(&mut self) {
-        while !self.tracks.iter().any(|track| track.open && track.queue.is_empty()) {
-            let heads = self.tracks.iter().enumerate();
-            let next = heads
-                .filter_map(|(index, track)| track.queue.front().map(|message| (message.time, index)))
+        while !self.tracks.values().any(|track| track.open && track.queue.is_empty()) {
+            let next = self
+                .tracks
+                .iter()
+                .filter_map(|(index, track)| track.queue.front().map(|message| (message.time, *index)))
                 .min();
             let Some((_, index)) = next else { return };
-            if let Some(message) = self.tracks[index].queue.pop_front() {
-                self.tracks[index].waiting -= message.data.len();
+            let track = self.track(index);
+            if let Some(message) = track.queue.pop_front() {
+                track.waiting -= message.data.len();
                 self.write(index, message.time, message.channel, &message.data);
             }
         }
@@ -303,7 +312,7 @@ mod tests {
         let writer = LogWriter::new(Vec::new(), &Header::new("ahead", [""; 0])).unwrap();
         writer.hold_at_most(MOST);
         let robots = [writer.port(0), writer.port(1)];
-        let waiting = || writer.lock().tracks[0].waiting;
+        let waiting = || writer.lock().track(0).waiting;
         thread::scope(|scope| {
             let fast = scope.spawn(|| (0..200).for_each(|time| writer.push(0, Some(time), CALLS, &MESSAGE)));
             while waiting() <= MOST {
@@ -318,5 +327,18 @@ mod tests {
         });
         drop(robots);
         assert!(writer.finish().unwrap().len() > 400 * MESSAGE.len());
+    }
+
+    #[test]
+    fn a_recorder_that_is_never_driven_holds_up_a_bounded_number_of_bytes() {
+        let writer = LogWriter::new(std::io::sink(), &Header::new("silent", [""; 0])).unwrap();
+        // However large its index.
+        let (_silent, _driven) = (writer.port(1_000_000_000), writer.port(0));
+        let message = vec![7; 1 << 20];
+        for time in 0..200 {
+            writer.push(0, Some(time), CALLS, &message);
+            assert!(writer.lock().track(0).waiting <= MOST_WAITING + message.len());
+        }
+        assert_eq!(writer.lock().track(0).waiting, 0);
     }
 }

@@ -62,7 +62,9 @@ impl HullPart {
             Self::Box { size, .. } => 0.5 * size,
             Self::Capsule { radius, length, axis, .. } => {
                 let mut half = Vector3::repeat(radius);
-                half[axis] = 0.5 * length;
+                if let Some(half) = half.get_mut(axis) {
+                    *half = 0.5 * length;
+                }
                 half
             }
             Self::Ellipsoid { half_axes, .. } => half_axes,
@@ -87,7 +89,7 @@ impl HullPart {
         match *self {
             Self::Box { size, .. } => 0.5 * size.dot(&along.abs()),
             Self::Capsule { radius, length, axis, .. } => {
-                radius + (0.5 * length - radius) * along[axis].abs()
+                radius + (0.5 * length - radius) * along.get(axis).map_or(0.0, |share| share.abs())
             }
             Self::Ellipsoid { half_axes, .. } => half_axes.component_mul(along).norm(),
         }
@@ -119,7 +121,7 @@ impl HullPart {
         let cut = match *self {
             Self::Box { size, .. } => cut_box(0.5 * size, up, depth),
             Self::Capsule { radius, length, axis, .. } => {
-                capsule::cut(radius, 0.5 * length - radius, axis, up, depth)
+                capsule::cut(radius, 0.5 * length - radius, axis.min(2), up, depth)
             }
             Self::Ellipsoid { half_axes, .. } => cut_ellipsoid(half_axes, up, depth),
         };

@@ -23,7 +23,7 @@ use crate::random::Stream;
 ///
 /// If `side` exceeds 256.
 pub fn competition(side: usize, seed: u64) -> Result<Maze, ParameterError> {
-    let side = side.max(6).next_multiple_of(2);
+    let side = side.max(6).checked_next_multiple_of(2).unwrap_or(side);
     let mut maze = Maze::filled(side, side, WallState::Present)?;
     let mut stream = Stream::new(seed).child("competition maze", 0);
     let goals = maze.centre();

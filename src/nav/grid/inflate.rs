@@ -26,7 +26,14 @@ pub fn inflated(grid: &BitGrid, resolution: f64, footprint: &Footprint, heading:
     let mut blocked = vec![vec![0u64; grid.width().div_ceil(64)]; grid.height()];
     let solid = grid.inverted();
     let mut line = Line::new(grid.width());
-    for dy in -reach..=reach {
+    // A row as far away as the map is high lies outside it, and so do all beyond.
+    let rows = reach.min(grid.height() as i64);
+    if rows == grid.height() as i64 && [-rows, rows].iter().any(|&dy| outline.columns(dy, reach).is_some()) {
+        // It reaches beyond the map wherever it is.
+        return BitGrid::blocked(grid.width(), grid.height())
+            .unwrap_or_else(|_| unreachable!("as large as the first"));
+    }
+    for dy in -rows..=rows {
         let Some((first, last)) = outline.columns(dy, reach) else { continue };
         for (row, blocked) in blocked.iter_mut().enumerate() {
             let source = row as i64 + dy;
@@ -57,7 +64,7 @@ enum Outline {
 impl Outline {
     fn new(footprint: &Footprint, resolution: f64, heading: Option<f64>) -> Self {
         match (footprint, heading) {
-            (Footprint::Rectangle(sides), Some(heading)) => {
+            (Footprint::Rectangle(sides), Some(heading)) if heading.is_finite() => {
                 let scaled = Aabb::new(
                     Point::from(sides.min.coords / resolution),
                     Point::from(sides.max.coords / resolution),
@@ -79,7 +86,7 @@ impl Outline {
             }
         };
         // NaN gives no reach; the caller limits a reach that is too large.
-        (radius + 0.5).ceil() as i64
+        (radius + 0.5).ceil().max(0.0) as i64
     }
 
     /// The cells of the row at offset `dy` whose interiors it meets: without gaps, as it is convex.

@@ -17,13 +17,14 @@ impl Ranges {
         for y in 0..height {
             let row = image.row(y);
             self.rows.extend((0..width).map(|x| {
-                let near = &row[x.saturating_sub(reach)..(x + reach + 1).min(width)];
+                let near =
+                    &row[x.saturating_sub(reach)..x.saturating_add(reach).saturating_add(1).min(width)];
                 near.iter().fold((u8::MAX, u8::MIN), |range, &shade| joined(range, (shade, shade)))
             }));
         }
         self.squares.clear();
         for y in 0..height {
-            let near = y.saturating_sub(reach)..(y + reach + 1).min(height);
+            let near = y.saturating_sub(reach)..y.saturating_add(reach).saturating_add(1).min(height);
             let column = |x| near.clone().map(move |y| y * width + x);
             self.squares.extend(
                 (0..width)

@@ -72,7 +72,7 @@ pub fn print(course: &RoadCourse) -> String {
         let is_last = index + 1 == elements.len();
         while let Some((at, event)) = events.next_if(|(at, _)| *at < end || is_last) {
             section(&mut text, element, (done - begun, at.min(end) - begun), course.size);
-            done = at.clamp(done, end);
+            done = at.max(done).min(end);
             let _ = writeln!(text, "{event}");
         }
         section(&mut text, element, (done - begun, element.length), course.size);

@@ -66,7 +66,7 @@ impl MazGrid {
     /// A maze without walls, with at least one column; `None` above a million cells.
     pub fn new(columns: usize, rows: usize, cell: f64) -> Option<Self> {
         let (columns, lines) = (columns.max(1), rows.checked_add(1)?);
-        let size = (columns + 1).checked_mul(lines).filter(|&size| size <= MAX_MAZE_CELLS)?;
+        let size = columns.checked_add(1)?.checked_mul(lines).filter(|&size| size <= MAX_MAZE_CELLS)?;
         Some(Self {
             columns,
             rows,
@@ -90,14 +90,13 @@ impl MazGrid {
     /// Whether there is a wall below the cell at a column and row; row [`MazGrid::rows`] is the upper edge.
     /// There are no walls outside the maze.
     pub fn wall_below(&self, column: usize, row: usize) -> bool {
-        column < self.columns && self.horizontal.get(row * self.columns + column).is_some_and(|&wall| wall)
+        column < self.columns && row <= self.rows && self.horizontal[row * self.columns + column]
     }
 
     /// Whether there is a wall to the left of the cell at a column and row; column [`MazGrid::columns`] is
     /// the right edge. There are no walls outside the maze.
     pub fn wall_left(&self, column: usize, row: usize) -> bool {
-        column <= self.columns
-            && self.vertical.get(row * (self.columns + 1) + column).is_some_and(|&wall| wall)
+        column <= self.columns && row < self.rows && self.vertical[row * (self.columns + 1) + column]
     }
 
     /// Builds or removes the wall of [`MazGrid::wall_below`]; no effect outside the maze.
@@ -116,7 +115,7 @@ impl MazGrid {
 
     /// Letter of a cell, in lower case.
     pub fn letter(&self, column: usize, row: usize) -> Option<char> {
-        if column < self.columns {
+        if column < self.columns && row < self.rows {
             self.letters.get(row * self.columns + column).copied().flatten()
         } else {
             None

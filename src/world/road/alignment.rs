@@ -77,15 +77,18 @@ pub struct Alignment {
     gap: Pose,
 }
 
+/// Length above which a line has no stations (m).
+const LONGEST: f64 = 1e5;
 /// Largest distance between stations (m).
 const STEP: f64 = 0.02;
 
 impl Alignment {
     /// The chain of some elements from a start pose. The closing error is spread evenly over it; see
-    /// [`gap`](Alignment::gap). Without elements, or with elements of zero length, the line has no stations.
+    /// [`gap`](Alignment::gap). Without elements, with elements of zero length, or above 100 km, the line has no
+    /// stations.
     pub fn new(start: Pose, elements: Vec<Element>) -> Self {
         let length: f64 = elements.iter().map(|element| element.length).sum();
-        let count = if length.is_finite() { (length / STEP).ceil() as usize } else { 0 };
+        let count = if length <= LONGEST { (length / STEP).ceil() as usize } else { 0 };
         let mut line = Self { elements, stations: Vec::with_capacity(count), length, gap: Pose::default() };
         let end = line.lay(start, count);
         let closing = angle_difference(start.heading, end.heading);
@@ -154,9 +157,12 @@ impl Alignment {
         self.gap
     }
 
-    /// The station at a distance along it (m), over any number of rounds.
+    /// The station at a distance along it (m), over any number of rounds; the origin on a line without stations.
     pub fn at(&self, along: f64) -> AlignmentStation {
         let count = self.stations.len();
+        if count == 0 {
+            return AlignmentStation { pose: Pose::default(), curvature: 0.0 };
+        }
         let place = along.rem_euclid(self.length) / self.length * count as f64;
         let index = (place as usize).min(count - 1);
         let share = place - index as f64;
@@ -179,6 +185,9 @@ impl Alignment {
     /// of `near`, or on the whole line without `near`.
     pub fn locate(&self, point: Point, near: Option<(f64, f64)>) -> (f64, f64) {
         let count = self.stations.len();
+        if count == 0 {
+            return (0.0, 0.0);
+        }
         let piece = self.length / count as f64;
         let (first, number) = match near {
             Some((near, window)) if 2.0 * window < self.length => {

@@ -46,8 +46,14 @@ impl Default for RoadCourseOptions {
 /// A random course by the rules: straights with bends of clothoids and arcs, and random markings. Equal seeds
 /// and options give bit-identical courses. One in three is a figure of eight.
 ///
-/// Fails if the options are contradictory, so that no course is found.
+/// Fails if there are more than 100 gaps or artefacts per metre, or the options are contradictory, so that no course is found.
 pub fn generate(seed: u64, options: &RoadCourseOptions) -> Result<RoadCourse, CourseError> {
+    for (name, value) in [("gaps per metre", options.gaps), ("artefacts per metre", options.artefacts)] {
+        if !(0.0..=MOST_MARKS).contains(&value) {
+            let expected = format!("0 to {MOST_MARKS}");
+            return Err(CourseError::RoadMark { name, value, expected });
+        }
+    }
     let mut last = None;
     for attempt in 0..ATTEMPTS {
         let mut random = Stream::new(seed).child("course", attempt);
@@ -60,6 +66,8 @@ pub fn generate(seed: u64, options: &RoadCourseOptions) -> Result<RoadCourse, Co
     Err(last.unwrap_or(CourseError::Length { length: 0.0, least: 6.0, most: 500.0 }))
 }
 
+/// Gaps and artefacts per metre at most.
+const MOST_MARKS: f64 = 100.0;
 /// Number of attempted outlines; about one in twenty has room for all bends.
 const ATTEMPTS: u64 = 2000;
 /// Shortest straight (m).

@@ -50,6 +50,7 @@ impl RoadCourse {
 
     /// Picture of the road from above, far side on top; it fills the [floor](Self::floor).
     pub fn floor_image(&self, appearance: &Appearance) -> Result<RgbaImage, CourseError> {
+        self.check()?;
         let mut raster = Raster::new(self.floor(), appearance.pixel)?;
         for quad in quads(self) {
             raster.fill(&quad);

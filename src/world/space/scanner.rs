@@ -40,8 +40,11 @@ pub struct Scanner {
     seen: Vec<bool>,
 }
 
+/// Beams of a scanner at most.
+const MOST_BEAMS: usize = 1_000_000;
+
 impl Scanner {
-    /// A scanner with `beams` beams, `angle_increment` radians apart, the first one `angle_min` radians
+    /// A scanner with `beams` beams, at most a million, `angle_increment` radians apart, the first one `angle_min` radians
     /// counter-clockwise from straight ahead.
     ///
     /// Its height above the floor is `z` metres. Its beams point `tilt` radians above the horizontal and
@@ -55,7 +58,7 @@ impl Scanner {
         max_range: f64,
     ) -> Self {
         let drawn = tilt == 0.0 && angle_increment > 1e-6 && angle_increment.is_finite();
-        let buffer = PolarBuffer::new(Fan::new(angle_min, angle_increment, beams));
+        let buffer = PolarBuffer::new(Fan::new(angle_min, angle_increment, beams.min(MOST_BEAMS)));
         Self { buffer, z, tilt, max_range, drawn, sights: Vec::new(), order: Vec::new(), seen: Vec::new() }
     }
 

@@ -122,7 +122,7 @@ fn starman() -> Result<String> {
         }
     }
     let mut random = Stream::new(135);
-    let first = (0..6).map(|_| Gait::near_middle(LIMBS, 6, 40, &mut random)).collect();
+    let first = (0..6).map(|_| Gait::near_middle(LIMBS, 6, 40, &mut random).unwrap()).collect();
     let fitness = |bytes: &Vec<u8>, _: Trial| {
         let mut robot = Starman::new(&StarmanSpec::planar())?;
         let gait = Gait::from_bytes(bytes, LIMBS, 2)?;

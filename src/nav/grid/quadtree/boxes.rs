@@ -15,7 +15,7 @@ pub enum Edges {
 /// Whether the segment from `a` to `b` meets a box between two corners, all given as (x, y) in any unit.
 ///
 /// It does not if all four corners lie on the same side of the line, or if the projections of segment and box
-/// on one of the axes are disjoint. `edges` decides about touching. Exact for coordinates up to 2^30.
+/// on one of the axes are disjoint. `edges` decides about touching. Exact for coordinates up to 2^61.
 ///
 /// ```
 /// use roverlab::nav::grid::{Edges, segment_meets_box};
@@ -44,7 +44,11 @@ pub fn segment_meets_box(
     if a == b {
         return true;
     }
-    let side = |x: i64, y: i64| (b.1 - a.1) * (x - a.0) - (b.0 - a.0) * (y - a.1);
+    let (dx, dy) = (i128::from(b.0) - i128::from(a.0), i128::from(b.1) - i128::from(a.1));
+    let side = |x: i64, y: i64| {
+        dy.saturating_mul(i128::from(x) - i128::from(a.0))
+            - dx.saturating_mul(i128::from(y) - i128::from(a.1))
+    };
     let sides =
         [side(lower.0, lower.1), side(upper.0, lower.1), side(lower.0, upper.1), side(upper.0, upper.1)];
     let one_side = match edges {

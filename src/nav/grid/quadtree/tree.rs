@@ -211,9 +211,13 @@ impl Quadtree {
         leaf.column + leaf.size <= self.width && leaf.row + leaf.size <= self.height
     }
 
-    /// The free leaves that share part of an edge with a leaf: on the right, below, on the left, above.
+    /// The free leaves that share part of an edge with a leaf: on the right, below, on the left, above. None
+    /// where there is no such leaf.
     pub fn neighbours(&self, leaf: Leaf) -> Vec<Leaf> {
         let mut found = Vec::new();
+        if self.leaf_at(GridCell::new(leaf.column, leaf.row)) != Some(leaf) {
+            return found;
+        }
         let (end_column, end_row) = (leaf.column + leaf.size, leaf.row + leaf.size);
         let mut side = |at: &dyn Fn(usize) -> GridCell| {
             let mut along = 0;

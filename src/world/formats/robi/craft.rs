@@ -300,7 +300,7 @@ pub(super) fn write(text: &mut String, craft: &CraftSpec) -> Written {
             }
             HullPart::Capsule { radius, length, axis, .. } => {
                 let size = [*radius, *length].map(millimetres).join(" ");
-                writeln!(text, "hull capsule {size} {centre} {}", ["x", "y", "z"][*axis])?;
+                writeln!(text, "hull capsule {size} {centre} {}", ["x", "y", "z"][*axis % 3])?;
             }
         }
     }
