@@ -197,7 +197,7 @@ mod tests {
             let beyond = random.between(0.8, 3.0);
             let offset = if random.chance(0.5) { station.left + beyond } else { -station.right - beyond };
             let place = station.aside(offset);
-            text += &format!("{colour},{},{},0,0,0,0\n", place.x, place.y);
+            text.extend([format!("{colour},{},{},0,0,0,0\n", place.x, place.y)]);
         }
         let read = parse_eufs(&text, "spoiled.csv").unwrap();
         let found = CentreLine::round_track(&read.cones, read.start_pose().unwrap());

@@ -1,5 +1,7 @@
 //! The server beside a run, as browsers and viewers meet it.
 
+#![allow(clippy::naive_bytecount, reason = "kinds of a few messages")]
+
 use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::thread;

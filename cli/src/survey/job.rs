@@ -36,7 +36,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let scene = afloat(common, &surveyor(), || scene(common.seed))?;
     let parameters =
         SurveyParameters { spacing: args.spacing, depth: args.depth, ..SurveyParameters::default() };
-    let site = Site::of(&scene.world, args.depth)?;
+    let site = Site::of(&scene.world, args.depth);
     let conditions = Conditions::new(common, limit(&site, args.spacing))?;
     let done = tour(&scene, parameters, &conditions, paced(common))?;
     let quality = &done.quality;

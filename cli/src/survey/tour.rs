@@ -47,18 +47,18 @@ const POINTS: u32 = 6;
 
 impl Site {
     /// The water of a world at a depth.
-    pub(super) fn of(world: &World, depth: f64) -> Result<Self, Failure> {
+    pub(super) fn of(world: &World, depth: f64) -> Self {
         let level = world.water_level.unwrap_or_default();
         let shore = Shore::of(world, level - depth);
         let Some(area) = shore.bounds() else {
-            return Ok(Self { area: world.bounds(), by_walls: false });
+            return Self { area: world.bounds(), by_walls: false };
         };
         let inset = |point: Point| {
             let (low, high) = (point - area.min, area.max - point);
             low.x.min(low.y).min(high.x).min(high.y)
         };
         let by_walls = shore.points().all(|point| inset(point) < STRAIGHT);
-        Ok(Self { area, by_walls })
+        Self { area, by_walls }
     }
 }
 
@@ -70,7 +70,7 @@ pub(super) fn tour(
     watch: impl FnMut(f64),
 ) -> Result<Tour, Failure> {
     let robot = &scene.robots[0];
-    let site = Site::of(&scene.world, parameters.depth)?;
+    let site = Site::of(&scene.world, parameters.depth);
     let mut survey =
         Survey::new(&robot.spec, robot.pose, site.area, site.by_walls, parameters).map_err(Failure::input)?;
     let cells = site.area.inflated(-OFF);

@@ -1,5 +1,7 @@
 //! The page beside a run: `--view`, and of a recording: `view`.
 
+#![allow(clippy::naive_bytecount, reason = "kinds of a few messages")]
+
 use std::io::{BufRead, BufReader};
 use std::net::TcpStream;
 use std::process::{Child, ChildStderr, Stdio};

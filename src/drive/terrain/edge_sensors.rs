@@ -55,7 +55,7 @@ impl EdgeSensors {
     }
 
     /// Whether the ground ahead is missing, on the left and on the right.
-    pub(super) fn missing<R: DistanceSensors + ?Sized>(&self, robot: &mut R) -> Result<[bool; 2]> {
+    pub(super) fn missing<R: DistanceSensors + ?Sized>(robot: &mut R) -> Result<[bool; 2]> {
         let most = math::hypot(HEIGHT, BEFORE) + DROP;
         // No return, and what is no number, is no ground.
         let mut is_missing = |id: u8| robot.distance(Psd(id)).map(|range| range.is_nan() || range > most);
@@ -63,7 +63,7 @@ impl EdgeSensors {
     }
 
     /// Metres to the ground on the left and on the right.
-    pub(super) fn aside<R: DistanceSensors + ?Sized>(&self, robot: &mut R) -> Result<[f64; 2]> {
+    pub(super) fn aside<R: DistanceSensors + ?Sized>(robot: &mut R) -> Result<[f64; 2]> {
         Ok([robot.distance(Psd(ASIDE[0]))?, robot.distance(Psd(ASIDE[1]))?])
     }
 }

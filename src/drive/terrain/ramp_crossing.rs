@@ -322,8 +322,8 @@ impl<R: Odometry + DistanceSensors + Inertial + ?Sized> Senses<R> for RampCrossi
     fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut RampObservation) -> Result<()> {
         seen.odometry = robot.pose()?;
         seen.attitude = robot.attitude()?;
-        seen.missing = self.sensors.missing(robot)?;
-        seen.aside = self.sensors.aside(robot)?;
+        seen.missing = EdgeSensors::missing(robot)?;
+        seen.aside = EdgeSensors::aside(robot)?;
         Ok(())
     }
 }

@@ -291,8 +291,11 @@ impl ReplayTruth {
     }
 }
 
+/// A pose, and its time (s) if that is not the query's.
+type TimedPose = (Option<f64>, Pose);
+
 /// True poses in a recorded answer: the robot, each with its time if that is not the query's.
-pub(super) fn true_poses(call: &Call<'_>) -> Option<(usize, Vec<(Option<f64>, Pose)>)> {
+pub(super) fn true_poses(call: &Call<'_>) -> Option<(usize, Vec<TimedPose>)> {
     let result = call.result.as_ref().ok()?;
     match asked(call) {
         ("pose", Some(robot)) => Some((robot, vec![(None, result.take()?)])),

@@ -104,10 +104,10 @@ fn structure(crate_: &Crate, known: &Known, name: &str, path: &str, fields: &[&F
     for (field, given) in named {
         let Some(given) = given else { continue };
         let _ = write!(count, " + <{given} as Sample>::count()");
-        let _ = write!(
+        let _ = writeln!(
             nth,
             "if index < <{given} as Sample>::count() {{ made.{field} = <{given} as Sample>::nth(index)?; return Some(made); }} \
-             index -= <{given} as Sample>::count();\n"
+             index -= <{given} as Sample>::count();"
         );
     }
     nth += "None";
@@ -122,10 +122,10 @@ fn enumeration(path: &str, variants: &[(String, String)]) -> String {
     let count: Vec<String> = variants.iter().map(|(counts, _)| format!("Picker::total({counts})")).collect();
     let mut nth = String::from("let mut index = index;");
     for (counts, make) in variants {
-        let _ = write!(
+        let _ = writeln!(
             nth,
             "if index < Picker::total({counts}) {{ let mut picker = Picker::nth(index, {counts}); return Some({make}); }} \
-             index -= Picker::total({counts});\n"
+             index -= Picker::total({counts});"
         );
     }
     nth += "None";

@@ -133,7 +133,7 @@ samples! {
         "/nonexistent/folder/file".into(), PathBuf::new(), "/dev/null".into(), "/".into(), "/dev/zero".into(),
         "a\0b".into()
     ];
-    std::ops::Range<usize> => [0..2, 0..0, 5..2, 0..usize::MAX, usize::MAX..0];
+    std::ops::Range<usize> => [0..2, 0..0, reversed(5, 2), 0..usize::MAX, reversed(usize::MAX, 0)];
     std::ops::Range<f64> => [0.0..1.0, 1.0..0.0, f64::NAN..1.0, 0.0..f64::INFINITY];
     std::ops::RangeInclusive<f64> => [0.0..=1.0, 1.0..=0.0, f64::NAN..=1.0, 0.0..=f64::INFINITY];
     Stream => [Stream::new(1)];
@@ -217,3 +217,8 @@ macro_rules! tuples {
 }
 
 tuples! { (A) (A, B) (A, B, C) (A, B, C, D) }
+
+/// A range whose end comes before its start.
+fn reversed(start: usize, end: usize) -> std::ops::Range<usize> {
+    std::ops::Range { start, end }
+}

@@ -222,7 +222,9 @@ impl Hub {
         let outboxes: Vec<Outbox> =
             self.lock().clients.values().map(|client| client.outbox.clone()).collect();
         outboxes.iter().for_each(Outbox::close);
-        outboxes.iter().for_each(|outbox| outbox.flush(patience));
+        for outbox in &outboxes {
+            outbox.flush(patience);
+        }
     }
 
     /// Does what a client wants. Fails with what was found and expected.

@@ -134,17 +134,17 @@ impl Desk {
         }
         stream.set_read_timeout(None)?;
         stream.set_write_timeout(None)?;
-        self.talk(stream, rest)
+        self.talk(&stream, rest)
     }
 
     /// Speaks the protocol with a client until one of both ends it.
-    fn talk(&self, stream: TcpStream, rest: Vec<u8>) -> io::Result<()> {
+    fn talk(&self, stream: &TcpStream, rest: Vec<u8>) -> io::Result<()> {
         let outbox = Outbox::default();
         let (out, frames) = (stream.try_clone()?, outbox.clone());
         let client = self.hub.join(&outbox);
         let writer = thread::Builder::new().name("viewer".into()).spawn(move || send(out, &frames));
         if writer.is_ok() {
-            self.listen(&stream, rest, client, &outbox);
+            self.listen(stream, rest, client, &outbox);
         }
         self.hub.leave(client);
         outbox.abandon();
