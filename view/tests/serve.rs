@@ -191,8 +191,9 @@ fn who_never_reads_holds_nobody_up() {
 #[test]
 fn who_comes_later_gets_what_is_said_once() {
     let page = beside();
+    page.told("before the scene");
     watched(&page, 1.0, || ());
-    page.told("early");
+    page.told("after it");
     let mut viewer = join(page.address());
     assert_eq!(operation(&mut viewer, "serverInfo")["capabilities"], json!(["clientPublish", "time"]));
     let known = channels(&mut viewer, "/robot1/transforms");
@@ -210,7 +211,7 @@ fn who_comes_later_gets_what_is_said_once() {
     thread::sleep(Duration::from_millis(100));
     drop(page);
     let messages = late.join().unwrap();
-    assert_eq!((count(&messages, Message::Scene), count(&messages, Message::Told)), (1, 1));
+    assert_eq!((count(&messages, Message::Scene), count(&messages, Message::Told)), (1, 2));
 }
 
 #[test]
