@@ -318,8 +318,8 @@ fn recordings_are_played_in_time_for_viewers_and_at_once_for_the_page() {
         if let Frame::Binary(data) = viewer.read().unwrap()
             && data[0] == 1
         {
-            times.push(u64::from_le_bytes(data[5..13].try_into().unwrap()) / 1_000_000);
+            times.push(u64::from_le_bytes(data[5..13].try_into().unwrap()) / 10_000_000);
         }
     }
-    assert_eq!(times, (1..=10).map(|tenth| 100 * tenth).collect::<Vec<_>>());
+    assert_eq!(times, (1..=10).map(|tenth| 10 * tenth).collect::<Vec<_>>());
 }
