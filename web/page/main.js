@@ -130,6 +130,7 @@ function tell(when, text) {
 
 // What the robot knew: one more layer for each name that the legend of its picture has.
 function overlay(items) {
+  if (!recording) return;
   for (const item of items) item.layer = item.label ?? (item.kind === "mark" ? "marks of its way" : "other lines");
   recording.overlay = items;
   for (const name of new Set(items.map((item) => item.layer))) layers[name] ??= true;

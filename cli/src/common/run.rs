@@ -32,8 +32,7 @@ where
         common.check()?;
         let whole = || completed(command, common, stopwatch, work(args)?);
         #[cfg(feature = "view")]
-        return super::view::beside(common, whole);
-        #[cfg(not(feature = "view"))]
+        let whole = || super::view::beside(common, whole);
         whole()
     })
 }

@@ -71,7 +71,7 @@ fn a_run_with_a_page_is_the_same_run() {
 #[test]
 fn a_recording_is_shown() {
     let file = format!("{}/viewed.mcap", env!("CARGO_TARGET_TMPDIR"));
-    assert_eq!(said(&mut roverlab(&["distbug", "--force", "--record", &file])).0, 0);
+    assert_eq!(said(&mut roverlab(&["distbug", "--json", "--force", "--record", &file])).0, 0);
     let (mut child, address, _errors) = opened(&["view", &file]);
     let (kinds, ended) = seen(&mut look(&address));
     child.kill().unwrap();

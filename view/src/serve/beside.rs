@@ -20,7 +20,6 @@ use crate::{Displayed, Frames, IMAGE_INTERVAL, Message, Shown, overlay_json, sce
 pub struct Beside {
     server: Server,
     page: Channel,
-    command: String,
     /// Simulated time (s), as its bits.
     time: Arc<AtomicU64>,
 }
@@ -58,14 +57,10 @@ impl Beside {
     /// Listens for the page. Fails if the port is taken.
     pub fn open(opening: &Opening) -> io::Result<Self> {
         let server = Server::open(opening)?;
-        let (page, command) = (server.hub.page(), opening.command.clone());
-        let beside = Self { server, page, command, time: Arc::default() };
-        beside.introduce();
+        let (page, command) = (server.hub.page(), &opening.command);
+        let beside = Self { server, page, time: Arc::default() };
+        beside.say(Message::Beside, json!({ "command": command }).to_string().as_bytes(), 1);
         Ok(beside)
-    }
-
-    fn introduce(&self) {
-        self.say(Message::Beside, json!({ "command": self.command }).to_string().as_bytes(), 1);
     }
 
     /// Address of the page; that of the protocol begins with `ws:`.
@@ -92,8 +87,6 @@ impl Beside {
     /// The same, with devices that are not in the world.
     pub fn scene_with(&self, scene: &Scene, devices: Option<Box<dyn Devices>>) -> Box<dyn Watcher> {
         let hub = &self.server.hub;
-        hub.forget(&self.page);
-        self.introduce();
         self.say(Message::Scene, scene_json(scene).to_string().as_bytes(), 1);
         let channel = hub.advertise(Topic::scene());
         hub.publish(&channel, 0, &scene_message(scene), Keep::Last(0, 1));

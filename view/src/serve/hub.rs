@@ -154,11 +154,6 @@ impl Hub {
         }
     }
 
-    /// Forgets what later subscribers to a channel would get.
-    pub(super) fn forget(&self, channel: &Channel) {
-        self.lock().channels[channel.id].kept.clear();
-    }
-
     /// Sends a message to one client. Returns whether it is still there.
     pub(super) fn deliver(&self, client: u64, channel: &Channel, time: u64, data: &[u8]) -> bool {
         let state = self.lock();
