@@ -72,6 +72,8 @@ const FIRST: u8 = 21;
 /// [`StoppingModel::distance`], which is required to be at most 50 mm. A robot that stands has at most
 /// 50 mm · √2 to the edge beside what it stopped too early.
 ///
+/// Motors cannot be driven one by one through it: nothing would be known of their speeds.
+///
 /// On level ground that drops by more than 0.1 m, that is; not if the robot slides down a slope, is pushed,
 /// or stands beside a spit of land narrower than itself.
 ///

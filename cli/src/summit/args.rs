@@ -38,7 +38,7 @@ Without --world, the robot stands on generated hills, which --seed chooses. A wo
 TOP FILE`, whose file is an image or an ESRI grid. A Blizzard drives where it has no robot. In a world with water the robot
 is told how high that is.
 
-With --campaign, generated ranges by each way of going up, or those of --world from many starts.
+With --campaign, generated ranges by each way of going up.
 
 JSON fields:
   height_mm                   true elevation at the end

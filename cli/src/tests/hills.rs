@@ -37,11 +37,11 @@ fn a_robot_finds_the_summit_of_a_world() {
             [&["--world", &world, "--start", "700,700,0", "--noise", "1", "--seed", "3"], options].concat();
         let (status, report, err): Ended = run("summit", &options);
         assert_eq!((status, err.as_str()), (0, ""), "{report}");
-        // The search may take a flat shoulder for the top: a tenth of the hill may be left.
+        // On so smooth a top, a few millimetres in height are a hand's breadth aside.
         assert!(["reached", "local_maximum"].contains(&report["outcome"].as_str().unwrap()), "{report}");
         let (top, height) = (number(&report, "highest_reachable_mm"), number(&report, "height_mm"));
-        assert!(top > 240.0 && (top - height).abs() < 30.0, "{report}");
-        assert!(number(&report, "max_tilt_deg") < 30.0 && number(&report, "distance_mm") < 400.0, "{report}");
+        assert!(top > 240.0 && (top - height).abs() < 15.0, "{report}");
+        assert!(number(&report, "max_tilt_deg") < 30.0 && number(&report, "distance_mm") < 200.0, "{report}");
         assert!(number(&report, "slip_percent") < 60.0, "{report}");
     }
 }
