@@ -14,7 +14,7 @@ use roverlab::drive::{
     PidWallFollowerParameters, RandomDrive, RandomDriveParameters, Steering, Tour, TourParameters,
     TwoLevelWallFollower, WallFollower, WallFollowerParameters, WallSensors,
 };
-use roverlab::geometry::{Point, Pose};
+use roverlab::geometry::{Aabb, Point, Pose};
 use roverlab::kinematics::marine::CraftSpec;
 use roverlab::kinematics::{Ackermann, Omni};
 use roverlab::random::Stream;
