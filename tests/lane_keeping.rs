@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use image::RgbImage;
 use roverlab::drive::lane_keeping::{LaneKeeper, LaneKeeperParameters, LaneObservation};
 use roverlab::drive::traffic::{FreeDrive, FreeDriveRules, FreeDriveScore};
-use roverlab::geometry::{Pose, units};
+use roverlab::geometry::{Pose, math, units};
 use roverlab::io::control::{run, until};
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::{Camera, Clock, Resolution};
@@ -55,8 +55,8 @@ impl Errors {
         let count = ((course.line.length() / 0.07) as usize).min(most);
         for frame in 0..count {
             let along = 0.07 * frame as f64;
-            let aside = course.pose(along, 0.04 * (1.3 * along).sin());
-            let askew = 0.052 * (1.3 * along).cos();
+            let aside = course.pose(along, 0.04 * math::sin(1.3 * along));
+            let askew = 0.052 * math::cos(1.3 * along);
             truth.move_robot(0, 0, Pose::new(aside.x, aside.y, aside.heading + askew)).unwrap();
             car.wait(0.04).unwrap();
             car.image_into(&mut image).unwrap();

@@ -4,6 +4,8 @@
 #[path = "../src/testing/cases.rs"]
 mod cases;
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use proptest::prelude::*;
 use roverlab::geometry::{Aabb, Point, Pose, Vector, Vector3, angle_difference, math, units};
 use roverlab::io::sim::{Mishap, SimOptions, Simulation, TICK};
@@ -152,7 +154,7 @@ fn incline(at: Point) -> f64 {
 #[test]
 fn an_inertial_unit_tells_how_its_robot_stands() {
     let rise = units::from_deg(10.0);
-    for (heading, roll, pitch) in [(0.0, 0.0, -rise), (1.570_796, -rise, 0.0), (3.141_593, 0.0, rise)] {
+    for (heading, roll, pitch) in [(0.0, 0.0, -rise), (FRAC_PI_2, -rise, 0.0), (PI, 0.0, rise)] {
         let simulation = simulation(world(41, incline), RobotSpec::blizzard(), Pose::new(2.0, 2.0, heading));
         let mut robot = simulation.robot(0).unwrap();
         robot.wait(1.0).unwrap();

@@ -5,6 +5,7 @@ use std::fs;
 use super::support::{Ended, number, run, temporary};
 use crate::summit;
 use clap::Parser;
+use roverlab::geometry::math;
 
 /// A world whose ground is an ESRI grid: a hill with its top at (1.9, 1.7) m. Returns the name of the world's
 /// file.
@@ -12,7 +13,8 @@ fn hill(name: &str) -> String {
     let (columns, cell) = (61, 0.05);
     let height = |column: usize, row: usize| {
         let (x, y) = (column as f64 * cell, (columns - 1 - row) as f64 * cell);
-        0.25 * (-1.5 * ((x - 1.9).powi(2) + (y - 1.7).powi(2))).exp()
+        let (ahead, aside) = (x - 1.9, y - 1.7);
+        0.25 * math::exp(-1.5 * (ahead * ahead + aside * aside))
     };
     let mut grid = format!("ncols {columns}\nnrows {columns}\nxllcorner 0\nyllcorner 0\ncellsize 50\n");
     for row in 0..columns {

@@ -1,8 +1,9 @@
-//! The program `roverlab` as a process: robots behind the library of RoBIOS, and runs that are killed.
+//! The program `roverlab` as a process: its warnings, robots behind the library of RoBIOS, and runs that are killed.
 
 mod killed;
 mod robios;
 
+use std::path::Path;
 use std::process::Command;
 
 /// The program with some words on its command line.
@@ -17,4 +18,15 @@ fn said(command: &mut Command) -> (i32, String) {
     let output = command.output().unwrap();
     let text = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap()).concat();
     (output.status.code().unwrap_or(-1), text)
+}
+
+/// A robot whose 3D model is missing drives, with a warning.
+#[test]
+fn a_missing_model_is_warned_of() {
+    let robot = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/formats/cart.robi");
+    let bare = Path::new(env!("CARGO_TARGET_TMPDIR")).join("bare.robi");
+    std::fs::write(&bare, std::fs::read_to_string(robot).unwrap().replace("cart.obj", "nowhere.obj"))
+        .unwrap();
+    let (status, text) = said(&mut roverlab(&["a_to_b", "--robot", bare.to_str().unwrap()]));
+    assert!(status == 0 && text.contains("bare.robi:3:") && text.contains("nowhere.obj"), "{text}");
 }

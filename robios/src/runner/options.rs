@@ -11,6 +11,7 @@ use roverlab::picture::FileType;
 /// A script starts the program of each robot; all robots share one world. A single program drives the first
 /// robot of the world, or an S4.
 #[derive(Debug, clap::Parser)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 #[command(
     name = "robios",
     version,
