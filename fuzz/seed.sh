@@ -3,7 +3,7 @@
 set -eu
 cd "$(dirname "$0")"
 data=../tests/data
-for target in wld maz robi esobj sim ros_map movingai; do mkdir -p "corpus/$target"; done
+for target in wld maz robi esobj sim ros_map movingai track maze recording; do mkdir -p "corpus/$target"; done
 for target in wld maz robi; do
     for file in "$data"/formats/*."$target" "$data/broken/$target"/*."$target"; do
         [ "$(wc -c < "$file")" -gt 4096 ] || cp "$file" "corpus/$target/"
@@ -18,3 +18,7 @@ for yaml in room.yaml scale.yml; do
 done
 cp "$data"/grids/*.map "$data"/grids/*.scen "$data"/broken/movingai_map/*.map "$data"/broken/movingai_scen/*.scen \
     corpus/movingai/
+cp "$data"/cones/*.csv "$data"/cones/*.yaml corpus/track/
+cp "$data"/mazes/* "$data"/broken/maz/*.maz corpus/maze/
+# The beginnings of recordings: `-max_len` leaves no more of them.
+for log in "$data"/logs/*.mcap; do head -c 4096 "$log" > "corpus/recording/$(basename "$log")"; done

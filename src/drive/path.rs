@@ -293,6 +293,13 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    #[test]
+    fn what_is_no_distance_is_no_place() {
+        let path = Path::hermite(Pose::default(), Pose::new(1.45, 0.65, 0.0), 1.0).unwrap();
+        assert!(path.at(f64::NAN).pose.x.is_nan());
+        assert_eq!(path.nearest(Point::new(1.0, 1.0), 1.0, 0.5), 1.0, "nothing is between");
+    }
+
     proptest! {
         #![proptest_config(crate::testing::cases(256))]
         #[test]

@@ -175,9 +175,18 @@ mod tests {
     }
 
     #[test]
+    fn among_nobody_nobody_is_selected() {
+        for selection in
+            [Selection::Tournament { size: 2 }, Selection::Wheel, Selection::Rank { pressure: 1.5 }]
+        {
+            assert_eq!(selection.among(&[]).select(&mut Stream::new(1)), 0);
+        }
+    }
+
+    #[test]
     fn settings_out_of_range_are_named() {
         let text = |selection: Selection| selection.validate().unwrap_err().to_string();
-        assert_eq!(text(Selection::Tournament { size: 0 }), "tournament size is 0; expected at least 1");
+        assert_eq!(text(Selection::Tournament { size: 0 }), "tournament size is 0; expected 1 to 10000");
         assert_eq!(text(Selection::Rank { pressure: f64::NAN }), "rank pressure is NaN; expected 1 to 2");
     }
 }
