@@ -366,7 +366,7 @@ mod tests {
             CmaEs::new(mean.to_vec(), sigma, individuals, 1).unwrap_err().to_string()
         };
         assert_eq!(text(&[], 1.0, 8), "genes is 0; expected 1 to 2000");
-        assert_eq!(text(&[0.0; 100_000], 1.0, 8), "genes is 100000; expected 1 to 2000", "80 GB");
+        assert_eq!(text(&vec![0.0; 100_000], 1.0, 8), "genes is 100000; expected 1 to 2000", "80 GB");
         assert_eq!(text(&[1.0], 0.0, 8), "sigma is 0; expected a positive, finite number");
         assert_eq!(text(&[1.0], 1.0, 3), "individuals is 3; expected 4 to 10000");
         let nan = text(&[f64::NAN], 1.0, 8);

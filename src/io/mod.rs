@@ -34,7 +34,10 @@
 //! | [`CarToB`](crate::drive::CarToB) | [`Motors`], [`Servos`], [`Odometry`], [`StallDetector`] |
 //! | [`GapDriver`](crate::race::GapDriver) | [`Motors`], [`Servos`], [`Lidar`] |
 //! | [`OmniPilot`](crate::drive::OmniPilot) | [`Motors`], [`Odometry`] |
+//! | [`Boat`](crate::drive::marine::Boat) | [`Motors`], [`Odometry`], [`Inertial`] |
 //! | [`Dive`](crate::drive::marine::Dive) | [`Motors`], [`DepthSensor`], [`Inertial`] |
+//! | [`PoolWall`](crate::drive::marine::PoolWall) | [`Motors`], [`Odometry`], [`DepthSensor`], [`DistanceSensors`], [`Inertial`] |
+//! | [`Survey`](crate::drive::marine::Survey) | [`Motors`], [`Odometry`], [`DepthSensor`], [`DistanceSensors`], [`Inertial`] |
 //! | [`GaitWalk`](crate::evolve::GaitWalk) | [`Servos`] |
 
 mod actuators;

@@ -42,14 +42,14 @@ impl CliffGuardParameters {
         require_positive("control period", self.period)?;
         require_positive("speed", self.speed)?;
         let way = self.stopping.distance(self.speed);
-        require("speed", self.speed, way <= AHEAD, "slow enough to stop within 50 mm")?;
+        require("speed", self.speed, way <= AHEAD, "slow enough to stop within 35 mm")?;
         let late = self.stopping.reaction;
         require("reaction time", late, late >= self.period, "at least the control period")
     }
 }
 
 /// Metres ahead of and beside a corner of the outline at which its sensor looks.
-const AHEAD: f64 = 0.05;
+const AHEAD: f64 = 0.035;
 /// Metres above the ground of the sensors.
 const HEIGHT: f64 = 0.12;
 /// The number of the first of the sensors that look down.
@@ -57,7 +57,7 @@ const FIRST: u8 = 21;
 
 /// A robot that does not fall off edges, whatever its program does.
 ///
-/// Four distance sensors look down, one beyond each corner of the outline's bounding box: 50 mm ahead and as
+/// Four distance sensors look down, one beyond each corner of the outline's bounding box: 35 mm ahead and as
 /// much aside. Where one of them finds no ground, only such motions are passed on as take that corner
 /// away from edges in all directions; anything else stops the robot, and so does a sensor that fails. Speeds
 /// are reduced such that no place of the outline is faster than [`speed`](CliffGuardParameters::speed), on
@@ -67,10 +67,10 @@ const FIRST: u8 = 21;
 ///
 /// Of a straight edge with its normal *n*, the corner in whose quadrant *n* lies is the nearest place of the
 /// box. In the robot's axes, with the corner's signs, *n* = (a, b) with a, b ≥ 0 and a + b ≥ 1. Its sensor
-/// looks 50 mm · (a + b) ≥ 50 mm nearer to the edge. So it finds the ground missing while the corner is at
-/// least 50 mm away, less the way in the reaction time; then the robot stops within
-/// [`StoppingModel::distance`], which is required to be at most 50 mm. A robot that stands has at most
-/// 50 mm · √2 to the edge beside what it stopped too early.
+/// looks 35 mm · (a + b) ≥ 35 mm nearer to the edge. So it finds the ground missing while the corner is at
+/// least 35 mm away, less the way in the reaction time; then the robot stops within
+/// [`StoppingModel::distance`], which is required to be at most 35 mm. A robot that stands has at most
+/// 35 mm · √2 to the edge beside what it stopped too early.
 ///
 /// Motors cannot be driven one by one through it: nothing would be known of their speeds.
 ///

@@ -35,6 +35,7 @@ const EXCEPTIONS: &[(&str, &str)] = &[
     ("drive::AlongWall::new", ROBOT),
     ("drive::Chase::after", ROBOT),
     ("drive::Follower::step", BORROWS),
+    ("drive::RandomDrive::by_distance_sensors", ROBOT),
     ("evolve::Gait::settle", ROBOT),
     ("evolve::Gait::walk", ROBOT),
     ("io::control::", ROBOT),
@@ -46,6 +47,7 @@ const EXCEPTIONS: &[(&str, &str)] = &[
     ("io::sim::Simulation::watch", CLOSURE),
     ("io::wrappers::", ROBOT),
     ("maze::MazeRunner", ROBOT),
+    ("safety::CliffGuard", ROBOT),
     ("safety::Supervised", ROBOT),
     // Functions of the caller's own.
     ("evolve::Genetic", GENES),
