@@ -27,9 +27,10 @@ fn said(command: &mut Command) -> (i32, String) {
 #[test]
 fn a_missing_model_is_warned_of() {
     let robot = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/formats/cart.robi");
-    let bare = Path::new(env!("CARGO_TARGET_TMPDIR")).join("bare.robi");
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let bare = folder.join("bare.robi");
     std::fs::write(&bare, std::fs::read_to_string(robot).unwrap().replace("cart.obj", "nowhere.obj"))
         .unwrap();
-    let (status, text) = said(&mut roverlab(&["a_to_b", "--robot", bare.to_str().unwrap()]));
+    let (status, text) = said(roverlab(&["a_to_b", "--robot", bare.to_str().unwrap()]).current_dir(folder));
     assert!(status == 0 && text.contains("bare.robi:3:") && text.contains("nowhere.obj"), "{text}");
 }
