@@ -86,7 +86,6 @@ mod view;
 mod wall_clock;
 mod workers;
 
-#[cfg(feature = "native")]
 pub(crate) use args::check_writable;
 pub(crate) use args::{CommonArgs, PlainArgs};
 pub(crate) use failure::Failure;
