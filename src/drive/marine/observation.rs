@@ -1,4 +1,4 @@
-use crate::geometry::Vector3;
+use crate::geometry::{Pose, Vector3};
 use crate::io::{Attitude, DepthSensor, Error, Inertial, Result};
 
 /// Depth, attitude and turn rates of a craft: the readings of [`Dive`](super::Dive).
@@ -30,5 +30,20 @@ impl DiveObservation {
             Some(angle) => Err(Error::invalid_input("observed attitude", angle, "finite numbers")),
             None => Ok(()),
         }
+    }
+}
+
+/// Fails for a pose that is none.
+pub(super) fn check_pose(pose: &Pose) -> Result<()> {
+    let expected = "finite numbers";
+    let wrong = || Error::invalid_input("observed pose", format!("{pose:?}"), expected);
+    if pose.is_finite() { Ok(()) } else { Err(wrong()) }
+}
+
+/// Fails for the first distance that is none. Infinity is the distance of nothing in range.
+pub(super) fn check_ranges(ranges: &[f64]) -> Result<()> {
+    match ranges.iter().find(|range| range.is_nan() || **range < 0.0) {
+        Some(range) => Err(Error::invalid_input("observed distance", range, "at least 0")),
+        None => Ok(()),
     }
 }

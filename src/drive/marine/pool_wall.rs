@@ -2,6 +2,7 @@ use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
 
 use super::helm::Helm;
+use super::observation::{check_pose, check_ranges};
 use super::reckoning::Reckoning;
 use super::wall_memory::WallMemory;
 use super::{DepthHoldParameters, DiveObservation, Thrust};
@@ -300,18 +301,8 @@ impl Behaviour for PoolWall {
 
     fn step(&mut self, time: f64, seen: &PoolWallObservation) -> Decision<Self> {
         seen.dive.check()?;
-        if !seen.odometry.is_finite() {
-            return Err(Error::invalid_input(
-                "observed pose",
-                format!("{:?}", seen.odometry),
-                "finite numbers",
-            ));
-        }
-        for range in [seen.front, seen.side] {
-            if range.is_nan() || range < 0.0 {
-                return Err(Error::invalid_input("observed distance", range, "at least 0"));
-            }
-        }
+        check_pose(&seen.odometry)?;
+        check_ranges(&[seen.front, seen.side])?;
         self.notice(time, seen)?;
         self.count(seen.side);
         if self.laps() >= self.parameters.laps {

@@ -3,6 +3,7 @@ use std::ops::ControlFlow;
 use super::fix::Fix;
 use super::helm::Helm;
 use super::legs::{Legs, Steered, over_ground, steer};
+use super::observation::{check_pose, check_ranges};
 use super::{DepthHoldParameters, DiveObservation, Sounding, Thrust};
 use crate::geometry::{Aabb, Point, Pose, Vector};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
@@ -236,18 +237,9 @@ impl Behaviour for Survey {
 
     fn step(&mut self, time: f64, seen: &SurveyObservation) -> Decision<Self> {
         seen.dive.check()?;
-        if !seen.odometry.is_finite() {
-            return Err(Error::invalid_input(
-                "observed pose",
-                format!("{:?}", seen.odometry),
-                "finite numbers",
-            ));
-        }
-        if let Some(range) =
-            seen.ranges.iter().chain([&seen.down]).find(|range| range.is_nan() || **range < 0.0)
-        {
-            return Err(Error::invalid_input("observed distance", range, "at least 0"));
-        }
+        check_pose(&seen.odometry)?;
+        check_ranges(&seen.ranges)?;
+        check_ranges(&[seen.down])?;
         self.notice(time, seen)?;
         let pose = self.fix.pose();
         self.legs.pass(pose.position());
