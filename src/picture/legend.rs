@@ -14,10 +14,10 @@ use super::{Mark, Style, lines, robots, scenery, text};
 use crate::geometry::{Aabb, Vector};
 use crate::world::{Colour, Footprint, Shape};
 
-/// More kinds of objects than these are summed up.
+/// Maximum number of listed kinds of objects; the others are counted.
 const MOST_KINDS: usize = 8;
 
-/// The name of the gradient of the speed scale.
+/// Identifier of the speed scale's gradient.
 const GRADIENT: &str = "speed";
 
 /// Entries of a legend, in order.
