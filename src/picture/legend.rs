@@ -70,7 +70,7 @@ impl Legend {
                 Some(surface) => {
                     let step = number(contour_step(surface));
                     let line = Style::new(INK).width(0.8).opacity(0.6);
-                    legend.add(Key::Line(line), format!("{step} m higher, up to {height} m"));
+                    legend.add(Key::Line(line), format!("contour lines {step} m apart, up to {height} m"));
                 }
                 None => legend.add(Key::Hills, format!("hills up to {height} m")),
             }
