@@ -7,7 +7,7 @@ use crate::world::World;
 /// Minimum gap between two panels, relative to the larger side of the largest.
 const GAP: f64 = 0.14;
 /// Maximum number of lines of a panel's title.
-const MOST_LINES: usize = 4;
+const MOST_LINES: usize = 8;
 
 impl Picture {
     /// Combines several pictures into one, in rows of `columns` from the upper left, each with its title
@@ -27,7 +27,8 @@ impl Picture {
             let (column, row) = (index % columns, rows - 1 - index / columns);
             let corner = Vector::new(column as f64 * step.x, row as f64 * step.y);
             let spare = step - panel.region().size();
-            let shift = corner + Vector::new(0.5 * spare.x, 0.75 * spare.y) - panel.region().min.coords;
+            let shift =
+                corner + Vector::new(0.5 * spare.x, titles.below * spare.y) - panel.region().min.coords;
             all.take(panel, shift, &titles);
         }
         all
@@ -67,6 +68,8 @@ impl Picture {
 struct Titles {
     /// Gap between panels (m).
     gap: f64,
+    /// Part of the gap that is below a panel: all of it but half a line.
+    below: f64,
     /// Pixels per metre of the page.
     scale: f64,
     /// Width of a title (pixels).
@@ -81,7 +84,8 @@ impl Titles {
             let size =
                 (extent + Vector::repeat(gap)).component_mul(&Vector::new(columns as f64, rows as f64));
             let frame = Frame::around(Aabb { min: Point::origin(), max: Point::from(size) }, Pixel::origin());
-            Self { gap, scale: frame.scale, room: frame.length(extent.x + gap) - text::SIZE }
+            let below = (lines as f64 + 0.5) / (lines as f64 + 1.0);
+            Self { gap, below, scale: frame.scale, room: frame.length(extent.x + gap) - text::SIZE }
         };
         let fits = |lines: &usize| {
             let titles = titles(*lines);
