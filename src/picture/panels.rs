@@ -85,7 +85,7 @@ impl Titles {
                 (extent + Vector::repeat(gap)).component_mul(&Vector::new(columns as f64, rows as f64));
             let frame = Frame::around(Aabb { min: Point::origin(), max: Point::from(size) }, Pixel::origin());
             let below = (lines as f64 + 0.5) / (lines as f64 + 1.0);
-            Self { gap, below, scale: frame.scale, room: frame.length(extent.x + gap) - text::SIZE }
+            Self { gap, below, scale: frame.scale, room: frame.length(extent.x + gap) - 0.5 * text::SIZE }
         };
         let fits = |lines: &usize| {
             let titles = titles(*lines);
