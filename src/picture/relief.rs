@@ -108,9 +108,10 @@ fn patches(
             }
             let low = frame.at(raster.corner(first as f64, row as f64));
             let high = frame.at(raster.corner(column as f64, row as f64 + 1.0));
-            let [x, y, width, height] = [low.x, high.y, high.x - low.x, low.y - high.y].map(number);
+            let [left, top, right, bottom] = [low.x, high.y, high.x, low.y].map(number);
             let path: &mut String = paths.entry(key).or_default();
-            path.extend(["M", &x, " ", &y, "h", &width, "v", &height, "h-", &width, "z"]);
+            // Absolute coordinates: neighbours have equal ones, so that no gap opens between them.
+            path.extend(["M", &left, " ", &top, "H", &right, "V", &bottom, "H", &left, "z"]);
         }
     }
     paths
