@@ -141,6 +141,10 @@ mod guide {
     struct WallFollowing;
     #[doc = include_str!("../docs/guide/other-drives.md")]
     struct OtherDrives;
+    #[doc = include_str!("../docs/guide/hills.md")]
+    struct Hills;
+    #[doc = include_str!("../docs/guide/water.md")]
+    struct Water;
     #[doc = include_str!("../docs/guide/mazes.md")]
     struct Mazes;
     #[doc = include_str!("../docs/guide/navigation.md")]
@@ -149,6 +153,8 @@ mod guide {
     struct Vision;
     #[doc = include_str!("../docs/guide/evolution.md")]
     struct Evolution;
+    #[doc = include_str!("../docs/guide/roads.md")]
+    struct Roads;
     #[doc = include_str!("../docs/guide/racing.md")]
     struct Racing;
     #[cfg(feature = "testing")]

@@ -204,6 +204,29 @@ fn every_public_module_is_named_on_the_front_page() {
     assert!(all > 35, "{all} modules");
 }
 
+#[test]
+fn each_chapter_has_a_page_of_the_guide_whose_programs_run() {
+    let guide = source().join("../docs/guide");
+    let summary = fs::read_to_string(guide.join("SUMMARY.md")).unwrap();
+    let tested = text("lib.rs");
+    let mut chapters = BTreeSet::new();
+    for page in fs::read_dir(&guide).unwrap() {
+        let path = page.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap();
+        if path.extension().is_none_or(|ending| ending != "md") || name == "SUMMARY.md" {
+            continue;
+        }
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(summary.contains(&format!("]({name})")), "docs/guide/SUMMARY.md does not list {name}");
+        let included = tested.contains(&format!("include_str!(\"../docs/guide/{name}\")"));
+        assert!(included || !text.contains("```rust"), "src/lib.rs does not run the programs of {name}");
+        let of = between(&text, "*Chapter", " of the book.*").unwrap_or_default();
+        chapters
+            .extend(of.split(|c: char| !c.is_ascii_digit()).filter_map(|number| number.parse::<u32>().ok()));
+    }
+    assert!((1..=14).all(|chapter| chapters.contains(&chapter)), "chapters with a page: {chapters:?}");
+}
+
 /// The public types of a file, each with what it derives.
 fn types(text: &str) -> Vec<(&str, &str)> {
     let lines: Vec<&str> = text.lines().collect();

@@ -35,3 +35,50 @@ fn every_property_draws_the_same_cases_for_everybody() {
     }
     assert!(properties > 100, "{properties} were found");
 }
+
+/// Pages in Markdown below a folder.
+fn pages(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            pages(&path, found);
+        } else if path.extension().is_some_and(|ending| ending == "md") {
+            found.push(path);
+        }
+    }
+}
+
+/// The anchors of a page, as web sites make them of its headings.
+fn anchors(page: &str) -> impl Iterator<Item = String> {
+    let headings = page.lines().filter(|line| line.starts_with('#'));
+    headings.map(|line| {
+        let words = line.trim_start_matches('#').trim().to_lowercase().replace(' ', "-");
+        words.chars().filter(|c| c.is_alphanumeric() || *c == '-' || *c == '_').collect()
+    })
+}
+
+#[test]
+fn links_of_pages_lead_somewhere() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut files = vec![root.join("README.md"), root.join("CONTRIBUTING.md"), root.join("CHANGELOG.md")];
+    pages(&root.join("docs"), &mut files);
+    let mut links = 0;
+    for file in files {
+        let text = fs::read_to_string(&file).unwrap();
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split([')', ' ']).next()) {
+            let (path, anchor) = link.split_once('#').unwrap_or((link, ""));
+            let target = if path.is_empty() { file.clone() } else { file.parent().unwrap().join(path) };
+            // A published package lacks pictures and benchmarks.
+            let left_out = !root.join(".ci").is_dir() && !target.exists();
+            if link.contains("://") || left_out {
+                continue;
+            }
+            assert!(target.exists(), "{}: {link}", file.display());
+            let known = anchor.is_empty()
+                || anchors(&fs::read_to_string(&target).unwrap()).any(|heading| heading == anchor);
+            assert!(known, "{}: {link} names no heading", file.display());
+            links += 1;
+        }
+    }
+    assert!(links > 50, "only {links} links were found");
+}

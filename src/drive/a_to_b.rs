@@ -181,7 +181,7 @@ enum Phase {
 
 /// Metres before the end of a path at which manoeuvres take over, or a car only drives on.
 pub(super) const HANDOVER: f64 = 0.02;
-/// Seconds in which a dog curve turns towards its goal.
+/// Time in which a dog curve turns towards its goal (s).
 const HOMING_TIME: f64 = 0.5;
 
 impl AToB {

@@ -176,19 +176,18 @@ enum Phase {
     Ended,
 }
 
-/// Tolerances beyond which a goal is missed.
+/// Distance beyond which a goal is missed (tolerances).
 const MISSED: f64 = 4.0;
-/// Turning radii that a car drives back before it comes again, and before a goal with a heading at which a
-/// dog curve hands over.
+/// Distance that a car backs up before another attempt, and before a goal with a heading at which a dog curve
+/// hands over (turning radii).
 const ROOM: f64 = 2.0;
-/// Metres from the goal at which the car stops.
+/// Distance from the goal at which the car stops (m).
 const ARRIVED: f64 = 0.001;
-/// Radians from point to point of a path that no car follows.
+/// Change of heading between two path points that no car can follow (rad).
 const SHARP_TURN: f64 = 0.1;
-/// How far the curvature jumps, in terms of the largest one, where the car stops to turn its wheels.
+/// Jump of the curvature, relative to the maximum, at which the car stops to turn its wheels.
 const LARGE_JUMP: f64 = 1.2;
-/// The largest k of splines that is tried where the book's k of 1 bends too tightly; it is doubled from try
-/// to try.
+/// Maximum k of splines where the book's k of 1 bends too tightly; each attempt doubles it.
 const LARGEST_SCALE: f64 = 4.0;
 
 impl CarToB {
@@ -283,7 +282,7 @@ impl CarToB {
         None
     }
 
-    /// Speed and steering on the way to the goal; `None` on arrival.
+    /// Speed and steering towards the goal; `None` on arrival.
     fn come(&mut self, pose: Pose) -> Result<Option<CarState>> {
         if self.phase == Phase::Begin {
             self.phase = match self.plan(pose)? {

@@ -38,7 +38,7 @@ impl Default for CruiseParameters {
 /// let free = cruise.step(Pose::default(), &[])?;
 /// assert!(free.linear > 0.0 && free.angular.abs() < 1e-6, "straight at the first waypoint");
 /// let blocked = cruise.step(Pose::default(), &[Point::new(0.25, 0.02)])?;
-/// assert!(blocked.angular.abs() > 0.1, "round what stands in the way");
+/// assert!(blocked.angular.abs() > 0.1, "around the obstacle");
 /// # Ok::<(), roverlab::io::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]

@@ -8,7 +8,7 @@ use crate::parameter::require_positive;
 /// Three parts of a path, each a left turn (1), a line (0) or a right turn (-1).
 type Word = [f64; 3];
 
-/// The six sequences of turns among which the shortest path is (L. E. Dubins, 1957).
+/// The six sequences of turns that contain the shortest path (L. E. Dubins, 1957).
 const WORDS: [Word; 6] = [
     [1.0, 0.0, 1.0],
     [-1.0, 0.0, -1.0],
@@ -18,7 +18,7 @@ const WORDS: [Word; 6] = [
     [1.0, -1.0, 1.0],
 ];
 
-/// Headings that are tried at a goal that names none.
+/// Number of headings tried at a goal without one.
 const HEADINGS: u32 = 72;
 
 impl Path {

@@ -105,10 +105,10 @@ struct Target {
     seen: f64,
 }
 
-/// Metres from where the robot ahead is expected within which a thing is taken for it, and what it may have
-/// driven meanwhile.
+/// Distance from the predicted position of the robot ahead within which a detection is that robot, including
+/// its motion in between (m).
 const GATE: f64 = 0.15;
-/// The share of a new sight in the place of the robot ahead (alpha of an alpha-beta filter).
+/// Weight of a new detection in the position of the robot ahead (alpha of an alpha-beta filter).
 const OF_PLACE: f64 = 0.5;
 
 impl Follower {
@@ -269,10 +269,9 @@ pub fn robots_in(scan: &LidarScan, radius: f64) -> Vec<Point> {
 
 /// Centre of the disc hit by a run of beams, if it can be one.
 fn middle_of(scan: &LidarScan, beams: &[usize], radius: f64) -> Option<Point> {
-    /// The least and the greatest share of the robot's width that may seem to be seen: range noise widens it,
-    /// missed beams narrow it.
+    /// Range of the apparent width relative to the robot's: range noise widens it, missed beams narrow it.
     const SEEN: [f64; 2] = [0.9, 1.25];
-    /// Beams by which what is seen may be narrower, and wider, than the robot.
+    /// Number of beams by which the apparent width may be smaller, and larger, than the robot.
     const BEAMS: [f64; 2] = [1.0, 2.0];
     let ranges = || beams.iter().map(|&beam| scan.ranges[beam]).filter(|range| range.is_finite());
     let count = ranges().count();

@@ -5,7 +5,7 @@ use crate::geometry::{Pose, Twist, angle_difference, math, normalize_angle};
 use crate::io::Result;
 use crate::parameter::require_positive;
 
-/// How a [`PathFollower`] steers.
+/// Steering method of a [`PathFollower`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Steering {
@@ -79,7 +79,7 @@ impl PathFollowerParameters {
 /// use roverlab::kinematics::{Displacement, advance};
 /// let path = Path::arc(Pose::default(), Point::new(1.0, 0.5))?;
 /// let mut follower = PathFollower::new(path, PathFollowerParameters::default())?;
-/// // A robot that does as it is told, starting beside the path.
+/// // An ideal robot that starts beside the path.
 /// let mut pose = Pose::new(0.0, 0.03, 0.0);
 /// while follower.rest() > 0.01 {
 ///     let twist = follower.step(pose);
@@ -103,7 +103,7 @@ pub struct PathFollower {
 
 /// Seconds without getting on after which a robot gives up.
 pub(super) const PATIENCE: f64 = 3.0;
-/// The tightest bend that is driven, in 1/m: a spline can have a cusp, where no speed would be slow enough.
+/// Maximum curvature that is driven (1/m): a spline can have a cusp, for which no speed is low enough.
 const TIGHTEST: f64 = 30.0;
 
 impl PathFollower {

@@ -40,9 +40,9 @@ pub struct Path {
     points: Vec<PathPoint>,
 }
 
-/// Metres from point to point of a path.
+/// Distance between points of a path (m).
 pub(super) const SPACING: f64 = 0.005;
-/// The longest path in metres: longer ones come from wrong numbers.
+/// Maximum length of a path (m): longer ones come from wrong numbers.
 const LONGEST: f64 = 10_000.0;
 
 impl Path {

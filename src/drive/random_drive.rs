@@ -80,9 +80,9 @@ pub struct RandomDrive {
     turns: u32,
 }
 
-/// Directions that are drawn at a turn; the first with enough room is taken, or the one with the most.
+/// Number of directions drawn for a turn. The first with enough room is taken, or else the one with the most.
 const DRAWN: usize = 12;
-/// Parts of an assumed wall between two points.
+/// Number of parts of an assumed wall between two points.
 const WALL_POINTS: u32 = 16;
 
 impl RandomDrive {

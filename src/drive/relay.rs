@@ -48,11 +48,11 @@ pub struct UltimateGain {
     pub period: f64,
 }
 
-/// Swings that are thrown away until the process has settled.
+/// Number of initial oscillations that are ignored.
 const SETTLING: usize = 2;
-/// Swings that are measured.
+/// Number of measured oscillations.
 const MEASURED: usize = 4;
-/// The relative difference between measured swings up to which they count as the same.
+/// Relative difference up to which measured oscillations count as equal.
 const STEADY: f64 = 0.05;
 
 impl RelayTuner {

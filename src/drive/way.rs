@@ -8,17 +8,17 @@ pub(super) struct Way {
     pub(super) margin: f64,
 }
 
-/// Metres that are looked ahead for a free way.
+/// Distance ahead that must be free (m).
 pub(super) const AHEAD: f64 = 0.3;
-/// Seconds in which the free way ahead is driven, and a gap closed that is too large.
+/// Time in which the free distance ahead is driven, and an excessive gap is closed (s).
 pub(super) const BRAKING: f64 = 1.0;
 /// Turning proportionally to the rest of the angle, in 1/s.
 pub(super) const TURN_GAIN: f64 = 2.5;
 /// Radians by which a heading may be missed where a turn ends.
 pub(super) const ALIGNED: f64 = 0.05;
-/// Headings that are tried to either side.
+/// Number of headings tried on either side.
 const TRIED: u32 = 18;
-/// Radians between them: all reach somewhat farther than 130 degrees.
+/// Distance between them (rad): together they reach somewhat beyond 130 degrees.
 const SPACING: f64 = 0.13;
 
 impl Way {

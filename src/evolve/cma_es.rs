@@ -88,9 +88,9 @@ impl Settings {
     }
 }
 
-/// Genes of a search at most: the covariance has a number for each pair.
+/// Maximum number of genes: the covariance has a number for each pair.
 const MOST_GENES: usize = 2000;
-/// Individuals of a generation at most.
+/// Maximum number of individuals per generation.
 const MOST_INDIVIDUALS: usize = 10_000;
 
 impl CmaEs {

@@ -24,7 +24,7 @@ pub struct Gait {
     leading: usize,
 }
 
-/// Bytes of a gait at most.
+/// Maximum size of a gait (bytes).
 const MOST: usize = 1_000_000;
 
 impl Gait {

@@ -5,7 +5,7 @@ use super::selection::Selection;
 use crate::io::Result;
 use crate::random::Stream;
 
-/// How the next individuals are bred.
+/// Recipe for the next individuals.
 #[derive(Debug)]
 pub struct Recipe<G> {
     /// Selection of parents.

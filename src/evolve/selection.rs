@@ -1,7 +1,7 @@
 use crate::io::{Error, Result};
 use crate::random::Stream;
 
-/// Individuals of a tournament at most.
+/// Maximum number of individuals in a tournament.
 const LARGEST: usize = 10_000;
 
 /// Selection of parents.

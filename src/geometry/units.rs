@@ -11,14 +11,13 @@ use std::f64::consts::PI;
 /// Standard gravity, 9.80665, rounded as usual (m/s²).
 pub const GRAVITY: f64 = 9.81;
 
-/// The farthest from the origin, in metres, that anything stands: larger numbers are mistakes.
+/// Maximum distance from the origin (m); larger numbers are mistakes.
 pub(crate) const FARTHEST: f64 = 1e6;
 
-/// Metres that a turn of a radian counts as where ways and turns are added, as those of a robot that may be
-/// held.
+/// Weight of a turn where distances and turns are added, as in the detection of stalled robots (m/rad).
 pub(crate) const ARM: f64 = 0.1;
 
-/// Metres or radians, or these in a second, that count as nothing.
+/// Lengths, angles and speeds below this count as zero (m, rad, m/s, rad/s).
 pub(crate) const NEGLIGIBLE: f64 = 1e-6;
 
 /// Millimetres to metres.

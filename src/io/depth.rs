@@ -1,6 +1,6 @@
 use super::Result;
 
-/// A pressure sensor that tells how deep under water the robot is.
+/// A pressure sensor that measures depth under water.
 ///
 /// # For implementers
 ///
@@ -8,6 +8,6 @@ use super::Result;
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait DepthSensor {
-    /// Metres from the surface down to the sensor; 0 out of the water. Fails on a robot without one.
+    /// Depth of the sensor below the surface (m); 0 above it. Fails on a robot without one.
     fn depth(&mut self) -> Result<f64>;
 }

@@ -20,8 +20,7 @@ pub trait GroundTruth {
     /// Pose of an object in the world, by its index in the scene: robots may have pushed it.
     fn object(&mut self, object: usize) -> Result<Pose>;
 
-    /// Where a robot is in space, and what has become of it on hills. Who knows of no hills says that it is
-    /// level on the floor.
+    /// Pose of a robot in space, and its mishap on hills, if any. The default implementation is for a level floor.
     fn in_space(&mut self, robot: usize) -> Result<TruthInSpace> {
         self.pose(robot).map(|pose| TruthInSpace { pose: Pose3::level(pose, 0.0), mishap: None })
     }
@@ -49,12 +48,12 @@ impl<T: GroundTruth + ?Sized> GroundTruth for Box<T> {
     }
 }
 
-/// Where a robot is in space, and what has become of it.
+/// Pose of a robot in space, and its mishap, if any.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TruthInSpace {
-    /// Its pose, with elevation, roll and pitch.
+    /// Pose with elevation, roll and pitch.
     pub pose: Pose3,
-    /// Why it drives no more, or in vain.
+    /// Why the robot no longer drives, or makes no progress.
     pub mishap: Option<Mishap>,
 }
 
@@ -86,7 +85,7 @@ pub struct TrailPoint {
     pub odometry: Pose,
 }
 
-/// What becomes of a robot on hills that drives no more, or in vain.
+/// Why a robot no longer drives, or makes no progress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Mishap {
@@ -94,12 +93,11 @@ pub enum Mishap {
     Tipped,
     /// It fell by more than its own height, or off the world.
     Fell,
-    /// Its wheels have turned for two seconds and moved it next to nothing. It is over when it moves again.
+    /// Its wheels have turned for two seconds and hardly moved it. This ends when it moves again.
     Stuck,
-    /// The middle of its mass is below the water's surface.
+    /// Its centre of mass is below the water surface.
     Drowned,
-    /// Its motion is no number any more, so that it stays where it was: its description is of no craft that
-    /// could be.
+    /// Its motion is no longer a finite number, so it stays where it was: no such craft could exist.
     Broken,
 }
 

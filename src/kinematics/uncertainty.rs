@@ -4,16 +4,15 @@ use super::integrate::sinc;
 use super::{Differential, Displacement, advance};
 use crate::geometry::{Point, Pose, Vector, math};
 
-/// Standard deviations beyond which a measurement is of something else than what it is held to be of.
+/// Deviation beyond which a measurement is an outlier (standard deviations).
 pub(crate) const OUTLIER: f64 = 4.0;
-/// The least standard deviation of a range, in metres, which keeps filters open for what they do not know
-/// about.
+/// Minimum standard deviation of a range, which accounts for unmodelled errors (m).
 pub(crate) const LEAST_RANGE_ERROR: f64 = 0.001;
-/// What odometry misses of a way, as a share: a standard deviation.
+/// Standard deviation of odometry along the path (fraction of the distance).
 pub(crate) const DISTANCE_ERROR: f64 = 0.01;
-/// What it misses of a turn, as a share: a standard deviation.
+/// Standard deviation of odometry in turns (fraction of the angle).
 pub(crate) const TURN_ERROR: f64 = 0.006;
-/// The standard deviation of the size of wheels, as a share, of which nothing is known.
+/// Standard deviation of an unknown wheel size (relative).
 pub(crate) const SCALE_ERROR: f64 = 0.015;
 
 /// How wrong the odometry of a differential drive is, as standard deviations.

@@ -19,7 +19,8 @@ pub enum Preference {
 impl Preference {
     /// Costs of a step and of a turn. No route has as many of either as the larger weight.
     const fn weights(self) -> (u64, u64) {
-        /// More than a route of the largest maze has cells, so that two costs fit one number.
+        /// More than the number of cells of a route in the largest maze, so that two costs fit into one
+        /// number.
         const MANY: u64 = 1 << 24;
         match self {
             Self::Steps => (MANY, 1),

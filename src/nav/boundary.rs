@@ -17,8 +17,8 @@ pub(super) struct FollowDistances {
 /// Follows an obstacle's boundary in one direction, into every passage that is wide enough.
 ///
 /// Headings are tried from the obstacle outwards until a step is free. This determines *where* the boundary
-/// runs: it is the boundary of the obstacle inflated by the least distance. Within that opening the robot
-/// takes the first heading that keeps the wished distance, or else the one with the most room, along the
+/// runs: it is the boundary of the obstacle inflated by the minimum distance. Within that opening the robot
+/// takes the first heading that keeps the desired distance, or else the one with the most room, along the
 /// middle of a narrow passage.
 #[derive(Debug, Clone)]
 pub(super) struct BoundaryFollower {
@@ -30,14 +30,14 @@ pub(super) struct BoundaryFollower {
     unseen: u32,
 }
 
-/// Headings that are tried in a turn.
+/// Number of headings tried in a turn.
 const HEADINGS: usize = 180;
-/// Radians between them.
+/// Distance between them (rad).
 const SPACING: f64 = TAU / HEADINGS as f64;
-/// The largest jump, in metres, of the anchor between two steps. What is farther away is another part of the
-/// wall, and the anchor, such as the end of a thin wall that is seen along the wall, is there still.
+/// Maximum jump of the anchor between two steps (m). Anything farther away is another part of the wall; the
+/// anchor, such as the end of a thin wall seen edge-on, is still there.
 const ANCHOR_JUMP: f64 = 0.04;
-/// Steps for which an anchor that is out of sight is taken to be there still.
+/// Number of steps for which an invisible anchor is assumed to be still there.
 const ANCHOR_MEMORY: u32 = 20;
 
 impl BoundaryFollower {

@@ -49,7 +49,7 @@ pub struct CellPath {
 }
 
 impl Reachability {
-    /// Metres along a cell's edge that suit robots of the size of an EyeBot.
+    /// Cell size for robots of an EyeBot's size (m).
     pub const DEFAULT_RESOLUTION: f64 = 0.005;
 
     /// Divides a world into cells of `resolution` metres for a robot of `radius` metres. Fails for parameters

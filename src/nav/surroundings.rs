@@ -11,7 +11,7 @@ pub(super) struct Surroundings {
     clearance: f64,
 }
 
-/// How fast a robot that is closer to something than it should be must gain distance, in metres per metre.
+/// Minimum gain in distance per metre driven, for a robot that is closer to an obstacle than it should be.
 const RECEDING_SLOPE: f64 = 0.25;
 
 impl Surroundings {

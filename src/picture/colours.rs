@@ -54,7 +54,7 @@ pub(super) fn series(n: usize) -> Colour {
 /// ```
 /// use roverlab::picture::ramp;
 /// assert_ne!(ramp(0.0), ramp(1.0));
-/// assert_eq!(ramp(2.0), ramp(1.0), "what is beyond counts as the end");
+/// assert_eq!(ramp(2.0), ramp(1.0), "values beyond the range count as its end");
 /// ```
 pub fn ramp(value: f64) -> Colour {
     /// The colours of the ramp, from the least value to the greatest.

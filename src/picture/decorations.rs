@@ -14,16 +14,18 @@ use crate::geometry::Vector;
 pub(super) fn heading(picture: &Picture, corner: Pixel, room: f64) -> (Group, f64) {
     let mut group = Group::new();
     let mut base = corner.y;
-    if let Some(title) = &picture.title {
-        base += text::LINE;
-        let title = text::fit(&text::clean(title), BOLD * text::LINE, room);
-        group =
-            group.add(words(&title, Pixel::new(corner.x, base), text::LINE, INK).set("font-weight", "bold"));
+    let rows = |text: &Option<String>, size| {
+        text.iter().flat_map(|text| text::wrapped(&text::clean(text), size, room)).collect::<Vec<_>>()
+    };
+    let title = rows(&picture.title, BOLD * text::LINE);
+    for (index, row) in title.iter().enumerate() {
+        base += if index == 0 { text::LINE } else { TITLE_LINE };
+        group = group.add(words(row, Pixel::new(corner.x, base), text::LINE, INK).set("font-weight", "bold"));
+    }
+    if !title.is_empty() {
         base += 4.0;
     }
-    for row in
-        picture.caption.iter().flat_map(|caption| text::wrapped(&text::clean(caption), text::SIZE, room))
-    {
+    for row in rows(&picture.caption, text::SIZE) {
         base += text::LINE;
         group = group.add(words(&row, Pixel::new(corner.x, base), text::SIZE, PALE_INK));
     }
@@ -31,7 +33,9 @@ pub(super) fn heading(picture: &Picture, corner: Pixel, room: f64) -> (Group, f6
     (group, height)
 }
 
-/// How much wider bold letters are.
+/// Pixels from one line of a title to the next: a quarter more than the height of its letters.
+const TITLE_LINE: f64 = 1.25 * text::LINE;
+/// Width of bold letters relative to normal ones.
 const BOLD: f64 = 1.12;
 
 /// Width of the title in pixels.
@@ -75,6 +79,21 @@ fn length_in_words(metres: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::World;
+
+    #[test]
+    fn long_titles_have_several_lines_and_lose_nothing() {
+        let heading = |words: usize| {
+            let mut picture = Picture::new(&World::empty(1.0, 1.0));
+            picture.title(vec!["highest"; words].join(" "));
+            let (group, height) = heading(&picture, Pixel::origin(), 300.0);
+            (group.to_string(), height)
+        };
+        let ((_, short), (text, tall)) = (heading(1), heading(12));
+        assert_eq!(text.matches("highest").count(), 12);
+        let lines = text.matches("<text").count();
+        assert!(lines > 3 && tall == short + TITLE_LINE * (lines - 1) as f64, "{lines} {short} {tall}");
+    }
 
     #[test]
     fn lengths_have_readable_units() {

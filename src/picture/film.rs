@@ -18,12 +18,12 @@ pub(super) struct Film {
     playing: f64,
 }
 
-/// Seconds of a film at most, and how long its end is held.
+/// Maximum duration of a film, and of its still end (s).
 const LONGEST: f64 = 14.0;
 const HOLD: f64 = 2.0;
 /// Nothing, in a film or in a path that stands still, is farther off its place than this many pixels.
 pub(super) const TOLERANCE: f64 = 0.35;
-/// Degrees by which something may be turned otherwise.
+/// Difference of heading that counts as a rotation (degrees).
 const TURNED: f64 = 2.0;
 
 impl Film {

@@ -22,7 +22,7 @@ impl Frame {
     pub(super) const WIDEST: f64 = 560.0;
     /// Pixels of the plot's height at most.
     pub(super) const TALLEST: f64 = 480.0;
-    /// No region is drawn flatter than this share of its longer side.
+    /// Minimum height of a drawn region, relative to its longer side.
     const FLATTEST: f64 = 0.06;
 
     /// The largest frame that shows `region` within the room for the plot.

@@ -5,7 +5,7 @@ use super::{Mark, Style};
 use crate::geometry::{Aabb, Point, Pose};
 use crate::world::{Footprint, World};
 
-/// A still or animated picture of a world and of what is added to it.
+/// A still or animated picture of a world and of the things added to it.
 ///
 /// Every method that adds something returns the picture, so calls can be chained. Things of one kind are
 /// drawn in the order of their addition. The layers from the bottom: areas, walls, points and lines, start

@@ -8,7 +8,7 @@ use crate::geometry::{Aabb, Vector};
 const DIRECTIONS: [(f64, f64); 8] =
     [(0.8, -0.6), (0.8, 0.6), (-0.8, -0.6), (-0.8, 0.6), (1.0, 0.0), (-1.0, 0.0), (0.0, -1.0), (0.0, 1.0)];
 
-/// Pixels between symbol and name: near, or farther off with a line that leads there.
+/// Distance from symbol to name (pixels): near, or farther off with a lead line.
 const GAPS: [f64; 4] = [2.0, 14.0, 28.0, 44.0];
 
 /// Occupied space of the page.

@@ -14,10 +14,10 @@ use super::{Mark, Style, lines, robots, scenery, text};
 use crate::geometry::{Aabb, Vector};
 use crate::world::{Colour, Footprint, Shape};
 
-/// More kinds of objects than these are summed up.
+/// Maximum number of listed kinds of objects; the others are counted.
 const MOST_KINDS: usize = 8;
 
-/// The name of the gradient of the speed scale.
+/// Identifier of the speed scale's gradient.
 const GRADIENT: &str = "speed";
 
 /// Entries of a legend, in order.
@@ -70,7 +70,7 @@ impl Legend {
                 Some(surface) => {
                     let step = number(contour_step(surface));
                     let line = Style::new(INK).width(0.8).opacity(0.6);
-                    legend.add(Key::Line(line), format!("{step} m higher, up to {height} m"));
+                    legend.add(Key::Line(line), format!("contour lines {step} m apart, up to {height} m"));
                 }
                 None => legend.add(Key::Hills, format!("hills up to {height} m")),
             }

@@ -14,7 +14,7 @@ use super::frame::{Frame, Pixel};
 use super::items::is_finite;
 use crate::geometry::{Aabb, Point};
 
-/// Steps of the colour scale along a path.
+/// Number of colours along a path.
 const SHADES: f64 = 24.0;
 
 /// A disc.

@@ -53,7 +53,9 @@ fn name(item: &Item, frame: &Frame, labels: &mut Labels) -> Option<Group> {
     if !is_finite(position) {
         return None;
     }
-    let name = text::fit(&text::clean(name), text::SIZE, 240.0);
+    // A text by itself may be as wide as the picture.
+    let room = if mark.is_some() { 240.0 } else { frame.pixels().size().x };
+    let name = text::fit(&text::clean(name), text::SIZE, room);
     let at = frame.at(*position);
     let reach = if mark.is_some() { Mark::REACH } else { 0.0 };
     let placed = labels.place(&name, at, reach)?;

@@ -1,22 +1,24 @@
-use super::frame::Frame;
+use super::frame::{Frame, Pixel};
 use super::items::{Figure, Picture};
 use super::{Mark, Style, text};
-use crate::geometry::{Point, Vector};
+use crate::geometry::{Aabb, Point, Vector};
 use crate::world::World;
 
 /// Minimum gap between two panels, relative to the larger side of the largest.
 const GAP: f64 = 0.14;
-/// Minimum gap between two panels (pixels): a line of text, and the symbols at the panels' edges.
-const TITLE: f64 = 2.0 * text::LINE;
+/// Maximum number of lines of a panel's title.
+const MOST_LINES: usize = 8;
 
 impl Picture {
     /// Combines several pictures into one, in rows of `columns` from the upper left, each with its title
-    /// below it. They share scale, legend and time. Water, hills and captions are omitted.
+    /// below it, in several lines if necessary. They share scale, legend and time. Water, hills and captions are
+    /// omitted.
     pub fn panels(panels: &[Self], columns: usize) -> Self {
         let columns = columns.clamp(1, panels.len().max(1));
         let rows = panels.len().div_ceil(columns);
         let extent = panels.iter().fold(Vector::zeros(), |most, panel| most.sup(&panel.region().size()));
-        let gap = gap(extent, columns, rows);
+        let titles = Titles::of(panels, extent, columns, rows);
+        let gap = titles.gap;
         let step = extent + Vector::repeat(gap);
         let size = Vector::new(step.x * columns as f64, step.y * rows as f64);
         let mut all = Self::new(&World::empty(size.x, size.y));
@@ -25,14 +27,15 @@ impl Picture {
             let (column, row) = (index % columns, rows - 1 - index / columns);
             let corner = Vector::new(column as f64 * step.x, row as f64 * step.y);
             let spare = step - panel.region().size();
-            let shift = corner + Vector::new(0.5 * spare.x, 0.75 * spare.y) - panel.region().min.coords;
-            all.take(panel, shift, 0.45 * gap);
+            let shift =
+                corner + Vector::new(0.5 * spare.x, titles.below * spare.y) - panel.region().min.coords;
+            all.take(panel, shift, &titles);
         }
         all
     }
 
-    /// Adds the content of another picture, shifted by `shift`, with the middle of its title `below` metres below it.
-    fn take(&mut self, panel: &Self, shift: Vector, below: f64) {
+    /// Adds the content of another picture, shifted by `shift`, with its title below it.
+    fn take(&mut self, panel: &Self, shift: Vector, titles: &Titles) {
         let bounds = panel.region();
         let (min, max) = (bounds.min + shift, bounds.max + shift);
         let corners = [min, Point::new(max.x, min.y), max, Point::new(min.x, max.y)];
@@ -51,21 +54,60 @@ impl Picture {
             item.figure.shift(shift);
             item
         }));
-        if let Some(title) = &panel.title {
+        let lines = titles.lines(panel);
+        let upper = 0.5 * (lines.len() as f64 - 1.0);
+        for (number, line) in lines.into_iter().enumerate() {
+            let below = 0.45 * titles.gap + (number as f64 - upper) * text::LINE / titles.scale;
             let middle = Point::new(0.5 * (min.x + max.x), min.y - below);
-            self.add(
-                Figure::Mark { mark: None::<Mark>, position: middle, text: Some(title.clone()) },
-                Style::aid(),
-            );
+            self.add(Figure::Mark { mark: None::<Mark>, position: middle, text: Some(line) }, Style::aid());
         }
     }
 }
 
-/// Gap between panels (m) that has room for their titles on the page.
-fn gap(extent: Vector, columns: usize, rows: usize) -> f64 {
-    // With a gap g, the page's scale is room / (n (extent + g)); g is as many metres as TITLE is pixels there.
+/// Room for the titles of panels.
+struct Titles {
+    /// Gap between panels (m).
+    gap: f64,
+    /// Part of the gap that is below a panel: all of it but half a line.
+    below: f64,
+    /// Pixels per metre of the page.
+    scale: f64,
+    /// Width of a title (pixels).
+    room: f64,
+}
+
+impl Titles {
+    /// With as many lines as the longest title takes.
+    fn of(panels: &[Picture], extent: Vector, columns: usize, rows: usize) -> Self {
+        let titles = |lines: usize| {
+            let gap = gap(extent, columns, rows, lines);
+            let size =
+                (extent + Vector::repeat(gap)).component_mul(&Vector::new(columns as f64, rows as f64));
+            let frame = Frame::around(Aabb { min: Point::origin(), max: Point::from(size) }, Pixel::origin());
+            let below = (lines as f64 + 0.5) / (lines as f64 + 1.0);
+            Self { gap, below, scale: frame.scale, room: frame.length(extent.x + gap) - text::SIZE }
+        };
+        let fits = |lines: &usize| {
+            let titles = titles(*lines);
+            panels.iter().all(|panel| titles.lines(panel).len() <= *lines)
+        };
+        titles((1..MOST_LINES).find(fits).unwrap_or(MOST_LINES))
+    }
+
+    /// The lines of a panel's title.
+    fn lines(&self, panel: &Picture) -> Vec<String> {
+        let title = panel.title.as_deref().unwrap_or_default();
+        text::wrapped(&text::clean(title), text::SIZE, self.room)
+    }
+}
+
+/// Gap between panels (m) that has room for titles of a number of lines on the page, and for the symbols at the
+/// panels' edges.
+fn gap(extent: Vector, columns: usize, rows: usize, lines: usize) -> f64 {
+    let title = (1 + lines) as f64 * text::LINE;
+    // With a gap g, the page's scale is room / (n (extent + g)); g is as many metres as the title is pixels there.
     let needed = |room: f64, extent: f64, n: usize| {
-        let titles = (TITLE * n as f64).min(0.5 * room);
+        let titles = (title * n as f64).min(0.5 * room);
         titles * extent / (room - titles)
     };
     let across = needed(Frame::WIDEST, extent.x, columns);
@@ -91,17 +133,29 @@ impl Figure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Aabb;
+
+    #[test]
+    fn long_titles_of_panels_have_several_lines_and_lose_nothing() {
+        let titled = |title: &str| {
+            let mut picture = Picture::new(&World::empty(2.0, 1.0));
+            picture.title(title);
+            picture
+        };
+        let long = ["searched"; 9].join(" ");
+        let text = Picture::panels(&[titled("short"), titled(&long), titled(&long)], 3).to_svg();
+        assert_eq!((text.matches("short").count(), text.matches("searched").count()), (1, 18));
+        assert!(text.matches("<text").count() > 5, "{text}");
+    }
 
     #[test]
     fn titles_have_a_line_between_panels() {
         for (extent, columns, rows) in [((3.0, 4.0), 4, 3), ((6.0, 1.0), 1, 2), ((257.0, 257.0), 2, 2)] {
             let extent = Vector::new(extent.0, extent.1);
-            let gap = gap(extent, columns, rows);
+            let gap = gap(extent, columns, rows, 1);
             let size =
                 (extent + Vector::repeat(gap)).component_mul(&Vector::new(columns as f64, rows as f64));
             let page = Frame::around(Aabb { min: Point::origin(), max: Point::from(size) }, Point::origin());
-            assert!(page.length(gap) > TITLE - 1e-6, "{} pixels", page.length(gap));
+            assert!(page.length(gap) > 2.0 * text::LINE - 1e-6, "{} pixels", page.length(gap));
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use resvg::{tiny_skia, usvg};
 
-/// Pixels for each of the document's.
+/// Pixels per unit of the document.
 const FINENESS: f32 = 2.0;
 
 /// The bytes of a PNG file of an SVG document, or the reason for failure.

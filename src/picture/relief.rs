@@ -10,14 +10,14 @@ use super::frame::{Frame, Pixel};
 use crate::geometry::{Point, Vector, Vector3};
 use crate::world::{Colour, HeightField};
 
-/// Patches along the longer side.
+/// Number of patches along the longer side.
 const PATCHES: f64 = 120.0;
-/// Shades between light and shadow, and tints between low and high.
+/// Number of shades between light and shadow, and of tints between low and high.
 const SHADES: f64 = 10.0;
 const TINTS: f64 = 5.0;
-/// Contour lines at most.
+/// Maximum number of contour lines.
 const LINES: f64 = 12.0;
-/// Slopes are shown so many times as steep.
+/// Exaggeration of slopes.
 const EXAGGERATION: f64 = 2.0;
 
 /// Elevations at the corners of patches.
@@ -81,7 +81,7 @@ pub(super) fn relief(field: &HeightField, water: Option<f64>, frame: &Frame) -> 
     Group::new().add(group).add(contours)
 }
 
-/// Metres from a contour line to the next: a power of ten, twice or five times that.
+/// Height between two contour lines (m): 1, 2 or 5 times a power of ten.
 pub(super) fn contour_step(field: &HeightField) -> f64 {
     let least = (field.highest() - field.lowest()).max(1e-6) / LINES;
     let powers = (-8..8).map(|exponent| crate::geometry::math::pow(10.0, f64::from(exponent)));

@@ -14,9 +14,9 @@ use super::lines::{self, Path};
 use super::{Mark, names, robots, scenery};
 use crate::geometry::{Aabb, Point, Vector};
 
-/// Pixels that a title has at least. Beside a narrower plot, and not below it, stands the legend.
+/// Minimum width of a title (pixels). Narrower plots have their legend beside rather than below them.
 const NARROW: f64 = 300.0;
-/// The name of the outline beyond which nothing is drawn.
+/// Identifier of the outline that clips the plot.
 const CLIP: &str = "frame";
 
 impl Picture {

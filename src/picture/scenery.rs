@@ -13,7 +13,7 @@ use crate::world::{Colour, Object, Shape, Terrain, Wall, World};
 /// Pixels that nothing is drawn smaller or thinner than.
 pub(super) const SMALLEST: f64 = 2.5;
 
-/// The name of the pattern that fills hills.
+/// Identifier of the pattern that fills hills.
 const HATCH: &str = "hills";
 
 /// Floor, water, grid (if to scale), hills, places and marks.

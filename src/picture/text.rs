@@ -29,7 +29,7 @@ pub(super) fn fit(text: &str, size: f64, room: f64) -> String {
     short
 }
 
-/// The text in lines of at most `room` pixels, broken between words; a word that is too wide is cut.
+/// The text in lines of at most `room` pixels, broken between words; a word that is too wide is broken too.
 pub(super) fn wrapped(text: &str, size: f64, room: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -38,10 +38,26 @@ pub(super) fn wrapped(text: &str, size: f64, room: f64) -> Vec<String> {
                 line.push(' ');
                 line.push_str(word);
             }
-            _ => lines.push(fit(word, size, room)),
+            _ => lines.extend(broken(word, size, room)),
         }
     }
     lines
+}
+
+/// A word in pieces of at most `room` pixels, but of at least one letter.
+fn broken(word: &str, size: f64, room: f64) -> Vec<String> {
+    let mut pieces = vec![String::new()];
+    let mut used = 0.0;
+    for c in word.chars() {
+        let wide = relative_width(c) * size;
+        if used > 0.0 && used + wide > room {
+            pieces.push(String::new());
+            used = 0.0;
+        }
+        used += wide;
+        pieces.last_mut().expect("it begins with one").push(c);
+    }
+    pieces
 }
 
 /// One line, without line breaks and characters that XML forbids.
@@ -80,6 +96,14 @@ mod tests {
             let lines = wrapped(&words.join(" "), 11.0, room);
             prop_assert!(lines.iter().all(|line| width(line, 11.0) <= room + 1e-9));
             prop_assert_eq!(lines.join(" "), words.join(" "));
+        }
+
+        #[test]
+        fn wrapped_lines_fit_and_lose_no_letter(text in "[^\\p{C}]{0,80}", room in 20.0..100.0) {
+            let lines = wrapped(&text, 11.0, room);
+            prop_assert!(lines.iter().all(|line| width(line, 11.0) <= room + 1e-9));
+            let letters = |text: &str| text.split_whitespace().collect::<String>();
+            prop_assert_eq!(letters(&lines.concat()), letters(&text));
         }
 
         #[test]

@@ -5,15 +5,15 @@ use super::mesh::{Mesh, triangle};
 use super::pair::{CentreLineParameters, Pair, Way};
 use crate::geometry::{Point, Pose, Vector, cross};
 
-/// Ways that are followed at a time.
+/// Number of paths followed at the same time.
 const BEAM: usize = 8;
-/// Edges at which a way may begin.
+/// Number of edges at which a path may begin.
 const STARTS: usize = 5;
-/// What a cone costs that was passed on the other side.
+/// Cost of a cone passed on the wrong side.
 const WRONG_SIDE: f64 = 6.0;
-/// What a metre is worth where ways that end are compared.
+/// Value of a metre when finished paths are compared.
 const GOOD_METRE: f64 = 0.4;
-/// Triangles back to which a way may not return.
+/// Number of previous triangles to which a path must not return.
 const MEMORY: usize = 16;
 
 /// A beam search over the triangles between cones.

@@ -13,7 +13,7 @@ pub(super) struct BoxSolver {
     upper: Vec<f64>,
 }
 
-/// Steps at most.
+/// Maximum number of iterations.
 const ITERATIONS: usize = 40;
 
 impl BoxSolver {
@@ -68,9 +68,9 @@ impl BoxSolver {
         }
     }
 
-    /// Moves along the step as far as everything stays positive. Returns the step length, 0 to 1.
+    /// Moves along the step while all variables stay positive. Returns the step length, 0 to 1.
     fn advance(&mut self, low: &[f64], high: &[f64], x: &mut [f64], target: f64) -> f64 {
-        /// The share of the step to the border that is gone, so that everything stays positive.
+        /// Fraction of the step to the boundary that is taken, so that all variables stay positive.
         const NEARLY: f64 = 0.995;
         let (mut primal, mut dual) = (1.0_f64, 1.0_f64);
         let moved =

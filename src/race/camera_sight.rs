@@ -52,25 +52,24 @@ pub struct CameraSight {
     size: [f64; 2],
 }
 
-/// Hues in 255ths of a turn, from and to.
+/// Ranges of hue (255ths of a turn).
 const HUES: [(ConeColour, u8, u8); 3] =
     [(ConeColour::Orange, 10, 27), (ConeColour::Yellow, 28, 52), (ConeColour::Blue, 140, 185)];
-/// The least saturation of a cone's pixels, of 255.
+/// Minimum saturation of a cone's pixels (of 255).
 const LEAST_SATURATION: u8 = 90;
-/// Pixels of one colour that make a cone.
+/// Minimum number of pixels of one colour in a cone.
 const LEAST_PIXELS: usize = 6;
-/// Levels by which the channels of gray ground differ because of noise.
+/// Difference between the channels of grey ground that noise causes (levels).
 const GROUND_CHROMA: u8 = 10;
-/// Metres of the ground that one row of an image may show: the racing car's camera does 14 m away with 640
-/// columns, and 20 m away with 1296.
+/// Maximum length of ground that one image row may cover (m): the racing car's camera reaches it at 14 m with
+/// 640 columns, and at 20 m with 1296.
 const COARSEST: f64 = 2.0 / 3.0;
 
-/// Metres from the camera within which it finds the colours of nearly all cones that are large enough in the
-/// image.
+/// Distance within which the colours of nearly all cones of sufficient size in the image are found (m).
 const CERTAIN: f64 = 11.0;
-/// Metres of a cone's width and height as far as its colour goes.
+/// Width and height of the coloured part of a cone (m).
 const CONE: [f64; 2] = [0.12, 0.3];
-/// Pixels at the border of an image within which a cone may be cut off, in shares of its width and height.
+/// Width of the image border at which a cone may be cut off (fraction of its width and height).
 const BORDER: f64 = 0.05;
 
 /// Index of the cone colour of a pixel, if it has one.

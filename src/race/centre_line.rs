@@ -134,7 +134,7 @@ fn walk(
     BeamSearch { cones, parameters, mesh, sides }.run(from)
 }
 
-/// Metres from pair to pair beyond which cones belong to no track.
+/// Distance between pairs beyond which cones belong to no track (m).
 const FARTHEST: f64 = 50.0;
 
 /// Rejects pairs that are too far apart for one track.
@@ -166,9 +166,9 @@ fn leave_out<T>(list: &mut Vec<T>, places: &[usize]) {
     });
 }
 
-/// Times that cones are left out and the way is looked for again.
+/// Number of times that cones are left out and the path is searched again.
 const ROUNDS: usize = 3;
-/// Pairs to both sides in which the other edge is looked for.
+/// Number of pairs to either side among which the other edge is searched.
 const WINDOW: usize = 5;
 
 /// A pair of points on both edges, and their indices in the chains.
@@ -438,7 +438,7 @@ fn middle(pairs: &[Opposite], closed: bool, step: f64) -> Vec<(Point, Vector, us
 /// Distance from a point along a direction to a chain, near one of its points; `otherwise` if the ray misses
 /// it.
 fn reach(chain: &[Point], near: usize, closed: bool, from: Point, along: Vector, otherwise: f64) -> f64 {
-    /// Points of a chain to both sides of one that are looked at.
+    /// Number of chain points to either side of a point that are examined.
     const AROUND: usize = 4;
     let n = chain.len();
     let mut least = f64::INFINITY;

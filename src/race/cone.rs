@@ -34,12 +34,12 @@ impl ConeColour {
         if matches!(self, Self::BigOrange) { 0.505 } else { 0.325 }
     }
 
-    /// Its radius half way up, in metres, where a low scanner sees it.
+    /// Radius halfway up, where a low scanner sees it (m).
     pub(super) fn radius_half_way_up(self) -> f64 {
         0.5 * (1.0 + TIP) * self.radius()
     }
 
-    /// How it is painted.
+    /// Its colour.
     pub const fn paint(self) -> Colour {
         match self {
             Self::Blue => Colour::from_hex(0x1f_4f_d8),
@@ -67,15 +67,15 @@ impl ConeColour {
     }
 }
 
-/// Metres between two cones at least.
+/// Minimum distance between two cones (m).
 pub(super) const APART: f64 = 0.3;
-/// Metres from the rear axle of a car at the start to the start line.
+/// Distance from the rear axle of a car at the start to the start line (m).
 pub(super) const RUN_UP: f64 = 6.0;
-/// The radius of a cone's tip as a share of that of its foot.
+/// Radius of a cone's tip relative to that of its base.
 const TIP: f64 = 0.2;
-/// Kilograms of a cone.
+/// Mass of a cone (kg).
 const MASS: f64 = 0.45;
-/// Metres of ground around the cones of a track.
+/// Width of the ground around the cones of a track (m).
 const MARGIN: f64 = 5.0;
 
 /// A cone on the ground.

@@ -7,7 +7,7 @@ use crate::geometry::{Point, Pose, Vector, angle_difference, cross, direction};
 
 /// Places at which the curvature is unknown; it is linear in between.
 pub(super) const KNOTS: usize = 12;
-/// What is unknown of a lane: four numbers of where its way begins and how wide it is, and the curvatures.
+/// Unknowns of a lane: four for its start and its width, and the curvatures.
 pub(super) const UNKNOWNS: usize = 4 + KNOTS;
 /// Index of the metres aside of where the way begins.
 pub(super) const ASIDE: usize = 0;
@@ -20,9 +20,9 @@ pub(super) const WIDENS: usize = 3;
 /// Index of the first curvature, in 1/m.
 pub(super) const BENDS: usize = 4;
 
-/// Steps in which a curve is followed from knot to knot.
+/// Number of integration steps between two knots.
 const STEPS_TO_KNOT: usize = 4;
-/// Steps from a knot to halfway to the next.
+/// Number of steps from a knot to halfway to the next.
 const AROUND_KNOT: usize = STEPS_TO_KNOT / 2;
 /// Steps of a whole curve.
 pub(super) const STEPS: usize = STEPS_TO_KNOT * (KNOTS - 1);

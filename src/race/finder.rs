@@ -26,7 +26,7 @@ pub struct LaneFinder {
     lane: Lane,
 }
 
-/// Places that are remembered.
+/// Number of remembered positions.
 const PLACES: usize = 4;
 
 impl LaneFinder {

@@ -17,25 +17,25 @@ use crate::geometry::{Point, Pose, math};
 
 type Information = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 
-/// Metres that cones of an edge stand off it, for a metre that they may be loose.
+/// Typical distance of cones from their edge, as a fraction of `loose`.
 const OFF: f64 = 0.25;
-/// How many times as far cones are taken for those of the edge, from round to round.
+/// Factors on the distance within which cones count as those of the edge, from round to round.
 const ROUNDS: [f64; 7] = [3.5, 2.5, 1.8, 1.3, 1.0, 1.0, 1.0];
-/// What is unusual costs so much: the logarithm of how much likelier it is to be otherwise, 1 to 55. A cone
-/// of the other edge, one in the lane, one that a car would touch, one that stands just at an edge and
-/// belongs to none, an edge without cones for long, a lane that leads back or between cones of one edge, and
-/// one that is not the lane found before.
+/// Penalty of each exception: the logarithm of the odds against it, 1 to 55. Exceptions are a cone of the
+/// other edge's colour, a cone in the lane, one that a car would touch, one just beside an edge that belongs
+/// to none, a long edge without cones, a lane that turns back or between cones of one edge, and a lane other
+/// than the previous one.
 const UNUSUAL: f64 = 4.0;
-/// How evenly lanes go on: deviations of half the width as a share of it, of how much that grows in metres
-/// for a metre, and of how curvature changes from knot to knot as a share of the greatest.
+/// Standard deviations of the regularity of lanes: half-width (relative), its growth (m/m), and the change of
+/// curvature between knots (fraction of the maximum curvature).
 const EVEN: f64 = 0.02;
-/// Weight of a sudden change of curvature: little, as tracks have sharp bends.
+/// Weight of a sudden change of curvature: small, because tracks have sharp bends.
 const SHARP: f64 = 0.4;
-/// Factor on the allowed change of curvature for each unit of a round's reach beyond 1.
+/// Factor on the allowed change of curvature per unit of a round's reach beyond 1.
 const SLOWLY: f64 = 6.0;
-/// Deviation of the direction of the way where it begins, in radians.
+/// Standard deviation of the initial heading of the path (rad).
 const HEADS: f64 = 0.2;
-/// Steps from place to place at which that is looked at.
+/// Number of steps between two checked points.
 const STRIDE: usize = 4;
 
 /// A lane fitted to cones.

@@ -76,7 +76,7 @@ impl TrackOptions {
     }
 }
 
-/// Tight turns that are tried at most: more than there are corners to bend in.
+/// Maximum number of hairpins to try: more than there are corners.
 const MOST_HAIRPINS: usize = 20;
 
 /// A track of cones, with its corridor.
@@ -88,7 +88,7 @@ pub struct GeneratedTrack {
     pub corridor: Corridor,
 }
 
-/// Metres between the edges of two parts of a track that pass each other.
+/// Minimum distance between the edges of two parts of a track (m).
 const APART: f64 = 2.5;
 
 /// Generates a closed track of cones. The same seed and options give the same track, to the bit.
@@ -152,12 +152,12 @@ pub fn lined(corridor: &Corridor, spacing: f64) -> Result<GeneratedTrack, LineEr
     Ok(GeneratedTrack { track, corridor })
 }
 
-/// Metres of a corridor that cones are put along at least.
+/// Minimum length of a corridor that is lined with cones (m).
 const SHORTEST: f64 = 30.0;
 /// The same at most: no circuit is longer.
 pub(super) const LONGEST: f64 = 50_000.0;
 
-/// Metres within an edge at which a place is on the track for certain.
+/// Distance inside an edge at which a point is certainly on the track (m).
 const WITHIN: f64 = 0.5;
 
 /// Whether a point lies between the edges anywhere, as the edges of a self-crossing course do.
@@ -328,11 +328,11 @@ fn place_cones(random: &mut Stream, corridor: &Corridor, options: &TrackOptions)
     track
 }
 
-/// Metres from the line to the large cones beside it.
+/// Distance from the line to the large cones beside it (m).
 const GATE: f64 = 0.5;
-/// Metres from the line to the first small cone behind it.
+/// Distance from the line to the first small cone after it (m).
 const FIRST: f64 = 3.0;
-/// Metres from the last small cone before the line to it, at least.
+/// Minimum distance from the last small cone before the line to the line (m).
 const LAST: f64 = 2.0;
 
 /// A closed edge along which cones are placed.

@@ -81,9 +81,9 @@ impl GripLimit {
     }
 }
 
-/// The share of the grip that is left for bends that are too tight.
+/// Fraction of the grip that remains in bends that are too tight.
 const CRAWLS: f64 = 0.05;
-/// Halvings of the range in which an acceleration is looked for.
+/// Number of bisections in the search for an acceleration.
 const HALVINGS: usize = 14;
 
 #[cfg(test)]

@@ -4,15 +4,15 @@ use super::cone::ConeColour;
 use super::sight::ConeSighting;
 use crate::geometry::Point;
 
-/// Times that a cone was seen in one colour, or in none, that are counted.
+/// Maximum count of detections of a cone in one colour, or without colour.
 const MOST_COLOURS: u16 = 1000;
-/// Looks of a camera that show no colour by which something has none.
+/// Number of camera detections without colour after which a cone counts as colourless.
 const PALE: u16 = 4;
 /// Votes for an edge by which a cone belongs to it.
 pub(super) const SURE: i16 = 6;
-/// Votes that are counted.
+/// Maximum number of votes.
 const MOST_VOTES: i16 = 30;
-/// Sightings after which a cone moves no more slowly.
+/// Number of detections after which the position of a cone is averaged no longer.
 const MEMORY: u32 = 80;
 
 /// A cone of the map.

@@ -138,7 +138,7 @@ fn smooth(points: &mut [Point]) {
     }
 }
 
-/// Rounds in which points are moved away from cones.
+/// Number of rounds in which points are moved away from cones.
 const PUSHES: usize = 8;
 
 /// Moves points away from obstacles closer than `room`, as far as those on the other side permit.

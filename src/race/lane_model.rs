@@ -38,7 +38,7 @@ impl Default for LaneParameters {
     }
 }
 
-/// The greatest number, in metres: whoever looks farther makes points without end.
+/// Maximum of these lengths (m): beyond it, the number of points would have no bound.
 pub(super) const FARTHEST: f64 = 1000.0;
 
 impl LaneParameters {

@@ -8,7 +8,7 @@ use super::round::BESIDE;
 use super::spline::ClosedSpline;
 use crate::geometry::{Point, Pose, math};
 
-/// Stations of a lap to both sides within which the width of a track is about the same.
+/// Number of stations to either side within which the width of a track is about constant.
 const ALIKE: usize = 10;
 
 /// The corridor around a lap driven along the centre line, between the cones beside it.
@@ -71,7 +71,7 @@ fn between(asides: &[Option<f64>], at: usize, usual: f64, p: &LaneParameters) ->
     }
 }
 
-/// Rounds in which kinks are taken out of a line.
+/// Number of rounds in which kinks are removed from a line.
 const ROUNDS: usize = 4;
 
 /// Whether a corridor is a loop that follows a driven lap everywhere, and nothing else.

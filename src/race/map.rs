@@ -91,26 +91,26 @@ pub struct ConeMap {
     fits: Option<bool>,
 }
 
-/// Cones with colours that there have to be for each thing that a camera shows to have none.
+/// Minimum ratio of coloured to colourless detections by the camera.
 const MANY: usize = 4;
-/// Metres that the car goes while a cone is fresh: so far, odometry and sightings are good. The first cones
-/// were seen in so many metres, at most.
+/// Distance driven during which a cone counts as recent: odometry and detections are consistent over it (m).
+/// The first cones were seen within at most this distance.
 pub(super) const FRESH: f64 = 25.0;
-/// Metres of the way that lie just behind the car, in which the last cones were seen: no lane turns back
-/// within so many.
+/// Length of the path just behind the car in which the last cones were seen: no lane turns back within it
+/// (m).
 const BEHIND: f64 = 8.0;
-/// Metres from place to place of the trail.
+/// Distance between positions of the trail (m).
 pub(super) const STRIDE: f64 = 2.0;
-/// Metres that a lap takes at least.
+/// Minimum length of a lap (m).
 pub(super) const SHORTEST_LAP: f64 = 12.0;
-/// Metres from a place within which a lap has led back to it.
+/// Distance from an earlier position at which a lap has returned to it (m).
 const AROUND: f64 = 2.5;
-/// Metres between a cone and what was seen of it earlier in the first lap, at most: what has added up since,
-/// and less than a lane.
+/// Maximum distance between a cone and its earlier detections in the first lap: the accumulated drift, and
+/// less than a lane (m).
 const EARLIER: f64 = 1.5;
-/// The cosine of the angle between two ways below which they cross.
+/// Cosine of the angle between two directions below which they cross.
 const ATHWART: f64 = 0.5;
-/// By how much a map may be wrong when it is closed: metres, metres after one metre, radians.
+/// Maximum error of a map at loop closure: constant (m), per distance driven (m/m), and in heading (rad).
 const WRONG: (f64, f64, f64) = (4.0, 0.02, 0.4);
 
 impl ConeMap {

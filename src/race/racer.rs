@@ -161,26 +161,26 @@ pub struct Racer {
     doubt: f64,
 }
 
-/// Places behind the car that are taken for the lane.
+/// Number of poses behind the car that count as its lane.
 const BEHIND_POSES: usize = 4;
-/// Metres within which the lane tells on which side of it cones are: what is farther off changes from look to
-/// look.
+/// Distance within which the lane decides on which side a cone is; farther off, it changes between
+/// observations (m).
 const VOTES: f64 = 5.0;
-/// Metres from the line within which another car is in the way, metres ahead at which it begins to matter,
-/// and metres, from the middle of a car to the end of another one, that are kept.
+/// Other cars: distance from the line within which one is in the way, distance ahead at which it begins to
+/// matter, and distance kept from the centre of this car to the end of the other (m).
 const OTHERS: (f64, f64, f64) = (1.5, 24.0, 4.5);
-/// Decisions at the start at which it only looks: a cone is one after some sightings, and wheels turn a third
-/// of a second to the stop.
+/// Number of initial steps without motion: a cone needs several detections, and the wheels take a third of a
+/// second to turn fully.
 const LOOKS: u32 = 10;
-/// Metres by which a lap that is closed later begins before the place where the car is now.
+/// Distance by which a lap that is closed later begins before the current position (m).
 const BEFORE_LAP: f64 = 15.0;
-/// Metres per second that are next to none: a curvature is kept by them as well.
+/// Speed below which the vehicle counts as standing; the last curvature is kept (m/s).
 const NEXT_TO_NONE: f64 = 1e-3;
-/// Metres that it feels its way before it is lost.
+/// Distance driven without a lane after which the car is lost (m).
 pub(super) const ASTRAY: f64 = 10.0;
-/// Seconds of sights that do not fit the map before it is lost.
+/// Duration of detections that contradict the map after which the car is lost (s).
 const DOUBT: f64 = 0.7;
-/// Metres per second below which it stands.
+/// Speed below which the car stands (m/s).
 pub(super) const STILL: f64 = 0.05;
 
 impl Racer {

@@ -154,7 +154,7 @@ impl LineSolver {
         free: &[[f64; 2]],
         step: &mut [f64],
     ) {
-        /// The step of a central difference.
+        /// Step of a central difference.
         const H: f64 = 1e-4;
         let n = stations.len();
         let mut matrix = CyclicBand::zeros(n);
@@ -187,7 +187,7 @@ impl LineSolver {
     }
 }
 
-/// Rounds of lines and of the margins that a car needs along them.
+/// Number of rounds of lines, each with the margins that the car needs along the previous one.
 const BENDS: usize = 2;
 
 fn check(corridor: &Corridor) -> Result<(), LineError> {

@@ -13,7 +13,7 @@ pub struct RaceScore {
 }
 
 impl RaceScore {
-    /// Seconds for a cone, and for leaving the course.
+    /// Penalties for a cone and for leaving the course (s).
     pub const PENALTIES: [f64; 2] = [2.0, 10.0];
 
     /// Sum of lap times and penalties (s).
@@ -115,7 +115,7 @@ impl Referee {
     }
 }
 
-/// Stations to both sides in which a car is looked for.
+/// Number of stations to either side within which a car is searched.
 const WINDOW: usize = 20;
 
 #[cfg(test)]

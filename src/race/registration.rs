@@ -11,18 +11,17 @@ pub(super) struct Expected {
     pub(super) wrong: (f64, f64),
 }
 
-/// Metres within which two cones are the same one.
+/// Distance within which two cones are the same one (m).
 pub(super) const GATE: f64 = 0.5;
-/// Cones that have to be found again.
+/// Minimum number of matched cones.
 const FEWEST: usize = 6;
-/// The share of the cones that has to be found again.
+/// Minimum fraction of matched cones.
 const SHARE: f64 = 0.6;
-/// How many times better the best motion has to be than any other one: rows of cones look alike a few metres
-/// farther on.
+/// Minimum ratio of the best motion's score to any other's: rows of cones look alike a few metres farther on.
 const LEAD: f64 = 1.2;
-/// The deviation of errors as a share of the largest one.
+/// Standard deviation of errors as a fraction of the maximum error.
 const LIKELY: f64 = 0.4;
-/// Metres between two cones that tell a direction.
+/// Distance between two cones that define a direction (m).
 const ARM: std::ops::Range<f64> = 4.0..20.0;
 
 /// The motion that maps most of some points onto others, if it is unambiguous. O(n² m²) for n points onto m.

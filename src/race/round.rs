@@ -11,13 +11,13 @@ use crate::geometry::{Point, Pose, Segment, cross, math};
 /// Metres beside a corridor within which a cone is one of its edge, and from its middle at which a lap may
 /// have been driven.
 pub(super) const BESIDE: f64 = 1.0;
-/// The shares of coloured cones that have to stand at the corridor, and of these on their own side: where a
-/// track passes close by itself, some stand nearer to its other part.
+/// Minimum fractions of coloured cones that stand at the corridor, and of these on their own side: where a
+/// track passes close to itself, some are nearer to its other part.
 const PASSED: f64 = 0.97;
 const ON_THEIR_SIDE: f64 = 0.85;
-/// A gap is so many times as long as cones usually are apart, and a bend turns by so many radians over it.
+/// Length of a gap relative to the usual distance between cones, and turn of a bend over it (rad).
 const GAP_IN_BEND: (f64, f64) = (2.5, 0.6);
-/// Metres of a way, and radians that no track turns by in so many: a way that does turns back between cones.
+/// A length (m), and a turn over it that no track makes (rad): such a path turns back between cones.
 const TURNING_BACK: (f64, f64) = (4.0, 2.4);
 
 impl CentreLine {
@@ -123,7 +123,7 @@ struct Near<'a> {
     cells: BTreeMap<(i64, i64), Vec<usize>>,
 }
 
-/// Metres along an edge of a cell: what is farther away is near to nothing.
+/// Edge of a cell (m); nothing farther away is a neighbour.
 const CELL: f64 = 8.0;
 
 impl<'a> Near<'a> {

@@ -30,29 +30,28 @@ pub(super) struct RowParameters {
 
 /// Left and right.
 const SIDES: [f64; 2] = [1.0, -1.0];
-/// Pairs that are followed at a time.
+/// Number of pairs followed at the same time.
 const BEAM: usize = 16;
-/// Cones of both rows at most.
+/// Maximum number of cones in both rows.
 const LONGEST: usize = 24;
-/// Cones beside the car with which a row may begin.
+/// Number of cones beside the car with which a row may begin.
 const SEEDS: usize = 3;
-/// Cones that may come next, the nearest ones.
+/// Number of nearest cones considered as the next one.
 const NEXT: usize = 10;
-/// What it costs that a leg is aslant to the lane, for a radian squared. One more cone is worth 1.
+/// Penalty for misalignment of a leg with the lane (per rad²). One more cone is worth 1.
 const SLANT: f64 = 0.35;
-/// What it costs that a leg is long, for a metre.
+/// Penalty for the length of a leg (per m).
 const FAR: f64 = 0.07;
-/// What it costs that the other row is missing.
+/// Penalty for a missing cone in the other row.
 const ALONE: f64 = 0.3;
-/// What a cone of a row is worth as a share of the one before: of what is farther off, less is seen.
+/// Value of each cone relative to the one before: distant cones are seen less often.
 const LESS: f64 = 0.85;
-/// By how much a leg of the other row has to cost less, from where that begins to count to where it counts
+/// Cost by which a leg of the other row must be cheaper: from where that begins to count, to where it counts
 /// fully.
 const BETTER: [f64; 2] = [0.1, 0.43];
-/// What a cone may cost that is followed all the same, and how much less than the best rows others are worth
-/// at most that are told of.
+/// Maximum cost of a cone that is still followed, and maximum lag of a returned reading behind the best one.
 const DEAREST: f64 = 2.4;
-/// Rows that are told of at most, where cones may be those of one edge or of the other.
+/// Maximum number of returned readings, where cones may belong to one edge or to the other.
 const READINGS: usize = 4;
 
 /// End of a row.
@@ -457,11 +456,11 @@ pub(super) fn passes([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
     side(a, b, c) != side(a, b, d) && side(c, d, a) != side(c, d, b)
 }
 
-/// The cosine of the angle between two ways beyond which one leads back along the other.
+/// Cosine of the angle between two paths below which one leads back along the other.
 const BACK: f64 = -0.8;
 
-/// Half widths between the middles of a lane and of what is no lane, as it is partly the same: less than two
-/// lie between two lanes.
+/// Distance between the centre of a lane and that of a false one that shares an edge with it, in half-widths:
+/// less than two.
 const OVERLAPS: f64 = 1.8;
 
 /// Whether a lane with its centre at a point coincides with, or overlaps, the car's earlier path in the

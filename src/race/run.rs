@@ -20,7 +20,7 @@ pub struct RaceObservation {
     pub scan: LidarScan,
 }
 
-/// How a race or an event ended.
+/// Outcome of a race or an event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum RaceOutcome {

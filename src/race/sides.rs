@@ -3,7 +3,7 @@
 use super::cone::Cone;
 use crate::geometry::{Point, Vector, cross};
 
-/// Legs of a way that are looked at together.
+/// Number of legs of a path that are examined together.
 const STRETCH: usize = 12;
 
 /// Side of each cone relative to a driven path, 1 for left, by the nearest leg of the path. Paths whose ends

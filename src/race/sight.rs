@@ -23,7 +23,7 @@ pub struct ConeSighting {
 }
 
 impl ConeSighting {
-    /// Metres that no cone is wide.
+    /// Width that no cone has (m).
     pub const WIDEST_CONE: f64 = 0.45;
 
     /// Whether it is small enough for a cone.
@@ -32,11 +32,11 @@ impl ConeSighting {
     }
 }
 
-/// Metres by which the place of a cone in a scan is wrong.
+/// Error of a cone's position in a scan (m).
 const ERROR: f64 = 0.03;
-/// Metres within which a beam has met nothing but the car itself.
+/// Distance within which a beam hits only the car itself (m).
 const BLIND: f64 = 0.05;
-/// Metres from point to point within one thing.
+/// Maximum distance between two points of one thing (m).
 const STEP: f64 = 0.3;
 
 /// Objects in a scan: runs of beams with adjacent ends, where single beams may miss. O(n).

@@ -31,7 +31,7 @@ pub struct SplinePoint {
     pub curvature: f64,
 }
 
-/// Points at equal distances at most.
+/// Maximum number of equidistant points.
 const MOST: usize = 1_000_000;
 
 impl ClosedSpline {

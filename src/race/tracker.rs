@@ -121,17 +121,17 @@ pub struct LineTracker {
     reached: bool,
 }
 
-/// Metres from a line within which a car is on it.
+/// Distance from a line within which a car is on it (m).
 const ON_LINE: f64 = 0.3;
-/// The share of the metres in which an error dies out by which one counts at most: what is farther off is
+/// Maximum error that counts, as a fraction of the distance over which errors decay: larger ones are
 /// approached at 14 degrees.
 const SLANTED: f64 = 0.4;
 /// Metres per second at which a car feels its way where nothing is known, or comes to its line if it stands.
 pub(super) const CRAWL: f64 = 1.0;
-/// The share of the tyres' grip that is asked of them at most to come back to a line. With all of it, a fast
-/// car whose line moves aside would steer until its tyres slip, and weave.
+/// Maximum fraction of the grip used to return to a line. With all of it, a fast car whose line moves
+/// sideways would steer until its tyres slip, and weave.
 const BACK: f64 = 0.6;
-/// Metres before and beyond a place between which the turn of the nose is taken.
+/// Distance before and after a point over which the turn of the nose is measured (m).
 const SWINGS: f64 = 1.0;
 
 impl LineTracker {

@@ -49,7 +49,7 @@ impl Tyres {
         Self { grip: 12.0, stiffness: f64::INFINITY, front: 1.0, wheelbase: 1.55, lock: 0.6 };
 }
 
-/// The share of what an axle can give beyond which no more is asked of it.
+/// Fraction of an axle's grip that is used at most.
 const MOST: f64 = 0.97;
 
 impl Tyres {
@@ -181,7 +181,7 @@ impl Tyres {
     }
 }
 
-/// Times that the steering angle is put in where it is looked for.
+/// Number of fixed-point iterations for the steering angle.
 const TURNS: usize = 3;
 
 #[cfg(test)]

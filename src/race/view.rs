@@ -1,10 +1,10 @@
-//! What a car would see from where it is: near enough, ahead, and not behind something else.
+//! Visibility of cones from the car: near enough, ahead, and not hidden.
 
 use super::cone::APART;
 use super::sight::ConeSighting;
 use crate::geometry::{Vector, cross, math};
 
-/// Metres from the sensor, and radians from straight ahead, within which a cone that is not seen is missed.
+/// Distance from the sensor (m) and angle from straight ahead (rad) within which an undetected cone counts as missing.
 pub(super) const VIEW: (f64, f64) = (9.0, 0.8);
 
 /// Whether a cone at a position relative to the sensor would be seen.

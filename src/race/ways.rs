@@ -3,12 +3,12 @@
 use super::lane_model::Lane;
 use crate::geometry::{Point, Pose, direction, math};
 
-/// Metres from station to station beyond the end of what is known, from the car to the first one beside a
-/// row, and within which ways are next to each other.
+/// Distance between stations beyond the known lane, from the car to the first station beside a row, and
+/// within which paths are neighbours (m).
 const STEP: f64 = 1.0;
-/// Metres away from the car within which it begins.
+/// Distance from the car within which the path begins (m).
 const AWAY: f64 = 4.0;
-/// Points of a lane that are enough to go on along it.
+/// Number of points of a lane that suffice to continue along it.
 const ENOUGH: usize = 3;
 
 /// A path some metres to the right (or left, if negative) of a row of cones in order along the lane. `None`

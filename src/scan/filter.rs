@@ -50,16 +50,16 @@ struct Beam {
 /// The standard deviation of a range, in metres, that is expected before anything was measured: that of an
 /// EyeBot's lidar.
 pub(super) const RANGE_ERROR: f64 = 0.010;
-/// A beam that has met nothing.
+/// A beam without a return.
 const UNKNOWN: Beam = Beam { range: f64::INFINITY, weight: 0.0 };
 /// Maximum weight of an estimate, so that it follows small changes.
 const MAX_WEIGHT: f64 = 20.0;
-/// Flattest angle, in radians, at which a beam says where a wall is.
+/// Minimum angle between beam and wall at which a beam locates the wall (rad).
 pub(super) const GRAZING: f64 = 0.2;
 /// Beams next to each other whose ranges differ by less than this part of the range see one surface.
 pub(super) const SURFACE_STEP: f64 = 0.1;
-/// Beams whose hits lie closer together than this, in metres, see the same piece of surface; seen at a slant,
-/// it moves by as much between them.
+/// Distance between hits up to which beams see the same piece of surface (m); on an oblique surface,
+/// consecutive hits are this far apart.
 const SMOOTHING_ARC: f64 = 0.015;
 /// Maximum number of averaged neighbours on either side.
 const MAX_SMOOTHING: usize = 10;

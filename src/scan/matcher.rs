@@ -60,10 +60,10 @@ pub struct ScanMatcher {
 const REFERENCE_REACH: f64 = 0.8;
 /// Maximum number of active references.
 const ACTIVE_REFERENCES: usize = 3;
-/// After so many metres they are chosen anew, or where the present ones share little with the scan; they
-/// stand at least as far apart.
+/// Distance driven after which the references are chosen anew, unless the present ones overlap little with
+/// the scan earlier; also the minimum distance between them (m).
 const CHOICE_SPACING: f64 = 0.1;
-/// A scan of which less than this share matches any reference becomes one itself.
+/// Overlap with every reference below which a scan becomes a reference (fraction).
 const MIN_OVERLAP: f64 = 0.6;
 /// Maximum number of references kept.
 const MAX_REFERENCES: usize = 10_000;

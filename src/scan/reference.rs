@@ -32,12 +32,12 @@ pub(super) struct Evidence {
 /// Points farther from a surface than this, in metres, do not count as shared, and have no counterpart in the
 /// last round.
 pub(super) const OVERLAP_GATE: f64 = 0.03;
-/// Bearings that a reference is divided into.
+/// Number of bearing intervals of a reference.
 const BINS: usize = 360;
-/// How many matched points count as one fact. Scans matched against one reference share its errors, tens of
-/// them one after the other; counted singly they would drown what odometry knows where the surfaces say
-/// little, as in a round room. Found by trial: 2 lets spirals turn the pose by degrees, 200 lets odometry's
-/// drift through.
+/// Number of matched points that count as one independent measurement. Scans matched against one reference
+/// share its errors, tens of them in succession; counted individually, they would outweigh odometry where
+/// surfaces constrain the pose weakly, as in a round room. By experiment: 2 lets spirals turn the pose by
+/// degrees, 200 lets odometry drift through.
 const POINTS_PER_FACT: f64 = 40.0;
 /// Extent of the neighbours used for a line (m).
 const LINE_REACH: f64 = 0.06;

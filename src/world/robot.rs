@@ -120,7 +120,7 @@ pub enum DriveSpec {
 }
 
 impl DriveSpec {
-    /// The fastest rim speed of its wheels, or the speed of a craft at full thrust, in metres per second.
+    /// Maximum rim speed of its wheels, or speed of a craft at full thrust (m/s).
     pub fn top_speed(&self) -> f64 {
         match *self {
             Self::Differential { wheel_diameter, max_wheel_speed, .. }

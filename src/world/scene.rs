@@ -28,7 +28,7 @@ pub struct World {
     pub terrain: Option<Terrain>,
     /// Height of the water surface above the floor (m).
     pub water_level: Option<f64>,
-    /// What the water is like and how it moves.
+    /// Properties and motion of the water.
     pub water: Water,
 }
 

@@ -139,7 +139,7 @@ impl CameraSpec {
 pub struct DepthSensorSpec {
     /// The channel by which RoBIOS programs read it with `ANALOGRead`, in mm.
     pub channel: u8,
-    /// Metres above the robot's origin.
+    /// Height above the robot's origin (m).
     pub z: f64,
 }
 

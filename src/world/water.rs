@@ -5,44 +5,44 @@ use crate::parameter::{require, require_finite, require_not_negative, require_po
 /// The water of a world: what fills it up to [`World::water_level`](super::World::water_level).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Water {
-    /// Kilograms in a cubic metre.
+    /// Density (kg/m³).
     pub density: f64,
-    /// Metres below the surface, and the speed of the current there in m/s along x and y. Between two depths
-    /// it changes evenly; above the first and below the last it stays.
+    /// Layers of the current: depth below the surface (m), and velocity along x and y (m/s). Between layers it is
+    /// interpolated; above the first and below the last it is constant.
     pub current: Vec<(f64, Vector)>,
-    /// Waves on its surface.
+    /// Waves on the surface.
     pub waves: Option<Waves>,
-    /// The speed of the wind, in m/s along x and y.
+    /// Velocity of the wind along x and y (m/s).
     pub wind: Vector,
 }
 
 /// Waves of small height on deep water.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Waves {
-    /// Metres from trough to crest: of regular waves, or of the highest third of irregular ones.
+    /// Height from trough to crest (m): of regular waves, or the mean of the highest third of irregular ones.
     pub height: f64,
-    /// Seconds from crest to crest: of regular waves, or of those with the most energy.
+    /// Period (s): of regular waves, or of the peak of the spectrum.
     pub period: f64,
-    /// The direction in which they run, in radians counter-clockwise from the x axis.
+    /// Direction of travel, counter-clockwise from the x axis (rad).
     pub direction: f64,
     /// Whether they have the spectrum of the North Sea (JONSWAP) instead of a single frequency.
     pub irregular: bool,
 }
 
 impl Default for Water {
-    /// Fresh water that stands still.
+    /// Still fresh water.
     fn default() -> Self {
         Self { density: 1000.0, current: Vec::new(), waves: None, wind: Vector::zeros() }
     }
 }
 
 impl Water {
-    /// The densest water, in kg/m³: the Dead Sea has 1240.
+    /// Maximum density (kg/m³); the Dead Sea has 1240.
     pub const DENSEST: f64 = 2000.0;
-    /// The fastest current and wind, in m/s.
+    /// Maximum speed of current and wind (m/s).
     pub const FASTEST: f64 = 100.0;
 
-    /// The current so many metres below the surface.
+    /// Velocity of the current at a depth below the surface (m).
     ///
     /// ```
     /// use roverlab::geometry::Vector;
@@ -61,13 +61,13 @@ impl Water {
         upper + (lower - upper) * ((depth - top) / (bottom - top))
     }
 
-    /// Fails with the name of a number that no water has.
+    /// Checks every value; the error names the one out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         require_positive("water's density", self.density)?;
         let light = self.density <= Self::DENSEST;
         require("water's density", self.density, light, "at most 2000 kg/m³")?;
         let slow = |name: &'static str, speed: Vector| {
-            // A number that is none is the wrong one of the two.
+            // If one of the two is NaN, that one is wrong.
             let wrong = |part: &&f64| part.is_nan() || part.abs() > Self::FASTEST;
             let found = [speed.x, speed.y];
             let found = found.iter().find(wrong).copied().unwrap_or_default();
@@ -101,7 +101,7 @@ impl Waves {
         )
     }
 
-    /// Metres from crest to crest on deep water.
+    /// Wavelength in deep water (m).
     pub fn length(&self) -> f64 {
         9.81 * self.period * self.period / std::f64::consts::TAU
     }

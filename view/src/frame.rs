@@ -1,4 +1,4 @@
-//! A snapshot of the world in bytes: what the page keeps of a run, 25 times a second.
+//! A snapshot of the world in bytes, which the page stores 25 times a second.
 //!
 //! All numbers are little-endian; lengths are metres and angles radians unless said otherwise. A frame is
 //!
@@ -134,7 +134,7 @@ impl Frames {
         }
     }
 
-    /// Begins anew for somebody who has seen no frame of the run.
+    /// Starts again, for a viewer without any frame of the run.
     pub fn restart(&mut self) {
         self.robots.fill_with(News::default);
     }
@@ -163,7 +163,7 @@ impl Frames {
         self.robots[robot].image = Some(image.clone());
     }
 
-    /// Skips contacts up to now, as the page knows them.
+    /// Skips the contacts so far, which the page has already.
     pub fn skip(&mut self, world: &impl Shown) {
         for (index, news) in self.robots.iter_mut().enumerate() {
             news.contacts = world.contacts(index).map_or(0, |(_, places)| places.len());

@@ -18,6 +18,6 @@ pub enum Message {
     Options = 7,
     /// Additions of the run's picture besides the robots, as JSON.
     Overlay = 8,
-    /// What runs beside the page, as JSON: `command`.
+    /// The command that runs beside the page, as JSON: `command`.
     Beside = 9,
 }

@@ -1,4 +1,4 @@
-//! What the page is told of a recording.
+//! Messages to the page that show a recording.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -14,14 +14,14 @@ use crate::{Displayed, Frames, Message, Shown, scene_json};
 
 /// Interval between frames (s).
 const INTERVAL: f64 = 0.04;
-/// Part of an interval by which the end may be off.
+/// Tolerance of the end, as a fraction of an interval.
 const ROUNDING: f64 = 1e-6;
 /// Longest gap in a true path over which a robot is shown on the line between (s).
 const GAP: f64 = 1.0;
 /// Distance around paths that a world without a description reaches (m).
 const MARGIN: f64 = 1.0;
 
-/// The messages that a page gets, each with its kind as the first byte.
+/// Messages to a page, each with its kind as the first byte.
 pub(crate) fn messages(log: &Log, command: &str) -> Vec<Vec<u8>> {
     let mut seen: Vec<Seen> = log.messages().flat_map(|message| message.seen()).collect();
     seen.sort_by(|a, b| a.time.total_cmp(&b.time));

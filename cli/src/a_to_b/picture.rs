@@ -34,6 +34,9 @@ pub(crate) fn of(
         picture.robot_with(Pose::new(trip.goal.x, trip.goal.y, heading), &trip.spec().footprint, pale());
     }
     run.draw(&mut picture, trip.spec());
+    for &waypoint in &args.via {
+        picture.mark(Mark::Waypoint, waypoint);
+    }
     picture.mark(Mark::Goal, trip.goal);
     picture
 }

@@ -10,17 +10,17 @@ use crate::common::{CommonArgs, OF_ONE_RUN};
 #[command(
     about = "Steers the solar raft along a course in wind, current and waves, and keeps its station at the end",
     after_help = "\
-Without --world, the raft is on a lake of 40 x 30 m with islands; --seed chooses these, the wind of up to 4 m/s, the current of
+Without --world, the raft is on a lake of 40 x 30 m with islands; --seed draws these, a wind of up to 4 m/s, a current of
 up to 0.2 m/s, waves of up to 0.15 m, and the course if --course does not. A world needs water: a line `water_level MM`. The raft
-has a Doppler log and an inertial unit, and begins where it is told that it does.
+has a Doppler log and an inertial unit, and knows its start.
 
 With --campaign, 200 lakes with a course each.
 
 JSON fields:
-  waypoints                   how many were passed
-  max_miss_mm                 the most that the raft missed a waypoint by
-  cross_track_rms_mm          of the distance from the legs
-  station_rms_mm              of the distance from the last waypoint, from 20 s after arrival on, or null
+  waypoints                   number of waypoints passed
+  max_miss_mm                 largest distance by which a waypoint was missed
+  cross_track_rms_mm          root mean square distance from the legs
+  station_rms_mm              root mean square distance from the last waypoint, from 20 s after arrival, or null
   course_mm                   the waypoints
   picture
   rows                        with --campaign only: the table
@@ -31,15 +31,15 @@ pub(crate) struct Args {
     #[arg(long, value_name = "X,Y;X,Y...", value_parser = parse_course, allow_hyphen_values = true)]
     pub(crate) course: Option<Course>,
 
-    /// Sail many courses and print a table.
+    /// Sail many courses, and print a table.
     #[arg(long)]
     pub(crate) campaign: bool,
 
-    /// Courses of a campaign.
+    /// Number of courses in a campaign, with consecutive seeds.
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) runs: u64,
 
-    /// Threads of a campaign [default: one for each core].
+    /// Number of threads in a campaign [default: one per core].
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) threads: Option<NonZero<usize>>,
 

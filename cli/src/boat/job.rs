@@ -73,8 +73,8 @@ fn picture(scene: &Scene, course: &[Point], voyage: &Voyage) -> Picture {
     let start = scene.robots[0].pose.position();
     picture.line(std::iter::once(start).chain(course.iter().copied()), Style::plan());
     run.draw(&mut picture, &scene.robots[0].spec);
-    for &waypoint in course {
-        picture.mark(Mark::Goal, waypoint);
+    for (number, &waypoint) in (1..).zip(course) {
+        picture.mark(if number == course.len() { Mark::Goal } else { Mark::Waypoint }, waypoint);
     }
     picture
 }

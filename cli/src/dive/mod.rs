@@ -22,14 +22,14 @@ use crate::water::{LEVEL, pool};
     after_help = "\
 Mako starts afloat in a pool of 25 x 50 m and 1.9 m depth. Depths are those of its sensor, at the middle of its hull.
 
-With --campaign, craft whose mass is up to 5 % off and whose thrusters are up to 10 % off the model, in currents of up to
+With --campaign, craft whose mass differs from the model by up to 5 %, and their thrusters by up to 10 %, in currents of up to
 0.1 m/s, hold a depth for 30 s and then step by 0.2 to 1.2 m.
 
 JSON fields:
-  settle_s                    from when on the true depth is within 10 mm for 5 s; null if never
-  overshoot_mm                farthest beyond the depth
-  within_10mm_percent         share of the 60 s after the first 20 s that the true depth is within 10 mm
-  heading_rms_deg             of the true heading in these 60 s
+  settle_s                    time from which the true depth stays within 10 mm for 5 s; null if never
+  overshoot_mm                largest distance beyond the depth
+  within_10mm_percent         share of the 60 s after the first 20 s with the true depth within 10 mm
+  heading_rms_deg             root mean square error of the true heading in these 60 s
   picture
   rows                        with --campaign only: the table
 Outcomes: held, not_held, collided, failed; with --campaign: passed, wrong."
@@ -43,7 +43,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = parse_noise, allow_hyphen_values = true)]
     pub(crate) noise: f64,
 
-    /// Dive many times and print a table.
+    /// Dive many times, and print a table.
     #[arg(long)]
     pub(crate) campaign: bool,
 

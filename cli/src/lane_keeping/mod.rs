@@ -19,7 +19,7 @@ use drive::Drive;
 The course is drawn by a seed, or read from a file (docs/courses.md). The car sees the road by a camera of 320 x 240 pixels, 30
 times a second, and knows its odometry. With --driver book, it drives by the book's pipeline of Canny and Hough.
 
-The referee is that of Free Drive (CAuDri-Challenge 2025): two wheels over a line of the own lane are one departure. Whoever
+The referee is that of Free Drive (CAuDri-Challenge 2025): two wheels over a line of the own lane are one departure. A car that
 is a lane's width astray, or stands for 5 s, is taken over by remote control, which drives it back into its lane at 0.3 m/s.
 
 With --campaign, many courses, each with worn paint, patches of light, and a light of 50 to 150 %.

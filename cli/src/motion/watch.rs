@@ -97,9 +97,9 @@ fn picture(scene: &Scene, run: &Run<Seen>) -> Picture {
     ));
     for trail in &run.others {
         let way = trail.iter().map(|(time, pose)| (*time, pose.position()));
-        drawing.trace(way, Style::new(SERIES[1]).labelled("what moves"));
+        drawing.trace(way, Style::new(SERIES[1]).labelled("moving object"));
     }
-    let red = Style::new(Colour::from_hex(0xc8_3e_4d)).width(0.6).labelled("alarm: its sector");
+    let red = Style::new(Colour::from_hex(0xc8_3e_4d)).width(0.6).labelled("sector of an alarm");
     let angle = spec.camera.map_or(0.0, |camera| camera.field_of_view);
     for &(time, sector) in alarms {
         let before = run.trail.partition_point(|(then, _)| *then <= time);

@@ -67,7 +67,7 @@ pub(super) fn verdict(outcome: NavigatorOutcome) -> &'static str {
     match outcome {
         NavigatorOutcome::Reached => "goal reached",
         NavigatorOutcome::Unreachable => "the goal cannot be reached",
-        NavigatorOutcome::Stuck => "the robot does not get on",
+        NavigatorOutcome::Stuck => "the robot makes no progress",
         NavigatorOutcome::TimedOut | NavigatorOutcome::Stopped => "the time is over",
     }
 }

@@ -7,42 +7,42 @@ use crate::common::{CommonArgs, OF_ONE_RUN};
 /// Command line of `pool-wall`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
-    about = "Follows the sides of a pool under water, half a metre beside them, by distance sensors",
+    about = "Follows the sides of a pool under water at a distance of half a metre, by distance sensors",
     after_help = "\
-Without --world, the pool is a rectangle, an L or a kidney, which --seed chooses. A world needs water: a line `water_level MM`.
-Where it has no start, the craft starts where the water is widest. Mako dives, drives to a side and follows it at 0.3 m/s with
+Without --world, --seed draws the pool: a rectangle, an L or a kidney. A world needs water: a line `water_level MM`.
+If it has no start, the craft starts where the water is widest. Mako dives, drives to a side and follows it at 0.3 m/s with
 the side on its left.
 
 With --campaign, generated pools of all kinds, ten laps each.
 
 JSON fields:
-  rms_error_mm                of the distance from the side of the hull to the pool's, away from corners
+  rms_error_mm                root mean square error of the distance between hull and side, away from corners
   max_error_mm                the largest such error
-  laps                        whole rounds
-  depth_rms_error_mm          of the depth of the sensor on the way
+  laps                        number of complete laps
+  depth_rms_error_mm          root mean square error of the sensor's depth
   picture
   rows                        with --campaign only: the table, by kind of pool
-Away from corners: no side within 1.2 m of the nearest one is turned by more than 45 degrees, nor has one been for 5 s.
+Away from corners: for 5 s, no side within 1.2 m of the nearest one has been at more than 45 degrees to it.
 Outcomes: round, timed_out, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
-    /// Rounds along the sides.
+    /// Number of laps.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000), allow_hyphen_values = true)]
     pub(crate) laps: u32,
 
-    /// Depth of the craft's sensor, at the middle of its hull.
+    /// Depth of the craft's pressure sensor, at the middle of its hull.
     #[arg(long, value_name = "MM", default_value = "800", value_parser = parse_depth, allow_hyphen_values = true)]
     pub(crate) depth: f64,
 
-    /// Follow the sides of many pools and print a table.
+    /// Follow the sides of many pools, and print a table.
     #[arg(long)]
     pub(crate) campaign: bool,
 
-    /// Pools of a campaign.
+    /// Number of pools in a campaign, with consecutive seeds.
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) runs: u64,
 
-    /// Threads of a campaign [default: one for each core].
+    /// Number of threads in a campaign [default: one per core].
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) threads: Option<NonZero<usize>>,
 

@@ -6,14 +6,14 @@ use roverlab::world::RobotSpec;
 
 use crate::common::{CommonArgs, OF_ONE_RUN};
 
-/// How the robot goes up.
+/// Method of climbing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Method {
-    /// Maps what it sees, leaves local maxima behind, and ends on the highest place that it can reach.
+    /// Maps the hills, leaves local maxima, and ends on the highest reachable place.
     Search,
-    /// The steepest way up, by what the lidar shows around.
+    /// Steepest ascent, by lidar.
     Ascent,
-    /// The steepest way up, by distance sensors that look down.
+    /// Steepest ascent, by distance sensors that point down.
     Psd,
 }
 
@@ -32,48 +32,46 @@ impl Method {
 /// The command line of `summit`.
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
-    about = "Drives a tracked robot to the highest place of hills that it does not know",
+    about = "Drives a tracked robot to the highest reachable place of unknown hills",
     after_help = "\
-Without --world, the robot stands on generated hills, which --seed chooses. A world needs hills: a line `terrain WIDTH HEIGHT
-TOP FILE`, whose file is an image or an ESRI grid. A Blizzard drives where it has no robot. In a world with water the robot
-is told how high that is.
+Without --world, the hills are generated from --seed. A world needs hills: a line `terrain WIDTH HEIGHT TOP FILE`, whose file
+is an image or an ESRI grid. If it has no robot, a Blizzard drives. The robot knows the level of the world's water, if any.
 
-With --campaign, generated ranges by each way of going up.
+With --campaign, generated ranges by each method.
 
 JSON fields:
   height_mm                   true elevation at the end
-  highest_reachable_mm        elevation of the highest place that can be reached within the slope limit
-  distance_mm                 true distance from that place over the map
-  max_tilt_deg                the most that the robot was tilted
-  slip_percent                how far it moved otherwise than its wheels said, as a share of their way
-  planned_length_mm           the way there of who knows the map, or null
-  slope_limit_deg             of the ground that the robot trusts itself on
-  looks                       how often it has looked around
-  unknown_m2                  ground that may be higher and may be reached, for all that it knows
+  highest_reachable_mm        elevation of the highest place reachable within the slope limit
+  distance_mm                 true horizontal distance from that place
+  max_tilt_deg                maximum tilt of the robot
+  slip_percent                motion that the wheels did not report, relative to the distance by the wheels
+  planned_length_mm           length of the path planned on the true map, or null
+  slope_limit_deg             maximum slope that the robot drives on
+  looks                       number of looks around
+  unknown_m2                  area that may be higher and reachable, as far as the robot knows
   time_limit_s, picture
   runs, reached, mishaps, median_path_ratio, ways, wrong_seeds   with --campaign only
-Reached is what lies at most 100 mm from the highest reachable place, or 2 % of the relief below it.
+Reached: at most 100 mm from the highest reachable place, or 2 % of the relief below it.
 Outcomes: reached, local_maximum, stuck, tipped, fell, drowned, timed_out, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
-    /// How the robot goes up.
+    /// Method of climbing.
     #[arg(long, value_enum, default_value_t = Method::Search)]
     pub(crate) method: Method,
 
-    /// The steepest ground on which the robot trusts itself [default: seven tenths of where it would slip or
-    /// tip].
+    /// Steepest slope [default: 70 % of the slope at which the robot slips or tips].
     #[arg(long, value_name = "DEG", value_parser = parse_slope, allow_hyphen_values = true)]
     pub(crate) slope: Option<f64>,
 
-    /// Climb many hills.
+    /// Climb many hills, and print a table.
     #[arg(long)]
     pub(crate) campaign: bool,
 
-    /// Hills of a campaign; each has the next seed.
+    /// Number of hills in a campaign, with consecutive seeds.
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) runs: u64,
 
-    /// How many threads climb in a campaign [default: one for each core].
+    /// Number of threads in a campaign [default: one per core].
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) threads: Option<NonZero<usize>>,
 

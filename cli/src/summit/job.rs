@@ -33,7 +33,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let summit = Summit::of(&hike, args)?;
     let conditions = Conditions::new(common, SECONDS)?;
     common.tell(format_args!(
-        "{} at {:.0} mm; the highest place that it can reach is at {:.0} mm",
+        "{} at {:.0} mm; its highest reachable place is at {:.0} mm",
         hike.spec().name,
         units::to_mm(hike.start_height()),
         units::to_mm(summit.place.z)

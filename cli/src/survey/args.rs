@@ -10,22 +10,22 @@ use crate::common::{CommonArgs, OF_ONE_RUN};
 #[command(
     about = "Maps the floor of a pool in lanes under water, with the uncertainty of each depth",
     after_help = "\
-Without --world, Mako surveys the book's pool of 25 x 50 m; --seed chooses a floor that slopes, steps, or is a bowl. A world needs
+Without --world, Mako surveys the book's pool of 25 x 50 m, whose floor --seed draws: slopes, steps, or a bowl. A world needs
 water: a line `water_level MM`. Mako has a Doppler log, a compass and distance sensors; where the water ends at four straight
-sides, it finds its place by these too. It starts where the water is widest unless the world or --start says otherwise.
+sides, it localises by these too. It starts where the water is widest, unless the world or --start states a start.
 
-Cells are as wide as the lanes are apart; those count whose border is at least half a metre off the sides. --map writes a
-colour picture, and beside it the depths as an ESRI grid (.asc) and all cells with their uncertainty as a table (.csv), in mm.
+Cells are as wide as the spacing of the lanes; only those at least half a metre from the sides count. --map writes a colour
+picture, and beside it the depths as an ESRI grid (.asc) and all cells with their uncertainty as a table (.csv), in mm.
 
 With --campaign, floors of all kinds.
 
 JSON fields:
-  coverage_percent            cells with a depth
-  depth_error_p95_mm          95 % of the depths are less far from the true mean of their cell
-  position_error_p95_mm       the same of the place on the way
-  inside_2_sigma_percent      depths within two of their own standard deviations
-  way_ratio                   length of the way over area by spacing
-  by_walls                    whether the place came from the sides
+  coverage_percent            share of the cells with a depth
+  depth_error_p95_mm          95th percentile of the error of a cell's mean depth
+  position_error_p95_mm       95th percentile of the position error
+  inside_2_sigma_percent      share of the depths within two of their standard deviations
+  way_ratio                   length of the path relative to area by spacing
+  by_walls                    whether the sides were used for localisation
   map, picture
   rows                        with --campaign only: the table
 Outcomes: covered, timed_out, failed; with --campaign: passed, wrong."
@@ -35,23 +35,23 @@ pub(crate) struct Args {
     #[arg(long, value_name = "MM", default_value = "1000", value_parser = parse_spacing, allow_hyphen_values = true)]
     pub(crate) spacing: f64,
 
-    /// Depth of the craft's sensor on the way.
+    /// Depth of the craft's pressure sensor.
     #[arg(long, value_name = "MM", default_value = "500", value_parser = parse_depth, allow_hyphen_values = true)]
     pub(crate) depth: f64,
 
-    /// Write the map to a .png file, and beside it .asc and .csv.
+    /// Write the map to a .png file, with .asc and .csv files beside it.
     #[arg(long, value_name = "OUT.png", value_parser = parse_map)]
     pub(crate) map: Option<PathBuf>,
 
-    /// Survey several floors and print a table.
+    /// Survey several floors, and print a table.
     #[arg(long)]
     pub(crate) campaign: bool,
 
-    /// Floors of a campaign.
+    /// Number of floors in a campaign, with consecutive seeds.
     #[arg(long, value_name = "N", default_value_t = 12, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) runs: u64,
 
-    /// Threads of a campaign [default: one for each core].
+    /// Number of threads in a campaign [default: one per core].
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) threads: Option<NonZero<usize>>,
 

@@ -105,7 +105,13 @@ fn cells(
         let corner = |x: f64, y: f64| centre + Vector::new(x, y) * (0.5 * cell);
         let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
         let colour = ramp((1.0 - deep).clamp(0.0, 1.0));
-        picture.polygon(corners, Style::new(colour).width(0.0).filled(1.0));
+        let mut style = Style::new(colour).width(0.0).filled(1.0);
+        if deep <= 0.0 {
+            style = style.labelled("shallowest cell");
+        } else if deep >= 1.0 {
+            style = style.labelled("deepest cell");
+        }
+        picture.polygon(corners, style);
     }
     picture
 }

@@ -1,4 +1,4 @@
-//! What the commands in water share: the world with a craft in it, and its shores.
+//! Shared by the commands in water: the world with a craft in it, and its shores.
 
 mod pool;
 mod shore;

@@ -11,9 +11,9 @@ pub(super) struct ScanMemory {
     cells: BTreeMap<(i32, i32), (Point, f64)>,
 }
 
-/// Metres across a cell.
+/// Cell size (m).
 const CELL: f64 = 0.03;
-/// Seconds for which a point is kept.
+/// Time for which a point is kept (s).
 const MEMORY: f64 = 60.0;
 
 impl ScanMemory {

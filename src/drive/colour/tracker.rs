@@ -128,7 +128,7 @@ pub struct ColourTracker {
     points: Vec<Point>,
 }
 
-/// Metres around an object's place within which what the lidar sees is the object.
+/// Radius around an object's position within which lidar points belong to it (m).
 pub(super) const OBJECT: f64 = 0.09;
 
 impl ColourTracker {

@@ -70,7 +70,7 @@ pub struct CoverageMap {
     tiles: Vec<u32>,
 }
 
-/// Cells along an edge of a tile.
+/// Number of cells along an edge of a tile.
 const TILE: usize = 16;
 
 impl CoverageMap {

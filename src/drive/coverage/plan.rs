@@ -26,15 +26,14 @@ pub struct CoveragePlan {
     share: f64,
 }
 
-/// Metres by which the robot may miss its way without leaving a gap that the plan does not know of.
+/// Path error that leaves no gap unknown to the plan (m).
 const ERROR: f64 = 0.004;
-/// Of the cells under the robot, the share that has to be gained for a place to be worth a visit, and the
-/// share of the floor at which no more such visits are made: small gains count where the floor is small or
-/// has many corners.
+/// Minimum fraction of the cells under the robot that a visit must gain, and the covered fraction of the
+/// floor at which such visits end: small gains matter where the floor is small or has many corners.
 const WORTH: [(f64, f64); 3] = [(0.12, 0.995), (0.05, 0.92), (0.02, 0.9)];
-/// The share of the floor below which a plan is worse than another one, however short.
+/// Covered fraction of the floor below which a plan is worse than another, however short it is.
 const ENOUGH: f64 = 0.98;
-/// The most visits beside the lanes.
+/// Maximum number of visits beside the lanes.
 const VISITS: usize = 2000;
 
 impl CoveragePlan {

@@ -100,9 +100,9 @@ impl Routes {
     }
 }
 
-/// A step along a diagonal, in cells.
+/// Length of a diagonal step (cells).
 const DIAGONAL: f32 = std::f32::consts::SQRT_2;
-/// The steps to a cell's neighbours, columns and rows, and their lengths in cells.
+/// Steps to a cell's neighbours, as columns and rows, and their lengths (cells).
 const STEPS: [(i64, i64, f32); 8] = [
     (1, 0, 1.0),
     (-1, 0, 1.0),

@@ -54,7 +54,7 @@ pub struct Tour {
     turning: bool,
 }
 
-/// The heading error in radians at which a turn on the spot is needed again.
+/// Heading error at which the robot turns on the spot again (rad).
 const ASTRAY: f64 = 0.5;
 
 impl Tour {

@@ -29,10 +29,10 @@ impl Default for BookLaneParameters {
     }
 }
 
-/// The book's lane keeper: gray, smoothing, edges, the lower part of the image, straight lines, the mean of
-/// those that lean to the right and of those that lean to the left, and curvature proportional to the offset
-/// of the middle between them. A missing side is assumed at its last distance; if both are missing, the
-/// curvature stays.
+/// The book's lane keeper. It converts the image to grey, smooths it, and finds edges and straight lines in its
+/// lower part. It averages the lines that lean to the right and those that lean to the left, and commands a
+/// curvature proportional to the offset of the middle between the two. A missing side is assumed at its last
+/// distance; if both are missing, the curvature is kept.
 #[derive(Debug)]
 pub struct BookLaneKeeper {
     parameters: BookLaneParameters,

@@ -31,7 +31,7 @@
 //! })?;
 //! assert!(referee.score().distance > 2.0 && referee.score().departures == 0);
 //!
-//! // The book's, for half a second more.
+//! // The book's lane keeper, for another half second.
 //! let mut book = BookLaneKeeper::new(BookLaneParameters::default())?;
 //! run(&mut car, &mut book, 0.5, |_, _, _| ())?;
 //! # Ok(())
@@ -52,14 +52,14 @@ use crate::io::{Camera, Odometry, Result};
 use crate::vision::lane_markings::RoadCamera;
 use crate::world::CameraSpec;
 
-/// What a lane keeper is told at each step.
+/// Observation of a lane keeper.
 #[derive(Debug, Clone, Default)]
 pub struct LaneObservation {
-    /// What the camera sees.
+    /// Camera image.
     pub image: RgbImage,
-    /// Where odometry takes the robot to be.
+    /// Pose by odometry.
     pub odometry: Pose,
-    /// Metres per second, by odometry.
+    /// Speed by odometry (m/s).
     pub speed: f64,
 }
 
@@ -71,12 +71,12 @@ impl LaneObservation {
     }
 }
 
-/// How keeping a lane ended: it has no end of its own.
+/// Outcome of lane keeping, which has no end of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum LaneOutcome {
-    /// The time was over.
+    /// The time limit came first.
     TimedOut,
-    /// Who watches has seen enough.
+    /// The observer stopped the run.
     Stopped,
 }
 

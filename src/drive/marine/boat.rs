@@ -15,13 +15,13 @@ use crate::parameter::{require_not_negative, require_positive};
 pub struct BoatParameters {
     /// Speed over ground on a leg (m/s).
     pub speed: f64,
-    /// Metres ahead on the leg at which the boat steers.
+    /// Distance ahead on the leg of the point the boat steers for (m).
     pub lookahead: f64,
-    /// Metres from a waypoint within which it is reached.
+    /// Distance from a waypoint at which it counts as reached (m).
     pub reached: f64,
-    /// Seconds on station at the last waypoint.
+    /// Time on station at the last waypoint (s).
     pub station: f64,
-    /// Seconds between steps.
+    /// Control period (s).
     pub period: f64,
 }
 
@@ -32,36 +32,37 @@ impl Default for BoatParameters {
     }
 }
 
-/// What [`Boat`] goes by.
+/// Observation of a [`Boat`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BoatObservation {
-    /// How the boat is turned.
+    /// Attitude of the boat.
     pub attitude: Attitude,
-    /// How it turns about its own axes (rad/s).
+    /// Turn rates about its own axes (rad/s).
     pub rates: Vector3,
-    /// The way by the log.
+    /// Pose by the log.
     pub odometry: Pose,
 }
 
-/// How a boat's course ended.
+/// Outcome of a [`Boat`]'s course.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum BoatOutcome {
     /// All waypoints are reached, and the time on station is over.
     Arrived,
-    /// The time was over.
+    /// The time limit came first.
     TimedOut,
-    /// Who watched had seen enough.
+    /// The observer stopped the run.
     Stopped,
 }
 
 halts!(BoatOutcome { Arrived: "the time on station is over" });
 
-/// A boat with two thrusters on a course of waypoints, and on station at the last one.
+/// Steers a boat with two thrusters along waypoints, and keeps station at the last one.
 ///
-/// On a leg it steers by line of sight with integral action (Fossen 2021, section 12.3), and slows down before
-/// a waypoint. It points beyond the velocity that it wants by a share of what is missing, as only its thrust
-/// takes out a drift aside. On station it comes back to the place and learns what drives it off.
+/// On a leg it uses line-of-sight guidance with integral action (Fossen 2021, section 12.3), and it slows down
+/// before a waypoint. The boat has no keel, so only its thrust corrects sideways drift: it points beyond the
+/// desired velocity by a fraction of the velocity error. On station it returns to its position, and estimates
+/// the drift to counteract it.
 ///
 /// ```
 /// use roverlab::drive::marine::{Boat, BoatOutcome, BoatParameters};
@@ -102,9 +103,9 @@ const LEARNT: f64 = 0.03;
 const MOST_DRIFT: f64 = 0.4;
 
 impl Boat {
-    /// A course from a start through waypoints of the world. Odometry begins at the start.
+    /// Creates a course from a start through waypoints in world coordinates. Odometry begins at the start.
     ///
-    /// Fails without waypoints.
+    /// Fails without waypoints and for parameters out of range.
     pub fn new(
         craft: &CraftSpec,
         start: Pose,
@@ -133,7 +134,7 @@ impl Boat {
         })
     }
 
-    /// The index of the waypoint ahead; their number when the boat is on station.
+    /// Index of the next waypoint; the number of waypoints when the boat is on station.
     pub fn leg(&self) -> usize {
         self.legs.leg()
     }

@@ -6,29 +6,29 @@ use crate::parameter::{require_not_negative, require_positive};
 /// Parameters of [`DepthHold`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DepthHoldParameters {
-    /// Fastest change of the wanted depth (m/s).
+    /// Maximum rate of change of the depth reference (m/s).
     pub speed: f64,
-    /// Bandwidth of the way to a new depth (rad/s): it takes about four of its inverses more than the speed
-    /// asks for.
+    /// Bandwidth of the reference (rad/s). A change of depth takes about four of its inverses longer than at
+    /// constant speed.
     pub approach: f64,
-    /// Bandwidth of the control (rad/s).
+    /// Bandwidth of the controller (rad/s).
     pub control: f64,
-    /// Bandwidth of the observer (rad/s): lower averages the sensor's noise, higher learns a wrong weight
-    /// faster.
+    /// Bandwidth of the observer (rad/s). Lower values average more sensor noise; higher values learn a wrong
+    /// weight faster.
     pub observer: f64,
 }
 
 impl Default for DepthHoldParameters {
-    /// A craft that a thruster of 0.2 s lag moves.
+    /// For a craft whose thrusters have a lag of 0.2 s.
     fn default() -> Self {
         Self { speed: 0.15, approach: 0.8, control: 0.8, observer: 1.2 }
     }
 }
 
-/// Holds a depth: a reference that moves to the wanted depth without overshoot, an observer of depth, speed
-/// and the unknown force that acts besides the model's, and state feedback with that force fed forward.
+/// Depth controller: a reference that moves to the desired depth without overshoot; an observer of depth, speed
+/// and the unmodelled force; and state feedback with that force fed forward.
 ///
-/// The observer knows what the thrusters really push, limits included, so that nothing winds up.
+/// The observer uses the actual thrust, limits included, so nothing winds up.
 ///
 /// ```
 /// use roverlab::drive::marine::{DepthHold, DepthHoldParameters};
@@ -63,7 +63,7 @@ const FRESH: f64 = 1000.0;
 const GENTLE: f64 = 0.5;
 
 impl DepthHold {
-    /// A controller of a craft whose sensor reads `depth`.
+    /// Creates the controller of a craft whose sensor reads `depth`. Fails for parameters out of range.
     pub fn new(craft: &Craft, depth: f64, parameters: DepthHoldParameters) -> Result<Self, ParameterError> {
         require_positive("speed", parameters.speed)?;
         require_positive("approach", parameters.approach)?;
@@ -85,8 +85,8 @@ impl DepthHold {
         })
     }
 
-    /// The force down (N) by which a craft, whose sensor reads `depth`, comes to `goal` and stays there,
-    /// `seconds` after the step before.
+    /// The downward force (N) that brings a craft whose sensor reads `depth` to `goal` and keeps it there,
+    /// `seconds` after the last step.
     pub fn step(&mut self, depth: f64, goal: f64, seconds: f64) -> f64 {
         self.observe(depth, seconds);
         let acceleration = self.lead(goal, seconds);
@@ -97,7 +97,7 @@ impl DepthHold {
         inertia * (acceleration + closing) + self.drag(self.speed) + self.reserve - self.unknown
     }
 
-    /// Takes notice of what the thrusters are told to push down (N): not more than they can.
+    /// Reports the downward force (N) commanded to the thrusters, within their limits.
     pub fn told(&mut self, force: f64) {
         self.command = force;
     }

@@ -4,21 +4,21 @@ use crate::ParameterError;
 use crate::geometry::{Aabb, Point, Vector};
 use crate::parameter::{require, require_positive};
 
-/// A measured depth of the ground.
+/// A measured water depth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sounding {
-    /// Where it was measured.
+    /// Position of the measurement.
     pub place: Point,
-    /// Metres of water.
+    /// Water depth (m).
     pub depth: f64,
-    /// Standard deviation of the place (m).
+    /// Standard deviation of the position (m).
     pub sigma: f64,
 }
 
-/// A depth and how sure it is.
+/// A depth and its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CellDepth {
-    /// Metres of water, in the mean of the cell.
+    /// Mean water depth of the cell (m).
     pub depth: f64,
     /// Standard deviation (m).
     pub sigma: f64,
@@ -26,9 +26,9 @@ pub struct CellDepth {
 
 /// A map of depths in square cells, with the uncertainty of each (book, section 8.5).
 ///
-/// A cell's depth is that of the plane through the soundings around it, by least squares. Its standard
-/// deviation has three parts: how well the plane is known, how far soundings of a cell spread about it, and
-/// the error of the place times the slope.
+/// A cell's depth is that of the least-squares plane through the soundings around it. Its standard deviation has
+/// three parts: the uncertainty of the plane, the spread of the cell's soundings about it, and the position
+/// error times the slope.
 ///
 /// ```
 /// use roverlab::drive::marine::{DepthMap, Sounding};
@@ -60,7 +60,8 @@ const MOST: f64 = 1e6;
 const LEAST: usize = 6;
 
 impl DepthMap {
-    /// An empty map of an area. Fails with a size that is not positive, and with more than a million cells.
+    /// Creates an empty map of an area. Fails for a cell size that is not positive, and for more than a million
+    /// cells.
     pub fn new(area: Aabb, cell: f64) -> Result<Self, ParameterError> {
         require_positive("cell", cell)?;
         let size = area.size();
@@ -72,12 +73,12 @@ impl DepthMap {
         Ok(Self { area, cell, columns, rows, soundings: vec![Vec::new(); columns * rows] })
     }
 
-    /// Cells along x.
+    /// Number of cells along x.
     pub fn columns(&self) -> usize {
         self.columns
     }
 
-    /// Cells along y.
+    /// Number of cells along y.
     pub fn rows(&self) -> usize {
         self.rows
     }
@@ -88,7 +89,7 @@ impl DepthMap {
         self.area.min + Vector::new(at(column), at(row))
     }
 
-    /// Adds a sounding. What is outside the area does not count.
+    /// Adds a sounding. Soundings outside the area are ignored.
     pub fn add(&mut self, sounding: Sounding) {
         let off = (sounding.place - self.area.min) / self.cell;
         if off.x >= 0.0 && off.y >= 0.0 && sounding.depth.is_finite() {

@@ -10,22 +10,22 @@ use crate::parameter::{require_finite, require_not_negative, require_positive};
 /// Parameters of [`Dive`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DiveParameters {
-    /// Depth to which the sensor shall come (m).
+    /// Desired depth of the pressure sensor (m).
     pub depth: f64,
     /// Heading to hold (rad).
     pub heading: f64,
-    /// Seconds until the dive is over.
+    /// Duration of the dive (s).
     pub duration: f64,
-    /// Bandwidth of heading and pitch (rad/s).
+    /// Bandwidth of the heading and pitch controllers (rad/s).
     pub turning: f64,
-    /// Seconds between steps.
+    /// Control period (s).
     pub period: f64,
-    /// The controller of depth.
+    /// Parameters of the depth controller.
     pub hold: DepthHoldParameters,
 }
 
 impl Default for DiveParameters {
-    /// A metre deep, for 80 s.
+    /// One metre deep, for 80 s.
     fn default() -> Self {
         Self {
             depth: 1.0,
@@ -38,15 +38,15 @@ impl Default for DiveParameters {
     }
 }
 
-/// How a dive ended.
+/// Outcome of a [`Dive`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum DiveOutcome {
     /// The craft held its depth until the dive was over.
     Over,
-    /// The time was over.
+    /// The time limit came first.
     TimedOut,
-    /// Who watched had seen enough.
+    /// The observer stopped the run.
     Stopped,
 }
 
@@ -54,8 +54,8 @@ halts!(DiveOutcome { Over: "the dive is over" });
 
 /// Brings a craft to a depth and holds it there, level and on its heading (book, section 8.3).
 ///
-/// The thrusters' forces follow from the craft's own model: damping, buoyancy and inertia with added mass.
-/// What the model does not know, such as a load that is not trimmed, is learnt as a force.
+/// The thrust follows from the model of the craft: damping, buoyancy, and inertia with added mass. What the
+/// model lacks, such as an untrimmed load, is estimated as an unknown force.
 ///
 /// ```
 /// use roverlab::drive::marine::{Dive, DiveOutcome, DiveParameters};
@@ -83,7 +83,7 @@ pub struct Dive {
 }
 
 impl Dive {
-    /// A dive of a craft of this description.
+    /// Creates a dive of a craft. Fails for parameters out of range.
     pub fn new(craft: &CraftSpec, parameters: DiveParameters) -> Result<Self> {
         require_not_negative("depth", parameters.depth)?;
         require_finite("heading", parameters.heading)?;
@@ -94,7 +94,7 @@ impl Dive {
         Ok(Self { parameters, helm, begun: None })
     }
 
-    /// Changes the depth (m) to which the craft shall come from now on.
+    /// Changes the desired depth (m).
     pub fn set_depth(&mut self, depth: f64) -> Result<()> {
         require_not_negative("depth", depth)?;
         self.parameters.depth = depth;

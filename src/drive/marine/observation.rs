@@ -4,11 +4,11 @@ use crate::io::{Attitude, DepthSensor, Error, Inertial, Result};
 /// Depth, attitude and turn rates of a craft: the readings of [`Dive`](super::Dive).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DiveObservation {
-    /// Metres from the surface to the sensor.
+    /// Depth of the sensor below the surface (m).
     pub depth: f64,
-    /// How the craft is turned.
+    /// Attitude of the craft.
     pub attitude: Attitude,
-    /// How it turns about its own axes (rad/s).
+    /// Turn rates about its own axes (rad/s).
     pub rates: Vector3,
 }
 

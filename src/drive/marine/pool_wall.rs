@@ -15,21 +15,21 @@ use crate::world::{DriveSpec, RobotSpec};
 /// Parameters of [`PoolWall`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoolWallParameters {
-    /// Depth of the sensor on the way (m).
+    /// Depth of the pressure sensor (m).
     pub depth: f64,
     /// Distance from the craft's side to the wall (m).
     pub distance: f64,
     /// Speed (m/s).
     pub speed: f64,
-    /// Side on which the wall is.
+    /// Side of the wall.
     pub side: WallSide,
-    /// Rounds along the wall after which the drive is over.
+    /// Number of laps after which the drive ends.
     pub laps: u32,
-    /// Metres ahead of the craft at which it steers.
+    /// Distance ahead of the point the craft steers for (m).
     pub lookahead: f64,
-    /// Seconds between steps.
+    /// Control period (s).
     pub period: f64,
-    /// The controller of depth.
+    /// Parameters of the depth controller.
     pub hold: DepthHoldParameters,
 }
 
@@ -49,28 +49,28 @@ impl Default for PoolWallParameters {
     }
 }
 
-/// What [`PoolWall`] goes by.
+/// Observation of [`PoolWall`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PoolWallObservation {
     /// Depth, attitude and turn rates.
     pub dive: DiveObservation,
-    /// The way through the water by the log.
+    /// Pose by the log, relative to the water.
     pub odometry: Pose,
-    /// Readings of the sensors ahead and at the side of the wall (m).
+    /// Reading of the distance sensor ahead (m).
     pub front: f64,
-    /// See `front`.
+    /// Reading of the distance sensor at the side of the wall (m).
     pub side: f64,
 }
 
-/// How a drive along the sides of a pool ended.
+/// Outcome of a drive along the sides of a pool.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PoolWallOutcome {
     /// All laps are done.
     Round,
-    /// The time was over.
+    /// The time limit came first.
     TimedOut,
-    /// Who watched had seen enough.
+    /// The observer stopped the run.
     Stopped,
 }
 
@@ -78,10 +78,10 @@ halts!(PoolWallOutcome { Round: "all laps are done" });
 
 /// Follows the sides of a pool at a depth, by the distance sensors ahead and at one side (book, section 8.5).
 ///
-/// It remembers what the sensors have hit, seen by dead reckoning, and continues the wall at its side by a
-/// parabola as long as there is no gap. It steers by pure pursuit: of the places at the lookahead distance, to
-/// the nearest one to the wall that keeps the wanted distance from all of it. So it rounds outer corners,
-/// turns before walls ahead, and comes to a wall from afar, all by one rule.
+/// It remembers the points that the sensors have hit, placed by dead reckoning, and extrapolates the wall beside
+/// it by a parabola as long as there is no gap. It steers by pure pursuit: of the points at the lookahead
+/// distance, to the one nearest to the wall that keeps the desired distance from all known walls. This one rule
+/// rounds outer corners, turns before walls ahead, and approaches a wall from afar.
 ///
 /// ```
 /// use roverlab::drive::marine::{PoolWall, PoolWallOutcome, PoolWallParameters};
@@ -160,7 +160,8 @@ const NEARLY: f64 = 0.6;
 const CLOSE: f64 = 2.5;
 
 impl PoolWall {
-    /// A drive of a craft of this description, with its distance sensors ahead and at the wall's side.
+    /// Creates a drive for a craft with distance sensors ahead and at the wall's side. Fails without them, and for
+    /// parameters out of range.
     pub fn new(robot: &RobotSpec, parameters: PoolWallParameters) -> Result<Self> {
         let DriveSpec::Craft(craft) = &robot.drive else {
             return Err(Error::invalid_input("robot", &robot.name, "a craft"));
@@ -192,7 +193,7 @@ impl PoolWall {
         })
     }
 
-    /// Whole rounds so far.
+    /// Number of complete laps so far.
     pub fn laps(&self) -> u32 {
         self.lap.map_or(0, |lap| lap.number)
     }

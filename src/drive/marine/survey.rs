@@ -14,17 +14,17 @@ use crate::world::{DriveSpec, RobotSpec};
 /// Parameters of [`Survey`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurveyParameters {
-    /// Metres between lanes.
+    /// Distance between two lanes (m).
     pub spacing: f64,
-    /// Metres that the middle of the craft keeps from the border of the area: enough to turn on the spot.
+    /// Distance kept from the craft's centre to the border of the area, enough to turn on the spot (m).
     pub margin: f64,
-    /// Depth of the sensor on the way (m).
+    /// Depth of the pressure sensor (m).
     pub depth: f64,
     /// Speed on a lane (m/s).
     pub speed: f64,
-    /// Seconds between steps.
+    /// Control period (s).
     pub period: f64,
-    /// The controller of depth.
+    /// Parameters of the depth controller.
     pub hold: DepthHoldParameters,
 }
 
@@ -42,38 +42,38 @@ impl Default for SurveyParameters {
     }
 }
 
-/// What [`Survey`] goes by.
+/// Observation of a [`Survey`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SurveyObservation {
     /// Depth, attitude and turn rates.
     pub dive: DiveObservation,
-    /// The way by the log.
+    /// Pose by the log.
     pub odometry: Pose,
-    /// Readings ahead, to the left, to the right and behind (m).
+    /// Readings of the distance sensors ahead, to the left, to the right and behind (m).
     pub ranges: [f64; 4],
-    /// Reading of the sensor that looks down (m).
+    /// Reading of the distance sensor that points down (m).
     pub down: f64,
 }
 
-/// How a survey ended.
+/// Outcome of a [`Survey`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SurveyOutcome {
     /// All lanes are done.
     Covered,
-    /// The time was over.
+    /// The time limit came first.
     TimedOut,
-    /// Who watched had seen enough.
+    /// The observer stopped the run.
     Stopped,
 }
 
 halts!(SurveyOutcome { Covered: "all lanes are done" });
 
-/// Lanes over the ground of a pool or of open water at a depth, with a sounding at each step (book, section
-/// 8.5).
+/// Drives lanes at a depth over the floor of a pool or of open water, with a sounding at each step (book,
+/// section 8.5).
 ///
-/// The place is that of the Doppler log and the compass, corrected by the distances to the four sides of a
-/// pool, with its covariance. [`DepthMap`](super::DepthMap) makes a map of the soundings.
+/// The position, with its covariance, comes from Doppler log and compass, corrected by the distances to the four
+/// sides of a pool. [`DepthMap`](super::DepthMap) makes a map of the soundings.
 ///
 /// ```
 /// use roverlab::drive::marine::{DepthMap, Survey, SurveyOutcome, SurveyParameters};
@@ -124,10 +124,10 @@ const LOOKAHEAD: f64 = 1.5;
 const LEVEL: f64 = 0.15;
 
 impl Survey {
-    /// A survey of an area by a craft that starts at a pose, with distance sensors to all sides and down.
-    /// `sides` says whether the area ends at walls, by which the craft finds its place.
+    /// Creates a survey of an area by a craft with distance sensors to all sides and down, which starts at a pose.
+    /// With `sides` the area ends at walls, by which the craft localises.
     ///
-    /// Fails if there is no room for a lane.
+    /// Fails without these sensors, without room for a lane, and for parameters out of range.
     pub fn new(
         robot: &RobotSpec,
         start: Pose,
@@ -164,12 +164,12 @@ impl Survey {
         })
     }
 
-    /// The sounding of the last step; `None` while the craft is tilted, or without an echo.
+    /// The sounding of the last step; `None` while the craft is tilted, and without an echo.
     pub fn sounding(&self) -> Option<Sounding> {
         self.sounding
     }
 
-    /// The pose in the pool's frame as the craft believes it, and the standard deviation of its place (m).
+    /// Estimated pose in the pool's frame, and the standard deviation of the position (m).
     pub fn belief(&self) -> (Pose, f64) {
         (self.fix.pose(), self.fix.sigma())
     }

@@ -2,8 +2,8 @@ use crate::io::control::Command;
 use crate::io::{Error, ErrorKind, Motors, Result};
 use crate::kinematics::marine::MAX_THRUSTERS;
 
-/// A share of its full speed for each of a craft's first thrusters, -1 to 1. Stopped thrusters let a craft
-/// with buoyancy surface.
+/// Command for a craft's first thrusters, as fractions of full speed from -1 to 1. With its thrusters stopped, a
+/// buoyant craft surfaces.
 ///
 /// ```
 /// use roverlab::drive::marine::Thrust;
@@ -17,7 +17,7 @@ pub struct Thrust {
 }
 
 impl Thrust {
-    /// Commands for the thrusters from the first on. Fails with more of them than a craft may have.
+    /// Commands for the thrusters, starting with the first. Fails for more of them than a craft may have.
     pub fn new(commands: &[f64]) -> Result<Self> {
         if commands.len() > MAX_THRUSTERS {
             return Err(Error::invalid_input("number of thrusters", commands.len(), "at most 8"));

@@ -121,9 +121,9 @@ impl MotionWatch {
     }
 
     fn compare(&mut self, before: &GrayImage, image: &GrayImage, turned: f64) -> Result<Motion, ImageError> {
-        /// Less is below what the camera can tell.
+        /// Rotation below the camera's resolution.
         const STILL: f64 = 3e-4;
-        /// What whole pixels and the registration may put edges off by.
+        /// Displacement of edges that rounding to pixels and registration may cause (pixels).
         const PIXELS: f64 = 1.25;
         let (first, second): (GrayView<'_>, GrayView<'_>) = (before.try_into()?, image.try_into()?);
         // Encoders count whole ticks: a robot that has not turned for one image may still be moving.

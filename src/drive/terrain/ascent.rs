@@ -3,32 +3,32 @@ use std::ops::ControlFlow;
 use super::slope_sensor::{SlopeSensor, slope, steepness};
 use crate::ParameterError;
 use crate::geometry::{Point3, Pose, Twist, Vector, direction, math};
-use crate::io::control::{Behaviour, Decision, Senses, halts};
+use crate::io::control::{Behaviour, Decision, SensedBy, Senses, halts};
 use crate::io::{Attitude, DistanceSensors, Error, Inertial, Lidar, Odometry, Result};
 use crate::parameter::{require, require_positive};
 use crate::world::RobotSpec;
 
-/// The parameters of an [`Ascent`].
+/// Parameters of [`Ascent`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AscentParameters {
-    /// The steepest that the robot may be tilted, in radians.
+    /// Maximum tilt of the robot (rad).
     pub slope: f64,
-    /// Metres per second.
+    /// Driving speed (m/s).
     pub speed: f64,
-    /// Radians per second.
+    /// Maximum turn rate (rad/s).
     pub turn_rate: f64,
-    /// The share that a reading has in the estimate of the slope.
+    /// Weight of a new reading in the smoothed slope, from 0 to 1.
     pub smoothing: f64,
-    /// Seconds in which the robot has to get higher, and metres by which.
+    /// Time without a gain in height after which the ascent ends (s).
     pub patience: f64,
-    /// Metres of height that count as getting higher.
+    /// Height that counts as a gain (m).
     pub gain: f64,
-    /// Seconds from one step to the next.
+    /// Control period (s).
     pub period: f64,
 }
 
 impl AscentParameters {
-    /// Those for a robot: within two thirds of the slope on which it would slip.
+    /// Parameters for a robot, with two thirds of the slope on which it would slip as the maximum tilt.
     pub fn of(spec: &RobotSpec) -> Self {
         Self {
             slope: 0.67 * math::atan(spec.friction),
@@ -41,7 +41,7 @@ impl AscentParameters {
         }
     }
 
-    /// Fails with the name of the parameter that is out of range.
+    /// Checks every parameter; the error names the one out of range.
     pub fn validate(&self) -> std::result::Result<(), ParameterError> {
         let steep = self.slope > 0.0 && self.slope < std::f64::consts::FRAC_PI_2;
         require("slope", self.slope, steep, "more than 0 and less than a right angle")?;
@@ -55,10 +55,10 @@ impl AscentParameters {
     }
 }
 
-/// Drives up the steepest way, always turning to where the ground around rises most, until it does not get
-/// higher any more (book, section 7.4).
+/// Climbs by steepest ascent: turns to where the ground rises most, and drives until the robot gains no more
+/// height (book, section 7.4).
 ///
-/// That is the top of a hill, and seldom the highest one: `nav::SummitSearch` goes on from there.
+/// It ends on a local maximum, which is seldom the highest; `nav::SummitSearch` leaves local maxima.
 ///
 /// ```
 /// use roverlab::drive::terrain::{Ascent, AscentOutcome, AscentParameters, SlopeSensor};
@@ -92,44 +92,110 @@ pub struct Ascent {
     highest: (f64, f64),
 }
 
-/// How an ascent ended.
+/// Outcome of an [`Ascent`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum AscentOutcome {
-    /// It does not get higher any more.
+    /// The robot gains no more height.
     Top,
-    /// The ground is steeper than the robot may stand on.
+    /// The robot is tilted more than it may be.
     TooSteep,
-    /// The time was over.
+    /// The time limit came first.
     TimedOut,
-    /// Who watched has seen enough.
+    /// The observer stopped the run.
     Stopped,
 }
 
 halts!(AscentOutcome { Top: "it does not get higher", TooSteep: "the ground is too steep" });
 
-/// What an [`Ascent`] sees at a step.
+/// Observation of an [`Ascent`].
 #[derive(Debug, Clone, Default)]
 pub struct AscentObservation {
-    /// Where odometry takes the robot to be.
+    /// Pose by odometry.
     pub odometry: Pose,
-    /// How it is turned.
+    /// Attitude by the inertial unit.
     pub attitude: Attitude,
-    /// Points of the ground around, in the robot's frame.
+    /// Points of the ground around the robot, in its frame (m).
     pub points: Vec<Point3>,
 }
 
+impl AscentObservation {
+    fn read_state<R: Odometry + Inertial + ?Sized>(&mut self, robot: &mut R) -> Result<()> {
+        self.odometry = robot.pose()?;
+        self.attitude = robot.attitude()?;
+        Ok(())
+    }
+}
+
 impl Ascent {
-    /// An ascent by what a sensor shows.
+    /// Creates an ascent with a slope sensor. Fails for parameters out of range.
     pub fn new(sensor: SlopeSensor, parameters: AscentParameters) -> Result<Self> {
         parameters.validate()?;
         let (height, highest) = (0.0, (0.0, f64::NEG_INFINITY));
         Ok(Self { sensor, parameters, rise: None, before: None, height, highest })
     }
 
-    /// Metres above the start.
+    /// Height above the start, by wheels and attitude (m).
     pub fn height(&self) -> f64 {
         self.height
+    }
+
+    /// The behaviour by distance sensors that look down, on robots that need no lidar. Its first step fails if
+    /// the sensor is a [lidar](SlopeSensor::lidar).
+    ///
+    /// ```
+    /// use roverlab::drive::terrain::{Ascent, AscentOutcome, AscentParameters, SlopeSensor};
+    /// use roverlab::geometry::{Aabb, Point, Pose};
+    /// use roverlab::io::control::run;
+    /// use roverlab::io::sim::{SimOptions, Simulation};
+    /// use roverlab::io::{Clock, DistanceSensors, Drive, Inertial, Odometry, Result};
+    /// use roverlab::world::{HeightField, RobotSpec, Scene, Terrain, World};
+    ///
+    /// fn climb(
+    ///     robot: &mut (impl Clock + Drive + Odometry + DistanceSensors + Inertial),
+    ///     spec: &RobotSpec,
+    /// ) -> Result<AscentOutcome> {
+    ///     let sensor = SlopeSensor::psds(spec).expect("eight of its distance sensors look down");
+    ///     let mut ascent = Ascent::new(sensor, AscentParameters::of(spec))?;
+    ///     run(robot, &mut ascent.by_distance_sensors(), 200.0, |_, _, _| {})
+    /// }
+    ///
+    /// # fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
+    /// let area = Aabb::new(Point::origin(), Point::new(3.0, 3.0));
+    /// let hill = HeightField::from_fn(61, 61, area, |at| 0.3 * (-(at - Point::new(1.8, 1.6)).norm_squared()).exp())?;
+    /// let world = World { terrain: Some(Terrain::new("hill.png", hill)), ..World::empty(3.0, 3.0) };
+    /// let spec = RobotSpec { lidar: None, ..SlopeSensor::equip(RobotSpec::blizzard()) };
+    /// let scene = Scene::with_robot(world, spec.clone(), Pose::new(0.8, 0.8, 2.0));
+    /// let simulation = Simulation::new(&scene, SimOptions::default())?;
+    /// assert_eq!(climb(&mut simulation.robot(0)?, &spec)?, AscentOutcome::Top);
+    /// assert!(simulation.truth().pose(0)?.distance_to(Point::new(1.8, 1.6)) < 0.2);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn by_distance_sensors<R: Odometry + DistanceSensors + Inertial + ?Sized>(
+        &mut self,
+    ) -> impl Senses<R, Observation = AscentObservation, Command = Twist, Outcome = AscentOutcome> {
+        let sensor = self.sensor.clone();
+        SensedBy::new(self, move |robot: &mut R, _, seen: &mut AscentObservation| {
+            seen.read_state(robot)?;
+            sensor.look_by_psds(robot, &mut seen.points)
+        })
+    }
+
+    /// The behaviour by lidar, on robots that need no distance sensors. Its first step fails if the sensor is
+    /// not a [lidar](SlopeSensor::lidar).
+    pub fn by_lidar<R: Odometry + Lidar + Inertial + ?Sized>(
+        &mut self,
+    ) -> impl Senses<R, Observation = AscentObservation, Command = Twist, Outcome = AscentOutcome> {
+        let mut sensor = self.sensor.clone();
+        let mut prepared = false;
+        SensedBy::new(self, move |robot: &mut R, _, seen: &mut AscentObservation| {
+            if !std::mem::replace(&mut prepared, true) {
+                sensor.prepare(robot)?;
+            }
+            seen.read_state(robot)?;
+            sensor.look_by_lidar(robot, &mut seen.points)
+        })
     }
 
     fn reckon(&mut self, seen: &AscentObservation) {
@@ -196,8 +262,7 @@ impl<R: Odometry + DistanceSensors + Lidar + Inertial + ?Sized> Senses<R> for As
     }
 
     fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut AscentObservation) -> Result<()> {
-        seen.odometry = robot.pose()?;
-        seen.attitude = robot.attitude()?;
+        seen.read_state(robot)?;
         self.sensor.look(robot, &mut seen.points)
     }
 }
@@ -246,5 +311,35 @@ mod tests {
         assert!(matches!(ascent().step(0.0, &steep), Ok(ControlFlow::Break(AscentOutcome::TooSteep))));
         let broken = AscentObservation { odometry: Pose::new(f64::NAN, 0.0, 0.0), ..steep };
         assert!(ascent().step(0.0, &broken).is_err());
+    }
+
+    /// Each way of sensing drives as the full robot does, and fails with the other sensor.
+    #[test]
+    fn each_way_of_sensing_needs_its_own_sensor_and_no_other() {
+        use crate::io::control::run;
+        use crate::io::sim::{SimOptions, Simulation};
+        use crate::world::{Scene, World};
+        let spec = SlopeSensor::equip(RobotSpec::blizzard());
+        let sensors = [SlopeSensor::psds(&spec).unwrap(), SlopeSensor::lidar(&spec).unwrap()];
+        let without =
+            [RobotSpec { lidar: None, ..spec.clone() }, RobotSpec { psds: Vec::new(), ..spec.clone() }];
+        for (by_lidar, spec) in [false, true].into_iter().zip(without) {
+            for (other, sensor) in [false, true].into_iter().zip(&sensors) {
+                let scene = Scene::with_robot(World::empty(3.0, 3.0), spec.clone(), Pose::new(1.0, 1.0, 0.0));
+                let simulation = Simulation::new(&scene, SimOptions::default()).unwrap();
+                let mut ascent = Ascent::new(sensor.clone(), AscentParameters::of(&spec)).unwrap();
+                let mut robot = simulation.robot(0).unwrap();
+                let outcome = if by_lidar {
+                    run(&mut robot, &mut ascent.by_lidar(), 20.0, |_, _, _| {})
+                } else {
+                    run(&mut robot, &mut ascent.by_distance_sensors(), 20.0, |_, _, _| {})
+                };
+                if by_lidar == other {
+                    assert_eq!(outcome.unwrap(), AscentOutcome::Top);
+                } else {
+                    assert!(outcome.unwrap_err().to_string().starts_with("slope sensor is "));
+                }
+            }
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! Driving on hills (book, section 7.4): the steepest way up.
+//! Driving on hills (book, section 7.4): steepest ascent.
 
 mod ascent;
 mod slope_sensor;

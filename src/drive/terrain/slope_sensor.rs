@@ -1,11 +1,11 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
 
 use crate::geometry::{Point3, Pose3, Vector, Vector3, direction, math, normalize_angle};
-use crate::io::{Attitude, DistanceSensors, Lidar, LidarScan, LidarSettings, Psd, Result};
+use crate::io::{Attitude, DistanceSensors, Error, Lidar, LidarScan, LidarSettings, Psd, Result};
 use crate::world::{Mount, PsdSpec, RobotSpec};
 
-/// What tells how the ground around a robot slopes: a lidar whose beams look down, or distance sensors that
-/// do.
+/// Measures the slope of the ground around a robot, with a lidar tilted down or with distance sensors that
+/// point down.
 ///
 /// ```
 /// use roverlab::drive::terrain::SlopeSensor;
@@ -15,8 +15,8 @@ use crate::world::{Mount, PsdSpec, RobotSpec};
 /// assert!(SlopeSensor::psds(&SlopeSensor::equip(plain)).is_some());
 /// ```
 ///
-/// Either measures points of the ground in the robot's frame; the inertial unit says how that is turned.
-/// Without it they would show how the ground bends, and not how it slopes, as the robot lies on it.
+/// Either measures points of the ground in the robot's frame. The robot rests on that ground, so these points
+/// alone show its curvature but not its slope: the attitude from the inertial unit is needed too.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SlopeSensor {
     /// Where the lidar sits, if that is what looks.
@@ -53,7 +53,7 @@ impl SlopeSensor {
         Some(Self { lidar: Some(frame), rays: Vec::new(), scan: LidarScan::default() })
     }
 
-    /// The distance sensors of a robot that look down; `None` with fewer than three.
+    /// The distance sensors of a robot that point down; `None` with fewer than three.
     pub fn psds(spec: &RobotSpec) -> Option<Self> {
         let down = spec.psds.iter().filter(|psd| psd.mount.pitch > LOOKS_DOWN);
         let rays: Vec<Ray> = down
@@ -65,7 +65,7 @@ impl SlopeSensor {
         (rays.len() >= 3).then(|| Self { lidar: None, rays, scan: LidarScan::default() })
     }
 
-    /// A robot with eight more distance sensors, which look down and outwards from its top, under 45 degrees.
+    /// Adds eight distance sensors to a robot, at its top, pointing outwards and down by 45 degrees.
     #[must_use]
     pub fn equip(mut spec: RobotSpec) -> RobotSpec {
         let z = spec.height;
@@ -82,7 +82,7 @@ impl SlopeSensor {
         spec
     }
 
-    /// Sets up the robot.
+    /// Configures the lidar, if the robot looks with one.
     pub(super) fn prepare<R: Lidar + ?Sized>(&self, robot: &mut R) -> Result<()> {
         match self.lidar {
             Some(_) => robot.configure_lidar(LidarSettings { field_of_view: TAU, tilt: TILT, points: BEAMS }),
@@ -96,12 +96,40 @@ impl SlopeSensor {
         robot: &mut R,
         points: &mut Vec<Point3>,
     ) -> Result<()> {
+        if self.lidar.is_some() {
+            self.look_by_lidar(robot, points)
+        } else {
+            self.look_by_psds(robot, points)
+        }
+    }
+
+    /// The same with the distance sensors. Fails if the lidar is what looks.
+    pub(super) fn look_by_psds<R: DistanceSensors + ?Sized>(
+        &self,
+        robot: &mut R,
+        points: &mut Vec<Point3>,
+    ) -> Result<()> {
+        if self.lidar.is_some() {
+            return Err(Error::invalid_input("slope sensor", "a lidar", "distance sensors"));
+        }
         points.clear();
         for ray in &self.rays {
             let range = robot.distance(ray.psd)?;
             points.extend((range < REACH).then(|| ray.origin + ray.direction * range));
         }
-        let Some(lidar) = self.lidar else { return Ok(()) };
+        Ok(())
+    }
+
+    /// The same with the lidar. Fails if distance sensors are what looks.
+    pub(super) fn look_by_lidar<R: Lidar + ?Sized>(
+        &mut self,
+        robot: &mut R,
+        points: &mut Vec<Point3>,
+    ) -> Result<()> {
+        let Some(lidar) = self.lidar else {
+            return Err(Error::invalid_input("slope sensor", "distance sensors", "a lidar"));
+        };
+        points.clear();
         robot.scan_into(&mut self.scan)?;
         let (rise, run) = math::sin_cos(TILT);
         let beams = self.scan.ranges.iter().enumerate().filter(|(_, range)| **range < REACH);

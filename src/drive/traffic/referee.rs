@@ -80,7 +80,7 @@ impl FreeDriveScore {
 /// use roverlab::world::formats::course;
 /// let oval = course::parse("course 1\nstraight 6000\narc 1500 180\nstraight 6000\narc 1500 180\n", "oval")?;
 /// let mut referee = FreeDrive::new(oval.clone(), &RobotSpec::road_car(), FreeDriveRules::default());
-/// // Three metres at 1 m/s, in the middle of the lane at first, and 30 cm off it then.
+/// // Three metres at 1 m/s, first in the middle of the lane, then 30 cm beside it.
 /// for step in 0..300 {
 ///     let along = 0.01 * f64::from(step);
 ///     referee.see(along, &oval.pose(along, if along < 2.0 { 0.0 } else { 0.3 }));

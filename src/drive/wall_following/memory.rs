@@ -36,7 +36,7 @@ impl Memory {
     /// The mean of a few consecutive points nearest to a place. Points more than `spread` metres apart belong
     /// to different surfaces and are not averaged.
     pub(super) fn nearest(&self, to: Point, spread: f64) -> Option<Point> {
-        /// Points in a row whose middle is taken.
+        /// Number of consecutive points whose median is taken.
         const FEW: usize = 5;
         let points: Vec<Point> = self.iter().collect();
         points
@@ -67,7 +67,7 @@ pub(super) struct Median {
 }
 
 impl Median {
-    /// Readings whose median is taken.
+    /// Number of readings whose median is taken.
     const WIDTH: usize = 5;
 
     pub(super) fn new() -> Self {

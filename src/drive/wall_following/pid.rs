@@ -72,9 +72,9 @@ pub struct PidWallFollower {
     met: bool,
 }
 
-/// A wall that is farther away than this many distances has ended.
+/// Distance beyond which a wall has ended (desired distances).
 const GONE: f64 = 1.6;
-/// The seconds by which wheels follow their commands.
+/// Lag of the wheels behind their commands (s).
 const LAG: f64 = 0.2;
 
 impl PidWallFollower {

@@ -94,25 +94,26 @@ enum State {
     },
 }
 
-/// The share of the speed with which a robot searches.
+/// Speed of the search for a wall, relative to the speed along it.
 const SEARCH_SPEED: f64 = 0.6;
-/// Radians by which it sways meanwhile, once a second, so that one ray ahead covers its whole width.
+/// Amplitude of the swaying during the search, once a second, by which the single ray ahead covers the
+/// robot's width (rad).
 const SWAY: f64 = 0.42;
-/// How many observations of the approach to a wall are remembered.
+/// Number of remembered observations of the approach to a wall.
 const APPROACH: usize = 50;
-/// The angle, in radians, beyond which a wall runs across the robot's way.
+/// Angle beyond which a wall runs across the robot's path (rad).
 const ACROSS: f64 = 0.6;
-/// Points of the side sensor by which a wall that runs across the robot's way is known anew.
+/// Number of points of the side sensor that determine anew a wall across the robot's path.
 const RENEWAL_POINTS: usize = 12;
-/// Readings in a row that say that a wall has ended, or that another begins.
+/// Number of consecutive readings after which a wall has ended, or another begins.
 const STRAYS: u32 = 4;
-/// Points that the line of a new wall is laid through.
+/// Number of points for the line of a new wall.
 const NEW_WALL_POINTS: usize = 20;
-/// How many points the corner counts as for the line of a wall that begins there.
+/// Weight of the corner in the line of a wall that begins there (points).
 const CORNER_WEIGHT: usize = 8;
-/// The angle to a new wall, in radians, at which it is followed.
+/// Angle to a new wall at which it is followed (rad).
 const NEW_WALL_ANGLE: f64 = 0.3;
-/// Metres around the nearest point that was swept over in which points belong to the same wall.
+/// Radius around the nearest swept point within which points belong to the same wall (m).
 const SAME_WALL: f64 = 0.13;
 
 impl WallFollower {
@@ -292,7 +293,7 @@ impl WallFollower {
     /// The line through the swept points around the nearest one, in the robot's frame, directed along the
     /// robot's way.
     fn swept_wall(&self, pose: &Pose) -> Option<FittedLine> {
-        /// Points that a line needs.
+        /// Minimum number of points for a line.
         const LEAST: usize = 15;
         if self.swept.len() < LEAST {
             return None;

@@ -108,10 +108,10 @@ struct Spot {
     told: Twist,
 }
 
-/// Metres from a place within which a robot is still there.
+/// Distance from a point within which the robot counts as being there (m).
 const HERE: f64 = 0.2;
-/// Radians that a robot turns in one place before it counts as blocked: round what it follows the wall of, it
-/// gets about.
+/// Turn in one place after which the robot counts as blocked (rad): around an obstacle that it follows, it
+/// moves along.
 const ROUND: f64 = 3.0 * std::f64::consts::TAU;
 
 impl Spot {

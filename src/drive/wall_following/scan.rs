@@ -65,12 +65,12 @@ pub struct LidarWallFollower {
     aligned: bool,
 }
 
-/// Radians to either side of the shortest beam whose points the line is laid through.
+/// Angle to either side of the shortest beam within which points define the line (rad).
 const SECTOR: f64 = 0.3;
-/// Beams over which ranges are averaged to find the shortest.
+/// Number of beams averaged to find the shortest range.
 const WINDOW: usize = 7;
-/// The directions, from straight ahead towards the wall, in which it may be. Away from it they reach as far
-/// as the robot's width demands.
+/// Range of directions of the wall, from straight ahead towards the wall (rad). Away from the wall, it
+/// depends on the robot's width.
 const DIRECTIONS: [f64; 2] = [-0.35, 2.6];
 
 impl LidarWallFollower {

@@ -24,20 +24,19 @@ pub(super) enum Reading {
     Before,
 }
 
-/// The variance that a metre of wall adds to its distance, slope and curvature.
+/// Variance added per metre of wall to its distance, slope and curvature.
 const WANDER: [f64; 3] = [2e-5, 8e-3, 120.0];
-/// The tightest curvature that is believed, in 1/m, and the spread of that of a wall of which nothing is
-/// known.
+/// Maximum credible curvature, and its initial standard deviation (1/m).
 const TIGHTEST: f64 = 3.0;
 
-/// Points within so many metres of each other are taken for one surface; a reading that is off by more may
-/// not be of the wall, and a new wall whose line passes the corner at less begins there.
+/// Distance up to which points belong to one surface (m). A reading that deviates by more may not be of the
+/// wall; a new wall whose line passes the corner by less begins there.
 pub(super) const ONE_SURFACE: f64 = 0.05;
-/// Innovations that add up to more than this show a bend, ...
+/// Sum of innovations above which the wall has a bend, ...
 const BEND: f64 = 1.1;
-/// ... for which slope and curvature become uncertain by so much.
+/// ... and the standard deviations of slope and curvature that are then added.
 const BEND_SPREAD: [f64; 2] = [0.12, 1.0];
-/// The share of a new innovation in the running mean.
+/// Weight of a new innovation in the running mean.
 const MEMORY: f64 = 0.12;
 
 impl WallTracker {

@@ -137,7 +137,7 @@ impl<V: Verdict> Verdict for Result<V> {
 /// let simulation = Simulation::new(&scene, SimOptions::ideal())?;
 /// let mut drive = AToB::new(Method::Arc, Goal::point(Point::new(2.0, 1.0)), AToBParameters::default())?;
 /// let outcome = run(&mut simulation.robot(0)?, &mut drive, 60.0, |_, _, step| until(step.time > 2.0))?;
-/// assert_eq!(outcome, AToBOutcome::Stopped, "who watches had seen enough after two seconds");
+/// assert_eq!(outcome, AToBOutcome::Stopped, "the observer stopped it after two seconds");
 /// # Ok::<(), roverlab::io::Error>(())
 /// ```
 pub fn until(enough: bool) -> ControlFlow<()> {

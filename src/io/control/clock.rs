@@ -9,7 +9,7 @@ pub(crate) struct Stopwatch {
     step: f64,
 }
 
-/// Seconds that clocks of finite resolution may lack at the end.
+/// Time that clocks of finite resolution may lack at the end (s).
 const RESOLUTION: f64 = 1e-9;
 
 impl Stopwatch {

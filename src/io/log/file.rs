@@ -29,7 +29,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug)]
 pub struct LogFile {
     file: BufWriter<File>,
-    /// Where it is written, and the name that it gets.
+    /// Path at which it is written, and its final name.
     aside: Option<(PathBuf, PathBuf)>,
     /// The file that has the name until then, which tells others that somebody records.
     _name: File,
@@ -57,7 +57,7 @@ impl LogFile {
     }
 
     fn open(path: &Path, any: bool) -> io::Result<Self> {
-        // What a link leads to is replaced, not the link.
+        // The target of a link is replaced, not the link.
         let path = &fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let named = claimed(path)?;
         let is_file = named.metadata()?.is_file();

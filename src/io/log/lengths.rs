@@ -2,7 +2,7 @@ use mcap::records::op;
 
 /// A part of a record, as the specification of MCAP lists them.
 enum Field {
-    /// So many bytes.
+    /// A number of bytes.
     Fixed(usize),
     /// Bytes behind their number, of 4 bytes.
     Text,

@@ -15,7 +15,7 @@ const FRAME: usize = 9;
 const FOOTER: usize = 8 + 8 + CRC;
 /// Size of a checksum (bytes).
 const CRC: usize = 4;
-/// Bytes of a chunk beside the name of its compression and what is packed.
+/// Size of a chunk without the name of its compression and its compressed content (bytes).
 const CHUNK_FIELDS: usize = 3 * 8 + 4 + 4 + 8;
 
 /// A record in a file: kind, position and content.
@@ -148,7 +148,7 @@ fn check(part: &str, saved: u32, bytes: &[u8]) -> Result<(), LogError> {
     Err(LogError::damaged(format!("the checksum of the {part} differs")))
 }
 
-/// Checks the summary, the footer and what follows.
+/// Checks the summary, the footer and the end.
 fn check_end(bytes: &[u8], start: usize, footer: &Framed<'_>) -> Result<(), LogError> {
     let Record::Footer(parsed) = footer.parse()? else { return Ok(()) };
     let end = footer.end();
@@ -230,7 +230,7 @@ pub(super) fn contents<'a>(record: &Framed<'a>, budget: &mut Budget) -> Result<C
     Ok(data)
 }
 
-/// Decompresses a chunk with a content of so many bytes.
+/// Decompresses a chunk, whose content has this number of bytes.
 fn unpacked(chunk: &Framed<'_>, name: &str, size: u64) -> Result<Vec<u8>, LogError> {
     let damaged = |error: &dyn std::fmt::Display| {
         LogError::damaged(format!("{error} in the chunk at byte {}", chunk.start))

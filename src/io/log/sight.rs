@@ -39,14 +39,14 @@ pub enum Sight {
     Distance(Psd, f64),
 }
 
-/// What a message of a recording shows, and when.
+/// Content of a message of a recording, with its time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Seen {
     /// Time (s).
     pub time: f64,
     /// The robot, by its index.
     pub robot: usize,
-    /// What is shown.
+    /// Content.
     pub sight: Sight,
 }
 

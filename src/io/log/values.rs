@@ -316,7 +316,7 @@ compounds! {
         [width, height, data] => image(width, height, Bytes::into_vec(data))?;
 }
 
-/// A rotation from its quaternion; `None` if that is none.
+/// A rotation from its quaternion; `None` if it is not a rotation.
 fn unit([w, i, j, k]: [f64; 4]) -> Option<UnitQuaternion<f64>> {
     let quaternion = Quaternion::new(w, i, j, k);
     ((quaternion.norm() - 1.0).abs() < 1e-6).then(|| UnitQuaternion::new_unchecked(quaternion))

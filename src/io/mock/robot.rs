@@ -163,25 +163,25 @@ impl MockRobot {
         self
     }
 
-    /// How deep the pressure sensor says that the robot is, in metres.
+    /// Scripts the depth sensor (m).
     #[must_use]
     pub fn with_depth(self, script: impl Into<Script<f64>>) -> Self {
         Self { depth: Some(script.into()), ..self }
     }
 
-    /// How the inertial unit says that the robot is turned.
+    /// Scripts the attitude of the inertial unit.
     #[must_use]
     pub fn with_attitude(self, script: impl Into<Script<Attitude>>) -> Self {
         Self { attitude: Some(script.into()), ..self }
     }
 
-    /// How the inertial unit says that the robot turns, in radians per second.
+    /// Scripts the turn rates of the inertial unit (rad/s).
     #[must_use]
     pub fn with_turn_rates(self, script: impl Into<Script<Vector3>>) -> Self {
         Self { turn_rates: Some(script.into()), ..self }
     }
 
-    /// What the inertial unit says of the acceleration, in metres per second squared.
+    /// Scripts the acceleration of the inertial unit (m/s²).
     #[must_use]
     pub fn with_acceleration(self, script: impl Into<Script<Vector3>>) -> Self {
         Self { acceleration: Some(script.into()), ..self }

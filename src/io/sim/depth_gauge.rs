@@ -5,7 +5,7 @@ use crate::world::DepthSensorSpec;
 #[derive(Debug)]
 pub(super) struct DepthGauge {
     pub(super) spec: DepthSensorSpec,
-    /// What it is off, in standard deviations.
+    /// Constant error (standard deviations).
     bias: f64,
     stream: Stream,
 }

@@ -15,9 +15,9 @@ pub(super) struct Movable {
     /// Whether it rolls down hills, where others slide, and how fast it does, over the plane.
     pub(super) rolls: bool,
     pub(super) velocity: Vector,
-    /// Metres from its foot to its top.
+    /// Height from foot to top (m).
     height: f64,
-    /// Kilograms, fixed or not, and the cubic metres of water that it displaces.
+    /// Mass (kg), whether it is fixed, and volume of displaced water (m³).
     weight: f64,
     volume: f64,
 }

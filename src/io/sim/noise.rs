@@ -20,7 +20,7 @@ pub struct NoiseModel {
     pub wheel_mismatch: f64,
     /// Relative error of the track.
     pub track: f64,
-    /// Slip of each wheel, in metres after one metre; proportional to the square root of the distance.
+    /// Slip of each wheel: standard deviation after one metre (m); it grows with the square root of the distance.
     pub slip: f64,
     /// Error of each range reading of PSDs and lidar (m).
     pub range: f64,
@@ -33,7 +33,7 @@ pub struct NoiseModel {
     pub exposure: f64,
     /// Blur of the camera, in pixels of an image 320 pixels wide; proportional for other widths.
     pub blur: f64,
-    /// Error of the depth sensor, in metres: one is drawn once, and one for each reading.
+    /// Standard deviation of the depth sensor (m), both of its constant error and of each reading.
     pub depth: f64,
     /// Error of a Doppler log: relative, drawn once, and as many m/s in the mean of a second.
     pub doppler: f64,

@@ -6,7 +6,7 @@ use super::movable::Movable;
 use crate::geometry::{Pose, Vector};
 use crate::world::space::{Contact, SolidId};
 
-/// The deepest that a thing may come to lie in another one by a push.
+/// Maximum overlap of two things after a push (m).
 const TOLERANCE: f64 = 1e-5;
 
 impl Engine {

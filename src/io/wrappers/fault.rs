@@ -107,13 +107,13 @@ impl Fault {
 const KINDS: &str = "stuck, lost, nan, jump, late, link, hang or clock";
 /// Devices, for error messages.
 const DEVICES: &str = "front, left, right, back, psdN, lidar, camera, odometry or all";
-/// Seconds that late readings are old where no number says more.
+/// Default age of late readings (s).
 const LATE: f64 = 0.5;
-/// Seconds that a call hangs where no number says more.
+/// Default duration of a hanging call (s).
 const HANG: f64 = 1.0;
-/// The longest hang, in seconds: a simulated world goes on meanwhile.
+/// Longest duration of a hanging call (s); a simulated world continues meanwhile.
 const LONGEST: f64 = 3600.0;
-/// How far odometry jumps where no numbers say more: millimetres, millimetres and degrees.
+/// Default jump of odometry (mm, mm, degrees).
 const JUMP: [f64; 3] = [100.0, 100.0, 15.0];
 
 impl FromStr for Fault {

@@ -3,10 +3,10 @@ use nalgebra::{Matrix6, SMatrix, Vector6};
 use super::craft::stack;
 use super::{Craft, MAX_THRUSTERS, Thruster, Wrench};
 
-/// Shares a wanted force and moment out among a craft's thrusters.
+/// Control allocation: distributes a desired force and moment among a craft's thrusters.
 ///
-/// The thrusters' forces are those of least squares; where one would have to push harder than it can, all are
-/// scaled down alike, so that the direction of force and moment stays (Fossen 2021, section 11.2).
+/// The forces of the thrusters are the least-squares solution. If one exceeds its limit, all are scaled down by
+/// the same factor, which keeps the direction of force and moment (Fossen 2021, section 11.2).
 ///
 /// ```
 /// use roverlab::geometry::Vector3;
@@ -26,13 +26,13 @@ pub struct Allocation {
     limits: Vec<(f64, f64)>,
 }
 
-/// What thrusters are told, and what of the wish they can do.
+/// Commands to the thrusters, and how much of the desired force they achieve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Allocated {
-    /// A share of each thruster's full speed, -1 to 1.
+    /// Fraction of each thruster's full speed, -1 to 1.
     pub commands: [f64; MAX_THRUSTERS],
-    /// The share of the wanted force and moment that comes of it, as far as the thrusters act along it at
-    /// all; 1 unless one of them is at its limit.
+    /// Fraction of the desired force and moment that is achieved, in the directions that the thrusters can act
+    /// in; 1 unless a thruster is at its limit.
     pub share: f64,
 }
 
@@ -41,7 +41,7 @@ pub struct Allocated {
 const LITTLE: f64 = 1e-9;
 
 impl Allocation {
-    /// The sharing out among a craft's thrusters.
+    /// Creates the allocation for a craft's thrusters.
     pub fn new(craft: &Craft) -> Self {
         let thrusters = craft.thrusters();
         let mut pushes = SMatrix::<f64, 6, MAX_THRUSTERS>::zeros();
@@ -56,7 +56,7 @@ impl Allocation {
         Self { shares: pushes.transpose() * inverse, limits }
     }
 
-    /// The commands for a force and a moment about the middle of the craft's hull.
+    /// The commands for a force and a moment about the centre of the craft's hull.
     pub fn share(&self, wish: &Wrench) -> Allocated {
         let wish: Vector6<f64> = stack(&wish.force, &wish.moment);
         let forces = self.shares * wish;

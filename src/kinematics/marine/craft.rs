@@ -5,21 +5,21 @@ use crate::ParameterError;
 use crate::geometry::{Point3, Pose3, Vector, Vector3, math};
 use crate::parameter::{require, require_positive};
 
-/// A speed through space: of a craft in its own frame, at the middle of its hull's volume.
+/// Velocity of a craft in its own frame, at the centre of volume of its hull.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CraftMotion {
-    /// Metres per second.
+    /// Linear velocity (m/s).
     pub linear: Vector3,
-    /// Radians per second about each axis.
+    /// Angular velocity about each axis (rad/s).
     pub angular: Vector3,
 }
 
-/// A force and a moment on a craft in its own frame, about the middle of its hull's volume.
+/// A force and a moment on a craft in its own frame, about the centre of volume of its hull.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wrench {
-    /// Newtons.
+    /// Force (N).
     pub force: Vector3,
-    /// Newton metres.
+    /// Moment (N m).
     pub moment: Vector3,
 }
 
@@ -33,7 +33,7 @@ impl Wrench {
     /// No force.
     pub const NONE: Self = Self { force: Vector3::new(0.0, 0.0, 0.0), moment: Vector3::new(0.0, 0.0, 0.0) };
 
-    /// A force at a place.
+    /// A force that acts at a point.
     pub fn at(place: Vector3, force: Vector3) -> Self {
         Self { force, moment: place.cross(&force) }
     }
@@ -50,18 +50,18 @@ impl std::ops::Add for Wrench {
 /// The water around a craft.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LocalWater {
-    /// Kilograms in a cubic metre.
+    /// Density (kg/m³).
     pub density: f64,
-    /// Metres of the surface above the world's origin, straight above the craft; without water, -∞.
+    /// Height of the surface above the world's origin, at the craft (m); -∞ without water.
     pub level: f64,
-    /// Metres that the surface rises in a metre along x and along y.
+    /// Slope of the surface along x and y.
     pub slope: Vector,
-    /// Metres per second in the world's frame.
+    /// Velocity in the world's frame (m/s).
     pub velocity: Vector3,
 }
 
 impl LocalWater {
-    /// Fresh water that stands at a level.
+    /// Still fresh water with its surface at a level (m).
     pub fn still(level: f64) -> Self {
         Self { density: 1000.0, level, slope: Vector::zeros(), velocity: Vector3::zeros() }
     }
@@ -104,21 +104,21 @@ struct Inertia {
     straightened: Option<Vector3>,
 }
 
-/// Where a craft is, how it moves and how its thrusters turn.
+/// Pose and motion of a craft, and the speeds of its thrusters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CraftState {
-    /// The middle of its hull's volume.
+    /// Position of the hull's centre of volume.
     pub position: Point3,
-    /// How its frame is turned in the world's.
+    /// Rotation from the craft's frame to the world's.
     pub attitude: UnitQuaternion<f64>,
-    /// The speed over ground of that middle, in the craft's own frame.
+    /// Velocity of that centre over ground, in the craft's own frame.
     pub velocity: CraftMotion,
-    /// The speed of each thruster, as a share of its full speed.
+    /// Speed of each thruster, as a fraction of its full speed.
     pub shafts: [f64; MAX_THRUSTERS],
 }
 
 impl CraftState {
-    /// A craft at rest, its own frame at a pose.
+    /// A craft at rest with its own frame at a pose.
     pub fn at_rest(craft: &Craft, pose: &Pose3) -> Self {
         Self {
             position: pose.to_world(craft.middle()),
@@ -142,10 +142,9 @@ impl CraftState {
 }
 
 impl Craft {
-    /// A craft that moves in steps of some seconds.
+    /// Creates a craft that is integrated in steps of `step` seconds.
     ///
-    /// Fails with the name of a number that is not what it must be, with an inertia that no body has, and
-    /// with a step above 0.1 s.
+    /// Fails for parameters out of range, for an inertia that no rigid body has, and for a step above 0.1 s.
     pub fn new(spec: &CraftSpec, step: f64) -> Result<Self, ParameterError> {
         spec.validate()?;
         require_positive("step", step)?;
@@ -183,63 +182,62 @@ impl Craft {
         })
     }
 
-    /// Seconds that it moves at a time.
+    /// Integration step (s).
     pub fn step(&self) -> f64 {
         self.step
     }
 
-    /// Its thrusters; their places are from the middle of the hull's volume.
+    /// The thrusters, with positions relative to the hull's centre of volume.
     pub fn thrusters(&self) -> &[Thruster] {
         &self.thrusters
     }
 
-    /// The middle of the hull's volume in the frame of the description.
+    /// The hull's centre of volume in the frame of the description.
     pub fn middle(&self) -> Point3 {
         Point3::from(self.origin)
     }
 
-    /// Mass and moments of inertia with those of the water that moves along: kg for the three axes, kg m²
-    /// about them.
+    /// Mass and moments of inertia including added mass: kg along the three axes, kg m² about them.
     pub fn inertia(&self) -> [f64; 6] {
         self.wet.matrix.diagonal().into()
     }
 
-    /// Metres from the middle of the hull's volume to the hull's lowest point, when it is turned so.
+    /// Depth of the hull's lowest point below its centre of volume, at an attitude (m).
     pub fn lowest(&self, attitude: &UnitQuaternion<f64>) -> f64 {
         let up = attitude.inverse() * Vector3::z();
         let end = |part: &HullPart| up.dot(&part.centre().coords) - part.reach(&up);
         self.hull.iter().map(end).fold(0.0, f64::min)
     }
 
-    /// Kilograms.
+    /// Mass (kg).
     pub fn mass(&self) -> f64 {
         self.mass
     }
 
-    /// Metres from the middle of the hull's volume to the hull's highest point, when it is turned so.
+    /// Height of the hull's highest point above its centre of volume, at an attitude (m).
     pub fn highest(&self, attitude: &UnitQuaternion<f64>) -> f64 {
         let up = attitude.inverse() * Vector3::z();
         let end = |part: &HullPart| up.dot(&part.centre().coords) + part.reach(&up);
         self.hull.iter().map(end).fold(0.0, f64::max)
     }
 
-    /// Metres from the middle of the hull's volume within which all of the hull is.
+    /// Radius around the hull's centre of volume that encloses the hull (m).
     pub fn reach(&self) -> f64 {
         self.reach
     }
 
-    /// The parts of the hull, about its middle.
+    /// The parts of the hull, relative to its centre.
     pub fn hull(&self) -> &[HullPart] {
         &self.hull
     }
 
-    /// The speed along a direction that an impulse of 1 N s along it gives to a place of the craft.
+    /// Change of speed of a point of the craft along a direction, per impulse along it (m/s per N s).
     pub fn mobility(&self, place: &Vector3, direction: &Vector3) -> f64 {
         let push = stack(direction, &place.cross(direction));
         push.dot(&(self.wet.inverse * push))
     }
 
-    /// The motion after an impulse in N s at a place of the craft, in its frame.
+    /// The motion after an impulse (N s) at a point of the craft, in its frame.
     #[must_use]
     pub fn struck(&self, velocity: &CraftMotion, place: &Vector3, impulse: &Vector3) -> CraftMotion {
         let change = self.wet.inverse * stack(impulse, &place.cross(impulse));
@@ -247,20 +245,20 @@ impl Craft {
         CraftMotion { linear: velocity.linear + linear, angular: velocity.angular + angular }
     }
 
-    /// Newtons by which buoyancy exceeds the weight when all of the hull is under water.
+    /// Buoyancy of the submerged hull minus weight (N).
     pub fn reserve(&self, density: f64) -> f64 {
         GRAVITY * (density * self.whole.volume - self.mass)
     }
 
-    /// The forces that drive it at one axis at a time to a steady speed through the water, damping's: N and N
-    /// m.
+    /// Damping force and moment at a velocity through the water, each axis by itself: the thrust that keeps that
+    /// velocity (N, N m).
     pub fn drag(&self, through_water: &CraftMotion) -> Wrench {
         let speed = stack(&through_water.linear, &through_water.angular);
         split(&self.damping(&speed)).into()
     }
 
-    /// The acceleration of a craft under water, through the water, by a force and a moment besides those of
-    /// inertia and damping. A current turns with the craft's frame in addition.
+    /// Acceleration relative to the water of a submerged craft, under a force and a moment in addition to inertia
+    /// and damping. In a current, the rotation of the craft's frame adds to it.
     pub fn response(&self, through_water: &CraftMotion, wrench: &Wrench) -> CraftMotion {
         let speed = stack(&through_water.linear, &through_water.angular);
         let force = stack(&wrench.force, &wrench.moment);
@@ -268,19 +266,20 @@ impl Craft {
         CraftMotion { linear, angular }
     }
 
-    /// Weight and buoyancy; nothing of a craft without a hull.
+    /// Weight and buoyancy; zero for a craft without a hull.
     pub fn restoring(&self, state: &CraftState, water: &LocalWater) -> Wrench {
         self.restoring_at(&state.position, &state.attitude.to_rotation_matrix(), water).0
     }
 
-    /// The water that a craft displaces, about the middle of its hull's volume.
+    /// The displaced water, relative to the hull's centre of volume.
     pub fn displaced(&self, state: &CraftState, water: &LocalWater) -> Displaced {
         let attitude = state.attitude.to_rotation_matrix();
         self.displaced_at(&state.position, &attitude, water)
     }
 
-    /// Joules of motion, weight and buoyancy in still water, above those of rest at the surface with no water
-    /// displaced. Damping lets it fall, and nothing but a thruster or moving water lets it rise.
+    /// Mechanical energy in still water: kinetic energy, and the potential energy of weight and buoyancy (J); zero
+    /// for a craft at rest at the surface that displaces no water. Damping reduces it; only thrusters and moving
+    /// water increase it.
     pub fn energy(&self, state: &CraftState, water: &LocalWater) -> f64 {
         let kinetic = self.kinetic(state, water);
         let height = |place: Vector3| (state.position + state.attitude * place).z;

@@ -13,8 +13,7 @@ struct Flow {
 }
 
 impl Craft {
-    /// Moves a craft by one step. Commands are shares of each thruster's full speed, -1 to 1; those that are
-    /// missing are 0.
+    /// Integrates one step. Commands are fractions of each thruster's full speed, -1 to 1; missing ones count as 0.
     pub fn advance(&self, state: &mut CraftState, commands: &[f64], water: &LocalWater) {
         let wrench = self.thrust(state, commands, water);
         let by_itself = wrench == Vector6::zeros() && water.velocity == Vector3::zeros();
@@ -38,7 +37,7 @@ impl Craft {
         }
     }
 
-    /// As [`advance`](Craft::advance), under forces of the caller besides, which depend on the state.
+    /// Like [`advance`](Craft::advance), with additional forces that depend on the state.
     pub fn advance_under(
         &self,
         state: &mut CraftState,

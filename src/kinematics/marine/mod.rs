@@ -4,17 +4,17 @@
 //!
 //! A [`Craft`] moves by the equations of Fossen's handbook: rigid-body and added mass, the Coriolis and
 //! centripetal forces of both, linear and quadratic damping on the speed through the water, weight, and the
-//! buoyancy of the exact volume of the hull's parts that is under water. [`Thruster`]s follow their commands
-//! with a lag, push by the square of their speed, weaker backwards, and lose their grip at the surface.
+//! buoyancy of the exact submerged volume of the hull's parts. [`Thruster`]s follow their commands with a lag;
+//! their thrust grows with the square of their speed, is weaker backwards, and fades near the surface.
 //!
 //! [`Craft::advance`] integrates in fixed steps by the classic fourth-order method of Runge and Kutta, with
-//! the attitude as a quaternion. The same numbers come out on every platform.
+//! the attitude as a quaternion. Results are equal to the last bit on every platform.
 //!
-//! # Where it does not hold
+//! # Limits of the model
 //!
-//! Added mass and damping are constants, not functions of frequency or attitude; a craft that leaves the
-//! water keeps its added mass, and its damping fades with what of its hull is wet. The water is not moved by
-//! the craft. A current is the same all along the hull, and a wave is a plane across it.
+//! Added mass and damping are constants, not functions of frequency or attitude. A craft that leaves the water
+//! keeps its added mass; its damping decreases with the wetted part of its hull. The craft does not move the
+//! water. A current is uniform along the hull, and a wave is a plane across it.
 //!
 //! Reference: T. I. Fossen, *Handbook of Marine Craft Hydrodynamics and Motion Control*, second edition,
 //! 2021.
@@ -34,10 +34,10 @@
 //!     raft.advance(&mut state, &[1.0], &water);
 //! }
 //! assert!(state.position.x > 1.0 && state.position.z.abs() < 0.1, "it drives ahead and floats");
-//! // A force at a place has a moment about the middle.
+//! // A force at a point has a moment about the centre.
 //! let push = Wrench::at(Vector3::new(0.0, 1.0, 0.0), Vector3::new(2.0, 0.0, 0.0));
 //! assert_eq!(push.moment, Vector3::new(0.0, 0.0, -2.0));
-//! // Two vehicles of the literature, to compare with.
+//! // Two vehicles from the literature, for comparison.
 //! let (torpedo, boat) = (Remus100::new(0.02)?, Otter::new(0.02)?);
 //! assert!(torpedo.craft.mass() < boat.craft.mass());
 //! let ahead = CraftMotion { linear: Vector3::new(1.5, 0.0, 0.0), ..CraftMotion::STILL };
@@ -65,7 +65,7 @@ pub use displaced::Displaced;
 pub use hull::HullPart;
 pub use spec::{CraftSpec, Thruster};
 
-/// The acceleration of gravity, in m/s².
+/// Gravitational acceleration (m/s²).
 pub const GRAVITY: f64 = 9.81;
-/// The most thrusters of a craft.
+/// Maximum number of thrusters of a craft.
 pub const MAX_THRUSTERS: usize = 8;

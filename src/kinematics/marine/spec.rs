@@ -3,11 +3,10 @@ use crate::ParameterError;
 use crate::geometry::{Point3, Vector3};
 use crate::parameter::{require, require_finite, require_not_negative};
 
-/// What a craft is: its mass, its hull and what drives it. Places are in its own frame: x forward, y left, z
-/// up.
+/// Description of a craft: mass, hull and thrusters. Positions are in its own frame: x forward, y left, z up.
 ///
-/// Added mass and damping are about the middle of the hull's volume, one number for each axis of motion:
-/// forward, left, up, and turning about these (surge, sway, heave, roll, pitch, yaw).
+/// Added mass and damping refer to the hull's centre of volume, with one number for each degree of freedom:
+/// surge, sway, heave, roll, pitch, yaw.
 ///
 /// ```
 /// use roverlab::geometry::{Point3, Vector3};
@@ -26,24 +25,24 @@ use crate::parameter::{require, require_finite, require_not_negative};
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct CraftSpec {
-    /// Kilograms.
+    /// Mass (kg).
     pub mass: f64,
-    /// The middle of the mass.
+    /// Centre of mass.
     pub centre_of_mass: Point3,
-    /// Moments and products of inertia about the middle of the mass, in kg m².
+    /// Moments and products of inertia about the centre of mass (kg m²).
     pub inertia: [[f64; 3]; 3],
-    /// What displaces water.
+    /// Parts that displace water.
     pub hull: Vec<HullPart>,
-    /// Added mass in kg for the first three axes, in kg m² for the others.
+    /// Added mass (kg), and added moments of inertia for the last three (kg m²).
     pub added_mass: [f64; 6],
-    /// Whether the added mass turns the craft across the flow (Munk), as it does with a bare, slender hull.
-    /// Frames and fins outweigh that; without them a craft does not keep its course.
+    /// Whether added mass turns the craft across the flow, as with a bare, slender hull (Munk moment). Frames and
+    /// fins outweigh it; without them a craft does not keep its course.
     pub munk: bool,
-    /// Damping in proportion to the speed: N s/m, and N m s for the last three axes.
+    /// Linear damping (N s/m), and N m s for the last three.
     pub linear_damping: [f64; 6],
-    /// Damping by the square of the speed: N s²/m², and N m s² for the last three axes.
+    /// Quadratic damping (N s²/m²), and N m s² for the last three.
     pub quadratic_damping: [f64; 6],
-    /// What drives it.
+    /// Thrusters.
     pub thrusters: Vec<Thruster>,
 }
 
@@ -52,23 +51,23 @@ pub struct CraftSpec {
 pub struct Thruster {
     /// Its name in the craft's description.
     pub name: String,
-    /// The middle of its propeller.
+    /// Centre of the propeller.
     pub place: Point3,
-    /// Where it pushes its craft when it turns forward; its length does not count.
+    /// Direction of thrust when it turns forward; its length is ignored.
     pub direction: Vector3,
-    /// Newtons at full speed forward.
+    /// Thrust at full speed forward (N).
     pub force: f64,
-    /// Newtons at full speed backward, at most as many.
+    /// Thrust at full speed backward, at most `force` (N).
     pub back: f64,
-    /// The time constant, in seconds, with which its speed follows the command.
+    /// Time constant with which its speed follows the command (s).
     pub lag: f64,
 }
 
 impl Thruster {
-    /// What a propeller that is made to push forward pushes backward, as a share: between the values that are
-    /// measured of boats' motors (0.58 of the Otter's) and of symmetric blades (1).
+    /// Backward thrust of a propeller designed for forward thrust, as a fraction of the forward thrust: between
+    /// measurements on boat motors (0.58 for the Otter) and symmetric blades (1).
     pub const BACK: f64 = 0.7;
-    /// Metres from the middle of a propeller to its tips: at less depth it draws air.
+    /// Radius of a propeller; at less depth it draws air (m).
     pub const RADIUS: f64 = 0.05;
 
     /// A thruster with a lag of 0.2 s.
@@ -95,7 +94,7 @@ const MOST_FORCE: f64 = 1e6;
 const MOST_MASS: f64 = 1e6;
 
 impl CraftSpec {
-    /// The speed, in m/s, at which damping equals all that the thrusters push ahead; 0 without any that does.
+    /// Speed at which damping equals the full forward thrust (m/s); 0 without forward thrust.
     pub fn top_speed(&self) -> f64 {
         let ahead = |thruster: &Thruster| {
             let share = thruster.direction.x / thruster.direction.norm();
@@ -107,7 +106,7 @@ impl CraftSpec {
         if force > 0.0 { 2.0 * force / (linear + root) } else { 0.0 }
     }
 
-    /// Fails with the name of a number that is not what it must be.
+    /// Checks every parameter; the error names the one out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         require(
             "craft's mass",

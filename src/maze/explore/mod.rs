@@ -28,11 +28,11 @@ pub trait Explorer {
 pub enum ExplorationStep {
     /// Go to this cell and look around.
     Go(Cell),
-    /// No unknown wall matters any more.
+    /// No unknown wall matters.
     Finished(ExplorationOutcome),
 }
 
-/// How an exploration ended.
+/// Outcome of an exploration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ExplorationOutcome {
     /// The best route is known, and no unknown wall can improve it.

@@ -4,7 +4,7 @@ use crate::maze::{
     WallState, shortest_route,
 };
 
-/// What the exploration has to prove.
+/// Claim that the exploration has to prove.
 #[derive(Debug, Clone)]
 pub enum Goals {
     /// The route with the fewest steps.

@@ -8,7 +8,7 @@ use crate::io::{DistanceSensors, Manoeuvres, Odometry, Result, StallDetector};
 use crate::maze::Direction;
 use crate::parameter::require_positive;
 
-/// How a robot drives from cell to cell.
+/// How the robot drives from cell to cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Straight {
     /// By odometry only, as in the book's first program (section 9.2).
@@ -94,7 +94,7 @@ const REST: f64 = 0.3;
 /// Speed below which the robot counts as at rest (m/s).
 const AT_REST: f64 = 2e-3;
 
-/// How a drive by the left-hand rule ended.
+/// Outcome of a drive by the left-hand rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LeftHandOutcome {

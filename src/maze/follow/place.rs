@@ -33,8 +33,7 @@ pub(super) struct PlaceInCell {
 impl PlaceInCell {
     /// A robot roughly in the centre of a cell.
     pub(super) fn at(odometry: Pose, cell: f64) -> Self {
-        /// Cells by which the robot stands off the middle at the start, and radians by which it is turned:
-        /// standard deviations.
+        /// Initial standard deviations of the lateral offset (cells) and of the heading (rad).
         const OFF: f64 = 0.05;
         let spread = [OFF * OFF * cell * cell, OFF * OFF * cell * cell, OFF * OFF];
         let stretch = Stretch { share: 0.0, variance: SCALE_ERROR * SCALE_ERROR, along: 0.0 };

@@ -75,14 +75,15 @@ const ANGLE: usize = 4;
 /// Index of the drift (rad/m).
 const BEND: usize = 5;
 
-/// The standard deviations at the start: metres and radians.
+/// Initial standard deviations (m, rad).
 const START: [f64; 2] = [1e-3, 4e-3];
-/// Cells by which a robot that does not know better may be wrong about its place: what it sees is then the
-/// nearest that it can be.
+/// Maximum position error of a robot without better information (cells): what it detects is then the nearest
+/// possible.
 const NEAREST: f64 = 0.45;
-/// Beams square to a wall, up to 14 degrees: others may see what stands behind an opening beside it.
+/// Cosine of the angle of incidence up to which a beam counts (14 degrees): more oblique beams may see what
+/// is behind an opening beside the wall.
 const SQUARE: f64 = 0.97;
-/// How sharply a beam sees an edge, in metres.
+/// Sharpness of an edge as seen by a beam (m).
 const EDGE: f64 = 0.004;
 
 impl MazeLocaliser {

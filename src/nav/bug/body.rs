@@ -10,7 +10,7 @@ use crate::scan::{ScanFilter, ScanMatcher, check_measured};
 
 /// State common to all bugs: localisation, perception and steering.
 ///
-/// The robot is a disc; boundaries are those of obstacles inflated by its radius plus the least clearance.
+/// The robot is a disc; boundaries are those of obstacles inflated by its radius plus the minimum clearance.
 #[derive(Debug, Clone)]
 pub(super) struct Body {
     pub(super) parameters: BugParameters,
@@ -50,37 +50,36 @@ pub(super) struct GoalView {
     pub(super) is_at_hand: bool,
 }
 
-/// How far round the robot points count for its next step, in steps.
+/// Radius around the robot within which points count for its next step (steps).
 const REACH: f64 = 2.4;
-/// How much farther round the robot the ends of walls are kept in mind.
+/// Radius within which the ends of walls are remembered, relative to that.
 const ENDS_REACH: f64 = 1.7;
-/// How far apart, in metres, one thing may be seen from two places without noise, and for each metre of
-/// noise.
+/// Maximum distance between two observations of one point without noise (m), and per metre of noise.
 const EXACT: f64 = 0.003;
 const ENDS_SLACK: f64 = 5.0;
-/// The part of the goal's tolerance that the robot makes use of where it cannot come nearer.
+/// Fraction of the goal's tolerance that is used where the robot cannot come nearer.
 const USED_TOLERANCE: f64 = 0.9;
-/// A goal within so many distances that the robot keeps to obstacles is near.
+/// Distance within which a goal is near, relative to the distance kept from obstacles.
 const NEAR: f64 = 1.5;
-/// A point may be wrong by so many times the noise of a range, and by so many metres without noise.
+/// Maximum error of a point, relative to the range noise, and without noise (m).
 const NOISE_SLACK: f64 = 2.0;
 const POINT_ERROR: f64 = 0.002;
-/// Places about the goal that are tried: so many rings of so many.
+/// Points tried around the goal: number of rings, and points per ring.
 const RINGS: u32 = 4;
 const DIRECTIONS: u32 = 24;
-/// Radians per second at which the robot turns to look round.
+/// Turn rate while looking around (rad/s).
 const LOOKING_TURN: f64 = 2.0;
-/// The least speed along a free heading, in metres per second.
+/// Minimum speed along a free heading (m/s).
 const CREEP: f64 = 0.02;
-/// Radians by which the robot may point away from that heading.
+/// Maximum deviation from that heading (rad).
 const POINTING: f64 = 0.3;
-/// How fast the robot closes in on the place where it must stand, in metres per second for each metre.
+/// Speed per distance of the approach to a stopping point (1/s).
 const APPROACH_RATE: f64 = 4.0;
-/// A turn of more radians than this turns the robot round.
+/// Turn above which the robot turns around (rad).
 const TURNING_ROUND: f64 = 2.0;
-/// Metres per second that are too fast for turning round.
+/// Speed that is too high for turning around (m/s).
 const ROLLING: f64 = 0.05;
-/// Steps, at the start, that only look.
+/// Number of initial steps without motion.
 const SETTLING_STEPS: u32 = 12;
 
 impl Body {
@@ -247,7 +246,7 @@ impl Body {
 
     /// The maximum speed from which the robot can still stop before an obstacle ahead, or at the goal.
     fn safe_speed(&self, present: f64) -> f64 {
-        /// Metres that are left before what is ahead, for rounding.
+        /// Margin for rounding that is left to an obstacle ahead (m).
         const HAIR: f64 = 0.001;
         let passing = if self.slow_to_pass && self.phase == BugPhase::ToGoal { 1.0 } else { 0.5 };
         let outline = self.parameters.robot_radius + passing * self.parameters.least_clearance;

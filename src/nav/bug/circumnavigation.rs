@@ -36,14 +36,14 @@ struct Returning {
     before: Option<f64>,
 }
 
-/// How much worse, in STEPs, the place may seem when it is met again.
+/// Accepted loss of merit when the place is met again (steps).
 const SLACK: f64 = 0.5;
-/// How much worse, in metres, for each metre that the place has been missed by.
+/// Accepted loss of merit per metre by which the place has been missed (m/m).
 const SLACK_PER_METRE: f64 = 0.1;
 /// Robot radii after which the place has been missed for good, and the next one that can be left at all will
 /// do; and free space behind an edge that makes it a node.
 pub(super) const MISSED: f64 = 3.0;
-/// For so many steps a merit lasts.
+/// Number of steps for which a merit lasts.
 const LASTING: usize = 3;
 
 impl<const BY_RANGE: bool> Default for Circumnavigation<BY_RANGE> {

@@ -4,9 +4,9 @@
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Doubt(f64);
 
-/// The share at first: twice what hides between two of 360 beams.
+/// Initial fraction: twice what two of 360 beams may miss between them.
 const FIRST: f64 = 0.02;
-/// The share at most.
+/// Maximum fraction.
 const MOST: f64 = 0.3;
 
 impl Default for Doubt {

@@ -33,7 +33,7 @@ struct Following {
     in_line: bool,
 }
 
-/// Headings up to this many radians count as along the boundary.
+/// Angle up to which a heading counts as along the boundary (rad).
 const IN_LINE: f64 = 0.5;
 
 impl<S: Strategy> Engine<S> {

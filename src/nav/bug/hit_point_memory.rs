@@ -35,11 +35,11 @@ enum Course {
     Other,
 }
 
-/// The same for the hit point on the way back: it lies before the boundary rather than on its way.
+/// The same for the hit point on the way back: it is before the boundary rather than on the path along it.
 const HIT_POINT: f64 = 1.5;
-/// The share of the way back after which the hit point can be met.
+/// Fraction of the way back after which the hit point can be met.
 const EARLIEST: f64 = 0.6;
-/// The share of the way back after which the hit point has been missed.
+/// Fraction of the way back after which the hit point has been missed.
 const LATEST: f64 = 1.4;
 
 impl<R, const ALTERNATING: bool> HitPointMemory<R, ALTERNATING> {

@@ -57,7 +57,7 @@ pub(super) struct OnMainLine<const EVER: bool> {
     offset: f64,
 }
 
-/// Metres to either side that still count as on the line.
+/// Distance to either side that still counts as on the line (m).
 const LINE_WIDTH: f64 = 0.005;
 /// Robot radii beyond which a place is left behind, and a free range along the line from which on it is open
 /// even at a slant into the wall.

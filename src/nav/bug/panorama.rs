@@ -22,9 +22,9 @@ pub(super) struct Edge {
     pub(super) obstacle: f64,
 }
 
-/// Directions that are looked at, one a degree as of an EyeBot's lidar.
+/// Number of directions: one per degree, as of an EyeBot's lidar.
 const DIRECTIONS: usize = 360;
-/// Radians between them; as much of what is a metre away may hide between two beams.
+/// Distance between them (rad). At a distance of one metre, an obstacle of this size may be missed.
 const SPACING: f64 = TAU / DIRECTIONS as f64;
 
 impl Default for Panorama {

@@ -53,12 +53,12 @@ struct Spin {
     turned: f64,
 }
 
-/// Radians by which a robot that turns towards the wall on the spot turns round: about the end of a wall it
-/// would drive.
+/// Turn on the spot towards the wall above which a robot turns around (rad): it would drive around the end of
+/// a wall.
 const TURNING_ROUND: f64 = 2.2;
-/// Returns the same way after which a loop is closed, however the robot has turned on it.
+/// Number of returns to the same place after which a loop is closed, however the robot has turned on it.
 const CERTAIN_RETURNS: u32 = 2;
-/// Steps without a free heading after which the robot is boxed in.
+/// Number of steps without a free heading after which the robot is boxed in.
 const BOXED_IN_STEPS: u32 = 40;
 
 impl LoopProgress {

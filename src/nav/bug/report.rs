@@ -7,7 +7,7 @@ use crate::io::control::halts;
 pub enum BugOutcome {
     /// The robot is at the goal.
     Reached,
-    /// The robot went all the way round an obstacle without getting nearer to the goal: no way exists.
+    /// The robot circled an obstacle without getting nearer to the goal: no path exists.
     Unreachable,
     /// The robot sees that it has no room at the goal or within its tolerance.
     NoRoom,

@@ -108,10 +108,10 @@ impl Sight {
     }
 }
 
-/// What is deeper than this, in margins, is more than a corner of the wall.
+/// Depth above which a recess is more than a corner of the wall (margins).
 const RECESS: f64 = 2.5;
-/// The sine from which on a direction leads straight into the wall: round the end of a wall, in an arc, a
-/// disc that moves so still touches it.
+/// Sine of the angle from which a direction leads straight into the wall: a disc that moves in an arc around
+/// the end of a wall still touches it.
 const STRAIGHT_INTO: f64 = 0.8;
 
 /// A recognisable point of a boundary: the robot's position and the direction of the wall. Only both together
@@ -123,7 +123,7 @@ pub(super) struct Place {
     pub(super) wall: f64,
 }
 
-/// Walls whose directions differ by more than this are different, in radians.
+/// Difference of direction above which two walls are different (rad).
 const SAME_WALL: f64 = 1.2;
 
 impl Place {

@@ -53,19 +53,19 @@ pub(super) struct Tangent {
     passing: Option<f64>,
 }
 
-/// How far away, in robot radii, places count.
+/// Distance within which points count (robot radii).
 const REACH: f64 = 33.0;
-/// The least cosine between the way to a node and that to the goal.
+/// Minimum cosine between the direction to a node and that to the goal.
 const LEAST_PROGRESS: f64 = 0.1;
-/// How much longer, as a factor, the way over a node on the other side may be said to be, so that the robot
-/// does not waver.
+/// Maximum length of the path over a node on the other side relative to the current one, which prevents
+/// wavering.
 const LOYALTY: f64 = 1.1;
-/// How far, in radians, a robot turns away from an edge that it is as near to as it can be.
+/// Turn away from an edge that is as near as it may be (rad).
 const YIELD: f64 = 0.5;
-/// Ends of free ranges in neighbouring directions that are no farther apart than this, in robot radii, are of
-/// one obstacle: the robot does not fit between.
+/// Distance up to which the ends of free ranges in neighbouring directions belong to one obstacle (robot
+/// radii): the robot does not fit between them.
 const LINK: f64 = 2.0;
-/// How near, in robot radii, the place is reached that an obstacle was left for.
+/// Distance at which the place is reached for which an obstacle was left (robot radii).
 const ARRIVAL: f64 = 0.5;
 
 impl Default for Tangent {

@@ -18,10 +18,9 @@ struct WallEnd {
     age: u32,
 }
 
-/// What is seen in two beams side by side is not of one surface if it lies farther apart than this, in
-/// metres.
+/// Distance above which the points of two adjacent beams belong to different surfaces (m).
 const GAP: f64 = 0.03;
-/// Steps for which an end that is out of sight is taken to be there still.
+/// Number of steps for which an invisible end is assumed to be still there.
 const MEMORY: u32 = 40;
 
 impl WallEnds {

@@ -5,7 +5,7 @@ use crate::geometry::math;
 use crate::parameter::{require, require_not_negative, require_positive};
 use crate::world::{DriveSpec, RobotSpec};
 
-/// The ground on which a robot can stand and turn, whichever way it looks.
+/// Ground on which a robot can stand and turn in any direction.
 ///
 /// ```
 /// use roverlab::nav::elevation::Climber;
@@ -17,11 +17,11 @@ use crate::world::{DriveSpec, RobotSpec};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Climber {
-    /// The steepest slope in radians, measured over the robot's size.
+    /// Maximum slope, measured over the robot's size (rad).
     pub slope: f64,
-    /// The highest step in metres, anywhere under the robot.
+    /// Maximum height of a step under the robot (m).
     pub step: f64,
-    /// Metres from the robot's middle that count as under it.
+    /// Radius around the robot's centre that counts as under it (m).
     pub radius: f64,
 }
 
@@ -35,8 +35,8 @@ const MIDDLE: f64 = 0.4;
 const BETWEEN: f64 = 0.3;
 
 impl Climber {
-    /// What a robot can do by its friction, its wheels or belts and the height of its mass: seven tenths of
-    /// the slope on which it would slip or tip over.
+    /// The limits of a robot, from its friction, its wheels or belts and the height of its centre of mass: seven
+    /// tenths of the slope on which it would slip or tip over.
     pub fn of(spec: &RobotSpec) -> Self {
         let reach = spec.footprint.bounding_radius();
         let (wheel_diameter, support) = match spec.drive {
@@ -58,13 +58,13 @@ impl Climber {
         Self { slope, step, radius: reach }
     }
 
-    /// The same with a slope limit of its own, in radians.
+    /// The same limits with another maximum slope (rad).
     #[must_use]
     pub fn with_slope(self, slope: f64) -> Self {
         Self { slope, ..self }
     }
 
-    /// Fails with the name of the parameter that is out of range.
+    /// Checks every parameter; the error names the one out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         let steep = self.slope > 0.0 && self.slope < FRAC_PI_2;
         require("slope", self.slope, steep, "more than 0 and less than a right angle")?;

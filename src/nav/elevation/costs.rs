@@ -6,28 +6,28 @@ use crate::nav::grid::StepCosts;
 use crate::parameter::require_positive;
 use crate::world::{GridCell, HeightField};
 
-/// What a way is to cost little of.
+/// What a plan minimises.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Objective {
-    /// Metres along the ground.
+    /// Length along the ground (m).
     Length,
-    /// Joules for each newton of the robot's weight: metres lifted, and metres driven times the resistance to
-    /// rolling. Brakes take what a descent gives.
+    /// Energy per newton of the robot's weight (J/N): height gained, plus length times rolling resistance.
+    /// Braking on descents recovers nothing.
     Energy {
-        /// The force that rolling on level ground takes, as a share of the weight.
+        /// Rolling resistance on level ground, as a fraction of the weight.
         resistance: f64,
     },
-    /// Seconds.
+    /// Driving time (s).
     Time {
-        /// Metres per second on level ground.
+        /// Speed on level ground (m/s).
         speed: f64,
-        /// The most metres per second upwards, which the motors' power allows.
+        /// Maximum rate of climb, limited by motor power (m/s).
         climb: f64,
     },
 }
 
 impl Objective {
-    /// Fails with the name of the parameter that is out of range.
+    /// Checks every parameter; the error names the one out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         match *self {
             Self::Length => Ok(()),
@@ -39,8 +39,7 @@ impl Objective {
         }
     }
 
-    /// What a straight stretch costs that leads so many metres on over the map and up: no less than on level
-    /// ground.
+    /// Cost of a straight segment with this horizontal length and rise (m): at least that on level ground.
     #[inline]
     pub fn of_stretch(&self, run: f64, rise: f64) -> f64 {
         match *self {
@@ -50,13 +49,13 @@ impl Objective {
         }
     }
 
-    /// What a metre of level ground costs.
+    /// Cost of a metre of level ground.
     pub fn per_metre(&self) -> f64 {
         self.of_stretch(1.0, 0.0)
     }
 }
 
-/// The costs of steps between the samples of a surface.
+/// Costs of steps between the samples of a surface.
 #[derive(Debug, Clone)]
 pub struct GroundCosts {
     objective: Objective,

@@ -4,10 +4,11 @@ use crate::geometry::{Point, Point3, Vector, math};
 use crate::nav::grid::GridComponents;
 use crate::world::{BitGrid, GridCell, HeightField};
 
-/// Where on a surface a robot can stand: its samples are the cells of a grid that is free where it can.
+/// A map of where a robot can stand on a surface. The samples of the surface are the cells of a grid; a cell is
+/// free if the robot can stand there.
 ///
-/// A sample is closed if the plane through the ground under the robot is steeper than it can stand on, if a
-/// step under it is too high, and if it would reach beyond the surface.
+/// A cell is occupied if the plane through the ground under the robot is too steep, if a step under the robot is
+/// too high, or if the robot would reach beyond the surface.
 ///
 /// ```
 /// use roverlab::geometry::{Aabb, Point};
@@ -51,7 +52,7 @@ struct Footing {
 const MICROMETRES: f64 = 1e6;
 
 impl ElevationMap {
-    /// The map of a surface for a robot.
+    /// Creates the map of a surface for a robot's limits. Fails for limits out of range.
     pub fn new(field: &HeightField, climber: &Climber) -> Result<Self, ParameterError> {
         climber.validate()?;
         let footing = Footing::new(field, climber);
@@ -64,19 +65,19 @@ impl ElevationMap {
         &self.field
     }
 
-    /// The samples, free where the robot can stand.
+    /// The grid of samples, free where the robot can stand.
     pub fn open(&self) -> &BitGrid {
         &self.open
     }
 
-    /// The sample nearest to a place; `None` beyond the surface.
+    /// The sample nearest to a position; `None` outside the surface.
     pub fn cell_at(&self, place: Point) -> Option<GridCell> {
         self.field.height(place)?;
         let at = (place - self.field.area().min).component_div(&self.field.pitch());
         Some(GridCell::new(at.x.round() as usize, at.y.round() as usize))
     }
 
-    /// Where a sample is.
+    /// Position of a sample.
     ///
     /// # Panics
     ///
@@ -86,7 +87,7 @@ impl ElevationMap {
         Point3::new(at.x, at.y, self.field.sample(cell.column, cell.row))
     }
 
-    /// The highest place that the robot can reach; `None` if it cannot even stand at the start.
+    /// The highest place that the robot can reach; `None` if it cannot stand at the start.
     pub fn highest_reachable(&self, start: Point) -> Option<Point3> {
         let start = self.cell_at(start).filter(|&cell| self.open.is_free(cell))?;
         let components = GridComponents::new(&self.open);

@@ -1,9 +1,9 @@
-//! Planning on hills (book, section 7.3): ways that are short, cheap or quick, dearer uphill, and closed
-//! where a robot would tip or slip.
+//! Planning on hills (book, section 7.3): paths of minimum length, energy or time that cost more uphill and
+//! avoid slopes on which the robot would tip or slip.
 //!
-//! An [`ElevationMap`] says where a robot can stand. [`ElevationPlanner`] plans on it from sample to sample
-//! by Dijkstra's algorithm or A\*, and in any direction; [`ElevationReplanner`] keeps its plan while the map
-//! changes. All of them are the planners of [`grid`](super::grid) with other costs.
+//! An [`ElevationMap`] holds where a robot can stand. [`ElevationPlanner`] plans on it, from sample to sample
+//! by Dijkstra's algorithm or A\*, or at any angle; [`ElevationReplanner`] repairs its plan when the map
+//! changes. Both use the planners of [`grid`](super::grid) with other costs.
 
 mod climber;
 mod costs;

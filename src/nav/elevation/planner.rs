@@ -6,21 +6,21 @@ use crate::geometry::{Point, Point3};
 use crate::nav::grid::{End, GridPath, GridPlanner, GridSearch, PlanError, SearchStatistics};
 use crate::world::{BitGrid, GridCell};
 
-/// A way over hills.
+/// A path over hills.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ElevationPath {
-    /// Where it begins, turns and ends, on the ground, in metres.
+    /// Start, turning points and end, on the ground (m).
     pub points: Vec<Point3>,
-    /// What it costs, in the unit of its [`Objective`].
+    /// Cost, in the unit of the [`Objective`].
     pub cost: f64,
-    /// What the search did.
+    /// Statistics of the search.
     pub statistics: SearchStatistics,
 }
 
-/// Plans on an [`ElevationMap`], from sample to sample by Dijkstra's algorithm or A\*, or in any direction.
+/// Plans on an [`ElevationMap`], from sample to sample by Dijkstra's algorithm or A\*, or at any angle.
 ///
-/// The ways of the first two cost the same; A\*'s bound is the cost on level ground. Those in any direction
-/// are A\*'s with every part made straight that is cheaper so, and never cost more.
+/// Dijkstra's algorithm and A\* find paths of equal cost; A\*'s heuristic is the cost on level ground. An
+/// any-angle path is A\*'s path with straight segments wherever these are cheaper, so it never costs more.
 ///
 /// ```
 /// use roverlab::geometry::{Aabb, Point};
@@ -47,12 +47,12 @@ pub struct ElevationPlanner<'m> {
 }
 
 impl<'m> ElevationPlanner<'m> {
-    /// Dijkstra's algorithm.
+    /// Creates a planner by Dijkstra's algorithm. Fails for parameters out of range.
     pub fn dijkstra(map: &'m ElevationMap, objective: Objective) -> Result<Self, ParameterError> {
         Self::new(map, objective, GridSearch::dijkstra_by)
     }
 
-    /// A\*.
+    /// Creates a planner by A\*. Fails for parameters out of range.
     pub fn astar(map: &'m ElevationMap, objective: Objective) -> Result<Self, ParameterError> {
         Self::new(map, objective, GridSearch::astar_by)
     }
@@ -67,14 +67,14 @@ impl<'m> ElevationPlanner<'m> {
         Ok(Self { map, search: search(map.open(), costs.clone()), costs })
     }
 
-    /// The cheapest way between the samples nearest to two places, from sample to sample.
+    /// The cheapest path from sample to sample between those nearest to two positions.
     pub fn plan(&mut self, start: Point, goal: Point) -> Result<ElevationPath, PlanError> {
         let path = self.search(start, goal)?;
         let points = cells(&path).map(|cell| self.map.point(cell)).collect();
         Ok(ElevationPath { points, cost: path.cost * self.costs.unit, statistics: path.statistics })
     }
 
-    /// A way in any direction, which costs no more than that from sample to sample.
+    /// An any-angle path, which costs at most as much as the one from sample to sample.
     pub fn plan_any_angle(&mut self, start: Point, goal: Point) -> Result<ElevationPath, PlanError> {
         let path = self.search(start, goal)?;
         let cells: Vec<GridCell> = cells(&path).collect();

@@ -7,7 +7,7 @@ use crate::nav::grid::{DStarLite, End, PlanError};
 use crate::parameter::require;
 use crate::world::{BitGrid, GridCell, HeightField};
 
-/// The cheapest way of a robot that finds out on its way that the ground is different: D\* Lite on an
+/// Replans the cheapest path while the robot discovers that the ground differs from its map: D\* Lite on an
 /// [`ElevationMap`].
 ///
 /// ```
@@ -32,7 +32,7 @@ pub struct ElevationReplanner {
 }
 
 impl ElevationReplanner {
-    /// Takes over a map, where the robot is, and its goal.
+    /// Creates a replanner from a map, the robot's position and its goal.
     pub fn new(map: ElevationMap, objective: Objective, robot: Point, goal: Point) -> Result<Self> {
         objective.validate()?;
         let costs = GroundCosts::new(map.field(), objective);
@@ -44,18 +44,18 @@ impl ElevationReplanner {
         Ok(Self { map, planner })
     }
 
-    /// The samples, free where the robot can stand as it is known.
+    /// The grid of samples, free where the robot can stand as far as is known.
     pub fn open(&self) -> &BitGrid {
         self.planner.grid()
     }
 
-    /// Tells where the robot is.
+    /// Updates the robot's position.
     pub fn move_to(&mut self, robot: Point) -> std::result::Result<(), PlanError> {
         let cell = cell_of(&self.map, End::Start, robot)?;
         self.planner.move_to(cell)
     }
 
-    /// Tells the elevation of a sample in metres.
+    /// Updates the elevation of a sample (m).
     pub fn set_height(&mut self, cell: GridCell, height: f64) -> Result<()> {
         let field: &HeightField = self.map.field();
         require("column", cell.column as f64, cell.column < field.columns(), "a column of the surface")?;
@@ -67,7 +67,7 @@ impl ElevationReplanner {
         Ok(())
     }
 
-    /// The cheapest way from the robot to the goal over the ground as it is known, from sample to sample.
+    /// The cheapest path from the robot to the goal over the known ground, from sample to sample.
     pub fn plan(&mut self) -> std::result::Result<ElevationPath, PlanError> {
         let path = self.planner.plan()?;
         let costs = self.planner.costs();

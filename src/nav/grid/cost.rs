@@ -8,15 +8,15 @@ use std::f64::consts::SQRT_2;
 
 use crate::world::GridCell;
 
-/// What the steps of a [`GridSearch`](super::GridSearch) or a [`DStarLite`](super::DStarLite) cost.
+/// Costs of the steps of a [`GridSearch`](super::GridSearch) or a [`DStarLite`](super::DStarLite).
 ///
 /// # For implementers
 ///
 /// Return the same cost for the same step: searches and heuristics rely on the lower bound, the length.
 pub trait StepCosts {
-    /// The cost of a step from a cell to one beside it, in edges of a cell: no less than its length, which is
-    /// 1 or the square root of 2, and no more than 10,000; what lies beyond, and what is no number, counts as
-    /// the nearer of them. A step that cannot be made at all leads to or from a cell that is not free.
+    /// The cost of a step from a cell to a neighbour, in cell edges: at least its length, which is 1 or the square
+    /// root of 2, and at most 10,000. Other values are clamped to this range; NaN counts as its nearer end. Mark
+    /// cells as occupied to rule steps out.
     fn cost(&self, from: GridCell, to: GridCell) -> f64;
 
     /// Whether every step costs its length.
@@ -42,7 +42,7 @@ impl StepCosts for UniformCost {
     const UNIFORM: bool = true;
 }
 
-/// The most that a step costs, so that whole ways add up.
+/// Maximum cost of a step, so that the costs of paths do not overflow.
 const DEAREST: u64 = 10_000 * STRAIGHT;
 
 /// The cost of a step as a whole number.

@@ -59,7 +59,7 @@ struct Entry {
     cell: u32,
 }
 
-/// The cost of what cannot be reached: two of them still add up.
+/// Cost of unreachable cells: the sum of two does not overflow.
 const FAR: u64 = u64::MAX / 4;
 
 impl DStarLite {
@@ -126,7 +126,7 @@ impl<C: StepCosts> DStarLite<C> {
         self.update_around(cell);
     }
 
-    /// Tells that steps to and from a cell cost something else. Outside the map nothing happens.
+    /// Changes the costs of the steps to and from a cell. A cell outside the map is ignored.
     pub fn set_costs(&mut self, cell: GridCell, change: impl FnOnce(&mut C)) {
         if self.grid.contains(cell) {
             change(&mut self.costs);

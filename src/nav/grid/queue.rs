@@ -26,7 +26,7 @@ struct Entry {
 }
 
 impl BucketQueue {
-    /// Bits of an estimate that a bucket does not tell apart: less than half of a straight step.
+    /// Number of low bits of an estimate that a bucket ignores: less than half of a straight step.
     const SHIFT: u32 = 14;
 
     /// Empties the queue. No later entry may cost less than `base`.

@@ -25,13 +25,13 @@ struct Level {
     room: f64,
 }
 
-/// How many clearances there are.
+/// Number of clearances.
 pub(super) const LEVELS: usize = 3;
-/// The most cells.
+/// Maximum number of cells.
 const MAX_CELLS: f64 = 4e6;
-/// The farthest, in metres, that what is seen may be from something known and still be that.
+/// Maximum distance between a detection and the known obstacle that it is attributed to (m).
 pub(super) const MAX_STRAY: f64 = 0.2;
-/// So often something must have been seen in a cell.
+/// Number of detections after which a cell counts as occupied.
 const ENOUGH: u8 = 3;
 
 impl Chart {

@@ -17,7 +17,7 @@ pub(super) struct Locator {
     points: Vec<Point>,
 }
 
-/// After so many metres there is a new expected scan.
+/// Distance driven between two expected scans (m).
 const SPACING: f64 = 0.06;
 
 impl Locator {

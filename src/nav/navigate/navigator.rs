@@ -19,7 +19,7 @@ use crate::world::{GridCell, World};
 /// The robot plans on a grid of the known world, inflated by its outline plus a clearance, and follows the
 /// plan with feedback: at every step it heads for the farthest path point reachable in a straight line, past
 /// the obstacles that the lidar sees. Seen obstacles that the world lacks are added to the grid, and D\* Lite
-/// repairs the plan. If the wished clearance leaves no way, it plans with less, down to the least one, and
+/// repairs the plan. If no path has the desired clearance, it plans with less, down to the minimum, and
 /// with more again as soon as possible.
 ///
 /// Scan matching corrects odometry: measured scans are matched with those expected in the known world.
@@ -91,23 +91,24 @@ struct Progress {
     blocked: u32,
 }
 
-/// Metres within which what is seen counts for the next step, whose target is no farther away.
+/// Distance within which detections count for the next step, whose target is no farther away (m).
 const NEAR: f64 = 0.6;
-/// Metres within which it counts for a robot that does not get on, and so near to something known it is that.
+/// The same distance for a robot without progress, and the distance from a known obstacle at which a
+/// detection is that obstacle (m).
 const TOUCHING: f64 = 0.045;
-/// Seconds that the robot looks before it plans, and for which it backs off.
+/// Time of observation before planning, and duration of backing up (s).
 const PAUSE: f64 = 1.0;
-/// Seconds without moving after which it does not get on.
+/// Time without motion after which the robot makes no progress (s).
 const IDLE_TIME: f64 = 2.0;
-/// Seconds without getting nearer after which it does not get on.
+/// Time without getting nearer after which the robot makes no progress (s).
 const WAITING_TIME: f64 = 25.0;
-/// Metres per second with which it backs off.
+/// Speed of backing up (m/s).
 const BACKING_SPEED: f64 = 0.06;
-/// So often it may fail to get on in one place.
+/// Maximum number of failures in one place.
 const MAX_BLOCKED: u32 = 8;
-/// So often it may doubt what it has seen.
+/// Maximum number of times that detections may be discarded.
 const MAX_DOUBTS: u32 = 2;
-/// After so many metres it looks for a way with more clearance.
+/// Distance driven between two searches for a path with more clearance (m).
 const WIDENING: f64 = 0.3;
 
 impl Navigator {

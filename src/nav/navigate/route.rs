@@ -16,7 +16,7 @@ pub(super) struct Route {
     length: f64,
 }
 
-/// How far, in metres, the nearest free cell may be from a robot or a goal in one that is not free.
+/// Maximum distance to the nearest free cell from a robot or a goal in an occupied one (m).
 const REACH: f64 = 0.12;
 
 impl Route {

@@ -14,11 +14,11 @@ pub(super) struct Steering<'a> {
     pub(super) clearance: f64,
 }
 
-/// Seconds within which the robot stands, the motors' lag included, and a little more.
+/// Time in which the robot stops, with the lag of its motors and a margin (s).
 const STOPPING_TIME: f64 = 0.5;
-/// Radians that a step may point past its target.
+/// Maximum angle between a step and the direction to its target (rad).
 const ASIDE: f64 = 1.2;
-/// Radians by which it is turned at a time.
+/// Increment of that angle (rad).
 const TURN: f64 = 0.08;
 
 impl Steering<'_> {

@@ -5,41 +5,41 @@ use crate::nav::elevation::Climber;
 use crate::parameter::{require, require_finite, require_not_negative, require_positive};
 use crate::world::{DriveSpec, RobotSpec};
 
-/// The parameters of a [`SummitSearch`](super::SummitSearch).
+/// Parameters of a [`SummitSearch`](super::SummitSearch).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SummitParameters {
-    /// The ground on which the robot trusts itself.
+    /// Slopes and steps that the robot can drive over.
     pub climber: Climber,
-    /// Where the lidar sits.
+    /// Mounting pose of the lidar.
     pub lidar: Pose3,
-    /// Metres that a turn of one radian on the spot takes it downhill for a slope of 1; 0 for wheels.
+    /// Downhill slip in a turn on the spot, per radian and per unit of slope (m); 0 for wheels.
     pub slide: f64,
-    /// Metres per second.
+    /// Driving speed (m/s).
     pub speed: f64,
-    /// Radians per second.
+    /// Maximum turn rate (rad/s).
     pub turn_rate: f64,
-    /// Metres from one look around to the next.
+    /// Distance between two looks around (m).
     pub stride: f64,
-    /// Metres across a cell of the map.
+    /// Cell size of the map (m).
     pub resolution: f64,
-    /// Metres from the start along both axes to which the map, and so the search, reaches.
+    /// Reach of the map and of the search from the start, along both axes (m).
     pub extent: f64,
-    /// Metres by which a place has to be higher to be worth a way.
+    /// Minimum gain in height that is worth a drive (m).
     pub tolerance: f64,
-    /// The elevation above the start, in metres, below which the robot does not go, such as that of water.
+    /// Elevation relative to the start below which the robot does not drive, such as a water level (m).
     pub lowest: Option<f64>,
-    /// The area that the robot does not leave, if it has been told of one.
+    /// Area that the robot does not leave, if any.
     pub fence: Option<Fence>,
-    /// Seconds from one step to the next.
+    /// Control period (s).
     pub period: f64,
 }
 
-/// An area along the axes of a world, and where in it a robot starts that counts from there.
+/// Axis-aligned area of a world, and the robot's start in it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fence {
-    /// The area in the world.
+    /// The area in world coordinates.
     pub area: Aabb,
-    /// Where the robot starts.
+    /// The robot's start in world coordinates.
     pub start: Pose,
 }
 
@@ -54,7 +54,7 @@ impl Fence {
 const MOST_CELLS: f64 = 2000.0;
 
 impl SummitParameters {
-    /// Those for a robot; `None` without a lidar.
+    /// Parameters for a robot; `None` without a lidar.
     pub fn of(spec: &RobotSpec) -> Option<Self> {
         let mount = spec.lidar?.mount;
         let slide = match spec.drive {
@@ -79,7 +79,7 @@ impl SummitParameters {
         })
     }
 
-    /// Fails with the name of the parameter that is out of range.
+    /// Checks every parameter; the error names the one out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         self.climber.validate()?;
         let slope = self.climber.slope;

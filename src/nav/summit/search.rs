@@ -12,17 +12,17 @@ use crate::io::{Attitude, Error, Inertial, Lidar, LidarScan, LidarSettings, Odom
 use crate::nav::grid::{GridComponents, GridPlanner, GridSearch};
 use crate::world::GridCell;
 
-/// Drives to the highest place that it can reach, on hills that it does not know.
+/// Drives to the highest place that the robot can reach, on unknown hills.
 ///
-/// Where it stands, the robot looks around with its lidar at many tilts. What beams meet is mapped; what they
-/// pass over is no higher than they are. While anything may be higher than the highest place that it has a
-/// safe way to, and may be reached, it drives there, or to where it sees more; so it leaves local maxima
-/// behind. It drives only over ground that it has seen and that its
-/// [`Climber`](crate::nav::elevation::Climber) allows. The first two looks, with a quarter of a turn between,
-/// show by how much the inertial unit is wrong.
+/// The robot stops and scans its surroundings with the lidar at many tilts. Ground that beams hit is mapped;
+/// ground that beams pass over is no higher than the beams, which bounds its elevation. As long as some
+/// reachable place may be higher than the highest place with a known safe path, the robot drives there, or to
+/// a better viewpoint. So it leaves local maxima. It drives only over ground that it has seen and that its
+/// [`Climber`](crate::nav::elevation::Climber) allows. The first two scans, a quarter of a turn apart,
+/// calibrate the inertial unit.
 ///
-/// It ends on the highest place that can be reached; what is still unknown when the time is over tells
-/// [`unknown_area`](SummitSearch::unknown_area).
+/// The search ends on the highest reachable place. [`unknown_area`](SummitSearch::unknown_area) is the area
+/// that may still be higher when the time limit comes first.
 ///
 /// ```
 /// use roverlab::geometry::{Aabb, Point, Pose};
@@ -67,26 +67,26 @@ pub struct SummitSearch {
     highest: f64,
 }
 
-/// How a search ended.
+/// Outcome of a [`SummitSearch`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum SummitOutcome {
-    /// On the highest place that can be reached: nothing else may be higher.
+    /// The robot is on the highest reachable place: no other can be higher.
     Highest,
-    /// It cannot stand where it is, or does not get on.
+    /// The robot cannot stand where it is, or makes no progress.
     Stuck,
-    /// The time was over.
+    /// The time limit came first.
     TimedOut,
-    /// Who watched has seen enough.
+    /// The observer stopped the run.
     Stopped,
 }
 
 halts!(SummitOutcome {
     Highest: "on the highest place that can be reached",
-    Stuck: "the robot does not get on",
+    Stuck: "the robot makes no progress",
 });
 
-/// What a search is doing.
+/// Phase of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SummitPhase {
     /// Coming to rest, and looking around.
@@ -106,14 +106,14 @@ enum State {
     BackingOff { from: Point, sign: f64 },
 }
 
-/// What a [`SummitSearch`] sees at a step.
+/// Observation of a [`SummitSearch`].
 #[derive(Debug, Clone, Default)]
 pub struct SummitObservation {
-    /// Where odometry takes the robot to be.
+    /// Pose by odometry.
     pub odometry: Pose,
-    /// How it is turned.
+    /// Attitude by the inertial unit.
     pub attitude: Attitude,
-    /// A scan, while it looks around.
+    /// Lidar scan, while the robot looks around.
     pub scan: LidarScan,
 }
 
@@ -146,7 +146,7 @@ const MOST_APPROACHES: u32 = 16;
 const MOST_LOOKS: u32 = 400;
 
 impl SummitSearch {
-    /// A search that begins where the robot stands.
+    /// Creates a search that starts where the robot stands. Fails for parameters out of range.
     pub fn new(parameters: SummitParameters) -> Result<Self> {
         parameters.validate()?;
         Ok(Self {
@@ -166,7 +166,7 @@ impl SummitSearch {
         })
     }
 
-    /// What it is doing.
+    /// The current phase.
     pub fn phase(&self) -> SummitPhase {
         match self.state {
             State::Settling { .. } | State::Looking(_) => SummitPhase::Looking,
@@ -175,32 +175,32 @@ impl SummitSearch {
         }
     }
 
-    /// Where the robot takes itself to be, from its start, and how far above it.
+    /// Estimated position relative to the start, with the height above it (m).
     pub fn pose(&self) -> (Pose, f64) {
         (self.reckoning.pose, self.reckoning.elevation)
     }
 
-    /// The errors of roll and pitch of its inertial unit that it has found, in radians.
+    /// Estimated bias of the inertial unit's roll and pitch (rad).
     pub fn bias(&self) -> [f64; 2] {
         self.reckoning.bias
     }
 
-    /// How often it has looked around.
+    /// Number of complete looks around.
     pub fn looks(&self) -> u32 {
         self.looks
     }
 
-    /// Metres above the start of the highest place to which it knows a way.
+    /// Height above the start of the highest place with a known path (m).
     pub fn highest(&self) -> f64 {
         self.highest
     }
 
-    /// The square metres that may be higher and may be reached, for all that it knows.
+    /// Area that may be higher and may be reachable, by what is known so far (m²).
     pub fn unknown_area(&self) -> f64 {
         self.unknown as f64 * self.parameters.resolution * self.parameters.resolution
     }
 
-    /// The way that it drives, from its start.
+    /// The current path, relative to the start.
     pub fn way(&self) -> &[Point] {
         match &self.state {
             State::Driving(drive) => drive.way(),

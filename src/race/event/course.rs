@@ -16,13 +16,14 @@ pub struct EventCourse {
     timed: Vec<[usize; 2]>,
 }
 
-/// Metres of an acceleration from line to line, and of the way behind its finish, where no cones say more.
+/// Length of an acceleration from line to line, and of the track beyond its finish, unless cones show
+/// otherwise (m).
 const STRIP: (f64, f64) = (75.0, 25.0);
-/// Metres from the nose to the start line where no cones say more.
+/// Distance from the nose to the start line, unless cones show otherwise (m).
 const TO_START: f64 = 0.3;
-/// Metres from the nose, ahead and behind, within which the gate of the start stands.
+/// Distance from the nose, ahead and behind, within which the start gate is expected (m).
 const GATE: f64 = 8.0;
-/// Metres of a course behind the rear axle of a car at its start.
+/// Length of a course behind the rear axle of a car at the start (m).
 const BEHIND: f64 = 1.0;
 
 impl EventCourse {

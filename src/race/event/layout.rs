@@ -38,7 +38,7 @@ struct Edge {
     by_shape: [f64; 3],
 }
 
-/// Metres along x from the origin of a skidpad beyond which its lanes are straight rows.
+/// Distance along x from the origin of a skidpad beyond which its lanes are straight (m).
 const LANES: f64 = 6.5;
 
 impl EventShape {
@@ -109,18 +109,18 @@ pub struct EventLayout {
     pub shape: EventShape,
 }
 
-/// Metres from an edge within which a cone stands at it.
+/// Distance from an edge within which a cone belongs to it (m).
 const AT_EDGE: f64 = 0.4;
-/// The same in metres while a layout is looked for.
+/// The same distance while a layout is being searched (m).
 const GATE: f64 = 0.8;
-/// Metres by which cones of an edge stand beside it, and beyond which they count less.
+/// Placement error of cones at an edge, and the error beyond which they count less (m).
 const PLACED: (f64, f64) = (0.1, 0.3);
-/// The shares of all cones that stand at edges where a layout is found, as long as it is followed, and where
-/// nothing but the cones names the event.
+/// Minimum fraction of all cones that stand at edges: for a layout to be found, to be followed, and where
+/// only the cones identify the event.
 const SHARES: [f64; 3] = [0.6, 0.4, 0.9];
-/// How many cones these are at least.
+/// Minimum number of these cones.
 const FEWEST: usize = 3;
-/// Metres, metres and radians by which a layout may move from look to look in the frame of a map that drifts.
+/// Maximum motion of a layout between two observations, in the frame of a map that drifts (m, m, rad).
 const MOVES: [f64; 3] = [0.05, 0.05, 0.01];
 
 impl EventLayout {

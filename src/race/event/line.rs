@@ -5,14 +5,13 @@ use std::f64::consts::TAU;
 use super::layout::EventShape;
 use crate::geometry::{Point, Vector, direction};
 
-/// Metres from point to point of a straight piece, about.
+/// Approximate distance between points of a straight (m).
 const STEP: f64 = 0.25;
-/// Points of a lap of a circle.
+/// Number of points on a lap of a circle.
 const ROUND: u32 = 224;
 /// Laps of each circle.
 pub(super) const LAPS: u32 = 2;
-/// Metres over which the way passes from circle to circle: the standard deviation of the bell that smooths
-/// it.
+/// Length of the transition between circles: standard deviation of the Gaussian that smooths it (m).
 const PASSES: f64 = 2.0;
 
 /// A straight line along x.

@@ -120,15 +120,15 @@ pub struct EventRacer {
     blind: f64,
 }
 
-/// Seconds that it looks before it moves.
+/// Time of observation before the car moves (s).
 const LOOKS: f64 = 0.3;
-/// Metres before the origin of a skidpad, and behind the start of a strip, at which lines begin.
+/// Distance before the origin of a skidpad, and behind the start of a strip, at which lines begin (m).
 const BEFORE: f64 = 30.0;
-/// Metres by which a number of the layout changes before the line is planned again.
+/// Change of a layout parameter at which the line is planned again (m).
 const CHANGED: f64 = 0.02;
-/// Metres between a cone and the side of a car that passes it.
+/// Distance from a cone to the side of a car that passes it (m).
 const BESIDE: f64 = 0.07;
-/// Metres ahead that cones in the way matter.
+/// Distance ahead within which cones in the way matter (m).
 const AHEAD: f64 = 45.0;
 
 impl EventRacer {

@@ -17,9 +17,9 @@ pub struct EventReferee {
     last: Option<(f64, f64)>,
 }
 
-/// Stations ahead, and behind, within which a car is looked for.
+/// Number of stations ahead and behind within which a car is searched.
 const WINDOW: [usize; 2] = [16, 4];
-/// The same for a wheel, from the nose.
+/// The same for a wheel, relative to the nose.
 const WHEELS: [usize; 2] = [3, 14];
 
 impl EventReferee {

@@ -6,9 +6,9 @@ use crate::geometry::{Point, Pose};
 use crate::race::{Cone, ConeColour, ConeTrack};
 use crate::world::formats::{FormatError, Location, shown};
 
-/// The first line of the tracks of the EUFS simulator.
+/// Header line of the tracks of the EUFS simulator.
 const HEADER: &str = "tag,x,y,direction,x_variance,y_variance,xy_covariance";
-/// What a row may begin with.
+/// Valid first entries of a row.
 const TAGS: &str = "blue, yellow, orange, big_orange, unknown, car_start or midpoint";
 
 /// Reads a cone map of EUFS: a tag, coordinates (m), and for the start a heading (rad); variances are

@@ -7,7 +7,7 @@ use crate::geometry::{Point, Pose};
 use crate::race::{Cone, ConeColour, ConeTrack};
 use crate::world::formats::{FormatError, Location, YamlEvents, shown};
 
-/// The lists of the tracks of FSSIM, and their cones' colours.
+/// Lists in the tracks of FSSIM, with the colours of their cones.
 const KEYS: [(&str, ConeColour); 4] = [
     ("cones_left", ConeColour::Blue),
     ("cones_right", ConeColour::Yellow),
@@ -15,10 +15,10 @@ const KEYS: [(&str, ConeColour); 4] = [
     ("cones_orange_big", ConeColour::BigOrange),
 ];
 
-/// Keys of a file, most of which are ignored.
+/// Maximum number of keys in a file; most are ignored.
 const MOST_KEYS: usize = 100;
 
-/// Metres from the rear axle to the front wing, where these files say that the car starts.
+/// Distance from the rear axle to the front wing, where these files place the start (m).
 const WING: f64 = 2.15;
 
 /// Reads a track of FSSIM: lists of cones by colour, the start pose of the front wing, and the ends of the

@@ -17,10 +17,10 @@ pub struct ConeFrame {
     pub cones: Vec<Cone>,
 }
 
-/// The colours of the lists of cones.
+/// Colours of the lists of cones.
 const COLOURS: [ConeColour; 5] =
     [ConeColour::Unknown, ConeColour::Yellow, ConeColour::Blue, ConeColour::Orange, ConeColour::BigOrange];
-/// The keys of a frame.
+/// Keys of a frame.
 const KEYS: &str = "car_position, car_direction, car_speed or slam_cones";
 
 /// Reads a log of a car's cone map, in the format of the planner `ft-fsd-path-planning`: a JSON list of

@@ -19,7 +19,7 @@ use super::{ConeTrack, Corridor};
 use crate::geometry::Point;
 use crate::world::formats::{FormatError, Location, shown};
 
-/// Cones or stations of a file.
+/// Maximum number of cones or stations in a file.
 const MOST: usize = 20_000;
 
 /// Content of a track file.
@@ -71,7 +71,7 @@ pub fn parse_track(text: &str, file: &str) -> Result<TrackFile, FormatError> {
     parse_fssim(text, file).map(TrackFile::Cones)
 }
 
-/// How the CSV files begin.
+/// Beginnings of the CSV files.
 const CSV: &str = "a line that begins with tag,x,y (EUFS), # x_m,y_m,w_tr_right_m,w_tr_left_m (TUM), or # x_m,y_m (a race line of TUM)";
 
 /// Whether a file is meant to be comma-separated: by its name, unless it begins with a key, or because its

@@ -6,10 +6,10 @@ use crate::geometry::Point;
 use crate::race::{Corridor, LineError};
 use crate::world::formats::{FormatError, Location, shown};
 
-/// Metres from the middle to an edge at most. No track is wider, and wider ones would take long to line with
-/// cones.
+/// Maximum distance from the centre line to an edge (m). No track is wider, and lining a wider one with cones
+/// would take long.
 const WIDEST: f64 = 100.0;
-/// The first line of the tracks of the TUM racetrack database.
+/// Header line of the tracks of the TUM racetrack database.
 const HEADER: &str = "# x_m,y_m,w_tr_right_m,w_tr_left_m";
 
 /// Reads a circuit of the TUM racetrack database: a closed centre line (m), with the distance to the right

@@ -30,7 +30,7 @@ fn widest_gap(track: &ConeTrack) -> f64 {
     gaps.fold(0.0, f64::max)
 }
 
-/// Metres by which two cones are farther from each other than their places are, at most.
+/// Maximum difference between the distance of two cones and that of their nominal positions (m).
 const BESIDE: f64 = 0.142;
 
 #[test]

@@ -18,9 +18,9 @@ use super::limits::{MAX_FACES, MAX_IMAGE_BYTES, MAX_METRES, MAX_TEXT_BYTES};
 use super::source::{Files, SourceFile, decode};
 use crate::world::{Colour, Face, Material, Mesh};
 
-/// What becomes of an object whose model cannot be had.
+/// Consequence for an object without a usable model.
 const SHAPE_INSTEAD: &str = "cameras see the shape of its colliders";
-/// What becomes of a face whose image cannot be had.
+/// Consequence for a face without a usable image.
 const GRAY_INSTEAD: &str = "it is gray";
 
 /// Reads the model that a file names at some place, `scale` metres in a unit; faces without a material have a
@@ -53,7 +53,7 @@ fn parse(
         ignore_lines: true,
         ..Default::default()
     };
-    // Materials are read where the model names them; what goes wrong is told behind.
+    // Materials are read where the model names them; their errors are reported afterwards.
     let library = RefCell::new(Library { model: &name, files, failure: None, origins: BTreeMap::new() });
     let read =
         tobj::load_obj_buf(&mut text.as_bytes(), &options, |file| library.borrow_mut().read(&text, file));
@@ -158,7 +158,7 @@ fn painted(
     Ok(Material { colour: Colour::new(red, green, blue), image })
 }
 
-/// Adds the triangles of a part. Fails with what is wrong about them.
+/// Adds the triangles of a part. The error says what is wrong with them.
 fn add(mesh: &mut Mesh, part: &tobj::Mesh, scale: f64) -> Result<(), String> {
     let bare = mesh.materials.len() - 1;
     let material = part.material_id.filter(|&id| id < bare).unwrap_or(bare);

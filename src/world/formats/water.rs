@@ -68,7 +68,7 @@ fn speed(args: &mut Args<'_, '_>, what: &str) -> Result<Vector, FormatError> {
     Ok(Vector::new(part("x")?, part("y")?) / 1000.0)
 }
 
-/// Writes what is not as in still, fresh water.
+/// Writes the properties that differ from still fresh water.
 pub(super) fn write(text: &mut String, water: &Water) -> Written {
     let plain = Water::default();
     if water.density != plain.density {

@@ -75,15 +75,15 @@ pub fn pool(stream: &mut Stream, kind: PoolKind) -> Result<Pool, ParameterError>
     Ok(Pool { world, start: Pose::new(start.x, start.y, heading) })
 }
 
-/// Metres of the rim around a pool, of it above the water, and between samples.
+/// Width of the rim around a pool, its height above the water, and distance between samples (m).
 const RIM: f64 = 0.5;
 const ABOVE: f64 = 0.1;
 const PITCH: f64 = 0.1;
-/// Metres of water: the least, and those between which the deepest place is.
+/// Water depths: minimum, and range of the deepest place (m).
 const DEPTHS: [f64; 3] = [1.5, 1.7, 2.4];
-/// Metres in which the sides rise to the rim.
+/// Width over which the sides rise to the rim (m).
 const BATTER: [f64; 2] = [0.15, 0.4];
-/// Metres from a start to the sides.
+/// Distance from a start to the sides (m).
 const CLEAR: f64 = 1.5;
 
 /// The outline of a pool.
@@ -139,7 +139,7 @@ impl Sides {
         }
     }
 
-    /// Metres from a point to the sides; negative outside.
+    /// Distance from a point to the sides (m); negative outside.
     fn inside(&self, at: Point) -> f64 {
         match self {
             Self::Polygon(corners) => {

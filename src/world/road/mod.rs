@@ -17,7 +17,7 @@
 //! # Ok::<(), roverlab::world::road::CourseError>(())
 //! ```
 //!
-//! One of one's own is a chain of elements:
+//! Your own course is a chain of elements:
 //!
 //! ```
 //! use std::f64::consts::PI;

@@ -16,7 +16,7 @@ use super::hub::{Channel, Hub, Keep};
 use super::server::{Opening, Server};
 use crate::{Displayed, Frames, IMAGE_INTERVAL, Message, Shown, overlay_json, scene_json};
 
-/// The page beside a run, and other viewers. When it is dropped, they get the rest, and their connections end.
+/// The page beside a run, and other viewers. On drop, viewers receive the rest, and their connections end.
 pub struct Beside {
     server: Server,
     page: Channel,
@@ -30,7 +30,7 @@ impl fmt::Debug for Beside {
     }
 }
 
-/// What is outside of a simulated world: displays and keys of programs that drive its robots.
+/// Devices outside a simulated world: displays and keys of the programs that drive its robots.
 pub trait Devices: fmt::Debug + Send {
     /// A robot's display, after the first drawing.
     fn face(&self, robot: usize) -> Option<Face>;
@@ -50,7 +50,7 @@ pub struct Face {
     pub menu: String,
 }
 
-/// Number of a run's last lines that a page gets which comes later.
+/// Number of a run's last lines that a later page receives.
 const LINES: usize = 1000;
 
 impl Beside {
@@ -79,12 +79,12 @@ impl Beside {
         self.say(Message::Told, &[&time, line.as_bytes()].concat(), LINES);
     }
 
-    /// The scene before robots drive in it. Returns what has to watch it.
+    /// The scene before robots drive in it. Returns the watcher that must observe it.
     pub fn scene(&self, scene: &Scene) -> Box<dyn Watcher> {
         self.scene_with(scene, None)
     }
 
-    /// The same, with devices that are not in the world.
+    /// The same, with devices outside the world.
     pub fn scene_with(&self, scene: &Scene, devices: Option<Box<dyn Devices>>) -> Box<dyn Watcher> {
         let hub = &self.server.hub;
         self.say(Message::Scene, scene_json(scene).to_string().as_bytes(), 1);
@@ -124,7 +124,7 @@ impl Beside {
         self.say(Message::Ended, text.as_bytes(), 1);
     }
 
-    /// Sends a message to pages, also to those that come later if it is among the last ones of its kind.
+    /// Sends a message to pages. Later pages receive the last messages of each kind.
     fn say(&self, message: Message, bytes: &[u8], most: usize) {
         let time = nanoseconds(f64::from_bits(self.time.load(Ordering::Relaxed)));
         let keep = Keep::Last(message as u8, most);
@@ -143,7 +143,7 @@ pub(super) fn nanoseconds(seconds: f64) -> u64 {
     (seconds * 1e9).round() as u64
 }
 
-/// Takes frames of a world while somebody wants them, and presses keys.
+/// Takes frames of a world while there are viewers, and presses keys.
 struct Camera {
     hub: Arc<Hub>,
     page: Channel,
@@ -153,7 +153,7 @@ struct Camera {
     faces: Vec<Option<Face>>,
     time: Arc<AtomicU64>,
     frames: Frames,
-    /// Number of pages that had come at the last frame.
+    /// Number of pages at the last frame.
     pages: u64,
     ticks: u64,
 }

@@ -18,9 +18,9 @@ pub(super) const PAGE: usize = 0;
 #[derive(Debug)]
 pub(super) struct Hub {
     state: Mutex<State>,
-    /// Wakes who waits for a subscription.
+    /// Wakes threads that wait for a subscription.
     subscribed: Condvar,
-    /// Whether keys have been pressed that nobody has taken.
+    /// Whether there are key presses not yet taken.
     pressed: AtomicBool,
     /// Number of subscriptions to the page's channel so far.
     pages: AtomicU64,
@@ -29,7 +29,7 @@ pub(super) struct Hub {
     session: String,
 }
 
-/// Sends to each client on its own what it subscribes to.
+/// Sends each client the channels that it subscribes to.
 pub(super) trait Source: fmt::Debug + Send + Sync {
     /// A client has subscribed to a channel.
     fn subscribed(&self, hub: &Arc<Hub>, client: u64, subscription: u32, channel: usize, outbox: &Outbox);
@@ -47,7 +47,7 @@ struct State {
 struct Advertised {
     topic: Topic,
     channel: Channel,
-    /// What those get who come later: kind, time and content.
+    /// Messages for later clients: kind, time and content.
     kept: VecDeque<(u8, u64, Vec<u8>)>,
 }
 
@@ -79,7 +79,7 @@ impl Channel {
     }
 }
 
-/// Whether a message is for those too who subscribe later.
+/// Whether a message is also for later subscribers.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Keep {
     No,
@@ -123,7 +123,7 @@ impl Hub {
         let _ = self.source.set(source);
     }
 
-    /// The channel of a topic, which is announced if it is new.
+    /// The channel of a topic; a new one is announced.
     pub(super) fn advertise(&self, topic: Topic) -> Channel {
         let mut state = self.lock();
         if let Some(known) = state.channels.iter().find(|known| known.topic == topic) {
@@ -174,7 +174,7 @@ impl Hub {
         }
     }
 
-    /// Waits until somebody has subscribed to something.
+    /// Waits for a subscription.
     pub(super) fn wait_for_subscription(&self) {
         let mut state = self.lock();
         while state.clients.values().all(|client| client.subscriptions.is_empty()) {
@@ -222,7 +222,7 @@ impl Hub {
         }
     }
 
-    /// Does what a client wants. Fails with what was found and expected.
+    /// Handles a client's message. The error says what was found and expected.
     pub(super) fn heed(self: &Arc<Self>, client: u64, wish: Wish) -> Result<(), String> {
         match wish {
             Wish::Subscribe(pairs) => {

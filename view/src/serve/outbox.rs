@@ -19,13 +19,13 @@ struct Shared {
 
 #[derive(Debug, Default)]
 struct Queue {
-    /// Each with whether it may be dropped.
+    /// Frames, each with a flag whether it may be dropped.
     frames: VecDeque<(Vec<u8>, bool)>,
     bytes: usize,
     dropped: u64,
     /// Whether a frame is being sent.
     sending: bool,
-    /// Whether nothing more comes.
+    /// Whether it is closed.
     closed: bool,
 }
 
@@ -100,7 +100,7 @@ impl Outbox {
         }
     }
 
-    /// Nothing more comes: the client gets what is in the queue.
+    /// Closes it: the client receives the rest of the queue.
     pub(super) fn close(&self) {
         self.push(protocol::close(), false);
         self.lock().closed = true;

@@ -49,9 +49,9 @@ struct Tape(Arc<Reel>);
 struct Reel {
     /// All messages: time (ns), channel and content.
     messages: Vec<(u64, Channel, Vec<u8>)>,
-    /// What the page is told.
+    /// Messages to the page.
     page: Vec<Vec<u8>>,
-    /// Number of messages that a client's playing has reached.
+    /// Number of messages played to a client.
     places: Mutex<BTreeMap<u64, usize>>,
 }
 
@@ -77,7 +77,7 @@ impl Reel {
         self.places.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Tells a page everything.
+    /// Sends a page all messages.
     fn tell(&self, subscription: u32, outbox: &Outbox) {
         for message in &self.page {
             if !outbox.push_patiently(protocol::message_data(subscription, 0, message)) {
@@ -101,7 +101,7 @@ impl Reel {
         }
     }
 
-    /// The first and the last message so far of a channel to which a client subscribes later.
+    /// The first and the last message so far of a channel, for a later subscription.
     fn catch_up(&self, place: usize, channel: usize, subscription: u32, outbox: &Outbox) {
         let mut past = self.messages[..place].iter().filter(|(_, other, _)| other.is(channel));
         let (first, last) = (past.next(), past.next_back());

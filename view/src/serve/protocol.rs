@@ -92,7 +92,7 @@ pub(super) enum Wish {
 }
 
 impl Wish {
-    /// A text. Fails with what was found and expected.
+    /// A text message. The error says what was found and expected.
     pub(super) fn of_text(text: &str) -> Result<Self, String> {
         let wish: Value = serde_json::from_str(text).map_err(|error| format!("found no JSON: {error}"))?;
         let wrong = || format!("found {wish}; expected an operation of {}", NAMES[0]);

@@ -1,4 +1,4 @@
-//! Requests of browsers and viewers, and what they get.
+//! Requests of browsers and viewers, and their answers.
 
 use std::io::{self, Read, Write};
 

@@ -14,12 +14,12 @@ use super::outbox::Outbox;
 use super::protocol::{self, Wish};
 use super::request::{self, Answer};
 
-/// How a server is opened.
+/// Options of a server.
 #[derive(Debug, Clone, Default)]
 pub struct Opening {
     /// Its port; a free one if 0.
     pub port: u16,
-    /// What runs, as a command line.
+    /// The command line that runs.
     pub command: String,
 }
 
@@ -137,7 +137,7 @@ impl Desk {
         self.talk(&stream, rest)
     }
 
-    /// Speaks the protocol with a client until one of both ends it.
+    /// Speaks the protocol with a client until either side ends it.
     fn talk(&self, stream: &TcpStream, rest: Vec<u8>) -> io::Result<()> {
         let outbox = Outbox::default();
         let (out, frames) = (stream.try_clone()?, outbox.clone());
@@ -178,7 +178,7 @@ fn send(mut stream: TcpStream, outbox: &Outbox) {
     let _ = stream.shutdown(Shutdown::Both);
 }
 
-/// The reading end of a connection. What reading leads to, answers to pings, is sent with everything else.
+/// The reading end of a connection. Answers to pings are queued with all other messages.
 struct Ends<'a> {
     stream: &'a TcpStream,
     outbox: &'a Outbox,

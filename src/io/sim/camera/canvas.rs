@@ -82,7 +82,7 @@ impl Canvas {
         }
     }
 
-    /// As [`tint`](Self::tint), but only where the shape is nearer than what is there.
+    /// Like [`tint`](Self::tint), but only where the shape is nearest.
     pub(super) fn tint_seen(
         &mut self,
         top: usize,

@@ -68,7 +68,7 @@ impl Cutter {
         }
     }
 
-    /// Lays a convex face of the floor over what is there.
+    /// Draws a convex face of the floor over the picture.
     pub(super) fn tint(
         &mut self,
         canvas: &mut Canvas,
@@ -84,7 +84,7 @@ impl Cutter {
         }
     }
 
-    /// As [`tint`](Self::tint), but only where the face is nearer than what is there.
+    /// Like [`tint`](Self::tint), but only where the face is nearest.
     pub(super) fn tint_seen(
         &mut self,
         canvas: &mut Canvas,

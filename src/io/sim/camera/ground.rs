@@ -29,7 +29,7 @@ pub(super) struct Ground {
     texture: Texture,
     /// Whether the texture is one image over the whole floor instead of a repeated pattern.
     stretched: bool,
-    /// What is there instead of a level floor.
+    /// Replacement of the level floor, if any.
     relief: Option<Relief>,
 }
 
@@ -96,7 +96,7 @@ impl Ground {
         }
     }
 
-    /// The colour of the floor at a place, for pixels that cover so many metres.
+    /// Colour of the floor at a point, for pixels of a size on the floor (m).
     #[inline]
     fn texel(&self, at: Point, pixel: f64) -> Packed {
         if !self.stretched {

@@ -37,7 +37,7 @@ impl Model {
         Self { faces: mesh.faces.clone(), coats: coats.collect(), reach: mesh.reach() }
     }
 
-    /// Draws it where it stands, where it is nearer than what is there.
+    /// Draws it at its pose, where it is nearest.
     pub(super) fn draw(&self, cutter: &mut Cutter, canvas: &mut Canvas, view: &View, stand: &Stand) {
         if view.misses(view.see(stand.foot), self.reach) {
             return;
@@ -59,7 +59,7 @@ impl Model {
 }
 
 impl Stand {
-    /// Upright at a pose, some metres above the floor.
+    /// Upright at a pose, at a height above the floor (m).
     pub(super) fn upright(pose: &Pose, z: f64) -> Self {
         let forward = direction(pose.heading);
         let axes = [[forward.x, forward.y, 0.0], [-forward.y, forward.x, 0.0], [0.0, 0.0, 1.0]];

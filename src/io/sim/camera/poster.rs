@@ -10,7 +10,7 @@ const BACK: Colour = Colour::from_hex(0x80_80_80);
 /// Smallest visible opacity of a texel.
 const OPAQUE: u8 = 128;
 
-/// Draws a picture on a board, which stands on ground of some level, where it is nearer than what is there.
+/// Draws a picture on a board that stands on the ground at a level, where it is nearest.
 pub(super) fn draw_poster(
     cutter: &mut Cutter,
     canvas: &mut Canvas,

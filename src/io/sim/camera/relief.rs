@@ -60,7 +60,7 @@ impl Relief {
         Self { surface, light, cutter: Cutter::default(), mesh: Vec::new(), blocks: Vec::new() }
     }
 
-    /// Draws how near the surface is, where it is nearer than what is there. Colours are for
+    /// Draws the depth of the surface where it is nearest. Colours are for
     /// [`paint`](Self::paint).
     pub(super) fn draw(&mut self, canvas: &mut Canvas, view: &View) {
         let area = self.surface.area();
@@ -187,7 +187,7 @@ fn coarseness(pixels: f64, depth: f64) -> u32 {
     doubled
 }
 
-/// Draws how near a triangle is where it is nearer than what is there.
+/// Draws the depth of a triangle where it is nearest.
 #[inline]
 fn draw_triangle(cutter: &mut Cutter, canvas: &mut Canvas, view: &View, corners: [Vertex; 3]) {
     let [a, b, c] = corners;
@@ -229,7 +229,7 @@ fn draw_triangle(cutter: &mut Cutter, canvas: &mut Canvas, view: &View, corners:
     }
 }
 
-/// What a triangle covers of a row.
+/// Part of a row covered by a triangle.
 #[inline]
 fn span(corners: &[Vertex; 3], y: f64) -> Span {
     let mut span = Span::EMPTY;

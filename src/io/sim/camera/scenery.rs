@@ -111,7 +111,7 @@ impl Scenery {
         }
     }
 
-    /// Draws what a camera sees that sits on a robot.
+    /// Draws the view of a camera mounted on a robot.
     pub(super) fn draw(
         &mut self,
         canvas: &mut Canvas,
@@ -277,7 +277,7 @@ fn wall(wall: &Wall) -> ([Point; 4], Standing) {
     ([a - half, b - half, b + half, a + half], body)
 }
 
-/// Metres from the floor to a solid's foot.
+/// Height of a solid's foot above the floor (m).
 fn foot(space: &Space, solid: SolidId) -> f64 {
     space.solid(solid).bottom + space.level(solid)
 }

@@ -1,4 +1,4 @@
-//! What stands on hills: walls that follow the ground, and robots that lean.
+//! Things on hills: walls that follow the ground, and tilted robots.
 
 use super::canvas::Canvas;
 use super::face::Cutter;
@@ -20,7 +20,7 @@ pub(super) struct Piece {
     radius: f64,
 }
 
-/// Metres by which walls reach into the ground, which is not straight along a piece of them.
+/// Depth by which walls reach into the ground, which is not straight along a piece of wall (m).
 const FOUNDATION: f64 = 0.05;
 /// Pieces of a wall, at most.
 const MOST_PIECES: f64 = 512.0;

@@ -13,7 +13,7 @@ pub(super) struct Standing {
     pub(super) colour: Colour,
 }
 
-/// Metres by which what lies on hills is above the middle of its place, so that slopes do not bury it.
+/// Height of flat things on hills above the middle of their place, so that slopes do not bury them (m).
 const ABOVE: f64 = 0.004;
 /// Most facets on the side of a cylinder that the camera sees.
 const MAX_FACETS: usize = 32;

@@ -58,12 +58,12 @@ struct Manoeuvre {
     speed: f64,
 }
 
-/// Seconds in which a difference of speed is to be closed, and in which the end of a manoeuvre is.
+/// Time in which a difference in speed, and the distance to the end of a manoeuvre, are reduced (s).
 const CLOSING: f64 = 0.5;
 const APPROACH: f64 = 1.5;
-/// Seconds in which a difference that stays is learnt.
+/// Time in which a lasting difference is estimated (s).
 const LEARNING: f64 = 2.0;
-/// Metres, and radians, from the end of a manoeuvre at which it is over.
+/// Distance (m) and angle (rad) from the end of a manoeuvre at which it is complete.
 const NEAR: Displacement = Displacement { length: 0.01, angle: 0.01 };
 
 impl CraftDrive {
@@ -99,7 +99,7 @@ impl CraftDrive {
         &self.craft
     }
 
-    /// What the thrusters are told for the next tick.
+    /// Commands to the thrusters for the next tick.
     pub(super) fn commands(&mut self) -> [f64; MAX_THRUSTERS] {
         let wish = match self.mode {
             Mode::Thrusters(commands) => return commands,

@@ -12,7 +12,7 @@ pub(in crate::io::sim) struct Swimmer {
     /// Points of the hull that may meet the ground.
     points: Vec<Vector3>,
     windage: Vector,
-    /// How far the hull may move before it has to look for the ground again.
+    /// Distance that the hull may move before the ground is checked again (m).
     clearance: f64,
     /// Ticks since the hull touched the ground.
     free_ticks: u32,
@@ -26,19 +26,19 @@ struct Contact {
     depth: f64,
 }
 
-/// Ticks without touch after which the next one is another contact.
+/// Number of ticks without touch after which the next touch is another contact.
 const ANOTHER: u32 = 20;
-/// The coefficient of friction between hull and ground.
+/// Coefficient of friction between hull and ground.
 const FRICTION: f64 = 0.3;
-/// Rounds over all contacts in a tick.
+/// Number of iterations over all contacts per tick.
 const ROUNDS: usize = 8;
-/// The share of its depth by which a hull comes out of the ground in a tick.
+/// Fraction of its depth by which a hull leaves the ground in a tick.
 const EMERGING: f64 = 0.2;
-/// How far around itself a craft looks for the ground, in metres.
+/// Distance around a craft within which ground is considered (m).
 const LOOK_AHEAD: f64 = 0.5;
-/// Faster craft, in m/s, would cross walls and worlds within a tick.
+/// Maximum speed of a craft (m/s): a faster one would cross walls and worlds within a tick.
 const FASTEST: f64 = 100.0;
-/// Half of the density of air times the drag coefficient of a hull, in kg/m³.
+/// Half the density of air times the drag coefficient of a hull (kg/m³).
 const AIR: f64 = 0.6;
 
 impl Swimmer {
@@ -146,7 +146,7 @@ impl Swimmer {
         self.state.is_finite() && linear.norm() < FASTEST && angular.norm() * self.craft.reach() < FASTEST
     }
 
-    /// The force of the wind on what is out of the water; none of a craft that has dived.
+    /// Wind force on the part above the water; zero for a submerged craft.
     fn wind(&self, waters: &Waters) -> Wrench {
         let wind = waters.wind();
         let above = self.state.position.z + self.craft.highest(&self.state.attitude);
@@ -192,7 +192,7 @@ impl Swimmer {
         another.then(|| place.xy())
     }
 
-    /// How far the hull can surely move without meeting the ground.
+    /// Distance that the hull can certainly move without touching the ground (m).
     fn free_way(&self, ground: &HeightField) -> f64 {
         let lowest = self.state.position.z + self.craft.lowest(&self.state.attitude);
         let free = |around: f64| {

@@ -23,11 +23,11 @@ struct Wave {
     phase: f64,
 }
 
-/// The regular waves of which irregular ones are made.
+/// Number of regular waves that make up irregular ones.
 const PARTS: u32 = 24;
-/// The range of frequencies that they cover, in terms of that with the most energy.
+/// Range of their frequencies, relative to the frequency of the most energy.
 const BAND: [f64; 2] = [0.5, 2.5];
-/// JONSWAP's peak: how much higher than a fully developed sea's, and how wide below and above.
+/// JONSWAP's peak: height relative to a fully developed sea, and its widths below and above.
 const PEAK: f64 = 3.3;
 const WIDTH: [f64; 2] = [0.07, 0.09];
 

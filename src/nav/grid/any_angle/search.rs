@@ -56,7 +56,7 @@ struct View {
     end: u32,
 }
 
-/// Where a view begins that has not been looked for.
+/// Start of a view that has not been determined.
 const UNKNOWN: u32 = u32::MAX;
 
 #[derive(Debug, Clone, Copy)]

@@ -61,7 +61,7 @@ pub(super) struct Search {
     queue: BucketQueue,
 }
 
-/// The parent of the nodes that jumps from the start end at, and the start itself.
+/// Parent of the start, and of the nodes at which jumps from the start end.
 const NO_NODE: u32 = u32::MAX;
 
 impl Search {

@@ -48,7 +48,7 @@ struct Label {
 }
 
 impl Label {
-    /// The way to the node comes through the second leaf of its portal rather than the first.
+    /// The path to the node comes through the second leaf of its portal, not the first.
     const FROM_SECOND: u32 = 1;
     /// The node has left the queue.
     const DONE: u32 = 2;
@@ -56,8 +56,8 @@ impl Label {
 
 /// The parent of the nodes in the start's leaf.
 const START: u32 = u32::MAX;
-/// How much more than it is at least the rest of a way counts. Where there are many ways this finds one much
-/// sooner, which is longer by that part at the most.
+/// Factor on the heuristic. With many equivalent paths, the search ends much earlier, with a path that is
+/// longer by at most this factor.
 const HASTE: f64 = 1.1;
 
 struct Query {

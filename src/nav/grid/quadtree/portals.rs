@@ -22,7 +22,7 @@ pub(super) struct Node {
     pub(super) leaves: [u32; 2],
 }
 
-/// Portals of more cells than this have nodes at their ends as well as in their middle.
+/// Number of cells above which a portal has nodes at its ends as well as in its middle.
 const LONG: i32 = 8;
 
 /// The free leaves of a quadtree and the portals between them.

@@ -56,7 +56,7 @@ fn area(a: HalfPoint, b: HalfPoint, c: HalfPoint) -> i64 {
     ux * vy - uy * vx
 }
 
-/// How many points further on a shortcut may lead.
+/// Maximum number of points that a shortcut skips.
 const REACH: usize = 12;
 
 /// The shortest path over some of the points in their order, using lines of sight to later points.

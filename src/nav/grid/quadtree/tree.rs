@@ -298,7 +298,7 @@ impl Quadtree {
     }
 }
 
-/// The size, as a power of two, of squares whose cells fill a word.
+/// Size of squares whose cells fill a word (power of two).
 const BLOCK: usize = 3;
 
 /// In the order of quarters, the first cells of the squares of four cells.
@@ -325,8 +325,7 @@ fn by_quarters(rows: u64) -> u64 {
     })
 }
 
-/// Exchanges of two bits of the numbers: the places where the higher one is to be set, and how far off the
-/// others are.
+/// Exchanges of two bits of the numbers: positions where the higher one is set, and distance to the others.
 const SWAPS: [(u64, u32); 3] = [swap(4, 2), swap(3, 2), swap(2, 1)];
 
 const fn swap(high: u32, low: u32) -> (u64, u32) {

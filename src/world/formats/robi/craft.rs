@@ -1,4 +1,4 @@
-//! The lines of boats and underwater craft, and what stands in for those that are missing.
+//! The lines of boats and underwater craft, and the defaults of missing ones.
 
 use std::fmt::{Result as Written, Write as _};
 
@@ -11,7 +11,7 @@ use crate::geometry::{Point3, Vector3};
 use crate::kinematics::marine::{CraftSpec, HullPart, MAX_THRUSTERS, Thruster};
 use crate::world::{Body, Collider, RobotSpec};
 
-/// What a file says about a craft.
+/// The properties of a craft stated in a file.
 #[derive(Default)]
 pub(super) struct CraftLines {
     hull: Vec<HullPart>,
@@ -22,15 +22,15 @@ pub(super) struct CraftLines {
     inertia: Option<[f64; 6]>,
 }
 
-/// The share of its volume that an underwater craft keeps in reserve whose file states no hull, and how many
-/// times its weight the hull of such a boat carries at least.
+/// Buoyancy of an underwater craft relative to its weight, and minimum of that of a boat, for a file without
+/// a hull.
 const RESERVE: f64 = 1.05;
 const FREEBOARD: f64 = 2.0;
-/// The force of a thruster in newtons for each kilogram, and where vertical ones are as a share of half the
-/// length, where a file states none: Mako's.
+/// Default force of a thruster per mass (N/kg), and default position of vertical ones as a fraction of half
+/// the length: Mako's.
 const STRENGTH: f64 = 0.7;
 const NEAR_THE_ENDS: f64 = 0.75;
-/// Kilograms in a cubic metre of water.
+/// Density of fresh water (kg/m³).
 const FRESH: f64 = 1000.0;
 
 impl CraftLines {
