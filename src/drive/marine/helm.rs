@@ -19,6 +19,8 @@ pub(super) struct Helm {
     yaw: f64,
     pitch_rate: f64,
     turn_rate: f64,
+    /// The push ahead (N) that a boat's thrusters do.
+    pushed: f64,
     before: f64,
     /// Seconds since the observation before; at first the period.
     seconds: f64,
@@ -62,6 +64,7 @@ impl Helm {
             yaw: 0.0,
             pitch_rate: 0.0,
             turn_rate: 0.0,
+            pushed: 0.0,
             before: 0.0,
             seconds: period,
         })
@@ -125,10 +128,26 @@ impl Helm {
         self.craft.inertia()[5] * self.turning * (self.turning * off - 2.0 * self.turn_rate)
     }
 
+    /// The body that it steers.
+    pub(super) fn craft(&self) -> &Craft {
+        &self.craft
+    }
+
+    /// The turn rate (rad/s) that was read.
+    pub(super) fn turn_rate(&self) -> f64 {
+        self.turn_rate
+    }
+
+    /// The push ahead (N) that a boat's thrusters do since the step before.
+    pub(super) fn pushed(&self) -> f64 {
+        self.pushed
+    }
+
     /// The thrusters' commands that push a boat.
-    pub(super) fn afloat(&self, push: Push) -> Result<Thrust> {
+    pub(super) fn afloat(&mut self, push: Push) -> Result<Thrust> {
         let along = Wrench { force: Vector3::x() * push.ahead, moment: Vector3::z() * push.turn };
         let along = self.allocation.share(&along);
+        self.pushed = push.ahead * along.share;
         Thrust::new(&along.commands[..self.craft.thrusters().len()])
     }
 
