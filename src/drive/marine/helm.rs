@@ -40,6 +40,8 @@ pub(super) struct Push {
 const BELIEVED: f64 = 0.1;
 /// Seconds in which a difference of speed, and of turn rate, is to be closed.
 const CLOSING: f64 = 0.5;
+/// The least cosine of a pitch at which a craft still has a heading.
+const STEEPEST: f64 = 0.1;
 /// The most that a craft slips aside, as a share of its speed ahead.
 const MOST_SLIP: f64 = 1.0;
 
@@ -79,9 +81,11 @@ impl Helm {
             self.hold = Some(DepthHold::new(&self.craft, seen.depth, self.hold_parameters)?);
         }
         self.before = time;
-        self.pitch = believed(self.pitch + seen.rates.y * self.seconds, seen.attitude.pitch);
-        self.yaw = believed(self.yaw + seen.rates.z * self.seconds, seen.attitude.yaw);
-        (self.depth, self.pitch_rate, self.turn_rate) = (seen.depth, seen.rates.y, seen.rates.z);
+        let [pitch_rate, turn_rate] = levelled(seen);
+        let turned = |before: f64, now: f64| 0.5 * (before + now) * self.seconds;
+        self.pitch = believed(self.pitch + turned(self.pitch_rate, pitch_rate), seen.attitude.pitch);
+        self.yaw = believed(self.yaw + turned(self.turn_rate, turn_rate), seen.attitude.yaw);
+        (self.depth, self.pitch_rate, self.turn_rate) = (seen.depth, pitch_rate, turn_rate);
         Ok(())
     }
 
@@ -166,6 +170,14 @@ impl Helm {
         let commands: Vec<f64> = both.map(|(a, b)| (a + b).clamp(-1.0, 1.0)).collect();
         Thrust::new(&commands[..self.craft.thrusters().len()])
     }
+}
+
+/// How fast pitch and heading change: not as fast as a craft that rolls turns about its own axes (Fossen 2021,
+/// section 2.2).
+fn levelled(seen: &DiveObservation) -> [f64; 2] {
+    let (sin, cos) = math::sin_cos(seen.attitude.roll);
+    let upright = (seen.rates.y * sin + seen.rates.z * cos) / math::cos(seen.attitude.pitch).max(STEEPEST);
+    [seen.rates.y * cos - seen.rates.z * sin, upright]
 }
 
 /// An angle between what is expected and what is read.
