@@ -7,7 +7,8 @@ use std::ops::ControlFlow;
 use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
 use roverlab::drive::lane_keeping::{BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters};
 use roverlab::drive::marine::{
-    Boat, BoatParameters, Dive, DiveParameters, PoolWall, PoolWallParameters, Survey, SurveyParameters,
+    Boat, BoatParameters, Dive, DiveParameters, PoolSearch, PoolSearchParameters, PoolWall,
+    PoolWallParameters, Survey, SurveyParameters,
 };
 use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
 use roverlab::drive::terrain::{Ascent, AscentParameters, SlopeSensor};
@@ -103,6 +104,11 @@ const CASES: [Case; 33] = [
         let area = Aabb::new(Point::origin(), Point::new(8.0, 8.0));
         let parameters = SurveyParameters::default();
         driven(robot, &mut Survey::new(&RobotSpec::mako(), START, area, true, parameters)?, limit, stop)
+    }),
+    ("pool search", RobotSpec::mako, |robot, limit, stop| {
+        let area = Aabb::new(Point::origin(), Point::new(8.0, 8.0));
+        let parameters = PoolSearchParameters::default();
+        driven(robot, &mut PoolSearch::new(&RobotSpec::mako(), START, area, true, parameters)?, limit, stop)
     }),
     ("boat", RobotSpec::solar_raft, |robot, limit, stop| {
         let course = [Point::new(9.0, 3.0)];

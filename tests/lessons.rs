@@ -64,6 +64,7 @@ lessons!(
     own_planner,
     own_robot,
     path_following,
+    pool_search,
     quadtree,
     random_drive,
     #[cfg(feature = "log")]

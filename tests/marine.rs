@@ -2,10 +2,12 @@
 
 use std::sync::Arc;
 
-use roverlab::geometry::{Aabb, Point, Pose, Twist, Vector, angle_difference};
+use roverlab::geometry::{Aabb, Point, Point3, Pose, Twist, Vector, Vector3, angle_difference};
 use roverlab::io::sim::{Fleet, Mishap, SimOptions, SimRobot, Simulation};
-use roverlab::io::{Clock, DistanceSensors, Drive, Encoders, Inertial, Manoeuvres, Motors, Odometry, Psd};
-use roverlab::kinematics::marine::CraftSpec;
+use roverlab::io::{
+    Camera, Clock, DistanceSensors, Drive, Encoders, Inertial, Manoeuvres, Motors, Odometry, Psd, Servos,
+};
+use roverlab::kinematics::marine::{CraftSpec, HullPart};
 use roverlab::world::formats::robi;
 use roverlab::world::{
     DriveSpec, HeightField, Object, ObjectKind, RobotSpec, Scene, Shape, Terrain, Wall, Water, Waves, World,
@@ -228,6 +230,9 @@ fn craft_that_cannot_be_are_refused_or_named() {
     };
     assert!(refused(with(&|craft| craft.hull.clear())).contains("hull parts"));
     assert!(refused(with(&|craft| craft.mass = f64::NAN)).contains("mass"));
+    let negative = |size| with(&|craft| craft.hull.push(HullPart::Box { size, centre: Point3::origin() }));
+    assert!(refused(negative(Vector3::new(-0.2, 0.3, 0.1))).contains("hull part"));
+    assert!(refused(negative(Vector3::new(0.2, f64::NAN, 0.1))).contains("hull part"));
     // Without thrusters it drifts; heavier than water it lies on the floor.
     let (_, mut mako) = craft_in(pool(), with(&|craft| craft.thrusters.clear()), SimOptions::ideal());
     assert!(mako.set_motor(1, 1.0).is_err());
@@ -255,6 +260,10 @@ fn craft_that_cannot_be_are_refused_or_named() {
     mako.wait(20.0).unwrap();
     assert!(simulation.truth().pose_in_space(0).unwrap().is_finite());
     assert_eq!(simulation.truth().mishap(0).unwrap(), Some(Mishap::Broken));
+    let murky = World { water: Water { turbidity: -1.0, ..Water::default() }, ..pool() };
+    let scene = Scene::with_robot(murky, RobotSpec::mako(), Pose::new(3.0, 5.0, 0.0));
+    let error = Simulation::new(&scene, SimOptions::ideal()).unwrap_err().to_string();
+    assert!(error.contains("turbidity"), "{error}");
     let windy = World { water: Water { wind: Vector::new(f64::NAN, 0.0), ..Water::default() }, ..pool() };
     let scene = Scene::with_robot(windy, RobotSpec::mako(), Pose::new(3.0, 5.0, 0.0));
     assert!(Simulation::new(&scene, SimOptions::ideal()).is_err());
@@ -301,4 +310,25 @@ fn craft_of_a_fleet_move_as_alone() {
         (two.y - one.y - 4.0).abs() < 1e-9 && (two.x - one.x).abs() < 1e-9 && one.x > 2.5,
         "{one:?} {two:?}"
     );
+}
+
+#[test]
+fn a_camera_sees_less_through_turbid_and_deep_water() {
+    let picture = |turbidity: f64, level: f64| {
+        let water = Water { turbidity, ..Water::default() };
+        let (_, mut mako) = mako_in(World { water, water_level: Some(level), ..pool() });
+        mako.set_servo(2, -1.0).unwrap();
+        mako.wait(4.0).unwrap();
+        let image = mako.image().unwrap();
+        let [mut red, mut blue] = [0.0, 0.0];
+        for pixel in image.pixels() {
+            (red, blue) = (red + f64::from(pixel.0[0]), blue + f64::from(pixel.0[2]));
+        }
+        let count = f64::from(image.width() * image.height());
+        (red / count, blue / count)
+    };
+    let (clear, deep, turbid) = (picture(0.0, 1.9), picture(0.0, 6.0), picture(1.5, 1.9));
+    assert!(clear.0 < 0.7 * clear.1 && clear.1 > 150.0, "red fades first: {clear:?}");
+    assert!(deep.0 < 0.5 * clear.0 && deep.1 < clear.1, "{deep:?} {clear:?}");
+    assert!(turbid.1 < 0.5 * clear.1, "{turbid:?} {clear:?}");
 }

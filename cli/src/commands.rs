@@ -19,8 +19,8 @@ use crate::view;
 use crate::{
     a_to_b, ackermann, boat, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug,
     dive, edges, follow_me, genetic, grid_benchmark, lane_keeping, lidar_scan, localise, micromouse, motion,
-    navigate, omni, pool_wall, quadtree, random_drive, replay, safety, summit, survey, terrain_plan,
-    wall_following,
+    navigate, omni, pool_search, pool_wall, quadtree, random_drive, replay, safety, summit, survey,
+    terrain_plan, wall_following,
 };
 
 /// Runs a command with its command line and its two output streams. Returns the exit status.
@@ -90,6 +90,7 @@ commands!(
     motion by run,
     navigate by run,
     omni by run,
+    pool_search by run,
     pool_wall by run,
     quadtree by run_plain,
     random_drive by run,

@@ -30,6 +30,7 @@ mod micromouse;
 mod motion;
 mod navigate;
 mod omni;
+mod pool_search;
 mod pool_wall;
 mod quadtree;
 mod random_drive;

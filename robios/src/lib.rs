@@ -49,6 +49,7 @@
 pub mod ask;
 pub mod costs;
 mod ffi;
+pub mod identity;
 pub mod keyboard;
 pub mod keys;
 pub mod link;
@@ -58,6 +59,7 @@ pub mod process;
 pub mod report;
 pub mod robios;
 pub mod screen;
+pub mod seat;
 pub mod showing;
 mod walker;
 pub mod wire;

@@ -7,10 +7,11 @@ use roverlab::geometry::Pose;
 use roverlab::io::sim::Simulation;
 use roverlab::io::{Error, ErrorKind, Result};
 
-use crate::ask::{Reply, Request, Seat, Terms};
+use crate::ask::{Reply, Request};
 use crate::memory::Memory;
 use crate::plan::Plan;
 use crate::report::Stance;
+use crate::seat::{Seat, Terms};
 use crate::wire::{Answer, Question};
 
 /// Answers requests.

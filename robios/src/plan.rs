@@ -165,7 +165,7 @@ impl Plan {
     /// read.
     pub fn scene(&self) -> Result<(Scene, Vec<String>), String> {
         let mut warnings = Vec::new();
-        let found = self.world.clone().or_else(|| only_world(&self.folder));
+        let found = self.world.clone().or_else(|| only_world(&self.folder, &mut warnings));
         let mut scene = match found {
             Some(file) => {
                 let bytes = formats::read_file(&file).map_err(|error| error.to_string())?;
@@ -259,17 +259,34 @@ fn robot(name: &str, warnings: &mut Vec<String>) -> Result<RobotSpec, String> {
     Ok(parsed.value)
 }
 
-/// The single world in a folder: the only `.sim`, or else the only `.maz` or `.wld`.
-fn only_world(folder: &Path) -> Option<PathBuf> {
-    let files: Vec<PathBuf> =
+/// Endings of worlds that are taken from a program's folder, in the order of preference.
+const ENDINGS: [&str; 3] = ["sim", "maz", "wld"];
+
+/// The single world in a folder: the only `.sim`, or else the only `.maz` or `.wld`. Warns of what is taken,
+/// and of several among which there is no choice.
+fn only_world(folder: &Path, warnings: &mut Vec<String>) -> Option<PathBuf> {
+    let mut files: Vec<PathBuf> =
         std::fs::read_dir(folder).ok()?.filter_map(Result::ok).map(|entry| entry.path()).collect();
-    ["sim", "maz", "wld"].iter().find_map(|ending| {
-        let mut fitting = files.iter().filter(|file| {
-            file.extension().is_some_and(|found| found.to_string_lossy().eq_ignore_ascii_case(ending))
-        });
-        let first = fitting.next()?;
-        fitting.next().is_none().then(|| first.clone())
-    })
+    files.sort();
+    let ends_in = |file: &Path, ending: &str| {
+        file.extension().is_some_and(|found| found.to_string_lossy().eq_ignore_ascii_case(ending))
+    };
+    let of = |ending: &&str| files.iter().filter(|file| ends_in(file, ending)).collect::<Vec<_>>();
+    let kinds: Vec<_> = ENDINGS.iter().map(of).collect();
+    if let Some(only) = kinds.iter().find(|files| files.len() == 1) {
+        let name = only[0].file_name().unwrap_or_default().to_string_lossy();
+        warnings
+            .push(format!("{name}, the only one beside the program, is the world; --world names another"));
+        return Some(only[0].clone());
+    }
+    if let Some((ending, several)) = ENDINGS.iter().zip(&kinds).find(|(_, files)| !files.is_empty()) {
+        let count = several.len();
+        warnings.push(format!(
+            "{count} files .{ending} lie beside the program, and none of them is taken as the world; expected \
+             --world FILE"
+        ));
+    }
+    None
 }
 
 /// Default start of a robot: the world's start place, or its middle.

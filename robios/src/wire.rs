@@ -9,7 +9,8 @@ use roverlab::geometry::{Pose, Twist};
 use roverlab::io::{Error, ErrorKind, LidarSettings, RadioMessage, Result};
 use roverlab::world::InertialSpec;
 
-use crate::ask::{Identity, Reply, Request};
+use crate::ask::{Reply, Request};
+use crate::identity::Identity;
 
 /// Maximum size of a reply (bytes): an image of five million pixels and its header.
 pub const LONGEST: usize = 16 << 20;
@@ -116,6 +117,7 @@ impl Writer {
         let w = self;
         match reply {
             Reply::Done => w.byte(0),
+            Reply::Misplaced(text) => w.byte(13).bytes(text.as_bytes()),
             Reply::Flag(flag) => w.byte(1).byte(u8::from(*flag)),
             Reply::Number(number) => w.byte(2).number(*number),
             Reply::Count(count) => w.byte(3).bytes(&count.to_le_bytes()),
@@ -133,7 +135,8 @@ impl Writer {
                 .word(identity.objects)
                 .word(identity.lidar_points)
                 .number(identity.top_speed)
-                .number(identity.top_turn)
+                .number(identity.reach)
+                .number(identity.tightest_turn)
                 .number(identity.full_speed)
                 .number(identity.tick_length)
                 .byte(u8::from(identity.full_turn))
@@ -240,6 +243,7 @@ impl<'a> Reader<'a> {
                 Reply::Image(RgbImage::from_raw(width, height, r.rest().to_vec())?)
             }
             8 => Reply::Message(None),
+            13 => Reply::Misplaced(String::from_utf8_lossy(r.rest()).into_owned()),
             9 => Reply::Message(Some(RadioMessage { from: r.word()?, data: r.rest().to_vec() })),
             10 => {
                 let (id, robots, objects, lidar_points) = (r.word()?, r.word()?, r.word()?, r.word()?);
@@ -249,7 +253,8 @@ impl<'a> Reader<'a> {
                     objects,
                     lidar_points,
                     top_speed: r.number()?,
-                    top_turn: r.number()?,
+                    reach: r.number()?,
+                    tightest_turn: r.number()?,
                     full_speed: r.number()?,
                     tick_length: r.number()?,
                     full_turn: r.byte()? != 0,
@@ -382,6 +387,7 @@ mod tests {
     fn answers_survive() {
         for reply in [
             Reply::Done,
+            Reply::Misplaced("robot 1 is put to 0, 0 mm, in a wall".into()),
             Reply::Flag(true),
             Reply::Count(-5),
             Reply::Three([1.0, -2.0, 0.5]),

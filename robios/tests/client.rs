@@ -7,9 +7,9 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use eyesim::ask::{Seat, Terms};
 use eyesim::costs::Costs;
 use eyesim::plan::{Plan, names};
+use eyesim::seat::{Seat, Terms};
 use roverlab::drive::{RandomDrive, RandomDriveParameters};
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::control::run;

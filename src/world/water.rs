@@ -14,6 +14,9 @@ pub struct Water {
     pub waves: Option<Waves>,
     /// Velocity of the wind along x and y (m/s).
     pub wind: Vector,
+    /// The light that a metre of water scatters, per metre (1/m): 0 in clear water, 0.1 in a filtered pool, 1 in
+    /// a lake. Cameras see what is far less.
+    pub turbidity: f64,
 }
 
 /// Waves of small height on deep water.
@@ -30,9 +33,9 @@ pub struct Waves {
 }
 
 impl Default for Water {
-    /// Still fresh water.
+    /// Fresh, clear water that stands still.
     fn default() -> Self {
-        Self { density: 1000.0, current: Vec::new(), waves: None, wind: Vector::zeros() }
+        Self { density: 1000.0, current: Vec::new(), waves: None, wind: Vector::zeros(), turbidity: 0.0 }
     }
 }
 
@@ -41,6 +44,8 @@ impl Water {
     pub const DENSEST: f64 = 2000.0;
     /// Maximum speed of current and wind (m/s).
     pub const FASTEST: f64 = 100.0;
+    /// The most turbid water, in 1/m: nothing is seen at a hand's breadth.
+    pub const MURKIEST: f64 = 100.0;
 
     /// Velocity of the current at a depth below the surface (m).
     ///
@@ -66,6 +71,8 @@ impl Water {
         require_positive("water's density", self.density)?;
         let light = self.density <= Self::DENSEST;
         require("water's density", self.density, light, "at most 2000 kg/m³")?;
+        let clear = (0.0..=Self::MURKIEST).contains(&self.turbidity);
+        require("water's turbidity", self.turbidity, clear, "0 to 100 per metre")?;
         let slow = |name: &'static str, speed: Vector| {
             // If one of the two is NaN, that one is wrong.
             let wrong = |part: &&f64| part.is_nan() || part.abs() > Self::FASTEST;

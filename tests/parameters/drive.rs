@@ -1,8 +1,8 @@
 use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
 use roverlab::drive::lane_keeping::{BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters};
 use roverlab::drive::marine::{
-    Boat, BoatParameters, DepthHoldParameters, Dive, DiveParameters, PoolWall, PoolWallParameters, Survey,
-    SurveyParameters,
+    Boat, BoatParameters, DepthHoldParameters, Dive, DiveParameters, PoolSearch, PoolSearchParameters,
+    PoolWall, PoolWallParameters, Survey, SurveyParameters,
 };
 use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
 use roverlab::drive::terrain::{Ascent, AscentParameters, SlopeSensor};
@@ -187,7 +187,9 @@ fn diving() {
     let start = Pose::new(2.0, 2.0, 0.0);
     check!(SurveyParameters = SurveyParameters::default(),
         |p| Survey::new(&RobotSpec::mako(), start, area, true, p)?,
-        { BoundedFromZero: margin; NotNegative: depth; Positive: spacing, speed, period; } but hold);
+        { BoundedFromZero: margin; NotNegative: depth; Positive: spacing, speed, density, period; } but hold);
+    check!(PoolSearchParameters = PoolSearchParameters::default(),
+        |p| PoolSearch::new(&RobotSpec::mako(), start, area, true, p)?, { } but colour, survey);
     check!(BoatParameters = BoatParameters::default(),
         |p| Boat::new(&CraftSpec::solar_raft(), start, &[Point::new(9.0, 9.0)], p)?,
         { NotNegative: station; Positive: speed, lookahead, reached, period; });

@@ -1,9 +1,7 @@
-use std::num::NonZero;
-
 use roverlab::geometry::Point;
 use roverlab::geometry::units::from_mm;
 
-use crate::common::{CommonArgs, OF_ONE_RUN};
+use crate::common::{CampaignArgs, CommonArgs, OF_ONE_RUN};
 
 /// Command line of `boat`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -31,17 +29,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "X,Y;X,Y...", value_parser = parse_course, allow_hyphen_values = true)]
     pub(crate) course: Option<Course>,
 
-    /// Sail many courses, and print a table.
-    #[arg(long)]
-    pub(crate) campaign: bool,
-
-    /// Number of courses in a campaign, with consecutive seeds.
-    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
-    pub(crate) runs: u64,
-
-    /// Number of threads in a campaign [default: one per core].
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    pub(crate) threads: Option<NonZero<usize>>,
+    #[command(flatten)]
+    pub(crate) trials: CampaignArgs,
 
     #[command(flatten)]
     pub(crate) common: CommonArgs,

@@ -5,29 +5,29 @@ use super::Args;
 use super::job::limit;
 use super::lake::{Lake, lake};
 use super::voyage::{Voyage, sail};
-use crate::common::{Failure, Outcome, Report, millimetres, share_out, threads};
+use crate::common::{Failure, Report, campaign_report, millimetres, wrong_seeds};
 use crate::driving::{Conditions, RESERVE};
 
-const LISTED: usize = 10;
+/// Courses without `--runs`.
+const COURSES: u64 = 200;
 
 /// The campaign's work.
 pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
-    let voyages = share_out("courses", args.runs, threads(args.threads), |index| {
-        let seed = args.common.seed.wrapping_add(index);
+    let voyages = args.trials.trials("courses", COURSES, args.common.seed, |seed| {
         let Lake { scene, course } = lake(seed)?;
         let limit = args.common.time_limit.unwrap_or_else(|| limit(&scene, &course));
         let conditions =
             Conditions { seed, common: None, reserve: RESERVE, ..Conditions::new(&args.common, limit)? };
         let mut voyage = sail(&scene, &course, &conditions, |_| {})?;
         (voyage.run.trail, voyage.run.odometry_path, voyage.run.in_space) = Default::default();
-        Ok((seed, voyage))
+        Ok(voyage)
     })?;
     let worst = |of: fn(&Voyage) -> Option<f64>| {
         voyages.iter().map(|(_, voyage)| of(voyage).unwrap_or(f64::INFINITY)).fold(0.0, f64::max)
     };
     let (miss, track, station) = (worst(|v| v.miss), worst(|v| v.cross_track), worst(|v| v.station));
     let contacts: u64 = voyages.iter().map(|(_, voyage)| u64::from(voyage.run.truth.contacts)).sum();
-    let wrong: Vec<u64> = voyages.iter().filter(|(_, v)| !v.is_good()).map(|(seed, _)| *seed).collect();
+    let wrong = wrong_seeds(&voyages, Voyage::is_good);
     let good = voyages.len() - wrong.len();
     args.common.tell(format_args!(
         "courses   good  contacts  worst miss  worst cross-track rms  worst station rms\n\
@@ -38,14 +38,9 @@ pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
         units::to_mm(track),
         units::to_mm(station)
     ));
-    if !wrong.is_empty() {
-        args.common.tell(format_args!("  amiss with seeds {:?}", &wrong[..wrong.len().min(LISTED)]));
-    }
-    let outcome = if wrong.is_empty() { Outcome::verdict("passed") } else { Outcome::failure("wrong") };
     let row = json!({
         "courses": voyages.len(), "good": good, "contacts": contacts, "max_miss_mm": millimetres(miss),
         "max_cross_track_rms_mm": millimetres(track), "max_station_rms_mm": millimetres(station),
-        "wrong_seeds": &wrong[..wrong.len().min(LISTED)],
     });
-    Ok(Report { collisions: Some(contacts), ..Report::new(outcome) }.table("rows", vec![row]))
+    Ok(campaign_report(wrong.is_empty(), contacts, &wrong).table("rows", vec![row]))
 }

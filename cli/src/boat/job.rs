@@ -25,7 +25,7 @@ pub(super) fn limit(scene: &Scene, course: &[Point]) -> f64 {
 
 /// The work of the command.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
-    if args.campaign {
+    if args.trials.campaign {
         return campaign(args);
     }
     let common = &args.common;

@@ -65,6 +65,7 @@ macro_rules! shares_options {
 pub(crate) use shares_options;
 
 mod args;
+mod campaign;
 mod command_line;
 mod failure;
 mod files;
@@ -88,6 +89,7 @@ mod workers;
 
 pub(crate) use args::check_writable;
 pub(crate) use args::{CommonArgs, PlainArgs};
+pub(crate) use campaign::{CampaignArgs, campaign_report, wrong_seeds};
 pub(crate) use failure::Failure;
 pub(crate) use files::recording_bytes;
 pub(crate) use free_floor::FreeFloor;

@@ -3,7 +3,7 @@ use roverlab::random::Stream;
 use serde_json::json;
 
 use super::{Args, Dived, Plan, SETTLING, dive};
-use crate::common::{Failure, Outcome, Progress, Report, rounded};
+use crate::common::{Failure, Report, campaign_report, rounded, wrong_seeds};
 
 /// Depths between which a dive leads (m), and how far.
 const DEPTHS: [f64; 2] = [0.25, 1.45];
@@ -14,7 +14,8 @@ const THRUST: f64 = 0.10;
 const CURRENT: f64 = 0.1;
 /// The heading's most root mean square over all dives, in degrees: half of it is the compass's own.
 const HEADING: f64 = 1.0;
-const LISTED: usize = 10;
+/// Dives without `--runs`.
+const DIVES: u64 = 1000;
 
 /// A dive of the campaign.
 fn plan(args: &Args, seed: u64) -> Plan {
@@ -37,52 +38,40 @@ fn plan(args: &Args, seed: u64) -> Plan {
 
 /// Work of the campaign.
 pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
-    let (mut dives, mut amiss): (Vec<Dived>, Vec<u64>) = (Vec::new(), Vec::new());
-    let mut progress = Progress::start();
-    for index in 0..args.runs {
-        progress.show(|| format!("dive: {index} of {} dives", args.runs));
-        let seed = args.common.seed.wrapping_add(index);
-        let mut done = dive(&plan(args, seed))?;
-        done.trail.clear();
-        if !done.is_good() {
-            amiss.push(seed);
-        }
-        dives.push(done);
-    }
-    let worst = |of: &dyn Fn(&Dived) -> f64| dives.iter().map(of).fold(0.0, f64::max);
+    let dives = args.trials.trials("dives", DIVES, args.common.seed, |seed| {
+        let done = dive(&plan(args, seed))?;
+        Ok(Dived { trail: Vec::new(), ..done })
+    })?;
+    let wrong = wrong_seeds(&dives, Dived::is_good);
+    let worst = |of: &dyn Fn(&Dived) -> f64| dives.iter().map(|(_, done)| of(done)).fold(0.0, f64::max);
     let latest = worst(&|done| done.settle.unwrap_or(f64::INFINITY));
     let overshoot = worst(&|done| done.overshoot);
-    let squares: f64 = dives.iter().map(|done| done.heading_rms * done.heading_rms).sum();
+    let squares: f64 = dives.iter().map(|(_, done)| done.heading_rms * done.heading_rms).sum();
     let heading = (squares / dives.len().max(1) as f64).sqrt();
-    let least = dives.iter().map(|done| done.within).fold(1.0, f64::min);
-    let contacts: u32 = dives.iter().map(|done| done.contacts).sum();
-    let good = args.runs - amiss.len() as u64;
+    let least = dives.iter().map(|(_, done)| done.within).fold(1.0, f64::min);
+    let contacts: u64 = dives.iter().map(|(_, done)| u64::from(done.contacts)).sum();
+    let good = dives.len() - wrong.len();
     if !args.common.json {
         println!(
             "dives    good  contacts  latest to settle  overshoot  least within 10 mm  heading\n\
              {:>5}  {good:>6}  {contacts:>8}  {latest:>14.1} s  {:>6.1} mm  {:>16.1} %  {:>4.2} deg\n\
              good: settles within {SETTLING} s, at most 50 mm beyond, then within 10 mm for 95 %, no contact; heading\n\
              within {HEADING} degree in the root mean square of all",
-            args.runs,
+            dives.len(),
             units::to_mm(overshoot),
             100.0 * least,
             units::to_deg(heading),
         );
-        if !amiss.is_empty() {
-            println!("  amiss with seeds {:?}", &amiss[..amiss.len().min(LISTED)]);
-        }
     }
-    let all_good = amiss.is_empty() && heading <= units::from_deg(HEADING);
-    let outcome = if all_good { Outcome::verdict("passed") } else { Outcome::failure("wrong") };
+    let passed = wrong.is_empty() && heading <= units::from_deg(HEADING);
     let row = json!({
-        "runs": args.runs,
+        "runs": dives.len(),
         "good": good,
         "contacts": contacts,
         "latest_settle_s": if latest.is_finite() { Some(rounded(latest)) } else { None },
         "most_overshoot_mm": rounded(units::to_mm(overshoot)),
         "least_within_10mm_percent": rounded(100.0 * least),
         "heading_rms_deg": rounded(units::to_deg(heading)),
-        "amiss": &amiss[..amiss.len().min(LISTED)],
     });
-    Ok(Report { collisions: Some(contacts.into()), ..Report::new(outcome) }.table("rows", vec![row]))
+    Ok(campaign_report(passed, contacts, &wrong).table("rows", vec![row]))
 }

@@ -12,8 +12,8 @@ use roverlab::kinematics::marine::CraftSpec;
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::world::{Colour, DriveSpec, RobotSpec, Scene, Water, World};
 
-use crate::common::{Failure, Outcome, PlainArgs, Report, millimetres, rounded};
-use crate::water::{LEVEL, pool};
+use crate::common::{CampaignArgs, Failure, Outcome, PlainArgs, Report, millimetres, rounded};
+use crate::water::{BOOK, LEVEL, pool};
 
 /// Command line of `dive`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -22,7 +22,7 @@ use crate::water::{LEVEL, pool};
     after_help = "\
 Mako starts afloat in a pool of 25 x 50 m and 1.9 m depth. Depths are those of its sensor, at the middle of its hull.
 
-With --campaign, craft whose mass differs from the model by up to 5 %, and their thrusters by up to 10 %, in currents of up to
+With --campaign, 1000 craft whose mass is up to 5 % off and whose thrusters are up to 10 % off the model, in currents of up to
 0.1 m/s, hold a depth for 30 s and then step by 0.2 to 1.2 m.
 
 JSON fields:
@@ -43,13 +43,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = parse_noise, allow_hyphen_values = true)]
     pub(crate) noise: f64,
 
-    /// Dive many times, and print a table.
-    #[arg(long)]
-    pub(crate) campaign: bool,
-
-    /// Number of dives in a campaign.
-    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
-    pub(crate) runs: u64,
+    #[command(flatten)]
+    pub(crate) trials: CampaignArgs,
 
     #[command(flatten)]
     pub(crate) common: PlainArgs,
@@ -57,7 +52,7 @@ pub(crate) struct Args {
 
 crate::common::shares_options!(Args, common: PlainArgs, unheeded: [
     ("campaign", &["depth", "picture", "animation"]),
-    ("!campaign", &["runs"]),
+    ("!campaign", &["runs", "threads"]),
 ]);
 
 fn parse_depth(text: &str) -> Result<f64, String> {
@@ -121,7 +116,7 @@ impl Dived {
 
 /// Work of the command.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
-    if args.campaign {
+    if args.trials.campaign {
         return campaign::campaign(args);
     }
     let plan = Plan {
@@ -179,7 +174,8 @@ fn dive(plan: &Plan) -> Result<Dived, Failure> {
     let spec = craft(plan);
     let (up, level) = (sensor(&spec), LEVEL);
     let water = Water { current: vec![(0.0, plan.current)], ..Water::default() };
-    let mut scene = Scene::with_robot(World { water, ..pool(|_| 0.0) }, spec, Pose::new(12.5, 25.0, 0.0));
+    let mut scene =
+        Scene::with_robot(World { water, ..pool(BOOK, |_| 0.0) }, spec, Pose::new(12.5, 25.0, 0.0));
     if let Some(depth) = plan.start {
         scene.robots[0].elevation = level - depth - up;
     }

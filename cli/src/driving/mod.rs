@@ -181,7 +181,21 @@ impl Conditions {
     }
 }
 
+/// Fails if a run that lasts until its time limit (s) ended well before it: the robot's clock has jumped ahead.
+pub(crate) fn check_lasted(sim_time: f64, limit: f64) -> Ending<()> {
+    if sim_time + RESERVE >= limit {
+        return Ok(());
+    }
+    Err(format!("the robot's clock ended the run of {limit} s after {sim_time:.1} s"))
+}
+
 impl<T> Run<T> {
+    /// The same for a run that lasts until its time limit (s); it has failed if the robot's clock ended it early.
+    pub(crate) fn lasting(self, limit: f64) -> Self {
+        let ending = self.ending.and_then(|ended| check_lasted(self.sim_time, limit).map(|()| ended));
+        Self { ending, ..self }
+    }
+
     /// A report with the run's ground truth and the outcome determined by `outcome`.
     pub(crate) fn report(&self, outcome: impl FnOnce(&T) -> Outcome) -> Report {
         let (outcome, error) = match &self.ending {

@@ -16,7 +16,7 @@ use roverlab::world::road::{RoadCourse, Traffic};
 use super::course::Setting;
 use super::{Args, Driver, rules};
 use crate::common::{Driven, Failure, Stage, StageTruth};
-use crate::driving::paced;
+use crate::driving::{check_lasted, paced};
 
 /// Result of a drive.
 #[derive(Debug, Clone)]
@@ -104,7 +104,8 @@ impl Watch<'_> {
             }
             let outcome = run(car, keeper, left, |_, _, _| self.look().map(until))?;
             if outcome == LaneOutcome::TimedOut {
-                return Ok(());
+                return check_lasted(self.truth.time()?, seconds)
+                    .map_err(|error| io::Error::new(io::ErrorKind::Other, error));
             }
             self.bring_back(car, seconds)?;
             forget(keeper);

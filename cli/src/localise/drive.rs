@@ -1,6 +1,6 @@
 use roverlab::drive::{RandomDrive, RandomDriveParameters};
 use roverlab::geometry::Pose;
-use roverlab::io::control::{self, until};
+use roverlab::io::control::{self, Halt, until};
 use roverlab::io::{self, Clock, DistanceSensors, Drive, Lidar, LidarScan, Odometry};
 use roverlab::random::Stream;
 use roverlab::scan::{Hypothesis, Localisation, LocalisationMap, Localiser, LocaliserParameters};
@@ -20,6 +20,8 @@ pub(crate) struct Options {
 #[derive(Debug, Clone)]
 pub(crate) struct Finding {
     pub(crate) localisation: Localisation,
+    /// Whether one place explained enough scans, before the time was over.
+    pub(crate) settled: bool,
     pub(crate) hypotheses: Vec<Hypothesis>,
     /// Number of scans used.
     pub(crate) scans: u32,
@@ -47,7 +49,7 @@ pub(crate) fn drive<R: Clock + Drive + Odometry + DistanceSensors + Lidar + ?Siz
     let (mut content, mut scans, mut steps) = (0, 0, 0_u32);
     let mut history = Vec::new();
     let poses = |localiser: &Localiser| localiser.hypotheses().iter().map(|place| place.pose).collect();
-    control::run(robot, &mut wander, options.patience, |_, _, at| {
+    let halt = control::run(robot, &mut wander, options.patience, |_, _, at| {
         if steps.is_multiple_of(EVERY) {
             localiser.update(at.seen.pose, &at.seen.scan)?;
             scans += 1;
@@ -66,6 +68,7 @@ pub(crate) fn drive<R: Clock + Drive + Odometry + DistanceSensors + Lidar + ?Siz
     watch();
     Ok(Finding {
         localisation: localiser.localisation(),
+        settled: halt == Halt::Stopped,
         hypotheses: localiser.hypotheses().to_vec(),
         scans: scans + 1,
         scan,

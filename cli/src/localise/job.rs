@@ -102,7 +102,9 @@ pub(super) fn run(
         seed: conditions.seed,
         patience: args.patience.min(conditions.time_limit - 2.0),
     };
-    conditions.run(scene, pace, |robot, step| drive(robot, &options, step))
+    let run = conditions.run(scene, pace, |robot, step| drive(robot, &options, step))?;
+    let settled = run.ending.as_ref().is_ok_and(|finding| finding.settled);
+    Ok(if settled { run } else { run.lasting(options.patience) })
 }
 
 /// Position (m) and heading error (rad) of the most probable place.

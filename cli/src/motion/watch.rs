@@ -70,6 +70,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         })?;
         Ok(seen)
     })?;
+    let run = run.lasting(seconds);
     let turned = angle_difference(run.truth.pose.heading, scene.robots[0].pose.heading);
     let seen = run.ending.clone().unwrap_or_default();
     let report = run

@@ -1,8 +1,6 @@
-use std::num::NonZero;
-
 use roverlab::geometry::units;
 
-use crate::common::{CommonArgs, OF_ONE_RUN};
+use crate::common::{CampaignArgs, CommonArgs, OF_ONE_RUN};
 
 /// Command line of `pool-wall`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -34,17 +32,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "MM", default_value = "800", value_parser = parse_depth, allow_hyphen_values = true)]
     pub(crate) depth: f64,
 
-    /// Follow the sides of many pools, and print a table.
-    #[arg(long)]
-    pub(crate) campaign: bool,
-
-    /// Number of pools in a campaign, with consecutive seeds.
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
-    pub(crate) runs: u64,
-
-    /// Number of threads in a campaign [default: one per core].
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    pub(crate) threads: Option<NonZero<usize>>,
+    #[command(flatten)]
+    pub(crate) trials: CampaignArgs,
 
     #[command(flatten)]
     pub(crate) common: CommonArgs,

@@ -6,18 +6,18 @@ use serde_json::json;
 use super::Args;
 use super::job::{LAP, generated, kind};
 use super::round::{Errors, round};
-use crate::common::{Failure, Outcome, Report, millimetres, share_out, threads};
+use crate::common::{Failure, Report, campaign_report, millimetres, wrong_seeds};
 use crate::driving::{Conditions, RESERVE};
 
 /// Laps of a pool, and the largest root mean square of the error (m).
 const LAPS: u32 = 10;
 const RMS: f64 = 0.05;
-const LISTED: usize = 10;
+/// Pools without `--runs`.
+const POOLS: u64 = 100;
 
 /// A pool and what came of it.
 #[derive(Debug, Clone)]
 struct Trial {
-    seed: u64,
     laps: u32,
     contacts: u32,
     errors: Errors,
@@ -31,14 +31,12 @@ impl Trial {
 
 /// The campaign's work.
 pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
-    let trials = share_out("pools", args.runs, threads(args.threads), |index| {
-        trial(args, args.common.seed.wrapping_add(index))
-    })?;
+    let trials = args.trials.trials("pools", POOLS, args.common.seed, |seed| trial(args, seed))?;
     let mut rows = Vec::new();
     args.common.tell("pool       pools  laps  contacts  rms error  largest");
     let mut all = Errors::default();
     for shape in PoolKind::ALL {
-        let of = || trials.iter().filter(move |trial| kind(trial.seed) == shape);
+        let of = || trials.iter().filter(move |(seed, _)| kind(*seed) == shape).map(|(_, trial)| trial);
         let mut errors = Errors::default();
         of().for_each(|trial| errors.add(&trial.errors));
         all.add(&errors);
@@ -56,17 +54,12 @@ pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
             "rms_error_mm": millimetres(rms), "max_error_mm": millimetres(largest),
         }));
     }
-    let wrong: Vec<u64> = trials.iter().filter(|trial| !trial.is_good()).map(|trial| trial.seed).collect();
-    if !wrong.is_empty() {
-        args.common.tell(format_args!("  amiss with seeds {:?}", &wrong[..wrong.len().min(LISTED)]));
-    }
-    let outcome = if wrong.is_empty() { Outcome::verdict("passed") } else { Outcome::failure("wrong") };
-    let contacts: u32 = trials.iter().map(|trial| trial.contacts).sum();
-    Ok(Report { collisions: Some(contacts.into()), ..Report::new(outcome) }
+    let wrong = wrong_seeds(&trials, Trial::is_good);
+    let contacts: u64 = trials.iter().map(|(_, trial)| u64::from(trial.contacts)).sum();
+    Ok(campaign_report(wrong.is_empty(), contacts, &wrong)
         .field("rms_error_mm", all.rms().map(millimetres))
         .field("max_error_mm", millimetres(all.largest))
-        .field("laps", trials.iter().map(|trial| trial.laps).sum::<u32>())
-        .field("wrong_seeds", &wrong[..wrong.len().min(LISTED)])
+        .field("laps", trials.iter().map(|(_, trial)| trial.laps).sum::<u32>())
         .table("rows", rows))
 }
 
@@ -81,5 +74,5 @@ fn trial(args: &Args, seed: u64) -> Result<Trial, Failure> {
         Ok((PoolWallOutcome::Round | PoolWallOutcome::TimedOut, laps)) => laps,
         _ => 0,
     };
-    Ok(Trial { seed, laps, contacts: done.run.truth.contacts, errors: done.errors })
+    Ok(Trial { laps, contacts: done.run.truth.contacts, errors: done.errors })
 }

@@ -27,7 +27,7 @@ pub(super) fn kind(seed: u64) -> PoolKind {
 
 /// The work of the command.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
-    if args.campaign {
+    if args.trials.campaign {
         return campaign(args);
     }
     let common = &args.common;

@@ -153,6 +153,7 @@ fn alone(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure> {
         control::run(robot, &mut drive, seconds, |_, _, _| step())?;
         Ok(drive.turns())
     })?;
+    let run = run.lasting(seconds);
     Ok(Outing {
         turns: run.ending.as_ref().copied().unwrap_or(0),
         contacts: run.truth.contacts.into(),

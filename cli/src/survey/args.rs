@@ -1,9 +1,8 @@
-use std::num::NonZero;
 use std::path::PathBuf;
 
 use roverlab::geometry::units;
 
-use crate::common::{CommonArgs, OF_ONE_RUN};
+use crate::common::{CampaignArgs, CommonArgs, OF_ONE_RUN};
 
 /// Command line of `survey`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -17,7 +16,7 @@ sides, it localises by these too. It starts where the water is widest, unless th
 Cells are as wide as the spacing of the lanes; only those at least half a metre from the sides count. --map writes a colour
 picture, and beside it the depths as an ESRI grid (.asc) and all cells with their uncertainty as a table (.csv), in mm.
 
-With --campaign, floors of all kinds.
+With --campaign, floors of all kinds: 12 of them without --runs.
 
 JSON fields:
   coverage_percent            share of the cells with a depth
@@ -43,17 +42,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "OUT.png", value_parser = parse_map)]
     pub(crate) map: Option<PathBuf>,
 
-    /// Survey several floors, and print a table.
-    #[arg(long)]
-    pub(crate) campaign: bool,
-
-    /// Number of floors in a campaign, with consecutive seeds.
-    #[arg(long, value_name = "N", default_value_t = 12, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
-    pub(crate) runs: u64,
-
-    /// Number of threads in a campaign [default: one per core].
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    pub(crate) threads: Option<NonZero<usize>>,
+    #[command(flatten)]
+    pub(crate) trials: CampaignArgs,
 
     #[command(flatten)]
     pub(crate) common: CommonArgs,

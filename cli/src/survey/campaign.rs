@@ -4,11 +4,11 @@ use serde_json::json;
 
 use super::Args;
 use super::floor::{Floor, scene};
-use super::job::limit;
-use super::tour::{Quality, Site, tour};
-use crate::common::{Failure, Outcome, Report, millimetres, rounded, share_out, threads};
+use super::tour::{Quality, tour};
+use crate::common::{Failure, Report, campaign_report, millimetres, rounded, wrong_seeds};
 use crate::driving::{Conditions, RESERVE};
 use crate::terrain::percent;
+use crate::water::{Site, limit};
 
 /// The least share of cells with a depth, and the most errors in 95 % (m): depth and place; shares within two
 /// standard deviations; and the longest way.
@@ -17,11 +17,12 @@ const DEPTH: f64 = 0.03;
 const POSITION: f64 = 0.2;
 const INSIDE: [f64; 2] = [0.93, 0.97];
 const WAY: f64 = 1.3;
+/// Floors without `--runs`.
+const FLOORS: u64 = 12;
 
 /// A survey and what came of it.
 #[derive(Debug, Clone)]
 struct Trial {
-    seed: u64,
     contacts: u32,
     covered: bool,
     quality: Quality,
@@ -42,13 +43,11 @@ impl Trial {
 
 /// The campaign's work.
 pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
-    let trials = share_out("surveys", args.runs, threads(args.threads), |index| {
-        trial(args, args.common.seed.wrapping_add(index))
-    })?;
+    let trials = args.trials.trials("surveys", FLOORS, args.common.seed, |seed| trial(args, seed))?;
     args.common.tell("floor  surveys  good  covered  depth p95  place p95  within 2 sigma  way");
     let mut rows = Vec::new();
     for floor in Floor::ALL {
-        let of = || trials.iter().filter(move |trial| Floor::of(trial.seed) == floor);
+        let of = || trials.iter().filter(move |(seed, _)| Floor::of(*seed) == floor).map(|(_, trial)| trial);
         let (count, good) = (of().count(), of().filter(|trial| trial.is_good()).count());
         let least = |part: fn(&Quality) -> f64| of().map(|trial| part(&trial.quality)).fold(1.0, f64::min);
         let most = |part: fn(&Quality) -> f64| of().map(|trial| part(&trial.quality)).fold(0.0, f64::max);
@@ -70,14 +69,13 @@ pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
             "inside_2_sigma_percent": percent(inside), "way_ratio": rounded(way),
         }));
     }
-    let inside = trials.iter().map(|trial| trial.quality.inside).sum::<f64>() / trials.len().max(1) as f64;
-    let wrong: Vec<u64> = trials.iter().filter(|trial| !trial.is_good()).map(|trial| trial.seed).collect();
+    let inside =
+        trials.iter().map(|(_, trial)| trial.quality.inside).sum::<f64>() / trials.len().max(1) as f64;
+    let wrong = wrong_seeds(&trials, Trial::is_good);
     let good = wrong.is_empty() && (INSIDE[0]..=INSIDE[1]).contains(&inside);
-    let outcome = if good { Outcome::verdict("passed") } else { Outcome::failure("wrong") };
-    let contacts: u32 = trials.iter().map(|trial| trial.contacts).sum();
-    Ok(Report { collisions: Some(contacts.into()), ..Report::new(outcome) }
+    let contacts: u64 = trials.iter().map(|(_, trial)| u64::from(trial.contacts)).sum();
+    Ok(campaign_report(good, contacts, &wrong)
         .field("inside_2_sigma_percent", percent(inside))
-        .field("wrong_seeds", wrong)
         .table("rows", rows))
 }
 
@@ -87,9 +85,13 @@ fn trial(args: &Args, seed: u64) -> Result<Trial, Failure> {
     let limit = args.common.time_limit.unwrap_or_else(|| limit(&site, args.spacing));
     let conditions =
         Conditions { seed, common: None, reserve: RESERVE, ..Conditions::new(&args.common, limit)? };
-    let parameters =
-        SurveyParameters { spacing: args.spacing, depth: args.depth, ..SurveyParameters::default() };
+    let parameters = SurveyParameters {
+        spacing: args.spacing,
+        depth: args.depth,
+        density: scene.world.water.density,
+        ..SurveyParameters::default()
+    };
     let done = tour(&scene, parameters, &conditions, |_| {})?;
     let covered = done.run.ending == Ok(SurveyOutcome::Covered);
-    Ok(Trial { seed, contacts: done.run.truth.contacts, covered, quality: done.quality })
+    Ok(Trial { contacts: done.run.truth.contacts, covered, quality: done.quality })
 }

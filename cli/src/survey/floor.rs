@@ -1,8 +1,8 @@
 use roverlab::geometry::{Point, Pose};
 use roverlab::random::Stream;
-use roverlab::world::{RobotSpec, Scene};
+use roverlab::world::Scene;
 
-use crate::water::pool;
+use crate::water::{BOOK, pool, surveyor};
 
 /// What the floor of a pool is like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,14 +29,8 @@ impl Floor {
     }
 }
 
-/// Range of the Doppler log (m), and the most that a floor rises (m).
-const RANGE: f64 = 30.0;
+/// The most that a floor rises (m).
 const RISE: [f64; 2] = [0.3, 0.8];
-
-/// Mako with a Doppler log.
-pub(super) fn surveyor() -> RobotSpec {
-    RobotSpec { dvl: Some(RANGE), ..RobotSpec::mako() }
-}
 
 /// The book's pool with the floor of a seed.
 pub(super) fn scene(seed: u64) -> Scene {
@@ -51,5 +45,5 @@ pub(super) fn scene(seed: u64) -> Scene {
         Floor::Bowl => rise * ((at - place).norm_squared() / (wide * wide)).min(1.0),
     };
     let start = Pose::new(3.0, 4.0, std::f64::consts::FRAC_PI_2);
-    Scene::with_robot(pool(floor), surveyor(), start)
+    Scene::with_robot(pool(BOOK, floor), surveyor(), start)
 }

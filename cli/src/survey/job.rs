@@ -5,27 +5,17 @@ use roverlab::world::{Scene, World};
 
 use super::Args;
 use super::campaign::campaign;
-use super::floor::{scene, surveyor};
+use super::floor::scene;
 use super::map;
-use super::tour::{Site, Tour, tour, true_depth};
+use super::tour::{Tour, tour, true_depth};
 use crate::common::{Failure, Outcome, Report, check_writable, millimetres, rounded};
 use crate::driving::{Conditions, paced};
 use crate::terrain::percent;
-use crate::water::afloat;
-
-/// Seconds for a metre of lanes, and besides.
-const PACE: f64 = 5.0;
-const BESIDES: f64 = 300.0;
-
-/// Seconds for the lanes of a site.
-pub(super) fn limit(site: &Site, spacing: f64) -> f64 {
-    let size = site.area.size();
-    PACE * (size.x * size.y / spacing + size.x + size.y) + BESIDES
-}
+use crate::water::{Site, afloat, limit, surveyor};
 
 /// The work of the command.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
-    if args.campaign {
+    if args.trials.campaign {
         return campaign(args);
     }
     let common = &args.common;
@@ -34,8 +24,12 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         check_writable("--map", &file)?;
     }
     let scene = afloat(common, &surveyor(), || scene(common.seed))?;
-    let parameters =
-        SurveyParameters { spacing: args.spacing, depth: args.depth, ..SurveyParameters::default() };
+    let parameters = SurveyParameters {
+        spacing: args.spacing,
+        depth: args.depth,
+        density: scene.world.water.density,
+        ..SurveyParameters::default()
+    };
     let site = Site::of(&scene.world, args.depth);
     let conditions = Conditions::new(common, limit(&site, args.spacing))?;
     let done = tour(&scene, parameters, &conditions, paced(common))?;

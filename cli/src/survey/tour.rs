@@ -1,11 +1,11 @@
 use roverlab::drive::marine::{DepthMap, Survey, SurveyOutcome, SurveyParameters};
-use roverlab::geometry::{Aabb, Point, Vector};
+use roverlab::geometry::{Point, Vector};
 use roverlab::io::control;
 use roverlab::world::{Scene, World};
 
 use crate::common::Failure;
 use crate::driving::{Conditions, Run};
-use crate::water::{Shore, ground};
+use crate::water::{Site, ground};
 
 /// A survey, its map, and how good it is.
 #[derive(Debug, Clone)]
@@ -29,38 +29,10 @@ pub(super) struct Quality {
     pub(super) by_walls: bool,
 }
 
-/// What is to be surveyed.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Site {
-    /// Between the sides.
-    pub(super) area: Aabb,
-    /// Whether these are straight, so that they tell the place.
-    pub(super) by_walls: bool,
-}
-
 /// Metres off the sides at which cells begin.
 const OFF: f64 = 0.5;
-/// Metres that sides may be off straight ones.
-const STRAIGHT: f64 = 0.05;
 /// Points of a cell along each side, of which its true depth is the mean.
 const POINTS: u32 = 6;
-
-impl Site {
-    /// The water of a world at a depth.
-    pub(super) fn of(world: &World, depth: f64) -> Self {
-        let level = world.water_level.unwrap_or_default();
-        let shore = Shore::of(world, level - depth);
-        let Some(area) = shore.bounds() else {
-            return Self { area: world.bounds(), by_walls: false };
-        };
-        let inset = |point: Point| {
-            let (low, high) = (point - area.min, area.max - point);
-            low.x.min(low.y).min(high.x).min(high.y)
-        };
-        let by_walls = shore.points().all(|point| inset(point) < STRAIGHT);
-        Self { area, by_walls }
-    }
-}
 
 /// Surveys a scene's water.
 pub(super) fn tour(

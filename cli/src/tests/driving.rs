@@ -100,6 +100,16 @@ fn a_robot_that_fails_ends_the_run() {
     assert_eq!((status, report["outcome"].as_str()), (1, Some("timed_out")), "{report}");
 }
 
+/// What a run until its limit says holds for the whole of it.
+#[test]
+fn a_clock_that_jumps_to_the_limit_does_not_end_a_run_in_peace() {
+    for command in ["random_drive", "motion", "lane_keeping", "localise"] {
+        let (status, report, err) = run(command, &["--fault", "clock=1000@0.5"]);
+        assert_eq!((status, report["outcome"].as_str()), (1, Some("failed")), "{command}: {report}");
+        assert!(err.contains("the robot's clock ended the run"), "{command}: {err}");
+    }
+}
+
 #[test]
 fn cars_keep_to_their_turning_circle() {
     for method in ["turn", "arc", "dog", "spline"] {

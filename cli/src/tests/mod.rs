@@ -22,3 +22,4 @@ mod seeing;
 mod support;
 mod swarms;
 mod wall_following;
+mod waters;

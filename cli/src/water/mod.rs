@@ -2,6 +2,7 @@
 
 mod pool;
 mod shore;
+mod site;
 
 use std::sync::Arc;
 
@@ -10,8 +11,9 @@ use roverlab::world::{DriveSpec, HeightField, RobotSpec, Scene, World};
 
 use crate::common::{CommonArgs, Failure, StandIn};
 
-pub(crate) use pool::{LEVEL, pool};
+pub(crate) use pool::{BOOK, LEVEL, pool};
 pub(crate) use shore::Shore;
+pub(crate) use site::{Site, limit, surveyor};
 
 /// Cells along a side of the grid on which a start is looked for.
 const CELLS: usize = 40;

@@ -5,8 +5,9 @@ use std::ffi::{c_int, c_uint, c_void};
 
 use libc::{itimerval, timeval};
 
-use super::clock::{is_virtual, original};
+use super::clock::is_virtual;
 use super::memory::{input, output};
+use super::original::original;
 use super::runtime::enter;
 
 extern "C" fn ring() {

@@ -2,19 +2,23 @@
 //!
 //! They act in programs linked against this library before the C library, as `gccsim` does, from the first
 //! RoBIOS call on, or from the start if the runner started the program. Everybody else gets the system's
-//! functions. Not replaced, and in real time: `timer_create`, `timerfd_create`, waiting for files and
-//! sockets, and timed waits for semaphores and mutexes.
+//! functions. Not replaced, and in real time: `timer_create`, `timerfd_create`, and waiting for files and
+//! sockets. Locks and conditions are in `locks` and `conditions`.
 
 use std::ffi::{c_int, c_long, c_uint, c_ulong, c_void};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use libc::{clockid_t, pthread_attr_t, pthread_t, time_t, timespec, timeval};
 
+use super::cancelling::cancellable;
 use super::memory::{input, output};
-use super::real_time::{BILLION, real_seconds, real_time};
+use super::original::{Original, call_original};
+use super::real_time::{BILLION, real_time};
 use super::runtime::enter;
 use super::sleep::{let_others_run, sleep_for};
-use super::threads::{is_alive, is_ours, is_the_programs, note_thread};
+use super::sleepers::ordinal;
+use super::threads::{is_alive, is_ours, is_the_programs, note_joining, note_thread};
+use super::turns::own_number;
 use crate::robios::EPOCH;
 
 /// Whether the runner started this process.
@@ -61,53 +65,59 @@ fn spec(seconds: f64) -> timespec {
 }
 
 #[unsafe(no_mangle)]
-extern "C" fn nanosleep(request: *const timespec, rest: *mut timespec) -> c_int {
-    let time = input(request, 1).and_then(|times| seconds(times[0]));
-    if let Some(time) = time
-        && sleep_virtually(time).is_some()
-    {
-        return 0;
-    }
-    // SAFETY: the kernel checks both pointers, and the error number is set as by the C library.
-    unsafe { libc::syscall(libc::SYS_nanosleep, request, rest) as c_int }
+pub(super) extern "C-unwind" fn nanosleep(request: *const timespec, rest: *mut timespec) -> c_int {
+    cancellable(|| {
+        let time = input(request, 1).and_then(|times| seconds(times[0]));
+        if let Some(time) = time
+            && sleep_virtually(time).is_some()
+        {
+            return 0;
+        }
+        // SAFETY: the kernel checks both pointers, and the error number is set as by the C library.
+        unsafe { libc::syscall(libc::SYS_nanosleep, request, rest) as c_int }
+    })
 }
 
 #[unsafe(no_mangle)]
-extern "C" fn clock_nanosleep(
+extern "C-unwind" fn clock_nanosleep(
     clock: clockid_t,
     flags: c_int,
     request: *const timespec,
     rest: *mut timespec,
 ) -> c_int {
-    let time = input(request, 1).and_then(|times| seconds(times[0]));
-    if let Some(time) = time.filter(|_| is_wall_clock(clock)) {
-        let wait =
-            if flags & libc::TIMER_ABSTIME == 0 { Some(time) } else { now().map(|now| time - EPOCH - now) };
-        if wait.and_then(|wait| sleep_virtually(wait.max(0.0))).is_some() {
+    cancellable(|| {
+        let time = input(request, 1).and_then(|times| seconds(times[0]));
+        if let Some(time) = time.filter(|_| is_wall_clock(clock)) {
+            let wait = if flags & libc::TIMER_ABSTIME == 0 {
+                Some(time)
+            } else {
+                now().map(|now| time - EPOCH - now)
+            };
+            if wait.and_then(|wait| sleep_virtually(wait.max(0.0))).is_some() {
+                return 0;
+            }
+        }
+        // SAFETY: the kernel checks both pointers.
+        let result = unsafe { libc::syscall(libc::SYS_clock_nanosleep, clock, flags, request, rest) };
+        // This function returns the error number.
+        if result == 0 { 0 } else { std::io::Error::last_os_error().raw_os_error().unwrap_or(libc::EINVAL) }
+    })
+}
+
+#[unsafe(no_mangle)]
+extern "C-unwind" fn usleep(microseconds: c_uint) -> c_int {
+    cancellable(|| {
+        let time = f64::from(microseconds) / 1e6;
+        if sleep_virtually(time).is_some() {
             return 0;
         }
-    }
-    // SAFETY: the kernel checks both pointers.
-    let result = unsafe { libc::syscall(libc::SYS_clock_nanosleep, clock, flags, request, rest) };
-    // This function returns the error number.
-    if result == 0 { 0 } else { std::io::Error::last_os_error().raw_os_error().unwrap_or(libc::EINVAL) }
+        let time = spec(time);
+        nanosleep(&raw const time, std::ptr::null_mut())
+    })
 }
 
 #[unsafe(no_mangle)]
-extern "C" fn usleep(microseconds: c_uint) -> c_int {
-    let time = f64::from(microseconds) / 1e6;
-    if sleep_virtually(time).is_some() {
-        return 0;
-    }
-    let time = spec(time);
-    nanosleep(&raw const time, std::ptr::null_mut())
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn sleep(time: c_uint) -> c_uint {
-    if sleep_virtually(time.into()).is_some() {
-        return 0;
-    }
+extern "C-unwind" fn sleep(time: c_uint) -> c_uint {
     let (time, mut rest) = (spec(time.into()), spec(0.0));
     let done = nanosleep(&raw const time, &raw mut rest) == 0;
     if done { 0 } else { rest.tv_sec as c_uint }
@@ -138,7 +148,7 @@ extern "C" fn clock_gettime(clock: clockid_t, time: *mut timespec) -> c_int {
     unsafe { libc::syscall(libc::SYS_clock_gettime, clock, time) as c_int }
 }
 
-fn wall_time() -> timespec {
+pub(super) fn wall_time() -> timespec {
     now().map_or_else(real_time, |now| spec(EPOCH + now))
 }
 
@@ -168,15 +178,7 @@ extern "C" fn clock() -> libc::clock_t {
     time.tv_sec * 1_000_000 + time.tv_nsec / 1000
 }
 
-/// The C library's function with this name.
-pub(super) fn original(name: &std::ffi::CStr) -> *mut c_void {
-    // SAFETY: the name ends with a zero byte.
-    unsafe { libc::dlsym(libc::RTLD_NEXT, name.as_ptr()) }
-}
-
 type Start = extern "C" fn(*mut c_void) -> *mut c_void;
-type Create = unsafe extern "C" fn(*mut pthread_t, *const pthread_attr_t, Start, *mut c_void) -> c_int;
-
 /// Starts a thread like the C library, and records that there are several.
 #[unsafe(no_mangle)]
 extern "C" fn pthread_create(
@@ -185,153 +187,71 @@ extern "C" fn pthread_create(
     start: Start,
     argument: *mut c_void,
 ) -> c_int {
+    static CREATE: Original = Original::of(c"pthread_create");
+    ordinal();
     note_thread();
-    let found = original(c"pthread_create");
-    if found.is_null() {
-        return libc::ENOSYS;
-    }
-    // SAFETY: the C library's function has this type; the arguments are the program's.
-    let result = unsafe {
-        let create = std::mem::transmute::<*mut c_void, Create>(found);
-        create(thread, attributes, start, argument)
-    };
+    let result = call_original!(
+        CREATE, thread => *mut pthread_t, attributes => *const pthread_attr_t, start => Start,
+        argument => *mut c_void
+    );
     if result == 0 && is_the_programs() && is_virtual() {
         let_others_run();
     }
     result
 }
 
-type ConditionWait = unsafe extern "C" fn(*mut c_void, *mut c_void, clockid_t, *const timespec) -> c_int;
-
-type TimedWait = unsafe extern "C" fn(*mut c_void, *mut c_void, *const timespec) -> c_int;
-
-/// Real time of a condition wait between two checks of the program's clock (s).
-const GLANCE: f64 = 50e-6;
-
-/// Waits for a condition until a time on the program's clock, by short real waits with virtual time passing
-/// in between.
-fn wait_virtually(condition: *mut c_void, mutex: *mut c_void, end: f64) -> Option<c_int> {
-    let found = original(c"pthread_cond_clockwait");
-    if found.is_null() {
-        return None;
-    }
-    // SAFETY: the C library's function has this type.
-    let wait = unsafe { std::mem::transmute::<*mut c_void, ConditionWait>(found) };
-    loop {
-        let until = spec(real_seconds() + GLANCE);
-        // SAFETY: condition and mutex are the program's, and the time outlives the call.
-        let result = unsafe { wait(condition, mutex, libc::CLOCK_REALTIME, &raw const until) };
-        if result != libc::ETIMEDOUT {
-            return Some(result);
-        }
-        let now = now()?;
-        if now >= end {
-            return Some(libc::ETIMEDOUT);
-        }
-        sleep_virtually((end - now).min(roverlab::io::sim::TICK))?;
-    }
+/// Waits for a thread's end like the C library, and records that this thread does.
+#[unsafe(no_mangle)]
+extern "C-unwind" fn pthread_join(thread: pthread_t, result: *mut *mut c_void) -> c_int {
+    static JOIN: Original = Original::of(c"pthread_join");
+    note_joining(own_number(), true);
+    let done = call_original!(JOIN, thread => pthread_t, result => *mut *mut c_void);
+    note_joining(own_number(), false);
+    done
 }
 
 /// Program time of an absolute time; `None` if the program has no clock of its own.
-fn end_of_wait(clock: clockid_t, time: *const timespec) -> Option<f64> {
+pub(super) fn end_of_wait(clock: clockid_t, time: *const timespec) -> Option<f64> {
     let time = input(time, 1).and_then(|times| seconds(times[0]))?;
     now().filter(|_| is_wall_clock(clock)).map(|_| time - EPOCH)
 }
 
-#[unsafe(no_mangle)]
-extern "C" fn pthread_cond_clockwait(
-    condition: *mut c_void,
-    mutex: *mut c_void,
-    clock: clockid_t,
-    time: *const timespec,
-) -> c_int {
-    if let Some(end) = end_of_wait(clock, time) {
-        return wait_virtually(condition, mutex, end).unwrap_or(libc::ETIMEDOUT);
-    }
-    let found = original(c"pthread_cond_clockwait");
-    if found.is_null() {
-        return libc::ENOSYS;
-    }
-    // SAFETY: the C library's function has this type; the arguments are the program's.
-    unsafe { std::mem::transmute::<*mut c_void, ConditionWait>(found)(condition, mutex, clock, time) }
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn pthread_cond_timedwait(
-    condition: *mut c_void,
-    mutex: *mut c_void,
-    time: *const timespec,
-) -> c_int {
-    if let Some(end) = end_of_wait(libc::CLOCK_REALTIME, time) {
-        return wait_virtually(condition, mutex, end).unwrap_or(libc::ETIMEDOUT);
-    }
-    let found = original(c"pthread_cond_timedwait");
-    if found.is_null() {
-        return libc::ENOSYS;
-    }
-    // SAFETY: the C library's function has this type; the arguments are the program's.
-    unsafe { std::mem::transmute::<*mut c_void, TimedWait>(found)(condition, mutex, time) }
-}
-
-type Poll = unsafe extern "C" fn(*mut c_void, c_ulong, c_int) -> c_int;
-
 /// Programs also sleep by polling no files.
 #[unsafe(no_mangle)]
-extern "C" fn poll(files: *mut c_void, count: c_ulong, milliseconds: c_int) -> c_int {
-    if count == 0
-        && let Ok(time) = u32::try_from(milliseconds)
-        && sleep_virtually(f64::from(time) / 1000.0).is_some()
-    {
-        return 0;
-    }
-    let found = original(c"poll");
-    if found.is_null() {
-        return -1;
-    }
-    // SAFETY: the C library's function has this type; the arguments are the program's.
-    unsafe { std::mem::transmute::<*mut c_void, Poll>(found)(files, count, milliseconds) }
+extern "C-unwind" fn poll(files: *mut c_void, count: c_ulong, milliseconds: c_int) -> c_int {
+    static POLL: Original = Original::of(c"poll");
+    cancellable(|| {
+        if count == 0
+            && let Ok(time) = u32::try_from(milliseconds)
+            && sleep_virtually(f64::from(time) / 1000.0).is_some()
+        {
+            return 0;
+        }
+        call_original!(POLL, files => *mut c_void, count => c_ulong, milliseconds => c_int)
+    })
 }
-
-/// Sleep function of C11.
-#[unsafe(no_mangle)]
-extern "C" fn thrd_sleep(request: *const timespec, rest: *mut timespec) -> c_int {
-    nanosleep(request, rest)
-}
-
-/// Time function of C11. Returns the base for the only supported one.
-#[unsafe(no_mangle)]
-extern "C" fn timespec_get(time: *mut timespec, base: c_int) -> c_int {
-    let known = base == TIME_UTC && output(time, &[wall_time()]);
-    if known { base } else { 0 }
-}
-
-const TIME_UTC: c_int = 1;
-
-type Select = unsafe extern "C" fn(c_int, *mut c_void, *mut c_void, *mut c_void, *mut timeval) -> c_int;
 
 /// Programs sleep by selecting from no files.
 #[unsafe(no_mangle)]
-extern "C" fn select(
+extern "C-unwind" fn select(
     files: c_int,
     readable: *mut c_void,
     writable: *mut c_void,
     special: *mut c_void,
     timeout: *mut timeval,
 ) -> c_int {
-    let nothing = readable.is_null() && writable.is_null() && special.is_null();
-    let time = input(timeout.cast_const(), 1).map(|t| t[0].tv_sec as f64 + t[0].tv_usec as f64 / 1e6);
-    if let Some(time) = time.filter(|&time| nothing && time >= 0.0)
-        && sleep_virtually(time).is_some()
-    {
-        return 0;
-    }
-    let found = original(c"select");
-    if found.is_null() {
-        return -1;
-    }
-    // SAFETY: the C library's function has this type; the arguments are the program's.
-    unsafe {
-        let select = std::mem::transmute::<*mut c_void, Select>(found);
-        select(files, readable, writable, special, timeout)
-    }
+    static SELECT: Original = Original::of(c"select");
+    cancellable(|| {
+        let nothing = readable.is_null() && writable.is_null() && special.is_null();
+        let time = input(timeout.cast_const(), 1).map(|t| t[0].tv_sec as f64 + t[0].tv_usec as f64 / 1e6);
+        if let Some(time) = time.filter(|&time| nothing && time >= 0.0)
+            && sleep_virtually(time).is_some()
+        {
+            return 0;
+        }
+        call_original!(
+            SELECT, files => c_int, readable => *mut c_void, writable => *mut c_void, special => *mut c_void,
+            timeout => *mut timeval
+        )
+    })
 }

@@ -10,24 +10,35 @@
 mod actuators;
 #[cfg(target_os = "linux")]
 mod alarm;
+#[cfg(target_os = "linux")]
+mod c11;
 mod camera;
+#[cfg(target_os = "linux")]
+mod cancelling;
 #[cfg(target_os = "linux")]
 mod clock;
 mod computing;
+#[cfg(target_os = "linux")]
+mod conditions;
 mod display;
 mod drive;
 mod globals;
 mod images;
 mod keys;
 mod lines;
+#[cfg(target_os = "linux")]
+mod locks;
 mod memory;
 #[cfg(target_os = "linux")]
 mod older;
+#[cfg(target_os = "linux")]
+mod original;
 mod radio;
 mod real_time;
 mod runtime;
 mod sensing;
 mod sleep;
+mod sleepers;
 mod system;
 mod threads;
 #[cfg(target_os = "linux")]

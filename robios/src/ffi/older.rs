@@ -5,8 +5,10 @@ use std::ffi::{c_int, c_long, c_uint, c_void};
 
 use libc::{pthread_t, sem_t};
 
+use super::cancelling::pthread_cancel;
 use super::drive::{VWDone, VWRemain, VWWait};
 use super::lines::{AUBeep, AUDone};
+use super::locks::{sem_post, sem_wait};
 use super::runtime::{code, enter};
 use super::sleep::sleep_for;
 
@@ -87,7 +89,10 @@ extern "C" fn AUCheckPlay() -> c_int {
 /// There is no sound to record, so nothing is written.
 #[unsafe(no_mangle)]
 extern "C" fn AURecord(_buffer: *mut u8, _time: c_int, _frequency: c_long) -> c_int {
-    code(enter("AURecord", |robios| robios.charge()))
+    code(enter("AURecord", |robios| {
+        robios.note("there is no sound to record, so nothing is written");
+        robios.charge()
+    }))
 }
 
 #[unsafe(no_mangle)]
@@ -141,8 +146,7 @@ extern "C" fn MTKill(task: Task) -> c_int {
     if task.thread == 0 {
         return 1;
     }
-    // SAFETY: the handle comes from MTSpawn and was not joined.
-    c_int::from(unsafe { libc::pthread_cancel(task.thread) } != 0)
+    c_int::from(pthread_cancel(task.thread) != 0)
 }
 
 #[unsafe(no_mangle)]
@@ -152,20 +156,12 @@ extern "C" fn SEMAInit(semaphore: *mut sem_t, value: c_int) -> c_int {
     c_int::from(semaphore.is_null() || unsafe { libc::sem_init(semaphore, 0, value) } != 0)
 }
 
-/// Waits for a semaphore by the program's clock.
 #[unsafe(no_mangle)]
-extern "C" fn SEMALock(semaphore: *mut sem_t) -> c_int {
-    // SAFETY: the pointer is not null and refers to a semaphore made by SEMAInit.
-    while !semaphore.is_null() && unsafe { libc::sem_trywait(semaphore) } != 0 {
-        if sleep_for("", roverlab::io::sim::TICK).is_none() {
-            return 1;
-        }
-    }
-    c_int::from(semaphore.is_null())
+extern "C-unwind" fn SEMALock(semaphore: *mut sem_t) -> c_int {
+    c_int::from(semaphore.is_null() || sem_wait(semaphore.cast()) != 0)
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn SEMAUnlock(semaphore: *mut sem_t) -> c_int {
-    // SAFETY: the pointer is not null and refers to a semaphore made by SEMAInit.
-    c_int::from(semaphore.is_null() || unsafe { libc::sem_post(semaphore) } != 0)
+    c_int::from(semaphore.is_null() || sem_post(semaphore.cast()) != 0)
 }

@@ -1,21 +1,17 @@
 //! Waiting of programs.
 
 use std::cell::Cell;
-use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use roverlab::io::Result;
 use roverlab::io::sim::TICK;
 
-use super::real_time::nap;
 use super::runtime::{enter, enter_quietly, enter_to_wait};
-use super::threads::{Inside, alone, calls, is_inside, is_the_programs};
+use super::sleepers::{Event, Sleeper, asleep, glance, sleeps, standstill};
+use super::threads::{alone, calls, is_inside, is_the_programs, joining};
 #[cfg(target_os = "linux")]
-use super::turns::{Turn, all_sleep, is_there, note_call, own_number};
+use super::turns::{Turn, all_sleep, has_child, note_call};
 use crate::keys::Waiting;
-use crate::memory;
 use crate::robios::{NANOSECONDS, Robios};
 
 /// Lets the program wait for a time (s).
@@ -31,11 +27,8 @@ thread_local! {
 
 /// Whether this thread's calls wait for their turn: not if it is alone, or calls from a timer function or
 /// signal handler that interrupts its sleep or a call.
-fn takes_turns() -> bool {
-    !alone() && is_the_programs() && !is_inside() && {
-        let own = own_number();
-        at_ends(|ends| ends.values().all(|sleep| sleep.thread != own))
-    }
+pub(super) fn takes_turns() -> bool {
+    !alone() && is_the_programs() && !is_inside() && !sleeps()
 }
 
 /// Waits for the frame that serves a query, so that threads which are due earlier run first. Returns the
@@ -66,142 +59,56 @@ pub(super) fn let_earlier_run() {
     }
 }
 
-/// Real time between a sleeping thread's checks of the others.
-const GRACE: Duration = Duration::from_micros(50);
-
-/// A thread's sleep.
-#[derive(Debug)]
-struct Sleep {
-    /// Wake-up time since the start (s).
-    end: f64,
-    /// Number of the thread.
-    thread: u32,
-    /// Set to 1 when it is the next to wake up: until then the thread leaves it to others to let time pass.
-    next: Arc<AtomicU32>,
-}
-
-/// The sleeping threads' sleeps by number.
-static ENDS: Mutex<BTreeMap<u64, Sleep>> = Mutex::new(BTreeMap::new());
-static SLEEPERS: AtomicU64 = AtomicU64::new(0);
 /// Number of threads that are starting another one and let it run: this is short, so nobody wakes up
 /// meanwhile.
 static STARTERS: AtomicU64 = AtomicU64::new(0);
-
-/// Accesses the list as within a call, so that a sleeping signal handler does not wait for this thread.
-fn at_ends<T>(look: impl FnOnce(&mut BTreeMap<u64, Sleep>) -> T) -> T {
-    let _inside = Inside::new();
-    look(&mut ENDS.lock().unwrap_or_else(PoisonError::into_inner))
-}
-
-/// The next to wake up: threads wake in the order of their times, and of their calls.
-fn next_of(ends: &BTreeMap<u64, Sleep>) -> Option<(u64, &Sleep)> {
-    let ends = ends.iter().map(|(&number, sleep)| (number, sleep));
-    ends.min_by(|(_, one), (_, other)| one.end.total_cmp(&other.end))
-}
-
-/// Removes sleeps, and tells the next thread that it is.
-fn forget(remains: impl Fn(u64, &Sleep) -> bool) {
-    at_ends(|ends| {
-        ends.retain(|&number, sleep| remains(number, sleep));
-        if let Some((_, sleep)) = next_of(ends) {
-            sleep.next.store(1, Ordering::Release);
-            memory::wake(&sleep.next);
-        }
-    });
-}
-
-/// Wake-up time of the next thread (s).
-fn earliest_end() -> f64 {
-    at_ends(|ends| next_of(ends).map_or(f64::INFINITY, |(_, sleep)| sleep.end))
-}
 
 fn nobody_starts() -> bool {
     STARTERS.load(Ordering::Relaxed) == 0
 }
 
-/// Numbers of the sleeping threads.
-fn asleep() -> Vec<u32> {
-    at_ends(|ends| ends.values().map(|sleep| sleep.thread).collect())
+/// Lets time pass until a thread, the next, wakes up at `end`: a tick at most, unless all threads were asleep
+/// at the present time, so that none can act before.
+fn pass_until(end: f64, all_asleep_at: Option<f64>) -> Option<()> {
+    enter_quietly(|robios| {
+        let now = robios.now();
+        let most = match robios.timers.next() {
+            _ if all_asleep_at != Some(now) => TICK,
+            Some(due) => (due - now).max(TICK),
+            None => f64::INFINITY,
+        };
+        let rest = (end - now).min(FOREVER);
+        if rest > 0.0 { robios.pass(rest.min(most)) } else { Ok(()) }
+    })
 }
 
-/// A sleeping thread.
-struct Sleeper {
-    number: u64,
-    end: f64,
-    next: Arc<AtomicU32>,
-    /// Number of checks for another thread that should have woken up.
-    waits: u32,
-}
-
-/// Checks after which a thread that should have woken up and has ended is forgotten: it was cancelled.
-const SOME_WAITS: u32 = 200;
-/// Checks after which any thread that should have woken up is forgotten: it left its sleep in another way.
-const MOST_WAITS: u32 = 20_000;
-
-impl Sleeper {
-    fn new(end: f64) -> Self {
-        let number = SLEEPERS.fetch_add(1, Ordering::Relaxed);
-        let next = Arc::new(AtomicU32::new(0));
-        let sleep = Sleep { end, thread: own_number(), next: Arc::clone(&next) };
-        at_ends(|ends| ends.insert(number, sleep));
-        Self { number, end, next, waits: 0 }
-    }
-
-    /// Whether this thread is the next to wake up, and so the one that looks after the others.
-    fn is_next(&self) -> bool {
-        at_ends(|ends| next_of(ends).is_none_or(|(number, _)| number == self.number))
-    }
-
-    /// Waits until this thread is the next to wake up, but not for long: the next one may never wake up.
-    fn wait_to_be_next(&mut self, now: f64) {
-        memory::wait(&self.next, 0, SOME_WAITS * GRACE);
-        if self.next.swap(0, Ordering::Acquire) != 0 || earliest_end() > now {
-            self.waits = 0;
-            return;
-        }
-        self.waits += SOME_WAITS;
-        let lost = self.waits >= MOST_WAITS;
-        let own = self.number;
-        forget(|number, sleep| number == own || is_there(sleep.thread) && !(lost && sleep.end <= now));
-    }
-
-    /// Lets time pass until this thread, the next, wakes up: a tick at most, unless all threads were asleep
-    /// at the present time, so that none can act before.
-    fn pass(&self, all_asleep_at: Option<f64>) -> Option<()> {
-        enter_quietly(|robios| {
-            let now = robios.now();
-            let most = match robios.timers.next() {
-                _ if all_asleep_at != Some(now) => TICK,
-                Some(due) => (due - now).max(TICK),
-                None => f64::INFINITY,
-            };
-            let rest = self.end - now;
-            if rest > 0.0 { robios.pass(rest.min(most)) } else { Ok(()) }
-        })
-    }
-}
-
-impl Drop for Sleeper {
-    fn drop(&mut self) {
-        forget(|number, _| number != self.number);
-    }
-}
+/// Longest time that passes at once while nothing is due (s).
+const FOREVER: f64 = 60.0;
 
 /// Lets the program wait until a time since the start (s). Timer functions are called in between.
+fn sleep_until(end: f64) -> Option<()> {
+    sleep(&mut Sleeper::until(end))
+}
+
+/// Lets the program wait until the end of a sleep. Timer functions are called in between.
 ///
 /// A program with one thread skips the time, and so does one whose threads all sleep. Otherwise the next to
 /// wake up advances the world by a tick whenever the others have had and not used the opportunity to act. It
 /// wakes up when the previous one waits again, so that the order of calls does not depend on the system.
-fn sleep_until(end: f64) -> Option<()> {
-    let (mut sleeper, mut turn) = (Sleeper::new(end), Turn::default());
+fn sleep(sleeper: &mut Sleeper) -> Option<()> {
+    let mut turn = Turn::default();
     let mut waking: Option<Turn> = None;
+    let mut standing = Standstill::default();
     loop {
-        let (alone, before) = (alone(), calls());
+        let (alone, before, end) = (alone(), calls(), sleeper.end());
+        if alone && end.is_infinite() {
+            note_standstill("");
+        }
         let now = enter_quietly(|robios| {
             let now = robios.now();
             if now < end && alone {
                 let next = robios.timers.next().map_or(end, |due| due.min(end));
-                robios.pass(next - now)?;
+                robios.pass((next - now).min(FOREVER))?;
             }
             Ok(robios.now())
         })?;
@@ -215,27 +122,107 @@ fn sleep_until(end: f64) -> Option<()> {
         if !sleeper.is_next() {
             sleeper.wait_to_be_next(now);
             // What it knew of the others is past.
-            (turn, waking) = (Turn::default(), None);
+            (turn, waking, standing) = (Turn::default(), None, Standstill::default());
             continue;
         }
-        if is_due && nobody_starts() && waking.get_or_insert_default().is_long_over(&asleep()) {
+        if is_due
+            && nobody_starts()
+            && (all_sleep(&asleep()) || waking.get_or_insert_default().is_long_over(&asleep()))
+        {
             let _ = AWAKE_SINCE.try_with(|since| since.set(now));
             return Some(());
         }
-        nap(GRACE);
         if is_due {
-            continue;
-        }
-        if calls() != before || !nobody_starts() {
-            turn = Turn::default();
-        } else if all_sleep(&asleep()) && sleeper.is_next() {
-            sleeper.pass(Some(now))?;
-        } else if turn.is_over(&asleep()) {
-            turn = Turn::default();
-            if sleeper.is_next() {
-                sleeper.pass(None)?;
+            glance();
+        } else if end.is_infinite() {
+            // Only another thread, a timer or a signal can end this.
+            sleeper.listen();
+            if standing.holds() && sleeper.is_next() {
+                pass_until(end, Some(now))?;
+            } else if !standing.may_hold() {
+                sleeper.wait_to_be_told();
+            }
+        } else {
+            glance();
+            if calls() != before || !nobody_starts() {
+                turn = Turn::default();
+            } else if all_sleep(&asleep()) && sleeper.is_next() {
+                pass_until(end, Some(now))?;
+            } else if turn.is_over(&asleep()) {
+                turn = Turn::default();
+                if sleeper.is_next() {
+                    pass_until(end, None)?;
+                }
             }
         }
+    }
+}
+
+/// Lets this thread wait for an event, until a time (s) at most. It is over when `attempt` succeeds, which is
+/// made before, and whenever another thread has brought the event about; the attempt is told whether that has
+/// happened. `None` at the end of the time, or without a robot.
+pub(super) fn wait_for_event<T>(
+    event: Event,
+    end: f64,
+    mut attempt: impl FnMut(bool) -> Option<T>,
+) -> Option<T> {
+    let now = enter_quietly(|robios| Ok(robios.now()))?;
+    let mut sleeper = Sleeper::for_event(event, now, end);
+    loop {
+        // Another thread may have brought it about before this one was listed.
+        if let Some(done) = attempt(sleeper.is_woken()) {
+            return Some(done);
+        }
+        sleep(&mut sleeper)?;
+        let woken = sleeper.is_woken();
+        let done = attempt(woken);
+        if done.is_some() || !woken {
+            return done;
+        }
+        sleeper.begin();
+    }
+}
+
+/// Reports who waits for what, unless a timer function may end that.
+fn note_standstill(others: &str) {
+    let Some(waits) = standstill() else { return };
+    // Without a robot there is no report.
+    let _ = enter_quietly(|robios| {
+        if robios.timers.is_empty() {
+            robios.note(&format!("the program's threads wait for each other: {waits}{others}"));
+        }
+        Ok(())
+    });
+}
+
+/// Notices that all threads wait for each other, and so for ever: then time passes, as for a program that
+/// waits for anything else, and the report says who waits for what.
+#[derive(Debug, Default)]
+struct Standstill {
+    turn: Turn,
+    /// Whether the last look has found one.
+    found: bool,
+}
+
+impl Standstill {
+    fn holds(&mut self) -> bool {
+        let waiting = [asleep(), joining()].concat();
+        let before = std::mem::replace(&mut self.found, nobody_starts() && all_sleep(&waiting));
+        // Those that wait for a thread's end may have been woken by it.
+        let still = self.found && (joining().is_empty() || self.turn.is_over(&asleep()));
+        if !self.found {
+            self.turn = Turn::default();
+        }
+        if !(before && still) || has_child() {
+            return false;
+        }
+        note_standstill(if joining().is_empty() { "" } else { ", and another for the end of a thread" });
+        true
+    }
+
+    /// Whether another look should follow at once.
+    fn may_hold(&self) -> bool {
+        self.found
     }
 }
 
@@ -245,7 +232,7 @@ pub(super) fn let_others_run() {
     let mut turn = Turn::default();
     STARTERS.fetch_add(1, Ordering::Relaxed);
     while !turn.is_long_over(&asleep()) {
-        nap(GRACE);
+        glance();
     }
     STARTERS.fetch_sub(1, Ordering::Relaxed);
 }
@@ -256,11 +243,6 @@ pub(super) fn let_others_run() {
 struct Turn;
 
 #[cfg(not(target_os = "linux"))]
-fn own_number() -> u32 {
-    0
-}
-
-#[cfg(not(target_os = "linux"))]
 fn note_call() {}
 
 #[cfg(not(target_os = "linux"))]
@@ -269,8 +251,8 @@ fn all_sleep(_: &[u32]) -> bool {
 }
 
 #[cfg(not(target_os = "linux"))]
-fn is_there(_: u32) -> bool {
-    true
+fn has_child() -> bool {
+    false
 }
 
 #[cfg(not(target_os = "linux"))]

@@ -1,6 +1,8 @@
 use std::ffi::{c_char, c_int};
 use std::process::{Command, Stdio};
 
+#[cfg(target_os = "linux")]
+use super::cancelling::cancellable;
 use super::memory::{output_text, scatter, text};
 use super::runtime::{code, enter, watch_program};
 use super::sleep::sleep_for;
@@ -61,12 +63,20 @@ extern "C" fn OSError(message: *const c_char, _number: c_int, _dead: c_int) -> c
     code(text(message).and_then(|message| enter("OSError", |robios| robios.lcd_print(&message))))
 }
 
+/// Elsewhere threads sleep in the system's own functions.
+#[cfg(not(target_os = "linux"))]
+fn cancellable(wait: impl Fn() -> c_int) -> c_int {
+    wait()
+}
+
 #[unsafe(no_mangle)]
-extern "C" fn OSWait(milliseconds: c_int) -> c_int {
-    if milliseconds <= 0 {
-        return code(enter("OSWait", |robios| robios.pass(0.0)));
-    }
-    code(sleep_for("OSWait", f64::from(milliseconds) / 1000.0))
+extern "C-unwind" fn OSWait(milliseconds: c_int) -> c_int {
+    cancellable(|| {
+        if milliseconds <= 0 {
+            return code(enter("OSWait", |robios| robios.pass(0.0)));
+        }
+        code(sleep_for("OSWait", f64::from(milliseconds) / 1000.0))
+    })
 }
 
 /// Returns the timer's handle, or 0.

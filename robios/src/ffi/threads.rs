@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, AtomicI32, AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 /// Process that owns the robot; a child after `fork` does not.
 static OWNER: AtomicI32 = AtomicI32::new(0);
@@ -118,4 +119,28 @@ pub(super) fn note_thread() {
 
 pub(super) fn alone() -> bool {
     !STARTED_THREADS.load(Ordering::Relaxed) && THREADS.load(Ordering::Relaxed) <= 1
+}
+
+/// Numbers of the threads that wait for another one's end.
+static JOINING: Mutex<Vec<u32>> = Mutex::new(Vec::new());
+
+/// Accesses the list as within a call.
+fn at_joining<T>(look: impl FnOnce(&mut Vec<u32>) -> T) -> T {
+    let _inside = Inside::new();
+    look(&mut JOINING.lock().unwrap_or_else(PoisonError::into_inner))
+}
+
+/// Records that a thread waits for another one's end, or does so no more.
+pub(super) fn note_joining(thread: u32, waits: bool) {
+    at_joining(|joining| {
+        joining.retain(|&other| other != thread);
+        if waits {
+            joining.push(thread);
+        }
+    });
+}
+
+/// Numbers of the threads that wait for another one's end.
+pub(super) fn joining() -> Vec<u32> {
+    at_joining(|joining| joining.clone())
 }

@@ -130,7 +130,8 @@ impl Stillness {
     }
 }
 
-fn has_child() -> bool {
+/// Whether the program has a child process.
+pub(super) fn has_child() -> bool {
     // SAFETY: an all-zero record of this type is valid.
     let mut child: libc::siginfo_t = unsafe { std::mem::zeroed() };
     let look = libc::WEXITED | libc::WNOHANG | libc::WNOWAIT;

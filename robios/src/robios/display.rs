@@ -108,8 +108,12 @@ impl Robios {
         self.charge()
     }
 
-    /// `LCDSetMode`: 0 restores the defaults. Unsupported settings are ignored.
+    /// `LCDSetMode`: 0 restores the defaults. Unsupported settings are ignored, with a note.
     pub fn lcd_set_mode(&mut self, mode: i32) -> Result<()> {
+        let known = MODES.iter().fold(0, |bits, (on, off, _)| bits | on | off);
+        if mode & !known != 0 {
+            self.note(&format!("the settings {:#x} of the display have no effect", mode & !known));
+        }
         for (on, off, option) in MODES {
             let initially = [DisplayOption::AutoRefresh, DisplayOption::Scrolling, DisplayOption::LineFeed];
             if mode == 0 && option != DisplayOption::Menu {

@@ -3,6 +3,7 @@ use roverlab::io::Result;
 
 use super::{Moving, Robios, in_whole, invalid, millimetres, pose_from};
 use crate::ask::{Reply, Request};
+use crate::identity::Identity;
 
 /// Number of motors and encoders, numbered from 1.
 const MOTORS: i32 = 4;
@@ -14,7 +15,7 @@ impl Robios {
     pub fn vw_set_speed(&mut self, linear: i32, angular: i32) -> Result<()> {
         let twist = Twist::new(units::from_mm(linear.into()), units::from_deg(angular.into()));
         self.note_too_fast(twist.linear);
-        self.note_turning_too_fast(twist.angular);
+        self.note_turning_too_fast(twist);
         self.order(&Request::SetSpeed(twist))?;
         self.turning = 0;
         self.drives(if (linear, angular) == (0, 0) { Moving::No } else { Moving::Speeds });
@@ -29,11 +30,31 @@ impl Robios {
         }
     }
 
-    /// Notes a turn rate (rad/s) that the robot cannot reach.
-    fn note_turning_too_fast(&mut self, rate: f64) {
-        let most = self.identity.top_turn;
-        if rate.abs() > most * (1.0 + ROUNDING) {
-            self.note_clipped(units::to_deg(rate), units::to_deg(most), "degrees/s");
+    /// Notes a turn rate that the robot cannot reach, be it alone or at its speed.
+    fn note_turning_too_fast(&mut self, Twist { linear, angular }: Twist) {
+        let Identity { top_speed, reach, tightest_turn, .. } = self.identity;
+        let (most, is_car) = (self.identity.top_turn(), tightest_turn.is_finite());
+        if !is_car && angular.abs() > most * (1.0 + ROUNDING) {
+            self.note_clipped(units::to_deg(angular), units::to_deg(most), "degrees/s");
+            return;
+        }
+        // A car's steering has an end, and the outer wheel turns faster than the robot drives.
+        let steered = if is_car { angular.abs().min(tightest_turn * linear.abs()) } else { angular.abs() };
+        let (mm, deg) = (units::to_mm(linear), units::to_deg(angular));
+        if angular.abs() > steered * (1.0 + ROUNDING) {
+            let most = units::to_deg(steered);
+            self.note(&format!(
+                "{deg:.0} degrees/s at {mm:.0} mm/s is a tighter turn than this robot can; it does at most {most:.0} \
+                 degrees/s at this speed"
+            ));
+        }
+        let rim = linear.abs() + reach * steered;
+        if linear.abs() <= top_speed * (1.0 + ROUNDING) && rim > top_speed * (1.0 + ROUNDING) {
+            let (rim, most) = (units::to_mm(rim), units::to_mm(top_speed));
+            self.note(&format!(
+                "{mm:.0} mm/s and {deg:.0} degrees/s together need {rim:.0} mm/s of a wheel; this robot's do at \
+                 most {most:.0}, so it is slower on the same curve"
+            ));
         }
     }
 
@@ -120,9 +141,13 @@ impl Robios {
         }
         self.turns = length == 0.0;
         if self.turns {
-            self.note_turning_too_fast(speed);
+            self.note_turning_too_fast(Twist::new(0.0, speed));
         } else {
             self.note_too_fast(speed);
+            // A car's manoeuvres have the speed of its middle, and turns too tight for it are refused.
+            if self.identity.tightest_turn.is_infinite() {
+                self.note_turning_too_fast(Twist::new(speed, speed * angle / length));
+            }
         }
         self.order(&Request::Curve(length, angle, speed.abs()))?;
         self.turning = 0;
@@ -167,7 +192,11 @@ impl Robios {
     /// `MOTORSpeed`: encoder ticks per hundredth of a second.
     pub fn motor_speed(&mut self, motor: i32, ticks: i32) -> Result<()> {
         let speed = self.identity.tick_length * f64::from(ticks) * 100.0;
-        self.note_too_fast(speed);
+        let most = self.identity.top_speed;
+        if most > 0.0 && speed.abs() > most * (1.0 + ROUNDING) {
+            let most = most / (self.identity.tick_length * 100.0);
+            self.note_clipped(ticks.into(), most, "encoder ticks in 10 ms");
+        }
         self.motor(motor, speed / self.identity.top_speed)
     }
 

@@ -46,6 +46,8 @@ const SUPPLY: i32 = 820;
 const SILENCE: u8 = 0;
 /// Maximum number of samples per recording.
 const LONGEST_RECORDING: i32 = 65_536;
+/// What is said of digital lines.
+const NO_LINES: &str = "nothing is connected to the digital lines, which read what was written to them";
 /// Duration of a sound (s).
 const SOUND: f64 = 0.5;
 
@@ -68,12 +70,14 @@ impl Robios {
     /// `DIGITALRead`.
     pub fn digital_read(&mut self, line: i32) -> Result<i32> {
         let index = line_index(line)?;
+        self.note(NO_LINES);
         self.charge()?;
         Ok(i32::from(self.lines.digital[index].state))
     }
 
     /// `DIGITALReadAll`, with line 1 as the lowest bit.
     pub fn digital_read_all(&mut self) -> Result<i32> {
+        self.note(NO_LINES);
         self.charge()?;
         Ok(self.lines.digital.iter().rev().fold(0, |bits, line| bits << 1 | i32::from(line.state)))
     }
@@ -84,6 +88,7 @@ impl Robios {
         if self.lines.digital[index].direction != b'o' {
             return Err(invalid("digital line", format!("{line}, an input"), "an output"));
         }
+        self.note(NO_LINES);
         self.lines.digital[index].state = state != 0;
         self.charge()
     }
@@ -110,7 +115,12 @@ impl Robios {
         self.charge()?;
         match channel {
             0 => Ok(SUPPLY),
-            1..=8 => Ok(SILENCE.into()),
+            1..=8 => {
+                self.note(&format!(
+                    "nothing is connected to analog channel {channel}, which reads {SILENCE}"
+                ));
+                Ok(SILENCE.into())
+            }
             _ => Err(invalid("analog channel", channel, "0 to 8, or one of the inertial unit")),
         }
     }
@@ -126,6 +136,7 @@ impl Robios {
         if !(0..=8).contains(&channel) || !(0..=LONGEST_RECORDING).contains(&samples) {
             return Err(invalid("recording", format!("{samples} of channel {channel}"), "65536 of 0 to 8"));
         }
+        self.note(&format!("nothing is connected to analog channel {channel}, which reads {SILENCE}"));
         self.lines.recorded = vec![SILENCE; samples as usize];
         self.charge()
     }
@@ -141,6 +152,7 @@ impl Robios {
         if !PORTS.contains(&port) || !(50..=230_400).contains(&baud) {
             return Err(invalid("serial port", format!("{port} at {baud} baud"), "0 to 20, 50 to 230400"));
         }
+        self.note(&format!("nothing is connected to serial port {port}, which returns what is sent"));
         self.lines.ports.entry(port).or_default().clear();
         self.charge()
     }

@@ -21,8 +21,9 @@ use image::RgbImage;
 use roverlab::geometry::{Pose, normalize_angle, units};
 use roverlab::io::{Error, ErrorKind, Resolution, Result, Viewport};
 
-use crate::ask::{Identity, Reply, Request};
+use crate::ask::{Reply, Request};
 use crate::costs::Costs;
+use crate::identity::Identity;
 use crate::keys::KeyDesk;
 use crate::link::Link;
 use crate::report::{NOTES, Report, ReportFile, Stage};
@@ -206,6 +207,13 @@ impl Robios {
         if let Some(file) = &self.file {
             file.write_notes(&self.report.notes);
         }
+    }
+
+    /// Like [`note`](Robios::note), for a call other than the present one.
+    fn note_of(&mut self, call: &'static str, what: &str) {
+        let present = std::mem::replace(&mut self.call, call);
+        self.note(what);
+        self.call = present;
     }
 
     /// Writes the report, if there is a writer.

@@ -226,10 +226,8 @@ impl Robios {
             None => self.queue.orders.back().map(|order| order.0),
         };
         let Some(slot) = slot else {
-            return match self.ask(request)? {
-                Reply::Done => Ok(()),
-                _ => Err(foreign()),
-            };
+            let reply = self.ask(request)?;
+            return self.accept(reply);
         };
         self.queue.orders.push_back((slot, self.call, request.clone()));
         if self.queue.orders.len() > MOST_ORDERS {
@@ -238,6 +236,18 @@ impl Robios {
             self.set_clock(first.max(now));
         }
         self.settle()
+    }
+
+    /// Takes the reply to a command.
+    fn accept(&mut self, reply: Reply) -> Result<()> {
+        match reply {
+            Reply::Done => Ok(()),
+            Reply::Misplaced(place) => {
+                self.note(&place);
+                Ok(())
+            }
+            _ => Err(foreign()),
+        }
     }
 
     /// Sends the due commands to the world.
@@ -251,10 +261,9 @@ impl Robios {
             match self.ask_link(wait, &request) {
                 // The program has moved on and is not informed.
                 Err(error) if matches!(error.kind(), ErrorKind::Unsupported | ErrorKind::InvalidInput) => {
-                    let present = std::mem::replace(&mut self.call, call);
-                    self.note(&error.to_string());
-                    self.call = present;
+                    self.note_of(call, &error.to_string());
                 }
+                Ok(Reply::Misplaced(place)) => self.note_of(call, &place),
                 answer => drop(answer?),
             }
             self.set_clock(now);

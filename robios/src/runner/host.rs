@@ -4,11 +4,12 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
-use eyesim::ask::{Request, Seat, Terms};
+use eyesim::ask::Request;
 use eyesim::memory::{Asked, Memory};
 use eyesim::plan::{Plan, names};
 use eyesim::process;
 use eyesim::report::{Report, Stance};
+use eyesim::seat::{Seat, Terms};
 use eyesim::wire::{Answer, LONGEST_REQUEST, Question};
 use roverlab::geometry::Pose;
 use roverlab::io::log::{Header, LogFile, LogWriter};

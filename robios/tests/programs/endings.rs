@@ -96,30 +96,3 @@ fn a_program_that_fails_is_quoted() {
     let error = report["error"].as_str().unwrap();
     assert!(report["outcome"] == "failed" && error.contains("no_such_module"), "{report}");
 }
-
-#[test]
-fn values_that_are_clipped_are_said() {
-    if !compiler() {
-        return;
-    }
-    let calls = [
-        ("MOTORDrive(1, 300)", "MOTORDrive: 300; expected -100 to 100, taken as 100"),
-        ("SERVOSet(1, 300)", "SERVOSet: 300; expected 0 to 255, taken as 255"),
-        ("VWSetSpeed(99999, 0)", "VWSetSpeed: 99999 mm/s is more than this robot can"),
-        ("VWSetSpeed(0, 9999)", "VWSetSpeed: 9999 degrees/s is more than this robot can"),
-        ("VWStraight(10, 99999)", "VWStraight: 99999 mm/s is more than this robot can"),
-        ("VWTurn(10, 9999)", "VWTurn: 9999 degrees/s is more than this robot can"),
-    ];
-    for (number, (call, said)) in calls.into_iter().enumerate() {
-        let text = format!("#include \"eyebot.h\"\nint main() {{ {call}; {call}; return 0; }}\n");
-        let folder = Folder::new(&format!("clipped-{number}"));
-        let report = report(&[folder.write("clips.c", &text).to_str().unwrap()]);
-        let warnings = report["warnings"].as_array().unwrap();
-        let found = warnings.iter().filter(|warning| warning.as_str().unwrap().contains(said)).count();
-        assert_eq!(found, 1, "{call}: {report}");
-    }
-    let usual = "#include \"eyebot.h\"\nint main() { VWSetSpeed(200, 45); MOTORDrive(1, 100); SERVOSet(1, 255); return 0; }\n";
-    let folder = Folder::new("clipped-none");
-    let report = report(&[folder.write("usual.c", usual).to_str().unwrap()]);
-    assert!(!report["warnings"].to_string().contains("more than this robot"), "{report}");
-}

@@ -1,10 +1,10 @@
-//! Duration of calls, further fields of a report, and reproducibility.
+//! Duration of calls, and what programs need of compilers and other libraries.
 
 use std::process::Command;
 
 use serde_json::Value;
 
-use super::{Folder, compiled, compiler, programs, python, report, robios};
+use super::{Folder, compiler, programs, python, report, robios};
 
 /// A program that counts its loops in two seconds.
 const COUNT: &str = "#include \"eyebot.h\"\nint main() { int n = 0; while (OSGetCount() < 2000) { CALLS; n++; }\n\
@@ -84,36 +84,6 @@ fn computing_is_charged_where_somebody_asks() {
     let told = run(&["--cpu-time", "10"]);
     assert!(told["lcd_text"].as_str().unwrap().parse::<i32>().unwrap() > 300, "{told}");
     assert!(told["warnings"][0].as_str().unwrap().contains("not reproducible"), "{told}");
-}
-
-#[test]
-fn what_a_robot_lacks_is_said_once() {
-    if !compiler() {
-        return;
-    }
-    let folder = Folder::new("time-notes");
-    let file = folder.write(
-        "lacks.c",
-        "#include \"eyebot.h\"\nint main() { BYTE image[QVGA_SIZE]; int i; for (i = 0; i < 100; i++) PSDGet(77);\n\
-         CAMGet(image); LIDARSet(720, 0, 10); SERVOSet(9, 10); VWGetSpeed(NULL, NULL); for (i = 20; i < 90; i++)\n\
-         PSDGet(i); return 0; }\n",
-    );
-    let output = robios(&["--json", file.to_str().unwrap()]);
-    let told: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let warnings: Vec<&str> =
-        told["warnings"].as_array().unwrap().iter().map(|w| w.as_str().unwrap()).collect();
-    let messages = String::from_utf8_lossy(&output.stderr);
-    for expected in [
-        "PSDGet: the robot has no PSD 77",
-        "CAMGet: camera is off",
-        "LIDARSet: lidar range is 720",
-        "no servo 9",
-    ] {
-        let found: Vec<_> = warnings.iter().filter(|warning| warning.contains(expected)).collect();
-        assert_eq!(found.len(), 1, "{expected}: {warnings:?}");
-        assert_eq!(messages.lines().filter(|line| line.contains(expected)).count(), 1, "{messages}");
-    }
-    assert_eq!(warnings.iter().filter(|warning| warning.contains("PSDGet")).count(), 3, "{warnings:?}");
 }
 
 #[test]
@@ -238,55 +208,4 @@ fn python_programs_use_opencv() {
          LCDPrintf(\"%d\", int(numpy.count_nonzero(edges) > 100))\n",
     );
     assert_eq!(report(&[file.to_str().unwrap()])["lcd_text"], "1");
-}
-
-/// Threads that print in turn with a lock, like the book's.
-const TURNS: &str = "#include \"eyebot.h\"\nstatic pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;\n\
-    static void *print(void *number) { int id = (int)(intptr_t)number, i; for (i = 0; i < 10; i++) {\n\
-    pthread_mutex_lock(&lock); LCDPrintf(\"%d.%d \", id, i); pthread_mutex_unlock(&lock); sleep(id); } return NULL; }\n\
-    int main() { pthread_t threads[3]; intptr_t i; for (i = 1; i < 4; i++)\n\
-    pthread_create(&threads[i - 1], NULL, print, (void *)i); KEYWait(KEY4); pthread_exit(NULL); }\n";
-
-/// For programs whose threads sleep or wait for each other.
-#[test]
-fn fifty_runs_under_load_are_the_same_each_time() {
-    if !compiler() {
-        return;
-    }
-    let folder = Folder::new("time-same");
-    folder.copy("radio.c", "radio.c");
-    let mut load: Vec<_> =
-        (0..4).map(|_| Command::new("sh").args(["-c", "while :; do :; done"]).spawn().unwrap()).collect();
-    let mut runs = Vec::new();
-    for name in
-        ["square", "driving", "sensors", "motors", "display", "camera", "images", "lines", "chapter04"]
-    {
-        let file = folder.copy(&format!("{name}.c"), &format!("{name}.c"));
-        let file = compiled(&file).display().to_string();
-        runs.extend(
-            [("0", "1"), ("1", "1"), ("1", "2"), ("2", "3"), ("5", "4")].map(|noise| (noise, file.clone())),
-        );
-    }
-    let script = folder.write("two.sim", "S4 400 600 0 radio.x\nLabBot 1000 600 180 radio.x\n");
-    runs.extend(["1", "2"].map(|seed| (("1", seed), script.display().to_string())));
-    let threads = folder.write("turns.c", TURNS);
-    for file in [folder.copy("threads.c", "threads.c"), folder.copy("older.c", "older.c"), threads] {
-        runs.push((("1", "2"), compiled(&file).display().to_string()));
-    }
-    assert_eq!(runs.len(), 50);
-    let run = |((noise, seed), file): &((&str, &str), String)| {
-        let log = folder.0.join("log.mcap").display().to_string();
-        let mut options = vec!["--json", "--time-limit", "60", "--noise", noise, "--seed", seed];
-        if *seed == "1" {
-            options.extend(["--record", &log]);
-        }
-        options.push(file);
-        let told = robios(&options).stdout;
-        (told, std::fs::read(&log).unwrap_or_default())
-    };
-    let differing: Vec<_> = runs.iter().filter(|one| run(one) != run(one)).collect();
-    for process in &mut load {
-        let _ = process.kill().and_then(|()| process.wait());
-    }
-    assert!(differing.is_empty(), "{differing:?}");
 }

@@ -1,8 +1,9 @@
 use std::ops::ControlFlow;
 
 use super::helm::{Helm, Push};
-use super::legs::{Legs, Steered, over_ground, steer};
+use super::legs::{Legs, Steered, steer};
 use super::reckoning::Reckoning;
+use super::slow_motion::SlowMotion;
 use super::{DepthHoldParameters, DiveObservation, Thrust};
 use crate::geometry::{Point, Pose, Vector, Vector3};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
@@ -89,6 +90,7 @@ pub struct Boat {
     parameters: BoatParameters,
     helm: Helm,
     reckoning: Reckoning,
+    motion: SlowMotion,
     legs: Legs,
     /// The velocity (m/s) against what drives the boat off its station, and when it came there.
     drift: Vector,
@@ -127,6 +129,7 @@ impl Boat {
         Ok(Self {
             helm: Helm::new(craft, 0.8, parameters.period, DepthHoldParameters::default())?,
             reckoning: Reckoning::at(start),
+            motion: SlowMotion::default(),
             legs: Legs::new(all().collect(), parameters.speed, parameters.lookahead, parameters.reached),
             drift: Vector::zeros(),
             since: 0.0,
@@ -142,7 +145,10 @@ impl Boat {
     fn notice(&mut self, time: f64, seen: &BoatObservation) -> Result<()> {
         let BoatObservation { attitude, rates, odometry } = *seen;
         self.helm.observe(time, &DiveObservation { depth: 0.0, attitude, rates })?;
-        self.reckoning.advance(odometry, self.helm.heading(), self.helm.seconds());
+        let (helm, seconds) = (&self.helm, self.helm.seconds());
+        self.reckoning.advance(odometry, helm.heading(), seconds);
+        let (pose, log) = (self.reckoning.pose(), self.reckoning.velocity());
+        self.motion.advance(helm.craft(), &pose, helm.turn_rate(), helm.pushed(), log, seconds);
         if self.legs.pass(self.reckoning.pose().position()) {
             self.since = time;
         }
@@ -159,16 +165,17 @@ impl Boat {
 
     fn push(&mut self) -> Push {
         let pose = self.reckoning.pose();
-        let velocity = self.reckoning.velocity();
         let (wanted, stays) = if self.legs.is_over() {
             (self.stay(), true)
         } else {
             (self.legs.guide(pose.position(), self.helm.seconds()), false)
         };
-        let Steered { turn, speed } = steer(&pose, over_ground(&pose, velocity), wanted);
+        let Steered { turn, speed } = steer(&pose, self.motion.velocity(), wanted);
         // On station it may go astern.
         let speed = if stays { wanted.dot(&pose.forward()) } else { speed };
-        self.helm.push(velocity.x, speed, turn)
+        let mut push = self.helm.push(self.motion.along(&pose).x, speed, turn);
+        push.ahead -= self.helm.craft().inertia()[0] * self.motion.unknown(&pose).x;
+        push
     }
 }
 

@@ -1,4 +1,4 @@
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix6, Vector6};
 
 use crate::ParameterError;
 use crate::geometry::{Aabb, Point, Vector};
@@ -11,8 +11,10 @@ pub struct Sounding {
     pub place: Point,
     /// Water depth (m).
     pub depth: f64,
-    /// Standard deviation of the position (m).
-    pub sigma: f64,
+    /// Standard deviations of the place along x and y (m).
+    pub sigma: Vector,
+    /// Standard deviation of the datum (m): by this all depths of a survey may be wrong together.
+    pub datum: f64,
 }
 
 /// A depth and its uncertainty.
@@ -26,21 +28,22 @@ pub struct CellDepth {
 
 /// A map of depths in square cells, with the uncertainty of each (book, section 8.5).
 ///
-/// A cell's depth is that of the least-squares plane through the soundings around it. Its standard deviation has
-/// three parts: the uncertainty of the plane, the spread of the cell's soundings about it, and the position
-/// error times the slope.
+/// A cell's depth is the mean of its own soundings, each moved to where it should be by the quadratic surface
+/// through the soundings around. Soundings that lie close together count as one. The standard deviation has
+/// three parts: the sensor's noise, which is seen in how soundings differ from those just before and after; the
+/// error of the place times the slope; and that of the datum.
 ///
 /// ```
 /// use roverlab::drive::marine::{DepthMap, Sounding};
-/// use roverlab::geometry::{Aabb, Point};
+/// use roverlab::geometry::{Aabb, Point, Vector};
 /// let area = Aabb::new(Point::origin(), Point::new(4.0, 3.0));
 /// let mut map = DepthMap::new(area, 1.0)?;
 /// for i in 0..200 {
 ///     let place = Point::new(0.02 * f64::from(i), 0.2 + 0.7 * f64::from(i % 4));
-///     map.add(Sounding { place, depth: 1.5 + 0.1 * place.x, sigma: 0.02 });
+///     map.add(Sounding { place, depth: 1.5 + 0.1 * place.x, sigma: Vector::repeat(0.02), datum: 0.0 });
 /// }
 /// let cell = map.cell(2, 1).expect("it was measured");
-/// assert!((cell.depth - 1.75).abs() < 1e-6 && cell.sigma > 0.0);
+/// assert!((cell.depth - 1.75).abs() < 1e-4 && cell.sigma > 0.0);
 /// # Ok::<(), roverlab::ParameterError>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -49,15 +52,27 @@ pub struct DepthMap {
     cell: f64,
     columns: usize,
     rows: usize,
-    soundings: Vec<Vec<Sounding>>,
+    soundings: Vec<Vec<Noted>>,
+    /// The two soundings before the next one.
+    before: [Option<Sounding>; 2],
 }
 
-/// The least error of a depth (m): the pressure sensor's, which is the same everywhere.
-const COMMON: f64 = 0.003;
+/// A sounding, and the square of how much it differs from its neighbours on the way, in variances of the
+/// noise.
+#[derive(Debug, Clone, Copy)]
+struct Noted {
+    sounding: Sounding,
+    ripple: Option<f64>,
+}
+
 /// The most cells.
 const MOST: f64 = 1e6;
-/// Soundings that a cell needs around it.
+/// Soundings that a cell needs around it: as many as a quadratic surface has coefficients.
 const LEAST: usize = 6;
+/// Parts of a cell along each side; soundings in the same part count as one.
+const PARTS: usize = 5;
+/// The median of the square of a normal number.
+const MEDIAN: f64 = 0.455;
 
 impl DepthMap {
     /// Creates an empty map of an area. Fails for a cell size that is not positive, and for more than a million
@@ -70,7 +85,7 @@ impl DepthMap {
         let [columns, rows] = [size.x, size.y].map(|length| (length / cell).ceil());
         require("cells", columns * rows, columns * rows <= MOST, "at most a million")?;
         let (columns, rows) = (columns as usize, rows as usize);
-        Ok(Self { area, cell, columns, rows, soundings: vec![Vec::new(); columns * rows] })
+        Ok(Self { area, cell, columns, rows, soundings: vec![Vec::new(); columns * rows], before: [None; 2] })
     }
 
     /// Number of cells along x.
@@ -89,15 +104,30 @@ impl DepthMap {
         self.area.min + Vector::new(at(column), at(row))
     }
 
-    /// Adds a sounding. Soundings outside the area are ignored.
+    /// Adds a sounding, in the order in which they are measured. What is outside the area does not count.
     pub fn add(&mut self, sounding: Sounding) {
+        if !sounding.depth.is_finite() {
+            return;
+        }
+        let ripple = self.ripple(&sounding);
+        self.before = [self.before[1], Some(sounding)];
         let off = (sounding.place - self.area.min) / self.cell;
-        if off.x >= 0.0 && off.y >= 0.0 && sounding.depth.is_finite() {
+        if off.x >= 0.0 && off.y >= 0.0 {
             let (column, row) = (off.x as usize, off.y as usize);
             if column < self.columns && row < self.rows {
-                self.soundings[row * self.columns + column].push(sounding);
+                self.soundings[row * self.columns + column].push(Noted { sounding, ripple });
             }
         }
+    }
+
+    /// How far the sounding before is from the mean of its neighbours: this has six quarters of the noise's
+    /// variance, and ground that slopes evenly no part in it.
+    fn ripple(&self, last: &Sounding) -> Option<f64> {
+        let [first, middle] = [self.before[0]?, self.before[1]?];
+        let near = self.cell;
+        let is_near = (first.place - middle.place).norm() < near && (last.place - middle.place).norm() < near;
+        let off = middle.depth - 0.5 * (first.depth + last.depth);
+        is_near.then_some(off * off / 1.5)
     }
 
     /// The depth of a cell; `None` where it was not measured. O(soundings of the cells around).
@@ -107,49 +137,63 @@ impl DepthMap {
         if column >= self.columns || own.is_empty() {
             return None;
         }
-        // From the cell itself and those beside it; what is farther off counts less.
-        let (mut square, mut right, mut count) = (Matrix3::zeros(), Vector3::zeros(), 0);
-        let near = || self.around(column, row).filter(move |sounding| self.weight(centre, sounding) > 0.0);
-        for sounding in near() {
-            let (powers, weight) = (self.powers(centre, sounding), self.weight(centre, sounding));
-            square += powers * powers.transpose() * weight;
-            right += powers * (sounding.depth * weight);
-            count += 1;
+        let surface = self.surface(column, row)?;
+        let noise = self.noise(column, row)?;
+        // Soundings off the surface, in the mean of each part of the cell.
+        let mut parts = [(0.0, 0_u32); PARTS * PARTS];
+        let (mut place, mut datum) = (Vector::zeros(), 0.0_f64);
+        for Noted { sounding, .. } in own {
+            let powers = self.powers(centre, sounding);
+            let part = |off: f64| (((off + 0.5) * PARTS as f64) as usize).min(PARTS - 1);
+            let (sum, count) = &mut parts[part(powers[2]) * PARTS + part(powers[1])];
+            (*sum, *count) = (*sum + sounding.depth - surface.dot(&powers), *count + 1);
+            place += sounding.sigma / own.len() as f64;
+            datum = datum.max(sounding.datum);
+        }
+        let measured = || parts.iter().filter(|part| part.1 > 0).map(|part| (part.0, f64::from(part.1)));
+        let known = measured().count() as f64;
+        let off = measured().map(|(sum, count)| sum / count).sum::<f64>() / known;
+        let random = measured().map(|(_, count)| noise / count).sum::<f64>() / (known * known);
+        // The mean of the squares over a cell is a twelfth.
+        let mean = surface[0] + (surface[3] + surface[5]) / 12.0;
+        let slope = Vector::new(surface[1], surface[2]) / self.cell;
+        let placed = slope.component_mul(&place).norm_squared();
+        Some(CellDepth { depth: mean + off, sigma: (random + placed + datum * datum).sqrt() })
+    }
+
+    /// The quadratic surface through the soundings of a cell and of those beside it, by least squares; what is
+    /// farther off counts less.
+    fn surface(&self, column: usize, row: usize) -> Option<Vector6<f64>> {
+        let centre = self.centre(column, row);
+        let (mut square, mut right, mut count) = (Matrix6::zeros(), Vector6::zeros(), 0);
+        for Noted { sounding, .. } in self.around(column, row) {
+            let weight = self.weight(centre, sounding);
+            if weight > 0.0 {
+                let powers = self.powers(centre, sounding);
+                square += powers * powers.transpose() * weight;
+                right += powers * (sounding.depth * weight);
+                count += 1;
+            }
         }
         if count < LEAST {
             return None;
         }
-        // A lane alone does not say how the ground slopes across it: little is better than anything.
-        let slack = Matrix3::from_diagonal(&Vector3::new(0.0, 1.0, 1.0)) * (1e-3 * square[(0, 0)]);
-        let inverse = (square + slack).try_inverse()?;
-        let plane = inverse * right;
-        let (mut squares, mut weights, mut sigma) = (0.0, 0.0, 0.0);
-        for sounding in near() {
-            let weight = self.weight(centre, sounding);
-            let off = sounding.depth - plane.dot(&self.powers(centre, sounding));
-            squares += weight * off * off;
-            sigma += weight * sounding.sigma;
-            weights += weight;
-        }
-        let (spread, sigma) = (squares / weights, sigma / weights);
-        let slope = Vector::new(plane.y, plane.z).norm() / self.cell;
-        let known = spread * inverse[(0, 0)];
-        let placed = slope * sigma;
-        let bent = self.bent(own, &plane, centre);
-        Some(CellDepth { depth: plane.x, sigma: (known + placed * placed + bent + COMMON * COMMON).sqrt() })
+        // A lane alone does not say how the ground goes on across it: little is better than anything.
+        let slack = Vector6::new(0.0, 1.0, 1.0, 1.0, 1.0, 1.0) * (SLACK * square[(0, 0)]);
+        Some((square + Matrix6::from_diagonal(&slack)).try_inverse()? * right)
     }
 
-    /// The square of what the ground of a cell is off its plane in the mean.
-    fn bent(&self, own: &[Sounding], plane: &Vector3<f64>, centre: Point) -> f64 {
-        let off = |sounding: &Sounding| sounding.depth - plane.dot(&self.powers(centre, sounding));
-        let mean = own.iter().map(off).sum::<f64>() / own.len() as f64;
-        mean * mean
+    /// The variance of the sensor's noise: from the median of ripples, to which steps of the ground do not matter.
+    fn noise(&self, column: usize, row: usize) -> Option<f64> {
+        let mut ripples: Vec<f64> = self.around(column, row).filter_map(|noted| noted.ripple).collect();
+        let middle = ripples.len() / 2;
+        (!ripples.is_empty()).then(|| *ripples.select_nth_unstable_by(middle, f64::total_cmp).1 / MEDIAN)
     }
 
-    /// The plane's functions at a sounding, in cells from a centre.
-    fn powers(&self, centre: Point, sounding: &Sounding) -> Vector3<f64> {
+    /// The surface's functions at a sounding, in cells from a centre.
+    fn powers(&self, centre: Point, sounding: &Sounding) -> Vector6<f64> {
         let off = (sounding.place - centre) / self.cell;
-        Vector3::new(1.0, off.x, off.y)
+        Vector6::new(1.0, off.x, off.y, off.x * off.x, off.x * off.y, off.y * off.y)
     }
 
     /// How much a sounding counts: all in the middle of the cell, nothing one and a half cells away.
@@ -158,7 +202,7 @@ impl DepthMap {
         (1.0 - off.norm_squared() / 2.25).max(0.0)
     }
 
-    fn around(&self, column: usize, row: usize) -> impl Iterator<Item = &Sounding> {
+    fn around(&self, column: usize, row: usize) -> impl Iterator<Item = &Noted> {
         let columns = column.saturating_sub(1)..(column + 2).min(self.columns);
         let rows = row.saturating_sub(1)..(row + 2).min(self.rows);
         rows.flat_map(move |row| columns.clone().map(move |column| row * self.columns + column))
@@ -166,19 +210,26 @@ impl DepthMap {
     }
 }
 
+/// What keeps coefficients small that soundings do not determine, as a share of the soundings' weight.
+const SLACK: f64 = 1e-4;
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn sounding(place: Point, depth: f64) -> Sounding {
+        Sounding { place, depth, sigma: Vector::zeros(), datum: 0.0 }
+    }
 
     #[test]
     fn what_was_not_measured_has_no_depth() {
         let area = Aabb::new(Point::origin(), Point::new(3.0, 2.0));
         let mut map = DepthMap::new(area, 1.0).unwrap();
         for i in 0..20 {
-            map.add(Sounding { place: Point::new(0.05 * f64::from(i), 0.5), depth: 2.0, sigma: 0.0 });
+            map.add(sounding(Point::new(0.05 * f64::from(i), 0.5), 2.0));
         }
-        map.add(Sounding { place: Point::new(-1.0, 0.5), depth: 9.0, sigma: 0.0 });
-        map.add(Sounding { place: Point::new(2.5, 0.5), depth: f64::NAN, sigma: 0.0 });
+        map.add(sounding(Point::new(-1.0, 0.5), 9.0));
+        map.add(sounding(Point::new(2.5, 0.5), f64::NAN));
         assert_eq!((map.columns(), map.rows()), (3, 2));
         assert!((map.cell(0, 0).unwrap().depth - 2.0).abs() < 1e-6);
         assert!(map.cell(2, 0).is_none() && map.cell(0, 1).is_none() && map.cell(5, 0).is_none());
@@ -192,7 +243,7 @@ mod tests {
             let mut stream = crate::random::Stream::new(5);
             for _ in 0..100 {
                 let place = Point::new(stream.uniform(), stream.uniform());
-                map.add(Sounding { place, depth: 2.0 + noise * stream.normal(), sigma: 0.0 });
+                map.add(sounding(place, 2.0 + noise * stream.normal()));
             }
             map.cell(0, 0).unwrap().sigma
         };

@@ -1,15 +1,16 @@
-use nalgebra::{Matrix3, RowVector3, Vector3};
+use nalgebra::{Matrix4, RowVector4, Vector4};
 
-use crate::geometry::{Aabb, Point, Pose, Vector, direction, math};
+use super::reckoning::{halfway, way};
+use crate::geometry::{Aabb, Point, Pose, Vector, math};
 
-/// The position in a pool with four sides, and how sure it is: an extended Kalman filter of the place and the
-/// compass's error, moved by the log and corrected by distances to the sides (Thrun et al., *Probabilistic
-/// Robotics*, 2005, section 3.3).
+/// The position in a pool with four sides, and how sure it is: an extended Kalman filter of the place and of the
+/// errors of compass and log, moved by the log and corrected by distances to the sides (Thrun et al.,
+/// *Probabilistic Robotics*, 2005, section 3.3).
 #[derive(Debug, Clone)]
 pub(super) struct Fix {
-    /// Place, and what the compass reads too much (rad).
-    state: Vector3<f64>,
-    covariance: Matrix3<f64>,
+    /// Place (m), what the compass reads too much (rad), and the share by which the log does.
+    state: Vector4<f64>,
+    covariance: Matrix4<f64>,
     /// The sides of the pool; without them, there is only the log.
     sides: Option<Aabb>,
     odometry: Option<Pose>,
@@ -17,23 +18,23 @@ pub(super) struct Fix {
     velocity: Vector,
 }
 
-/// Standard deviations: of the place at the start (m), the compass's error (rad) and its drift (rad/√s), the
-/// log's scale and its walk (m/√s), and a distance (m).
+/// Standard deviations: of the place at the start (m), the compass's error (rad) and its drift (rad/√s: half a
+/// degree in a minute), the log's scale and its walk (m/√s), and a distance (m).
 const START: f64 = 0.05;
 const COMPASS: f64 = 0.01;
-const DRIFT: f64 = 0.001;
+const DRIFT: f64 = 0.0011;
 const SCALE: f64 = 0.005;
 const WALK: f64 = 0.004;
-const RANGE: f64 = 0.015;
+const RANGE: f64 = 0.1;
 /// The most standard deviations that a distance may be off: what is nearer is no side.
 const GATE: f64 = 4.0;
 
 impl Fix {
     pub(super) fn new(start: Pose, sides: Option<Aabb>) -> Self {
-        let covariance = Vector3::new(START * START, START * START, COMPASS * COMPASS);
+        let deviations = Vector4::new(START, START, COMPASS, SCALE);
         Self {
-            state: Vector3::new(start.x, start.y, 0.0),
-            covariance: Matrix3::from_diagonal(&covariance),
+            state: Vector4::new(start.x, start.y, 0.0, 0.0),
+            covariance: Matrix4::from_diagonal(&deviations.component_mul(&deviations)),
             sides,
             odometry: None,
             heading: start.heading,
@@ -45,9 +46,14 @@ impl Fix {
         Pose::new(self.state.x, self.state.y, self.heading - self.state.z)
     }
 
-    /// The larger standard deviation of the place along x and y (m).
-    pub(super) fn sigma(&self) -> f64 {
-        self.covariance[(0, 0)].max(self.covariance[(1, 1)]).sqrt()
+    /// The standard deviations of the place along x and y (m).
+    pub(super) fn sigma(&self) -> Vector {
+        Vector::new(self.covariance[(0, 0)].sqrt(), self.covariance[(1, 1)].sqrt())
+    }
+
+    /// Whether there are sides that tell the place.
+    pub(super) fn sees_sides(&self) -> bool {
+        self.sides.is_some()
     }
 
     /// The speed forward and to the left by the log (m/s).
@@ -57,25 +63,28 @@ impl Fix {
 
     /// Moves on by the log, along the heading that the compass reads.
     pub(super) fn advance(&mut self, odometry: Pose, heading: f64, seconds: f64) {
+        let middle = halfway(self.heading, heading);
         self.heading = heading;
         let Some(before) = self.odometry.replace(odometry) else { return };
-        let way = before.to_local(odometry.position()).coords;
-        self.velocity = way / seconds;
-        let ahead = direction(self.pose().heading);
-        let moved = Vector::new(ahead.x * way.x - ahead.y * way.y, ahead.y * way.x + ahead.x * way.y);
+        let log = way(&before, &odometry);
+        self.velocity = log / seconds;
+        let (sin, cos) = math::sin_cos(middle - self.state.z);
+        let read = Vector::new(cos * log.x - sin * log.y, sin * log.x + cos * log.y);
+        let moved = read * (1.0 - self.state.w);
         (self.state.x, self.state.y) = (self.state.x + moved.x, self.state.y + moved.y);
-        // What the compass reads too much turns the way back.
-        let mut turn = Matrix3::identity();
+        // What the compass reads too much turns the way back, and what the log does shortens it.
+        let mut turn = Matrix4::identity();
         (turn[(0, 2)], turn[(1, 2)]) = (moved.y, -moved.x);
-        let step = SCALE * SCALE * way.norm_squared() + WALK * WALK * seconds;
-        let noise = Matrix3::from_diagonal(&Vector3::new(step, step, DRIFT * DRIFT * seconds));
+        (turn[(0, 3)], turn[(1, 3)]) = (-read.x, -read.y);
+        let step = WALK * WALK * seconds;
+        let noise = Matrix4::from_diagonal(&Vector4::new(step, step, DRIFT * DRIFT * seconds, 0.0));
         self.covariance = turn * self.covariance * turn.transpose() + noise;
     }
 
     /// Takes in a distance read by a sensor at a pose on the craft.
     pub(super) fn see(&mut self, sensor: &Pose, range: f64) {
         let Some(sides) = self.sides else { return };
-        let expected = |state: &Vector3<f64>| {
+        let expected = |state: &Vector4<f64>| {
             let pose = Pose::new(state.x, state.y, self.heading - state.z).compose(sensor);
             to_side(&sides, pose.position(), pose.heading)
         };
@@ -85,7 +94,7 @@ impl Fix {
             moved[axis] += DELTA;
             expected(&moved).map_or(0.0, |moved| (moved - there) / DELTA)
         };
-        let slopes = RowVector3::new(slope(0), slope(1), slope(2));
+        let slopes = RowVector4::new(slope(0), slope(1), slope(2), 0.0);
         let spread = (slopes * self.covariance * slopes.transpose())[0] + RANGE * RANGE;
         let off = range - there;
         if off * off > GATE * GATE * spread {
@@ -93,7 +102,7 @@ impl Fix {
         }
         let gain = self.covariance * slopes.transpose() / spread;
         self.state += gain * off;
-        self.covariance = (Matrix3::identity() - gain * slopes) * self.covariance;
+        self.covariance = (Matrix4::identity() - gain * slopes) * self.covariance;
     }
 }
 
@@ -120,6 +129,7 @@ fn to_side(sides: &Aabb, from: Point, heading: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Stream;
 
     #[test]
     fn two_sides_correct_the_place_and_the_covariance_says_how_well() {
@@ -132,7 +142,7 @@ mod tests {
         }
         let pose = fix.pose();
         assert!((pose.x - 3.0).abs() < 0.01 && (pose.y - 2.0).abs() < 0.01, "{pose:?}");
-        assert!(fix.sigma() < 0.2 * before);
+        assert!(fix.sigma().norm() < 0.2 * before.norm());
         // Something in the way is not taken for a side.
         fix.see(&Pose::new(0.5, 0.0, 0.0), 1.0);
         assert_eq!(fix.pose(), pose);
@@ -144,6 +154,47 @@ mod tests {
         for step in 0..100 {
             fix.advance(Pose::new(0.05 * f64::from(step), 0.0, 0.0), 0.0, 0.1);
         }
-        assert!((fix.pose().x - 4.95).abs() < 1e-9 && fix.sigma() > 0.06, "{}", fix.sigma());
+        assert!((fix.pose().x - 4.95).abs() < 1e-9 && fix.sigma().x > 0.055, "{}", fix.sigma());
+    }
+
+    /// The mean of the squared errors of the place in terms of the covariance (NEES), after lanes in a pool whose
+    /// far sides are out of range, of many craft with errors of their own: 2 of a filter that knows its errors.
+    #[test]
+    fn the_covariance_is_that_of_the_errors() {
+        let sides = Aabb::new(Point::origin(), Point::new(14.0, 30.0));
+        let (mut sum, mut count) = (0.0, 0.0);
+        for seed in 0..40 {
+            let mut stream = Stream::new(seed);
+            let mut off = |sigma: f64| sigma * stream.normal();
+            let start = Pose::new(3.0, 2.0, std::f64::consts::FRAC_PI_2);
+            let mut fix =
+                Fix::new(Pose::new(start.x + off(START), start.y + off(START), start.heading), Some(sides));
+            let (mut compass, scale) = (off(COMPASS), 1.0 + off(SCALE));
+            let (mut truth, mut log) = (start, Pose::default());
+            for step in 0..2400_u32 {
+                // Along a lane and back again, turning on the spot.
+                let turn = if step % 800 < 740 { 0.0 } else { std::f64::consts::PI / 60.0 };
+                let ahead = if turn == 0.0 { 0.035 } else { 0.0 };
+                truth = truth.compose(&Pose::new(ahead, 0.0, turn));
+                compass += off(DRIFT * 0.1_f64.sqrt());
+                let walk = WALK * 0.1_f64.sqrt();
+                log = log.compose(&Pose::new(ahead * scale + off(walk), off(walk), turn));
+                fix.advance(log, truth.heading + compass, 0.1);
+                for bearing in [0.0, 1.0, 2.0, 3.0].map(|quarter| quarter * std::f64::consts::FRAC_PI_2) {
+                    let range = to_side(&sides, truth.position(), truth.heading + bearing);
+                    if let Some(range) = range.filter(|range| *range < 10.0) {
+                        fix.see(&Pose::new(0.0, 0.0, bearing), range + off(RANGE));
+                    }
+                }
+                if step % 100 == 99 {
+                    let error = fix.pose().position() - truth.position();
+                    let own = fix.covariance.fixed_view::<2, 2>(0, 0).try_inverse().unwrap();
+                    sum += error.dot(&(own * error));
+                    count += 1.0;
+                }
+            }
+        }
+        let nees = sum / count;
+        assert!((1.4..2.8).contains(&nees), "{nees}");
     }
 }

@@ -19,6 +19,8 @@ pub(super) struct Helm {
     yaw: f64,
     pitch_rate: f64,
     turn_rate: f64,
+    /// The push ahead (N) that a boat's thrusters do.
+    pushed: f64,
     before: f64,
     /// Seconds since the observation before; at first the period.
     seconds: f64,
@@ -38,6 +40,8 @@ pub(super) struct Push {
 const BELIEVED: f64 = 0.1;
 /// Seconds in which a difference of speed, and of turn rate, is to be closed.
 const CLOSING: f64 = 0.5;
+/// The least cosine of a pitch at which a craft still has a heading.
+const STEEPEST: f64 = 0.1;
 /// The most that a craft slips aside, as a share of its speed ahead.
 const MOST_SLIP: f64 = 1.0;
 
@@ -62,6 +66,7 @@ impl Helm {
             yaw: 0.0,
             pitch_rate: 0.0,
             turn_rate: 0.0,
+            pushed: 0.0,
             before: 0.0,
             seconds: period,
         })
@@ -76,9 +81,11 @@ impl Helm {
             self.hold = Some(DepthHold::new(&self.craft, seen.depth, self.hold_parameters)?);
         }
         self.before = time;
-        self.pitch = believed(self.pitch + seen.rates.y * self.seconds, seen.attitude.pitch);
-        self.yaw = believed(self.yaw + seen.rates.z * self.seconds, seen.attitude.yaw);
-        (self.depth, self.pitch_rate, self.turn_rate) = (seen.depth, seen.rates.y, seen.rates.z);
+        let [pitch_rate, turn_rate] = levelled(seen);
+        let turned = |before: f64, now: f64| 0.5 * (before + now) * self.seconds;
+        self.pitch = believed(self.pitch + turned(self.pitch_rate, pitch_rate), seen.attitude.pitch);
+        self.yaw = believed(self.yaw + turned(self.turn_rate, turn_rate), seen.attitude.yaw);
+        (self.depth, self.pitch_rate, self.turn_rate) = (seen.depth, pitch_rate, turn_rate);
         Ok(())
     }
 
@@ -125,10 +132,26 @@ impl Helm {
         self.craft.inertia()[5] * self.turning * (self.turning * off - 2.0 * self.turn_rate)
     }
 
+    /// The body that it steers.
+    pub(super) fn craft(&self) -> &Craft {
+        &self.craft
+    }
+
+    /// The turn rate (rad/s) that was read.
+    pub(super) fn turn_rate(&self) -> f64 {
+        self.turn_rate
+    }
+
+    /// The push ahead (N) that a boat's thrusters do since the step before.
+    pub(super) fn pushed(&self) -> f64 {
+        self.pushed
+    }
+
     /// The thrusters' commands that push a boat.
-    pub(super) fn afloat(&self, push: Push) -> Result<Thrust> {
+    pub(super) fn afloat(&mut self, push: Push) -> Result<Thrust> {
         let along = Wrench { force: Vector3::x() * push.ahead, moment: Vector3::z() * push.turn };
         let along = self.allocation.share(&along);
+        self.pushed = push.ahead * along.share;
         Thrust::new(&along.commands[..self.craft.thrusters().len()])
     }
 
@@ -147,6 +170,14 @@ impl Helm {
         let commands: Vec<f64> = both.map(|(a, b)| (a + b).clamp(-1.0, 1.0)).collect();
         Thrust::new(&commands[..self.craft.thrusters().len()])
     }
+}
+
+/// How fast pitch and heading change: not as fast as a craft that rolls turns about its own axes (Fossen 2021,
+/// section 2.2).
+fn levelled(seen: &DiveObservation) -> [f64; 2] {
+    let (sin, cos) = math::sin_cos(seen.attitude.roll);
+    let upright = (seen.rates.y * sin + seen.rates.z * cos) / math::cos(seen.attitude.pitch).max(STEEPEST);
+    [seen.rates.y * cos - seen.rates.z * sin, upright]
 }
 
 /// An angle between what is expected and what is read.

@@ -42,6 +42,11 @@ impl Legs {
         self.points[self.points.len() - 1]
     }
 
+    /// Goes on to further waypoints.
+    pub(super) fn extend(&mut self, waypoints: [Point; 2]) {
+        self.points.extend(waypoints);
+    }
+
     /// Takes notice of where the craft is. Returns whether it has reached a waypoint.
     pub(super) fn pass(&mut self, place: Point) -> bool {
         let before = self.next;

@@ -25,7 +25,8 @@ impl DiveObservation {
         if !(self.depth.is_finite() && self.depth >= 0.0) {
             return Err(Error::invalid_input("observed depth", self.depth, "a finite number of at least 0"));
         }
-        let angles = [self.attitude.pitch, self.attitude.yaw, self.rates.y, self.rates.z];
+        let Attitude { roll, pitch, yaw } = self.attitude;
+        let angles = [roll, pitch, yaw, self.rates.y, self.rates.z];
         match angles.iter().find(|angle| !angle.is_finite()) {
             Some(angle) => Err(Error::invalid_input("observed attitude", angle, "finite numbers")),
             None => Ok(()),

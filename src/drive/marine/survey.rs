@@ -1,9 +1,11 @@
+use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
 use super::fix::Fix;
 use super::helm::Helm;
 use super::legs::{Legs, Steered, over_ground, steer};
 use super::observation::{check_pose, check_ranges};
+use super::zero::Zero;
 use super::{DepthHoldParameters, DiveObservation, Sounding, Thrust};
 use crate::geometry::{Aabb, Point, Pose, Vector};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
@@ -22,20 +24,23 @@ pub struct SurveyParameters {
     pub depth: f64,
     /// Speed on a lane (m/s).
     pub speed: f64,
-    /// Control period (s).
+    /// Density of the water (kg/m³), by which the depth sensor is zeroed afloat.
+    pub density: f64,
+    /// Seconds between steps.
     pub period: f64,
     /// Parameters of the depth controller.
     pub hold: DepthHoldParameters,
 }
 
 impl Default for SurveyParameters {
-    /// Lanes a metre apart, half a metre deep, at 0.4 m/s.
+    /// Lanes a metre apart, half a metre deep, at 0.6 m/s.
     fn default() -> Self {
         Self {
             spacing: 1.0,
             margin: 1.0,
             depth: 0.5,
-            speed: 0.4,
+            speed: 0.6,
+            density: 1000.0,
             period: 0.1,
             hold: DepthHoldParameters::default(),
         }
@@ -72,8 +77,8 @@ halts!(SurveyOutcome { Covered: "all lanes are done" });
 /// Drives lanes at a depth over the floor of a pool or of open water, with a sounding at each step (book,
 /// section 8.5).
 ///
-/// The position, with its covariance, comes from Doppler log and compass, corrected by the distances to the four
-/// sides of a pool. [`DepthMap`](super::DepthMap) makes a map of the soundings.
+/// The place is that of the Doppler log and the compass, corrected by the distances to the four sides of a
+/// pool, with its covariance. Before it dives, it zeroes its depth sensor by its own waterline. [`DepthMap`](super::DepthMap) makes a map of the soundings.
 ///
 /// ```
 /// use roverlab::drive::marine::{DepthMap, Survey, SurveyOutcome, SurveyParameters};
@@ -101,6 +106,10 @@ pub struct Survey {
     parameters: SurveyParameters,
     helm: Helm,
     fix: Fix,
+    zero: Zero,
+    /// The lanes to come, and the range of the sensors to the sides (m).
+    lanes: VecDeque<Lane>,
+    sight: f64,
     legs: Legs,
     /// The sensors around, in the craft's frame.
     around: [Pose; 4],
@@ -120,8 +129,17 @@ const REACHED: f64 = 0.2;
 const MOST_LANES: f64 = 1e4;
 /// Metres ahead at which the craft steers.
 const LOOKAHEAD: f64 = 1.5;
+/// Standard deviation of the place (m) at which a craft is unsure of it.
+const UNSURE: f64 = 0.1;
 /// The most tilt (rad) with which the sensor looks down.
 const LEVEL: f64 = 0.15;
+
+/// A lane: its ends, and how far it is from the nearer side along it (m).
+#[derive(Debug, Clone, Copy)]
+struct Lane {
+    ends: [Point; 2],
+    off: f64,
+}
 
 impl Survey {
     /// Creates a survey of an area by a craft with distance sensors to all sides and down, which starts at a pose.
@@ -138,11 +156,12 @@ impl Survey {
         let DriveSpec::Craft(craft) = &robot.drive else {
             return Err(Error::invalid_input("robot", &robot.name, "a craft"));
         };
-        let SurveyParameters { spacing, margin, depth, speed, period, hold } = parameters;
+        let SurveyParameters { spacing, margin, depth, speed, density, period, hold } = parameters;
         require_positive("spacing", spacing)?;
         require_not_negative("margin", margin)?;
         require_not_negative("depth", depth)?;
         require_positive("speed", speed)?;
+        require_positive("density", density)?;
         require_positive("period", period)?;
         let mount = |psd: Psd| {
             let spec = robot.psds.iter().find(|spec| spec.id == psd.0);
@@ -151,11 +170,15 @@ impl Survey {
         let sensor = |psd: Psd| mount(psd).map(|mount| Pose::new(mount.x, mount.y, mount.yaw));
         let down = mount(DOWN)?;
         let up = robot.depth_sensor.ok_or_else(|| Error::unsupported("depth sensor"))?.z;
-        let lanes = lanes(&area, start.position(), spacing, margin)?;
+        let sights = robot.psds.iter().filter(|psd| [Psd::LEFT.0, Psd::RIGHT.0].contains(&psd.id));
+        let sight = sights.map(|psd| psd.max_range).fold(f64::INFINITY, f64::min);
         Ok(Self {
             helm: Helm::new(craft, 0.8, period, hold)?,
             fix: Fix::new(start, sides.then_some(area)),
-            legs: Legs::new(lanes, speed, LOOKAHEAD, REACHED),
+            zero: Zero::afloat(craft.waterline(density) - up),
+            lanes: lanes(&area, start.position(), spacing, margin)?,
+            sight,
+            legs: Legs::new(vec![start.position()], speed, LOOKAHEAD, REACHED),
             around: [sensor(AROUND[0])?, sensor(AROUND[1])?, sensor(AROUND[2])?, sensor(AROUND[3])?],
             down: Point::new(down.x, up - down.z),
             sounding: None,
@@ -169,9 +192,26 @@ impl Survey {
         self.sounding
     }
 
-    /// Estimated pose in the pool's frame, and the standard deviation of the position (m).
-    pub fn belief(&self) -> (Pose, f64) {
+    /// The pose in the pool's frame as the craft believes it, and the standard deviations of its place
+    /// along x and y (m).
+    pub fn belief(&self) -> (Pose, Vector) {
         (self.fix.pose(), self.fix.sigma())
+    }
+
+    /// Whether it has come to its depth.
+    pub(super) fn is_ready(&self) -> bool {
+        self.ready
+    }
+
+    /// Goes on to the next lane. A craft that has become unsure of its place takes the next one along which it can
+    /// see a side.
+    fn go_on(&mut self, place: Point) {
+        let unsure = self.fix.sees_sides() && self.fix.sigma().max() > UNSURE;
+        let in_sight = |lane: &Lane| !unsure || lane.off < self.sight;
+        let next = self.lanes.iter().position(in_sight).unwrap_or(0);
+        if let Some(lane) = self.lanes.remove(next) {
+            self.legs.extend(lane.from(place));
+        }
     }
 
     fn notice(&mut self, time: f64, seen: &SurveyObservation) -> Result<()> {
@@ -184,11 +224,13 @@ impl Survey {
         }
         let pose = self.fix.pose();
         let tilt = seen.dive.attitude.pitch.abs().max(seen.dive.attitude.roll.abs());
-        let is_good = tilt < LEVEL && seen.down.is_finite();
+        self.zero.read(time, seen.dive.depth);
+        let is_good = tilt < LEVEL && seen.down.is_finite() && self.zero.is_over();
         self.sounding = is_good.then(|| Sounding {
             place: pose.to_world(Point::new(self.down.x, 0.0)),
-            depth: seen.dive.depth + self.down.y + seen.down,
+            depth: seen.dive.depth - self.zero.offset() + self.down.y + seen.down,
             sigma: self.fix.sigma(),
+            datum: self.zero.sigma(),
         });
         self.ready |= (seen.dive.depth - self.parameters.depth).abs() < BEGIN;
         Ok(())
@@ -196,7 +238,7 @@ impl Survey {
 }
 
 /// The lanes of an area, along its longer side, from the corner nearest to a place on.
-fn lanes(area: &Aabb, start: Point, spacing: f64, margin: f64) -> Result<Vec<Point>> {
+fn lanes(area: &Aabb, start: Point, spacing: f64, margin: f64) -> Result<VecDeque<Lane>> {
     let (low, size) = (area.min + Vector::repeat(margin), area.size() - Vector::repeat(2.0 * margin));
     if !(size.x > 0.0 && size.y > 0.0) {
         let found = format!("{} x {} m", area.size().x, area.size().y);
@@ -209,21 +251,28 @@ fn lanes(area: &Aabb, start: Point, spacing: f64, margin: f64) -> Result<Vec<Poi
     let place = |along: f64, aside: f64| {
         low + if size.x >= size.y { Vector::new(along, aside) } else { Vector::new(aside, along) }
     };
-    // The four corners at which a tour may begin.
-    let corner =
-        |far: bool, other: bool| place(if far { long } else { 0.0 }, if other { short } else { 0.0 });
-    let choices = [(false, false), (false, true), (true, false), (true, true)];
-    let distance = |choice: &(bool, bool)| (corner(choice.0, choice.1) - start).norm();
-    let best = choices.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
-    let &(far, other) = best.unwrap_or(&choices[0]);
-    let mut points = vec![start];
-    for lane in 0..=count {
-        let share = lane as f64 / count as f64;
-        let aside = short * if other { 1.0 - share } else { share };
-        let ends = if (lane % 2 == 0) == far { [long, 0.0] } else { [0.0, long] };
-        points.extend(ends.map(|along| place(along, aside)));
+    let lane = |index: usize| {
+        let aside = short * index as f64 / count as f64;
+        Lane { ends: [place(0.0, aside), place(long, aside)], off: margin + aside.min(short - aside) }
+    };
+    let mut lanes: VecDeque<Lane> = (0..=count).map(lane).collect();
+    if lanes[count].distance(start) < lanes[0].distance(start) {
+        lanes = lanes.into_iter().rev().collect();
     }
-    Ok(points)
+    Ok(lanes)
+}
+
+impl Lane {
+    /// Metres from a place to the nearer end.
+    fn distance(&self, place: Point) -> f64 {
+        (self.ends[0] - place).norm().min((self.ends[1] - place).norm())
+    }
+
+    /// Its ends, the one nearer to a place first.
+    fn from(&self, place: Point) -> [Point; 2] {
+        let [one, other] = self.ends;
+        if (other - place).norm() < (one - place).norm() { [other, one] } else { [one, other] }
+    }
 }
 
 impl Behaviour for Survey {
@@ -244,7 +293,13 @@ impl Behaviour for Survey {
         let pose = self.fix.pose();
         self.legs.pass(pose.position());
         if self.legs.is_over() {
+            self.go_on(pose.position());
+        }
+        if self.legs.is_over() {
             return Ok(ControlFlow::Break(SurveyOutcome::Covered));
+        }
+        if !self.zero.is_over() {
+            return Ok(ControlFlow::Continue(Thrust::new(&[])?));
         }
         let velocity = self.fix.velocity();
         let wanted = self.legs.guide(pose.position(), self.helm.seconds());

@@ -23,8 +23,10 @@
 
 #![allow(unsafe_code)]
 
+mod call;
 mod library;
 mod numbers;
+mod panel;
 mod robot;
 mod truth;
 

@@ -32,7 +32,7 @@ impl CraftSpec {
             thrusters: Vec::new(),
             hull: Vec::new(),
         };
-        let level = floats_at(&hull, mass);
+        let level = floats_at(&hull, mass, FRESH);
         for part in &hull {
             let arm = part.centre().coords - centre;
             let own = mass * part.volume() / whole;
@@ -49,9 +49,22 @@ impl CraftSpec {
         Self { hull, ..spec }
     }
 
-    /// Area exposed to wind when the craft floats at rest in fresh water, seen from ahead and from the side (m²).
+    /// The height in its own frame to which still water of a density (kg/m³) comes when the craft floats level.
+    /// Above all of the hull for a craft that sinks.
+    ///
+    /// ```
+    /// use roverlab::kinematics::marine::CraftSpec;
+    /// let mako = CraftSpec::mako();
+    /// assert!(mako.waterline(1025.0) < mako.waterline(1000.0), "salt water carries more");
+    /// ```
+    pub fn waterline(&self, density: f64) -> f64 {
+        floats_at(&self.hull, self.mass, density)
+    }
+
+    /// Square metres of what is out of fresh water at rest, seen from ahead and from the side: wind pushes
+    /// it.
     pub fn windage(&self) -> [f64; 2] {
-        let level = floats_at(&self.hull, self.mass);
+        let level = self.waterline(FRESH);
         [0, 1].map(|axis| {
             let dry = |part: &HullPart| 1.0 - part.displaced(&Vector3::z(), level).volume / part.volume();
             self.hull.iter().map(|part| dry(part) * frontal(part, axis)).sum()
@@ -68,15 +81,15 @@ fn solidity(part: &HullPart) -> f64 {
     }
 }
 
-/// The level of fresh water at which a hull carries a mass; above the hull if it cannot.
-fn floats_at(hull: &[HullPart], mass: f64) -> f64 {
+/// The level of water at which a hull carries a mass; above the hull if it cannot.
+fn floats_at(hull: &[HullPart], mass: f64, density: f64) -> f64 {
     let end = |part: &HullPart, sign: f64| part.centre().z + sign * part.half_size().z;
     let mut low = hull.iter().map(|part| end(part, -1.0)).fold(f64::INFINITY, f64::min);
     let mut high = hull.iter().map(|part| end(part, 1.0)).fold(f64::NEG_INFINITY, f64::max);
     for _ in 0..50 {
         let middle = 0.5 * (low + high);
         let carried: f64 = hull.iter().map(|part| part.displaced(&Vector3::z(), middle).volume).sum();
-        if FRESH * carried < mass { low = middle } else { high = middle }
+        if density * carried < mass { low = middle } else { high = middle }
     }
     high
 }

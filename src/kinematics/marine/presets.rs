@@ -9,6 +9,8 @@ impl CraftSpec {
     /// | 1.34 m long, 0.645 m wide, 0.46 m high, 35 kg; two plastic tubes in an aluminium frame; four trolling motors of 12 V and 7 A | Braeunl et al. 2004 |
     /// | tubes of 160 and 110 mm | standard pipes, which carry 35 kg with a reserve of 2.8 %: "naturally buoyant" |
     /// | centre of mass 60 mm below the centre of volume | batteries in the lower tube |
+    /// | thrusters 290 mm to each side, 500 mm ahead and behind, at the middle of the hull's height | inside the frame's outline, so that they turn without touching it: estimated |
+    /// | lag of 0.2 s | a motor of 84 W with a propeller of 100 mm: estimated |
     /// | 25 N forward, 17.5 N backward | 84 W at 0.3 N/W, between trolling motors (0.37) and small thrusters (0.18); [`Thruster::BACK`] |
     /// | forward drag 42 N s²/m² | 0.084 m² of tubes, frame and motors, as a bluff body |
     /// | the rest | [`CraftSpec::of_hull`] |

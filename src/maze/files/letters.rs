@@ -43,17 +43,18 @@ fn enter_walls(grid: &maz::MazGrid, maze: &mut Maze) {
     }
 }
 
-/// Rejects text with walls or letters in the wrong places, or without walls.
+/// Rejects text with walls or letters in the wrong places, or without walls and the dots of open cells.
 fn refuse_prose(text: &str, file: &str) -> Result<(), FormatError> {
-    let rows = || text.lines().zip(1..).filter(|(row, _)| row.starts_with(['|', '_', ' ', '\t']));
+    let is_row = |row: &str| row.starts_with(['|', '_']) || row.starts_with(char::is_whitespace);
+    let rows = || text.lines().zip(1..).filter(|(row, _)| is_row(row));
     let marks =
         || rows().flat_map(|(row, _)| row.chars().enumerate()).filter(|(_, mark)| !mark.is_whitespace());
     let misplaced =
         |&(column, mark): &(usize, char)| !"_.".contains(mark) && (mark == '|') != (column % 2 == 0);
     let odd = marks().filter(misplaced).count();
-    let walls = marks().any(|(_, mark)| mark == '|' || mark == '_');
+    let drawn = marks().any(|(_, mark)| "|_.".contains(mark));
     match rows().find(|(row, _)| !row.trim().is_empty()) {
-        Some((row, line)) if !walls || 4 * odd > marks().count() => {
+        Some((row, line)) if !drawn || 4 * odd > marks().count() => {
             let found: String = row.trim().chars().take(40).collect();
             let (found, expected) = (format!("{found:?}"), "rows of a maze of `|`, `_`, letters and blanks");
             Err(FormatError::new(file, Location { line, column: 1 }, found, expected))

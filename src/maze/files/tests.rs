@@ -308,6 +308,19 @@ fn binary_mazes_are_squares_of_bytes() {
 }
 
 #[test]
+fn a_maze_without_any_wall_is_read_back() {
+    let mut maze = Maze::open(3, 2).unwrap();
+    for cell in maze.cells().collect::<Vec<_>>() {
+        for side in [Direction::North, Direction::East, Direction::South, Direction::West] {
+            maze.set_wall(cell, side, WallState::Absent);
+        }
+    }
+    assert_eq!(read(&print(&maze, MazeFormat::EyeSim).unwrap()).maze, maze);
+    let unseen = parse(b"; a page\n\x0b not a maze", "x").unwrap_err().to_string();
+    assert!(unseen.contains("expected rows of a maze"), "{unseen}");
+}
+
+#[test]
 fn what_is_no_maze_is_an_error() {
     for (bytes, expected) in [
         (&b""[..], "x:1:1: found no row of a maze; expected rows of `|`, `_`, letters and blanks"),

@@ -22,6 +22,9 @@ pub(super) fn line(
         }
         "current" => current(line, args, water)?,
         "waves" => water.waves = Some(waves(line, args)?),
+        "turbidity" => {
+            water.turbidity = args.plain("the water's turbidity in 1/m", 0.0..=Water::MURKIEST)?;
+        }
         "wind" => water.wind = speed(args, "the wind's speed")?,
         _ => return Ok(false),
     }
@@ -82,6 +85,9 @@ pub(super) fn write(text: &mut String, water: &Water) -> Written {
         let (height, period) = (millimetres(waves.height), number::print(waves.period, 0));
         let kind = if waves.irregular { " jonswap" } else { "" };
         writeln!(text, "waves {height} {period} {}{kind}", degrees(waves.direction))?;
+    }
+    if water.turbidity != plain.turbidity {
+        writeln!(text, "turbidity {}", number::print(water.turbidity, 0))?;
     }
     if water.wind != plain.wind {
         writeln!(text, "wind {}", speed(water.wind))?;

@@ -12,7 +12,8 @@
 //! | `water_density KG` | of a cubic metre; 1000 without it; a line of our own, as are those below |
 //! | `current VX VY [DEPTH]` | a current in mm/s; one that changes with depth has a line for each depth, from above |
 //! | `waves HEIGHT PERIOD PHI [jonswap]` | waves: mm from trough to crest, seconds, and where they run; with a spectrum |
-//! | `wind VX VY` | in mm/s; it acts on the part of a craft above the water |
+//! | `wind VX VY` | in mm/s, on what of a craft is out of the water |
+//! | `turbidity B` | the light that a metre of water scatters, per metre: cameras see less of what is far |
 //!
 //! The elevations come from a gray PNG, JPEG or BMP image, with black at 0 and white at TOP, or from an ESRI
 //! ASCII grid (`.asc`), with its lowest point at 0 and its highest at TOP. Like a floor image, the image has
@@ -413,7 +414,8 @@ mod tests {
         let speed = || (-9999..9999i32, -9999..9999i32);
         let waves = proptest::option::of((0..99i32, 50..300i32, -179..=180i32, any::<bool>()));
         let layers = proptest::collection::vec((1..5000i32, speed()), 0..4);
-        (500.0..1500.0f64, layers, waves, speed()).prop_map(|(density, layers, waves, wind)| {
+        let rest = (speed(), 0.0..2.0f64);
+        (500.0..1500.0f64, layers, waves, rest).prop_map(|(density, layers, waves, (wind, turbidity))| {
             let vector = |(x, y): (i32, i32)| Vector::new(f64::from(x), f64::from(y)) / 1000.0;
             let mut depth = -1000;
             let layer = |(more, speed): (i32, (i32, i32))| {
@@ -427,7 +429,7 @@ mod tests {
                 irregular,
             });
             let current = layers.into_iter().map(layer).collect();
-            Water { density, current, waves, wind: vector(wind) }
+            Water { density, current, waves, wind: vector(wind), turbidity }
         })
     }
 

@@ -5,6 +5,7 @@ use super::canvas::Canvas;
 use super::face::Cutter;
 use super::ground::Ground;
 use super::model::{Model, Stand};
+use super::murk::Murk;
 use super::poster::draw_poster;
 use super::slanted::{Piece, draw_block, pieces};
 use super::solids::{Carpenter, Standing};
@@ -38,6 +39,8 @@ pub(super) struct Scenery {
     meshes: Vec<Arc<Mesh>>,
     models: Vec<Model>,
     robots: Vec<Thing>,
+    /// The water of the world.
+    murk: Option<Murk>,
     carpenter: Carpenter,
     cutter: Cutter,
 }
@@ -106,6 +109,7 @@ impl Scenery {
             meshes,
             models: Vec::new(),
             robots,
+            murk: Murk::of(world),
             carpenter: Carpenter::default(),
             cutter: Cutter::default(),
         }
@@ -169,6 +173,9 @@ impl Scenery {
         for board in &self.billboards {
             let level = hills.map_or(0.0, |hills| hills.ground_level(board.pose.position()));
             draw_poster(&mut self.cutter, canvas, view, board, level);
+        }
+        if let Some(murk) = &self.murk {
+            murk.veil(canvas, view);
         }
         Ok(())
     }

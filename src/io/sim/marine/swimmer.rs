@@ -1,5 +1,5 @@
 use super::{CraftDrive, Waters};
-use crate::geometry::{Aabb, Point, Pose, Pose3, Vector, Vector3};
+use crate::geometry::{Aabb, Point, Point3, Pose, Pose3, Vector, Vector3, math};
 use crate::io::sim::TICK;
 use crate::kinematics::marine::{Craft, CraftMotion, CraftState, HullPart, Wrench};
 use crate::world::HeightField;
@@ -12,7 +12,9 @@ pub(in crate::io::sim) struct Swimmer {
     /// Points of the hull that may meet the ground.
     points: Vec<Vector3>,
     windage: Vector,
-    /// Distance that the hull may move before the ground is checked again (m).
+    /// How far the hull reaches ahead and to the side (m).
+    half: [f64; 2],
+    /// How far the hull may move before it has to look for the ground again.
     clearance: f64,
     /// Ticks since the hull touched the ground.
     free_ticks: u32,
@@ -38,7 +40,9 @@ const EMERGING: f64 = 0.2;
 const LOOK_AHEAD: f64 = 0.5;
 /// Maximum speed of a craft (m/s): a faster one would cross walls and worlds within a tick.
 const FASTEST: f64 = 100.0;
-/// Half the density of air times the drag coefficient of a hull (kg/m³).
+/// The least cosine of a pitch at which a craft still has a heading.
+const STEEPEST: f64 = 0.1;
+/// Half of the density of air times the drag coefficient of a hull, in kg/m³.
 const AIR: f64 = 0.6;
 
 impl Swimmer {
@@ -46,7 +50,11 @@ impl Swimmer {
         let state = CraftState::at_rest(&craft, &Pose3::default());
         let points = craft.hull().iter().flat_map(points).collect();
         let windage = Vector::from(windage);
-        Self { craft, state, points, windage, clearance: 0.0, free_ticks: ANOTHER, broken: false }
+        let half = [0, 1].map(|axis| {
+            let end = |part: &HullPart| part.centre()[axis].abs() + part.half_size()[axis];
+            craft.hull().iter().map(end).fold(0.0, f64::max)
+        });
+        Self { craft, state, points, windage, half, clearance: 0.0, free_ticks: ANOTHER, broken: false }
     }
 
     /// Puts it somewhere: so many metres above the ground; at 0, where it comes to rest: afloat, or on the
@@ -72,7 +80,7 @@ impl Swimmer {
 
     /// The height at which a level craft floats, or stands on the ground.
     fn rest(&self, ground: f64, waters: &Waters, pose: Pose) -> f64 {
-        let still = waters.around(pose.position(), waters.level(), 0.0);
+        let still = waters.around(pose.position(), waters.level(), [Vector::zeros(); 2], 0.0);
         let still = crate::kinematics::marine::LocalWater { slope: Vector::zeros(), ..still };
         let lift = |z: f64| {
             let state = CraftState::at_rest(&self.craft, &Pose3::level(pose, z));
@@ -105,6 +113,16 @@ impl Swimmer {
         CraftMotion { linear: linear - angular.cross(&self.craft.middle().coords), angular }
     }
 
+    /// A motion in the craft's own frame as it is ahead, to the left and about the upright: where waves rock a
+    /// craft, what it moves along its own axes adds up to another way.
+    fn levelled(&self, motion: &CraftMotion) -> CraftMotion {
+        let [roll, pitch, _] = self.pose().roll_pitch_yaw();
+        let tilt = Pose3::from_angles(Point3::origin(), roll, pitch, 0.0);
+        let (sin, cos) = math::sin_cos(roll);
+        let upright = (motion.angular.y * sin + motion.angular.z * cos) / math::cos(pitch).max(STEEPEST);
+        CraftMotion { linear: tilt.rotate(motion.linear), angular: Vector3::z() * upright }
+    }
+
     /// Moves it for a tick as its drive commands. Returns where it has come to touch the ground.
     pub(in crate::io::sim) fn step(
         &mut self,
@@ -117,7 +135,9 @@ impl Swimmer {
             return None;
         }
         let before = self.state;
-        let water = waters.around(self.state.position.xy(), self.state.position.z, time);
+        let hull = [Vector3::x() * self.half[0], Vector3::y() * self.half[1]];
+        let hull = hull.map(|half| (self.state.attitude * half).xy());
+        let water = waters.around(self.state.position.xy(), self.state.position.z, hull, time);
         let commands = drive.commands();
         let wind = self.wind(waters);
         if wind == Wrench::NONE {
@@ -131,9 +151,10 @@ impl Swimmer {
             self.state.velocity = CraftMotion::STILL;
             return None;
         }
-        let flow = self.state.attitude.inverse() * water.velocity;
         let over = self.velocity();
+        let flow = self.state.attitude.inverse() * water.velocity;
         let through = CraftMotion { linear: over.linear - flow, ..over };
+        let [through, over] = [through, over].map(|motion| self.levelled(&motion));
         let place = self.state.position;
         let altitude = place.z - ground.height(place.xy()).unwrap_or(0.0);
         drive.sense(&through, &over, altitude);

@@ -55,15 +55,16 @@ impl Waters {
 
     /// The level of the surface at a place and a time.
     pub(in crate::io::sim) fn surface(&self, at: Point, time: f64) -> f64 {
-        self.around(at, self.level, time).level
+        self.around(at, self.level, [Vector::zeros(); 2], time).level
     }
 
     pub(super) fn wind(&self) -> Vector {
         self.water.wind
     }
 
-    /// The water around a place at a time.
-    pub(super) fn around(&self, at: Point, z: f64, time: f64) -> marine::LocalWater {
+    /// The water around a place at a time, in the mean of a hull that reaches so far ahead and behind, and so far to
+    /// both sides: waves shorter than that hardly move it.
+    pub(super) fn around(&self, at: Point, z: f64, hull: [Vector; 2], time: f64) -> marine::LocalWater {
         let flow = self.water.current_at(self.level - z);
         let mut water = marine::LocalWater {
             density: self.water.density,
@@ -71,7 +72,7 @@ impl Waters {
             ..marine::LocalWater::still(self.level)
         };
         for wave in &self.waves {
-            wave.add(&mut water, at, z - self.level, time);
+            wave.add(&mut water, at, z - self.level, hull, time);
         }
         water
     }
@@ -80,15 +81,22 @@ impl Waters {
 impl Wave {
     /// Adds its height, slope and flow; `z` is above the surface at rest. Water above it moves as that at
     /// rest does.
-    fn add(&self, water: &mut marine::LocalWater, at: Point, z: f64, time: f64) {
+    fn add(&self, water: &mut marine::LocalWater, at: Point, z: f64, hull: [Vector; 2], time: f64) {
+        let mean: f64 = hull.iter().map(|half| mean_of(self.number * self.direction.dot(half))).product();
+        let amplitude = self.amplitude * mean;
         let phase = self.number * self.direction.dot(&at.coords) - self.frequency * time + self.phase;
         let (sin, cos) = math::sin_cos(phase);
-        water.level += self.amplitude * cos;
-        water.slope -= self.direction * (self.amplitude * self.number * sin);
-        let speed = self.amplitude * self.frequency * math::exp(self.number * z.min(0.0));
+        water.level += amplitude * cos;
+        water.slope -= self.direction * (amplitude * self.number * sin);
+        let speed = amplitude * self.frequency * math::exp(self.number * z.min(0.0));
         let ahead = self.direction * (speed * cos);
         water.velocity += Vector3::new(ahead.x, ahead.y, speed * sin);
     }
+}
+
+/// The mean of a wave over a range about its crest that reaches to a phase: less than its height.
+fn mean_of(phase: f64) -> f64 {
+    if phase.abs() < 1e-6 { 1.0 } else { math::sin(phase) / phase }
 }
 
 fn spectrum(waves: &Waves, stream: &mut Stream) -> Vec<Wave> {

@@ -1,0 +1,52 @@
+use std::num::NonZero;
+
+use super::workers::{share_out, threads};
+use super::{Failure, Outcome, Report};
+
+/// The options of a campaign, flattened into a command's own.
+#[derive(Debug, Clone, clap::Args)]
+pub(crate) struct CampaignArgs {
+    /// Run many times, with the seeds from --seed on, and print a table.
+    #[arg(long)]
+    pub(crate) campaign: bool,
+
+    /// Runs of a campaign.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
+    pub(crate) runs: Option<u64>,
+
+    /// Threads of a campaign [default: one for each core].
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub(crate) threads: Option<NonZero<usize>>,
+}
+
+/// Seeds of failures that a report lists.
+const LISTED: usize = 10;
+
+impl CampaignArgs {
+    /// The results of all runs, by seed, of which there are `usual` unless the options say otherwise. `things`
+    /// names them in the progress line.
+    pub(crate) fn trials<T: Send>(
+        &self,
+        things: &str,
+        usual: u64,
+        seed: u64,
+        trial: impl Fn(u64) -> Result<T, Failure> + Sync,
+    ) -> Result<Vec<(u64, T)>, Failure> {
+        share_out(things, self.runs.unwrap_or(usual), threads(self.threads), |index| {
+            let seed = seed.wrapping_add(index);
+            Ok((seed, trial(seed)?))
+        })
+    }
+}
+
+/// The seeds of the trials that are not good.
+pub(crate) fn wrong_seeds<T>(trials: &[(u64, T)], is_good: impl Fn(&T) -> bool) -> Vec<u64> {
+    trials.iter().filter(|(_, trial)| !is_good(trial)).map(|(seed, _)| *seed).collect()
+}
+
+/// The report of a campaign: passed or wrong, contacts, and the first seeds that are amiss.
+pub(crate) fn campaign_report(passed: bool, contacts: u64, wrong: &[u64]) -> Report {
+    let outcome = if passed { Outcome::verdict("passed") } else { Outcome::failure("wrong") };
+    Report { collisions: Some(contacts), ..Report::new(outcome) }
+        .field("wrong_seeds", &wrong[..wrong.len().min(LISTED)])
+}

@@ -1,0 +1,95 @@
+//! The commands in water as a whole.
+
+use std::fs;
+
+use super::support::{assert_outcome, number, run, temporary};
+
+#[test]
+fn mako_dives_and_holds_its_depth() {
+    let ended = run("dive", &["--depth", "800", "--seed", "2"]);
+    assert_outcome(&ended, "held");
+    assert!(number(&ended.1, "settle_s") < 20.0 && number(&ended.1, "overshoot_mm") < 50.0, "{}", ended.1);
+}
+
+#[test]
+fn threads_do_not_change_a_campaign() {
+    let of = |threads| run("dive", &["--campaign", "--runs", "2", "--threads", threads]);
+    let (one, two) = (of("1"), of("2"));
+    assert_outcome(&one, "passed");
+    assert_eq!(one.1, two.1);
+}
+
+#[test]
+fn mako_goes_round_a_pool_without_touching_it() {
+    let ended = run("pool_wall", &["--seed", "3"]);
+    assert_outcome(&ended, "round");
+    assert!(ended.1["collisions"] == 0 && number(&ended.1, "rms_error_mm") < 50.0, "{}", ended.1);
+}
+
+/// A pool of a world's file, with a red thing.
+fn small_pool(name: &str, lines: &str) -> String {
+    let world = temporary(&format!("{name}.wld"));
+    let walls = "0 0 6000 0\n6000 0 6000 5000\n6000 5000 0 5000\n0 5000 0 0\n";
+    fs::write(&world, format!("floor 6000 5000\n{walls}{lines}")).unwrap();
+    world.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn a_survey_maps_a_pool_with_honest_uncertainty() {
+    let world = small_pool("surveyed", "water_level 1900\n");
+    let map = temporary("surveyed.png");
+    let ended = run("survey", &["--world", &world, "--map", map.to_str().unwrap()]);
+    assert_outcome(&ended, "covered");
+    let report = &ended.1;
+    assert!(
+        number(report, "coverage_percent") > 99.0 && number(report, "depth_error_p95_mm") < 30.0,
+        "{report}"
+    );
+    assert!(number(report, "position_error_p95_mm") < 100.0 && number(report, "way_ratio") < 1.3, "{report}");
+    assert!(number(report, "inside_2_sigma_percent") > 80.0 && report["by_walls"] == true, "{report}");
+    let table = fs::read_to_string(map.with_extension("csv")).unwrap();
+    assert_eq!(table.lines().count(), 1 + 5 * 4, "{table}");
+}
+
+#[test]
+fn something_red_is_found_in_turbid_water_and_only_there() {
+    let ended = run("pool_search", &["--seed", "5", "--light", "0.5"]);
+    assert_outcome(&ended, "found");
+    assert!(number(&ended.1, "position_error_mm") < 150.0, "{}", ended.1);
+    let world = small_pool("searched", "water_level 1900\nturbidity 0.3\n");
+    let ended = run("pool_search", &["--world", &world]);
+    assert_outcome(&ended, "not_found");
+    assert!(ended.1["found"] == false && ended.1["position_error_mm"].is_null(), "{}", ended.1);
+}
+
+#[test]
+fn a_boat_keeps_its_course_in_waves() {
+    for seed in ["1", "2"] {
+        let ended = run("boat", &["--seed", seed]);
+        assert_outcome(&ended, "arrived");
+        assert!(number(&ended.1, "cross_track_rms_mm") < 250.0 && ended.1["collisions"] == 0, "{}", ended.1);
+    }
+}
+
+#[test]
+fn what_is_no_water_is_refused() {
+    let dry = small_pool("dry", "");
+    for command in ["pool_wall", "survey", "boat", "pool_search"] {
+        let course = if command == "boat" { &["--course", "1000,1000"][..] } else { &[] };
+        let (status, _, err) = run(command, &[&["--world", &dry], course].concat());
+        assert!(status == 2 && err.contains("without water"), "{command}: {err}");
+    }
+    let wet = small_pool("wet", "water_level 1900\n");
+    for (command, options, expected) in [
+        ("boat", vec!["--world", &wet], "course"),
+        ("boat", vec!["--world", &wet, "--course", "99000,0"], "outside"),
+        ("boat", vec!["--course", "x"], "waypoints in mm"),
+        ("survey", vec!["--spacing", "1"], "200 to"),
+        ("pool_search", vec!["--light", "-1"], "--light"),
+        ("pool_search", vec!["--world", &wet, "--robot", "SolarRaft"], "PSD"),
+        ("dive", vec!["--depth", "9000"], "1.9 m"),
+    ] {
+        let (status, _, err) = run(command, &options);
+        assert!(status == 2 && err.contains(expected), "{command} {options:?}: {err}");
+    }
+}

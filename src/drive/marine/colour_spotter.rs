@@ -1,0 +1,114 @@
+use image::RgbImage;
+
+use crate::vision::{Components, GrayView, HueLimits, HueScale, ImageError, hue};
+use crate::world::Colour;
+
+/// Finds a colour in pictures of the ground under water.
+///
+/// The ground is gray and as deep as what lies on it; so its own colour, the median of the picture, says what the
+/// water and the light have done to all colours. Pixels are divided by it before their hue is compared.
+#[derive(Debug, Clone)]
+pub(super) struct ColourSpotter {
+    /// On RoBIOS's scale.
+    hue: u8,
+    mask: Vec<u8>,
+    components: Components,
+}
+
+/// The level that the ground has after division: brighter things have room above it.
+const GROUND: u32 = 128;
+/// Hues around a circle on RoBIOS's scale, and the most that a hue may differ: 14 degrees.
+const AROUND: i32 = 252;
+const TOLERANCE: i32 = 10;
+/// A quarter of the full saturation: water with its veil takes the rest. Noise makes less of gray ground.
+const LIMITS: HueLimits = HueLimits { min_saturation: 64, min_intensity: 8 };
+/// Pixels of the smallest thing.
+const LEAST: usize = 12;
+
+impl ColourSpotter {
+    pub(super) fn new(colour: Colour) -> Self {
+        let Colour { red, green, blue } = colour;
+        let hue = hue([red, green, blue], HueScale::Robios, HueLimits::NONE);
+        Self { hue, mask: Vec::new(), components: Components::new() }
+    }
+
+    /// The column and row, in pixels from the middle of the picture, of the largest thing of the colour that is
+    /// not cut off by the picture's edge.
+    pub(super) fn find(&mut self, image: &RgbImage) -> Result<Option<(f64, f64)>, ImageError> {
+        let ground = ground(image);
+        if ground.contains(&0) {
+            return Ok(None);
+        }
+        let (width, height) = (image.width() as usize, image.height() as usize);
+        self.mask.clear();
+        self.mask.extend(image.pixels().map(|pixel| {
+            let level =
+                |channel: usize| (u32::from(pixel.0[channel]) * GROUND / ground[channel]).min(255) as u8;
+            let found = hue([level(0), level(1), level(2)], HueScale::Robios, LIMITS);
+            let off = (i32::from(found) - i32::from(self.hue)).rem_euclid(AROUND);
+            u8::from(i32::from(found) < AROUND && off.min(AROUND - off) <= TOLERANCE)
+        }));
+        let mask = GrayView::new(&self.mask, width, height)?;
+        let whole = self.components.find(mask, LEAST).iter().filter(|blob| {
+            blob.min.0 > 0 && blob.min.1 > 0 && blob.max.0 + 1 < width && blob.max.1 + 1 < height
+        });
+        let largest = whole.max_by_key(|blob| blob.area);
+        Ok(largest.map(|blob| {
+            let (column, row) = blob.centroid;
+            (column + 0.5 - 0.5 * width as f64, row + 0.5 - 0.5 * height as f64)
+        }))
+    }
+}
+
+/// The median of each channel.
+fn ground(image: &RgbImage) -> [u32; 3] {
+    let mut counts = [[0_u32; 256]; 3];
+    for pixel in image.pixels() {
+        for (counts, &level) in counts.iter_mut().zip(&pixel.0) {
+            counts[usize::from(level)] += 1;
+        }
+    }
+    let half = image.width() * image.height() / 2;
+    counts.map(|counts| {
+        let mut below = 0;
+        let median = counts.iter().position(|count| {
+            below += count;
+            below > half
+        });
+        median.unwrap_or(0) as u32
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use image::Rgb;
+
+    use super::*;
+
+    /// A gray ground with a patch of a colour, seen through water that takes most of the red.
+    fn picture(patch: [u8; 3], light: f64) -> RgbImage {
+        RgbImage::from_fn(40, 30, |x, y| {
+            let colour = if (10..18).contains(&x) && (20..25).contains(&y) { patch } else { [196; 3] };
+            let seen = |channel: usize, share: f64| (f64::from(colour[channel]) * share * light) as u8;
+            Rgb([seen(0, 0.4), seen(1, 0.85), seen(2, 0.95)])
+        })
+    }
+
+    #[test]
+    fn a_colour_is_found_through_water_and_in_little_light() {
+        let mut spotter = ColourSpotter::new(Colour::RED);
+        for light in [0.3, 1.0] {
+            let (column, row) = spotter.find(&picture([200, 30, 30], light)).unwrap().unwrap();
+            assert!((column + 6.0).abs() < 1e-9 && (row - 7.5).abs() < 1e-9, "{column} {row}");
+        }
+    }
+
+    #[test]
+    fn other_colours_gray_things_and_darkness_are_none() {
+        let mut spotter = ColourSpotter::new(Colour::RED);
+        for other in [[230, 140, 20], [40, 60, 200], [30, 160, 60], [60, 60, 60], [250, 250, 250]] {
+            assert_eq!(spotter.find(&picture(other, 1.0)).unwrap(), None, "{other:?}");
+        }
+        assert_eq!(spotter.find(&picture([200, 30, 30], 0.0)).unwrap(), None);
+    }
+}
