@@ -14,8 +14,8 @@ pub struct Water {
     pub waves: Option<Waves>,
     /// Velocity of the wind along x and y (m/s).
     pub wind: Vector,
-    /// The light that a metre of water scatters, per metre (1/m): 0 in clear water, 0.1 in a filtered pool, 1 in
-    /// a lake. Cameras see what is far less.
+    /// Fraction of the light scattered per metre of water (1/m): 0 in clear water, 0.1 in a filtered pool, 1 in a
+    /// lake. It veils distant objects in camera images.
     pub turbidity: f64,
 }
 
@@ -33,7 +33,7 @@ pub struct Waves {
 }
 
 impl Default for Water {
-    /// Fresh, clear water that stands still.
+    /// Still, clear fresh water.
     fn default() -> Self {
         Self { density: 1000.0, current: Vec::new(), waves: None, wind: Vector::zeros(), turbidity: 0.0 }
     }
@@ -44,7 +44,7 @@ impl Water {
     pub const DENSEST: f64 = 2000.0;
     /// Maximum speed of current and wind (m/s).
     pub const FASTEST: f64 = 100.0;
-    /// The most turbid water, in 1/m: nothing is seen at a hand's breadth.
+    /// Maximum turbidity (1/m): nothing is visible at a hand's breadth.
     pub const MURKIEST: f64 = 100.0;
 
     /// Velocity of the current at a depth below the surface (m).

@@ -10,11 +10,11 @@ pub(crate) struct CampaignArgs {
     #[arg(long)]
     pub(crate) campaign: bool,
 
-    /// Runs of a campaign.
+    /// Number of runs in a campaign.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) runs: Option<u64>,
 
-    /// Threads of a campaign [default: one for each core].
+    /// Number of threads in a campaign [default: one per core].
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) threads: Option<NonZero<usize>>,
 }

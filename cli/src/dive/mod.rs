@@ -22,7 +22,7 @@ use crate::water::{BOOK, LEVEL, pool};
     after_help = "\
 Mako starts afloat in a pool of 25 x 50 m and 1.9 m depth. Depths are those of its sensor, at the middle of its hull.
 
-With --campaign, 1000 craft whose mass is up to 5 % off and whose thrusters are up to 10 % off the model, in currents of up to
+With --campaign, 1000 craft whose mass differs from the model by up to 5 %, and their thrusters by up to 10 %, in currents of up to
 0.1 m/s, hold a depth for 30 s and then step by 0.2 to 1.2 m.
 
 JSON fields:

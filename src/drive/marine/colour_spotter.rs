@@ -3,10 +3,10 @@ use image::RgbImage;
 use crate::vision::{Components, GrayView, HueLimits, HueScale, ImageError, hue};
 use crate::world::Colour;
 
-/// Finds a colour in pictures of the ground under water.
+/// Finds a colour in images of the ground under water.
 ///
-/// The ground is gray and as deep as what lies on it; so its own colour, the median of the picture, says what the
-/// water and the light have done to all colours. Pixels are divided by it before their hue is compared.
+/// The ground is grey and as deep as the objects on it. So its apparent colour, the median of the image, measures
+/// the effect of water and light on all colours. Pixels are divided by it before their hues are compared.
 #[derive(Debug, Clone)]
 pub(super) struct ColourSpotter {
     /// On RoBIOS's scale.

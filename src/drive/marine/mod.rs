@@ -1,13 +1,13 @@
 //! Craft in water (book, chapter 8): diving, following the sides of a pool, surveying its floor, and boats on a
 //! course.
 //!
-//! - [`Dive`]: to a depth, and there level on a heading, by pressure sensor and inertial unit;
-//! - [`PoolWall`]: along the sides of a pool at a depth, by distance sensors;
-//! - [`Survey`]: lanes over the floor, with its place by walls, Doppler log and compass, and [`DepthMap`];
-//! - [`PoolSearch`]: the same lanes with the camera down, to find something by its colour;
-//! - [`Boat`]: a boat on a course, and on its station at the end;
-//! - [`DepthHold`]: the controller of depth inside them;
-//! - [`Thrust`]: what a behaviour tells a craft's thrusters.
+//! - [`Dive`]: goes to a depth and stays there, level and on a heading, by pressure sensor and inertial unit;
+//! - [`PoolWall`]: follows the sides of a pool at a depth, by distance sensors;
+//! - [`Survey`]: drives lanes over the floor, localised by walls, Doppler log and compass; [`DepthMap`] maps it;
+//! - [`PoolSearch`]: drives the same lanes with the camera pointing down, and finds an object by its colour;
+//! - [`Boat`]: follows a course and keeps station at its end;
+//! - [`DepthHold`]: the depth controller inside them;
+//! - [`Thrust`]: the command of these behaviours to the thrusters.
 
 mod boat;
 mod colour_spotter;

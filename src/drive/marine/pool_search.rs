@@ -14,47 +14,49 @@ use crate::world::{CameraSpec, Colour, RobotSpec};
 /// Parameters of [`PoolSearch`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoolSearchParameters {
-    /// The colour of what is searched for.
+    /// Colour of the object.
     pub colour: Colour,
-    /// The lanes.
+    /// Parameters of the lanes.
     pub survey: SurveyParameters,
 }
 
 impl Default for PoolSearchParameters {
-    /// Something red.
+    /// A red object.
     fn default() -> Self {
         Self { colour: Colour::RED, survey: SurveyParameters::default() }
     }
 }
 
-/// What [`PoolSearch`] goes by.
+/// Observation of a [`PoolSearch`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PoolSearchObservation {
     /// Depth, attitude, log and distances.
     pub survey: SurveyObservation,
-    /// What the camera sees below.
+    /// Camera image of the floor.
     pub image: RgbImage,
 }
 
-/// How a search ended.
+/// Outcome of a [`PoolSearch`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PoolSearchOutcome {
-    /// Something of the colour was found.
+    /// An object of the colour was found.
     Found,
-    /// All lanes are done, and there was nothing.
+    /// All lanes are done without a find.
     NotFound,
-    /// The time was over.
+    /// The time limit came first.
     TimedOut,
-    /// Who watched had seen enough.
+    /// The observer stopped the run.
     Stopped,
 }
 
 halts!(PoolSearchOutcome { Found: "it was found", NotFound: "all lanes are done without a find" });
 
-/// Searches the floor of a pool by colour, in the lanes of a [`Survey`] with the camera down (book, section 8.5).
+/// Searches the floor of a pool for a colour, along the lanes of a [`Survey`] with the camera pointing down
+/// (book, section 8.5).
 ///
-/// The find's place is the mean of where it was seen, in the pool's frame. It is told when the craft has passed it.
+/// The position of the find is the mean of its detections, in the pool's frame. It is returned once the craft
+/// has passed it.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -104,7 +106,7 @@ const TILT: u8 = 2;
 const NEARLY: f64 = 0.02;
 
 impl PoolSearch {
-    /// A search of an area, as for [`Survey::new`]. Fails for a robot without a camera that can look down.
+    /// Creates a search of an area, as for [`Survey::new`]. Fails for a robot without a camera that can point down.
     pub fn new(
         robot: &RobotSpec,
         start: Pose,

@@ -24,9 +24,9 @@ pub struct SurveyParameters {
     pub depth: f64,
     /// Speed on a lane (m/s).
     pub speed: f64,
-    /// Density of the water (kg/m³), by which the depth sensor is zeroed afloat.
+    /// Density of the water, by which the depth sensor is zeroed afloat (kg/m³).
     pub density: f64,
-    /// Seconds between steps.
+    /// Control period (s).
     pub period: f64,
     /// Parameters of the depth controller.
     pub hold: DepthHoldParameters,
@@ -77,8 +77,9 @@ halts!(SurveyOutcome { Covered: "all lanes are done" });
 /// Drives lanes at a depth over the floor of a pool or of open water, with a sounding at each step (book,
 /// section 8.5).
 ///
-/// The place is that of the Doppler log and the compass, corrected by the distances to the four sides of a
-/// pool, with its covariance. Before it dives, it zeroes its depth sensor by its own waterline. [`DepthMap`](super::DepthMap) makes a map of the soundings.
+/// The position, with its covariance, comes from Doppler log and compass, corrected by the distances to the four
+/// sides of a pool. Before diving, the depth sensor is zeroed by the craft's waterline.
+/// [`DepthMap`](super::DepthMap) makes a map of the soundings.
 ///
 /// ```
 /// use roverlab::drive::marine::{DepthMap, Survey, SurveyOutcome, SurveyParameters};
@@ -192,8 +193,7 @@ impl Survey {
         self.sounding
     }
 
-    /// The pose in the pool's frame as the craft believes it, and the standard deviations of its place
-    /// along x and y (m).
+    /// Estimated pose in the pool's frame, and the standard deviations of the position along x and y (m).
     pub fn belief(&self) -> (Pose, Vector) {
         (self.fix.pose(), self.fix.sigma())
     }

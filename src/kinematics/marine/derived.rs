@@ -49,8 +49,8 @@ impl CraftSpec {
         Self { hull, ..spec }
     }
 
-    /// The height in its own frame to which still water of a density (kg/m³) comes when the craft floats level.
-    /// Above all of the hull for a craft that sinks.
+    /// Height of the waterline in the craft's own frame (m), when it floats level in still water of a density
+    /// (kg/m³). Above the hull for a craft that sinks.
     ///
     /// ```
     /// use roverlab::kinematics::marine::CraftSpec;
@@ -61,8 +61,7 @@ impl CraftSpec {
         floats_at(&self.hull, self.mass, density)
     }
 
-    /// Square metres of what is out of fresh water at rest, seen from ahead and from the side: wind pushes
-    /// it.
+    /// Area exposed to wind when the craft floats at rest in fresh water, seen from ahead and from the side (m²).
     pub fn windage(&self) -> [f64; 2] {
         let level = self.waterline(FRESH);
         [0, 1].map(|axis| {

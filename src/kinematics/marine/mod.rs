@@ -12,10 +12,10 @@
 //!
 //! # Limits of the model
 //!
-//! Added mass and damping are constants, not functions of frequency or attitude; a craft that leaves the
-//! water keeps its added mass, and its damping fades with what of its hull is wet. The water is not moved by
-//! the craft. A current is the same all along the hull, and a wave is a plane across it; the simulator takes the mean
-//! of each wave over the hull's length and width.
+//! Added mass and damping are constants, not functions of frequency or attitude. A craft that leaves the water
+//! keeps its added mass; its damping decreases with the wetted part of its hull. The craft does not move the
+//! water. A current is uniform along the hull, and a wave is a plane across it; the simulator averages each wave
+//! over the hull's length and width.
 //!
 //! Reference: T. I. Fossen, *Handbook of Marine Craft Hydrodynamics and Motion Control*, second edition,
 //! 2021.

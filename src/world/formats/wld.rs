@@ -12,8 +12,8 @@
 //! | `water_density KG` | of a cubic metre; 1000 without it; a line of our own, as are those below |
 //! | `current VX VY [DEPTH]` | a current in mm/s; one that changes with depth has a line for each depth, from above |
 //! | `waves HEIGHT PERIOD PHI [jonswap]` | waves: mm from trough to crest, seconds, and where they run; with a spectrum |
-//! | `wind VX VY` | in mm/s, on what of a craft is out of the water |
-//! | `turbidity B` | the light that a metre of water scatters, per metre: cameras see less of what is far |
+//! | `wind VX VY` | in mm/s; it acts on the part of a craft above the water |
+//! | `turbidity B` | light scattered per metre of water (1/m); it veils distant objects in camera images |
 //!
 //! The elevations come from a gray PNG, JPEG or BMP image, with black at 0 and white at TOP, or from an ESRI
 //! ASCII grid (`.asc`), with its lowest point at 0 and its highest at TOP. Like a floor image, the image has

@@ -14,7 +14,7 @@ pub(in crate::io::sim) struct Swimmer {
     windage: Vector,
     /// How far the hull reaches ahead and to the side (m).
     half: [f64; 2],
-    /// How far the hull may move before it has to look for the ground again.
+    /// Distance that the hull may move before the ground is checked again (m).
     clearance: f64,
     /// Ticks since the hull touched the ground.
     free_ticks: u32,
