@@ -19,8 +19,11 @@ fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
 #[test]
 fn every_property_draws_the_same_cases_for_everybody() {
     let mut files = Vec::new();
-    for folder in ["src", "tests", "cli", "robios"] {
-        rust_files(&Path::new(env!("CARGO_MANIFEST_DIR")).join(folder), &mut files);
+    let folders =
+        ["src", "tests", "cli", "robios"].map(|name| Path::new(env!("CARGO_MANIFEST_DIR")).join(name));
+    // A published package has no members.
+    for folder in folders.iter().filter(|folder| folder.is_dir()) {
+        rust_files(folder, &mut files);
     }
     let (mut properties, opening) = (0, ["proptest", "! {"].concat());
     for file in files {
