@@ -4,15 +4,15 @@ use super::view::View;
 use crate::geometry::math;
 use crate::world::World;
 
-/// What the water of a world does to a picture: it takes away red first, veils what is far, and is darker below.
+/// Effect of water on a picture: it absorbs red first, veils distant things, and is darker below.
 ///
-/// Light from above and light to the camera fade exponentially; light that the water scatters on the way is added
-/// (the model of Jaffe and McGlamery, in the form of Schechner and Karpel, *Recovery of underwater visibility and
-/// structure by polarization analysis*, 2005).
+/// Light from above and light to the camera fade exponentially; light scattered by the water on the way is added
+/// (Jaffe's model, in the form of Schechner and Karpel, *Recovery of underwater visibility and structure by
+/// polarization analysis*, 2005).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Murk {
     level: f64,
-    /// What a metre of water takes of red, green and blue (1/m).
+    /// Absorption of red, green and blue per metre of water (1/m).
     absorbed: [f64; 3],
     /// What it scatters (1/m).
     scattered: f64,
