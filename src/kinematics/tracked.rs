@@ -74,12 +74,12 @@ impl Tracked {
         Differential { track: 4.0 / (slow + fast) }
     }
 
-    /// Metres that a turn of one radian on the spot takes the robot downhill, for a slope of 1 and a friction
-    /// of 1, and so in proportion to the slope and less with more friction.
+    /// Downhill drift of a turn on the spot per radian, for a slope and a friction coefficient of 1 (m/rad). It is
+    /// proportional to the slope, and inversely proportional to the friction coefficient.
     ///
-    /// All of the belts slides in a turn, and friction does not care how fast: against a small pull across
-    /// its slide a place of a belt yields as easily as a viscous one whose force is the friction over the
-    /// speed of its slide.
+    /// In a turn, the whole of each belt slides, with a friction that does not depend on the speed. Against a small
+    /// force across its slide, a point of the belt yields like a viscous one whose coefficient is the friction
+    /// divided by the speed of the slide.
     ///
     /// ```
     /// use roverlab::kinematics::Tracked;

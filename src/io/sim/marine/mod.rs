@@ -2,8 +2,7 @@
 //!
 //! The motion is that of [`kinematics::marine`](crate::kinematics::marine). Hulls meet the ground at points
 //! of their parts: impulses stop them there, without bounce and with Coulomb friction. Walls, objects and
-//! other craft stop the outline, as they do that of every robot. Wind pushes what of a hull is out of the
-//! water.
+//! other craft stop the outline, as they do that of every robot. Wind pushes the part of a hull above the water.
 
 mod drive;
 mod swimmer;
