@@ -72,7 +72,7 @@ impl Scene {
         let mut space = Space::new(&self.world.walls);
         let objects = self.world.objects.iter().map(Solid::from);
         let solids: Vec<Solid> = objects.chain(self.robots.iter().map(Solid::from)).collect();
-        let ids: Vec<SolidId> = solids.iter().map(|solid| space.add(*solid)).collect();
+        let ids: Vec<SolidId> = solids.iter().map(|&solid| space.add(solid)).collect();
         self.misplaced(&space, solids.get(number)?, ids.get(number).copied())
     }
 
