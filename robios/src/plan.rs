@@ -282,7 +282,8 @@ fn only_world(folder: &Path, warnings: &mut Vec<String>) -> Option<PathBuf> {
     if let Some((ending, several)) = ENDINGS.iter().zip(&kinds).find(|(_, files)| !files.is_empty()) {
         let count = several.len();
         warnings.push(format!(
-            "{count} files .{ending} lie beside the program, and none of them is taken as the world; expected \
+            "{count} files .{ending} lie beside the program, and none of them is taken as the world; \
+             expected \
              --world FILE"
         ));
     }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use roverlab::geometry::{Pose, units};
+use roverlab::geometry::{Aabb, Pose, units};
 use roverlab::io::sim::{SimOptions, Simulation, TICK, Truth};
 use roverlab::io::{Attitude, Error, ErrorKind, LidarScan, Psd, RadioMessage, Resolution, Result, RobotIo};
 use roverlab::world::{InertialSpec, Misplacement, Scene};
@@ -206,7 +206,7 @@ impl Seat {
                 self.moves(|truth, by| truth.move_object(by, index, pose))?;
                 self.check_place(pose, &format!("object {}", index + 1), |scene| {
                     scene.world.objects[index].pose = pose;
-                    scene.object_misplacement(index)
+                    scene.object_misplacement(index).or_else(|| outside(scene, pose))
                 })?
             }
         })
@@ -349,6 +349,13 @@ impl Seat {
             self.robot.wait(TICK)?;
         }
     }
+}
+
+/// Whether a pose is beyond floor and walls.
+fn outside(scene: &Scene, pose: Pose) -> Option<Misplacement> {
+    let walls = scene.world.walls.iter().flat_map(|wall| [wall.line.a, wall.line.b]);
+    let ground = Aabb::around(walls).map_or(scene.world.floor, |bounds| bounds.union(&scene.world.floor));
+    (!ground.contains(pose.position())).then_some(Misplacement::Outside)
 }
 
 fn done((): ()) -> Reply {

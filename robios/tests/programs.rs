@@ -95,7 +95,8 @@ fn library() -> PathBuf {
 /// Compiles a program beside its source text, like the appropriate script.
 fn compiled(file: &Path) -> PathBuf {
     let program = file.with_extension("x");
-    let done = Command::new(Path::new(env!("CARGO_MANIFEST_DIR")).join("bin/gccsim"))
+    let script = if file.extension().is_some_and(|kind| kind == "cpp") { "bin/g++sim" } else { "bin/gccsim" };
+    let done = Command::new(Path::new(env!("CARGO_MANIFEST_DIR")).join(script))
         .args([file.as_os_str(), "-o".as_ref(), program.as_os_str()])
         .env("ROBIOS_LIBRARY_DIR", library().parent().unwrap())
         .status();

@@ -61,7 +61,8 @@ impl Scene {
         self.misplacement_of(self.world.objects.len() + robot)
     }
 
-    /// Like [`robot_misplacement`](Scene::robot_misplacement), for an object.
+    /// Like [`robot_misplacement`](Scene::robot_misplacement), for an object: never [`Misplacement::Outside`], as the
+    /// world's bounds include its objects.
     pub fn object_misplacement(&self, object: usize) -> Option<Misplacement> {
         let is_there = object < self.world.objects.len();
         is_there.then(|| self.misplacement_of(object)).flatten()

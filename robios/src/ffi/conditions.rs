@@ -81,7 +81,8 @@ pub(super) extern "C-unwind" fn pthread_cond_clockwait(
         let end = end_of_wait(clock, time);
         end.and_then(|end| wait(condition, mutex, end)).unwrap_or_else(|| {
             call_original!(
-                WAIT, condition => *mut c_void, mutex => *mut c_void, clock => clockid_t, time => *const timespec
+            WAIT, condition => *mut c_void, mutex => *mut c_void, clock => clockid_t,
+            time => *const timespec
             )
         })
     })

@@ -25,6 +25,8 @@ pub(super) struct Kind {
     /// Number of the thread that holds it, if that is known.
     holder: fn(*mut c_void) -> Option<u32>,
     pub(super) is_shared: fn(*mut c_void) -> bool,
+    /// Whether several threads may have it at once, so that one which has got it leaves some to others.
+    has_room: bool,
 }
 
 pub(super) const MUTEX: Kind = Kind {
@@ -35,6 +37,7 @@ pub(super) const MUTEX: Kind = Kind {
     },
     holder: |mutex| u32::try_from(word(mutex, MUTEX_OWNER)?).ok().filter(|&owner| owner != 0),
     is_shared: |mutex| word(mutex, MUTEX_KIND).is_some_and(|kind| kind & MUTEX_SHARED != 0),
+    has_room: false,
 };
 
 const READER: Kind = Kind {
@@ -45,6 +48,7 @@ const READER: Kind = Kind {
     },
     holder: |_| None,
     is_shared: |_| false,
+    has_room: true,
 };
 
 const WRITER: Kind = Kind {
@@ -64,6 +68,7 @@ const SEMAPHORE: Kind = Kind {
     },
     holder: |_| None,
     is_shared: |semaphore| word(semaphore, SEMAPHORE_SHARED).is_some_and(|shared| shared != 0),
+    has_room: true,
 };
 
 /// Places of words within the locks of the GNU C library, on machines of 64 bits.
@@ -92,8 +97,9 @@ fn free(result: c_int) -> Option<c_int> {
 /// Takes a lock, until a time (s) at most. `None` if the C library has to wait for it, or at that time.
 fn take(kind: &Kind, lock: *mut c_void, end: f64) -> Option<c_int> {
     let place = lock.addr();
-    let attempt = || if is_promised(place) { None } else { (kind.attempt)(lock) };
-    if let Some(done) = attempt() {
+    // One that was woken for it goes before those who come now.
+    let attempt = |woken: bool| if !woken && is_promised(place) { None } else { (kind.attempt)(lock) };
+    if let Some(done) = attempt(false) {
         return Some(done);
     }
     let holder = (kind.holder)(lock);
@@ -104,7 +110,11 @@ fn take(kind: &Kind, lock: *mut c_void, end: f64) -> Option<c_int> {
     if !waits || refuses || !is_virtual() || (kind.is_shared)(lock) {
         return None;
     }
-    wait_for_event(Event { place, kind: kind.name, holder }, end, |_| attempt())
+    let taken = wait_for_event(Event { place, kind: kind.name, holder }, end, attempt);
+    if kind.has_room && taken.is_some() {
+        wake(place, usize::MAX);
+    }
+    taken
 }
 
 /// Takes a mutex.

@@ -51,9 +51,8 @@ macro_rules! call_original {
             None => libc::ENOSYS,
             // SAFETY: the C library's function has this type; the arguments are the program's.
             Some(found) => unsafe {
-                std::mem::transmute::<*mut std::ffi::c_void, unsafe extern "C-unwind" fn($($type),+) -> std::ffi::c_int>(
-                    found,
-                )($($argument),+)
+                type Function = unsafe extern "C-unwind" fn($($type),+) -> std::ffi::c_int;
+                std::mem::transmute::<*mut std::ffi::c_void, Function>(found)($($argument),+)
             },
         }
     };

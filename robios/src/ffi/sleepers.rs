@@ -42,8 +42,10 @@ struct Sleep {
     handle: libc::pthread_t,
     /// Set to 1 when it is the next to wake up: until then the thread leaves it to others to let time pass.
     next: Arc<AtomicU32>,
-    /// What it waits for, and since when (s).
-    event: Option<(Event, f64)>,
+    /// What it waits for, where, and since when (s); nowhere and never without an event.
+    event: Option<Event>,
+    place: usize,
+    since: f64,
     woken: Woken,
 }
 
@@ -127,9 +129,7 @@ pub(super) fn sleeps() -> bool {
 /// other.
 pub(super) fn wake(place: usize, most: usize) {
     if EVENTS.load(Ordering::Acquire) != 0 {
-        wake_sleeps(most, |sleep| {
-            sleep.woken == Woken::No && sleep.event.is_some_and(|(event, _)| event.place == place)
-        });
+        wake_sleeps(most, |sleep| sleep.woken == Woken::No && sleep.place == place);
     }
 }
 
@@ -146,8 +146,7 @@ fn wake_sleeps(most: usize, these: impl Fn(&Sleep) -> bool) {
     let Some(now) = peek_time() else { return };
     at_ends(|ends| {
         for sleep in ends.values_mut().filter(|sleep| these(sleep)).take(most) {
-            let waited = sleep.event.is_some_and(|(_, since)| since < now);
-            sleep.woken = if waited { Woken::First } else { Woken::Yes };
+            sleep.woken = if sleep.since < now { Woken::First } else { Woken::Yes };
             sleep.end = sleep.end.min(now);
         }
         tell_next(ends);
@@ -161,11 +160,9 @@ pub(super) fn is_promised(place: usize) -> bool {
     EVENTS.load(Ordering::Acquire) != 0
         && !is_inside()
         && at_ends(|ends| {
-            ends.values().any(|sleep| {
-                sleep.woken == Woken::First
-                    && sleep.thread != own
-                    && sleep.event.is_some_and(|(event, _)| event.place == place)
-            })
+            let mut promises =
+                ends.values().filter(|sleep| sleep.woken == Woken::First && sleep.thread != own);
+            promises.any(|sleep| sleep.place == place)
         })
 }
 
@@ -180,7 +177,7 @@ pub(super) fn standstill() -> Option<String> {
 
 impl Sleep {
     fn describe(&self, all: &BTreeMap<u64, Sleep>) -> String {
-        let Some((event, since)) = self.event else { return String::new() };
+        let (Some(event), since) = (self.event, self.since) else { return String::new() };
         let holder = event.holder.and_then(|holder| {
             if holder == self.thread {
                 return Some("itself".to_owned());
@@ -245,7 +242,10 @@ impl Sleeper {
         let (next, event) = (Arc::clone(&self.next), self.event);
         // SAFETY: only queries this thread's handle.
         let handle = unsafe { libc::pthread_self() };
-        let sleep = Sleep { end, thread: own_number(), ordinal: ordinal(), handle, next, event, woken };
+        let (thread, ordinal) = (own_number(), ordinal());
+        let (place, since) = event.map_or((0, f64::INFINITY), |(event, since)| (event.place, since));
+        let event = event.map(|(event, _)| event);
+        let sleep = Sleep { end, thread, ordinal, handle, next, event, place, since, woken };
         at_ends(|ends| ends.insert(self.number, sleep));
     }
 

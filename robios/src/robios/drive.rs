@@ -44,7 +44,8 @@ impl Robios {
         if angular.abs() > steered * (1.0 + ROUNDING) {
             let most = units::to_deg(steered);
             self.note(&format!(
-                "{deg:.0} degrees/s at {mm:.0} mm/s is a tighter turn than this robot can; it does at most {most:.0} \
+                "{deg:.0} degrees/s at {mm:.0} mm/s is a tighter turn than this robot can; it does at most \
+                 {most:.0} \
                  degrees/s at this speed"
             ));
         }
@@ -52,7 +53,8 @@ impl Robios {
         if linear.abs() <= top_speed * (1.0 + ROUNDING) && rim > top_speed * (1.0 + ROUNDING) {
             let (rim, most) = (units::to_mm(rim), units::to_mm(top_speed));
             self.note(&format!(
-                "{mm:.0} mm/s and {deg:.0} degrees/s together need {rim:.0} mm/s of a wheel; this robot's do at \
+                "{mm:.0} mm/s and {deg:.0} degrees/s together need {rim:.0} mm/s of a wheel; this robot's \
+                 do at \
                  most {most:.0}, so it is slower on the same curve"
             ));
         }

@@ -7,7 +7,8 @@ use super::{Folder, compiled, compiler, report, robios};
 /// Threads that print in turn with a lock, like the book's.
 const TURNS: &str = "#include \"eyebot.h\"\nstatic pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;\n\
     static void *print(void *number) { int id = (int)(intptr_t)number, i; for (i = 0; i < 10; i++) {\n\
-    pthread_mutex_lock(&lock); LCDPrintf(\"%d.%d \", id, i); pthread_mutex_unlock(&lock); sleep(id); } return NULL; }\n\
+    pthread_mutex_lock(&lock); LCDPrintf(\"%d.%d \", id, i); pthread_mutex_unlock(&lock); sleep(id); } \
+    return NULL; }\n\
     int main() { pthread_t threads[3]; intptr_t i; for (i = 1; i < 4; i++)\n\
     pthread_create(&threads[i - 1], NULL, print, (void *)i); KEYWait(KEY4); pthread_exit(NULL); }\n";
 
@@ -75,6 +76,11 @@ fn differing(name: &str, text: Option<&str>, times: usize) -> (usize, serde_json
     (others, first)
 }
 
+/// What a program has printed, without the ends of the display's lines.
+fn words(report: &serde_json::Value) -> String {
+    report["lcd_text"].as_str().unwrap().replace('\n', "")
+}
+
 #[test]
 fn threads_wake_each_other_in_the_same_order_each_time() {
     if !compiler() || !cfg!(target_os = "linux") {
@@ -82,7 +88,7 @@ fn threads_wake_each_other_in_the_same_order_each_time() {
     }
     let (others, first) = differing("conditions.c", None, 20);
     assert_eq!((others, &first["exit"]), (0, &0.into()), "{first}");
-    let words = first["lcd_text"].as_str().unwrap();
+    let words = words(&first);
     // Everybody had the lock in turn, although each holds it while it waits.
     let holders: String =
         words.split(' ').filter_map(|word| word.strip_prefix('h')?.chars().next()).collect();
@@ -90,6 +96,10 @@ fn threads_wake_each_other_in_the_same_order_each_time() {
     let turns: String =
         words.split(' ').filter_map(|word| word.chars().next().filter(|c| "AB".contains(*c))).collect();
     assert_eq!(turns, "AB".repeat(10), "{words}");
+    // Both readers at once, whenever the writer leaves them the lock.
+    let shared: Vec<&str> = words.split(' ').filter(|word| word.starts_with(['r', 'w'])).collect();
+    assert_eq!(shared.len(), 12, "{words}");
+    assert!(shared.windows(2).any(|pair| pair[0].starts_with('r') && pair[0] == pair[1]), "{words}");
 }
 
 /// The same in C++ and by C11's names.
@@ -98,24 +108,31 @@ fn threads_of_other_libraries_wake_in_the_same_order_each_time() {
     if !compiler() || !cfg!(target_os = "linux") {
         return;
     }
-    let cpp = "#include \"eyebot.h\"\n#include <thread>\n#include <mutex>\n#include <condition_variable>\n#include <vector>\n\
+    let cpp = "#include \"eyebot.h\"\n#include <thread>\n#include <mutex>\n#include \
+               <condition_variable>\n#include <vector>\n\
                std::mutex lock; std::condition_variable go; int turn = -1;\n\
                void run(int me) { for (int i = 0; i < 5; i++) { std::unique_lock<std::mutex> hold(lock);\n\
                go.wait(hold, [] { return turn >= 0; }); LCDPrintf(\"%d.%d@%d \", me, i, OSGetCount());\n\
                if (i == 2) go.wait_for(hold, std::chrono::milliseconds(30)); PSDGet(PSD_FRONT); } }\n\
-               int main() { std::vector<std::thread> all; for (int i = 0; i < 5; i++) all.emplace_back(run, i);\n\
+               int main() { std::vector<std::thread> all; for (int i = 0; i < 5; i++) all.emplace_back(run, \
+               i);\n\
                OSWait(50); { std::lock_guard<std::mutex> hold(lock); turn = 0; } go.notify_all();\n\
                for (auto &one : all) one.join(); return 0; }\n";
-    let c11 = "#include \"eyebot.h\"\n#include <threads.h>\nstatic mtx_t lock; static cnd_t go; static int ready;\n\
-               static int run(void *me) { int i; for (i = 0; i < 5; i++) { mtx_lock(&lock); while (!ready) cnd_wait(&go, &lock);\n\
-               LCDPrintf(\"%d.%d@%d \", (int)(intptr_t)me, i, OSGetCount()); PSDGet(PSD_LEFT); mtx_unlock(&lock); } return 0; }\n\
+    let c11 = "#include \"eyebot.h\"\n#include <threads.h>\nstatic mtx_t lock; static cnd_t go; static int \
+               ready;\n\
+               static int run(void *me) { int i; for (i = 0; i < 5; i++) { mtx_lock(&lock); while (!ready) \
+               cnd_wait(&go, &lock);\n\
+               LCDPrintf(\"%d.%d@%d \", (int)(intptr_t)me, i, OSGetCount()); PSDGet(PSD_LEFT); \
+               mtx_unlock(&lock); } return 0; }\n\
                int main() { thrd_t all[4]; intptr_t i; mtx_init(&lock, mtx_plain); cnd_init(&go);\n\
-               for (i = 0; i < 4; i++) thrd_create(&all[i], run, (void *)i); OSWait(50); mtx_lock(&lock); ready = 1;\n\
-               cnd_broadcast(&go); mtx_unlock(&lock); for (i = 0; i < 4; i++) thrd_join(all[i], NULL); return 0; }\n";
+               for (i = 0; i < 4; i++) thrd_create(&all[i], run, (void *)i); OSWait(50); mtx_lock(&lock); \
+               ready = 1;\n\
+               cnd_broadcast(&go); mtx_unlock(&lock); for (i = 0; i < 4; i++) thrd_join(all[i], NULL); \
+               return 0; }\n";
     for (name, text, count) in [("cpp.cpp", cpp, 25), ("c11.c", c11, 20)] {
         let (others, first) = differing(name, Some(text), 20);
         assert_eq!((others, &first["exit"]), (0, &0.into()), "{first}");
-        assert_eq!(first["lcd_text"].as_str().unwrap().split_whitespace().count(), count, "{first}");
+        assert_eq!(words(&first).split_whitespace().count(), count, "{first}");
     }
 }
 
@@ -126,16 +143,21 @@ fn threads_that_wait_for_each_other_are_named() {
         return;
     }
     let folder = Folder::new("same-deadlock");
-    let both = "#include \"eyebot.h\"\nstatic pthread_mutex_t a = PTHREAD_MUTEX_INITIALIZER, b = PTHREAD_MUTEX_INITIALIZER;\n\
-                static void *other(void *p) { pthread_mutex_lock(&b); OSWait(500); pthread_mutex_lock(&a); return p; }\n\
-                int main() { pthread_t t; pthread_mutex_lock(&a); pthread_create(&t, NULL, other, NULL); OSWait(600);\n\
+    let both = "#include \"eyebot.h\"\nstatic pthread_mutex_t a = PTHREAD_MUTEX_INITIALIZER, b = \
+                PTHREAD_MUTEX_INITIALIZER;\n\
+                static void *other(void *p) { pthread_mutex_lock(&b); OSWait(500); pthread_mutex_lock(&a); \
+                return p; }\n\
+                int main() { pthread_t t; pthread_mutex_lock(&a); pthread_create(&t, NULL, other, NULL); \
+                OSWait(600);\n\
                 pthread_mutex_lock(&b); return 0; }\n";
     let alone = "#include \"eyebot.h\"\nstatic pthread_mutex_t a = PTHREAD_MUTEX_INITIALIZER;\n\
                  int main() { OSWait(500); pthread_mutex_lock(&a); pthread_mutex_lock(&a); return 0; }\n";
     let join = "#include \"eyebot.h\"\nstatic pthread_mutex_t a = PTHREAD_MUTEX_INITIALIZER;\n\
                 static pthread_cond_t c = PTHREAD_COND_INITIALIZER;\n\
-                static void *wait_for(void *p) { OSWait(500); pthread_mutex_lock(&a); pthread_cond_wait(&c, &a); return p; }\n\
-                int main() { pthread_t t; pthread_create(&t, NULL, wait_for, NULL); pthread_join(t, NULL); return 0; }\n";
+                static void *wait_for(void *p) { OSWait(500); pthread_mutex_lock(&a); pthread_cond_wait(&c, \
+                &a); return p; }\n\
+                int main() { pthread_t t; pthread_create(&t, NULL, wait_for, NULL); pthread_join(t, NULL); \
+                return 0; }\n";
     for (name, text, said) in [
         (
             "both.c",
@@ -170,10 +192,13 @@ fn cancelled_threads_end() {
                 static void *waits(void *p) { pthread_mutex_lock(&lock); pthread_cleanup_push(clean, NULL);\n\
                 for (;;) pthread_cond_wait(&never, &lock); pthread_cleanup_pop(1); return p; }\n\
                 static void *polls(void *p) { for (;;) { PSDGet(PSD_FRONT); OSWait(100); } }\n\
-                int main() { void *(*bodies[])(void *) = {naps, waits, polls}; pthread_t threads[3]; void *result; int i, n = 0;\n\
+                int main() { void *(*bodies[])(void *) = {naps, waits, polls}; pthread_t threads[3]; \
+                void *result; int i, n = 0;\n\
                 for (i = 0; i < 3; i++) pthread_create(&threads[i], NULL, bodies[i], NULL); OSWait(3500);\n\
-                for (i = 0; i < 3; i++) { pthread_cancel(threads[i]); pthread_join(threads[i], &result); n += result == PTHREAD_CANCELED; }\n\
-                LCDPrintf(\"%d %d %d\", n, cleaned, OSGetCount() < 4000); return pthread_mutex_trylock(&lock); }\n";
+                for (i = 0; i < 3; i++) { pthread_cancel(threads[i]); \
+                pthread_join(threads[i], &result); n += result == PTHREAD_CANCELED; }\n\
+                LCDPrintf(\"%d %d %d\", n, cleaned, OSGetCount() < 4000); return \
+                pthread_mutex_trylock(&lock); }\n";
     let all = report(&[Folder::new("same-cancel").write("cancel.c", text).to_str().unwrap()]);
     assert_eq!((&all["lcd_text"], &all["exit"]), (&"3 1 1".into(), &0.into()), "{all}");
 }
