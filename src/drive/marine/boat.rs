@@ -1,5 +1,6 @@
 use std::ops::ControlFlow;
 
+use super::alignment::Alignment;
 use super::helm::{Helm, Push};
 use super::legs::{Legs, Steered, steer};
 use super::reckoning::Reckoning;
@@ -60,6 +61,9 @@ halts!(BoatOutcome { Arrived: "the time on station is over" });
 
 /// A boat with two thrusters on a course of waypoints, and on station at the last one.
 ///
+/// It knows its place by the log and the compass, which it aligns by the heading at the start. An observer keeps the
+/// waves' to and fro out of its control.
+///
 /// On a leg it steers by line of sight with integral action (Fossen 2021, section 12.3), and slows down before
 /// a waypoint. It points beyond the velocity that it wants by a share of what is missing, as only its thrust
 /// takes out a drift aside. On station it comes back to the place and learns what drives it off.
@@ -88,6 +92,7 @@ halts!(BoatOutcome { Arrived: "the time on station is over" });
 pub struct Boat {
     parameters: BoatParameters,
     helm: Helm,
+    alignment: Alignment,
     reckoning: Reckoning,
     motion: SlowMotion,
     legs: Legs,
@@ -127,6 +132,7 @@ impl Boat {
         }
         Ok(Self {
             helm: Helm::new(craft, 0.8, parameters.period, DepthHoldParameters::default())?,
+            alignment: Alignment::at(start.heading),
             reckoning: Reckoning::at(start),
             motion: SlowMotion::default(),
             legs: Legs::new(all().collect(), parameters.speed, parameters.lookahead, parameters.reached),
@@ -145,7 +151,8 @@ impl Boat {
         let BoatObservation { attitude, rates, odometry } = *seen;
         self.helm.observe(time, &DiveObservation { depth: 0.0, attitude, rates })?;
         let (helm, seconds) = (&self.helm, self.helm.seconds());
-        self.reckoning.advance(odometry, helm.heading(), seconds);
+        self.alignment.learn(helm.turned(), seconds, helm.heading());
+        self.reckoning.advance(odometry, helm.heading() - self.alignment.off(), seconds);
         let (pose, log) = (self.reckoning.pose(), self.reckoning.velocity());
         self.motion.advance(helm.craft(), &pose, helm.turn_rate(), helm.pushed(), log, seconds);
         if self.legs.pass(self.reckoning.pose().position()) {

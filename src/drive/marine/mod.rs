@@ -9,6 +9,7 @@
 //! - [`DepthHold`]: the controller of depth inside them;
 //! - [`Thrust`]: what a behaviour tells a craft's thrusters.
 
+mod alignment;
 mod boat;
 mod colour_spotter;
 mod depth_hold;
