@@ -78,7 +78,9 @@ halts!(SurveyOutcome { Covered: "all lanes are done" });
 /// 8.5).
 ///
 /// The place is that of the Doppler log and the compass, corrected by the distances to the four sides of a
-/// pool, with its covariance. Before it dives, it zeroes its depth sensor by its own waterline. [`DepthMap`](super::DepthMap) makes a map of the soundings.
+/// pool, with its covariance. Before it dives, it zeroes its depth sensor by its own waterline. When it has become
+/// unsure of its place, its next lane is one along which it can see a side.
+/// [`DepthMap`](super::DepthMap) makes a map of the soundings.
 ///
 /// ```
 /// use roverlab::drive::marine::{DepthMap, Survey, SurveyOutcome, SurveyParameters};
