@@ -61,7 +61,7 @@ where
     Ok(format!("{outcome:?}"))
 }
 
-const CASES: [Case; 33] = [
+const CASES: &[Case] = &[
     ("lane", RobotSpec::s4, |robot, limit, stop| {
         let camera = RobotSpec::s4().camera.as_ref().unwrap().into();
         let mut behaviour = LaneKeeper::new(camera, RoadModel::default(), LaneKeeperParameters::default())?;
@@ -242,7 +242,7 @@ fn ended(case: &Case, fault: &str, limit: f64, stop: f64) -> (std::result::Resul
 
 #[test]
 fn a_clock_that_stops_or_runs_backwards_ends_every_run_with_an_error() {
-    for case in &CASES {
+    for case in CASES {
         for (fault, expected) in [("clock@2", "stands still"), ("clock=-1@2", "runs backwards")] {
             let (outcome, time) = ended(case, fault, 20.0, f64::INFINITY);
             let error = outcome.expect_err(case.0);
@@ -254,7 +254,7 @@ fn a_clock_that_stops_or_runs_backwards_ends_every_run_with_an_error() {
 
 #[test]
 fn a_clock_that_jumps_ahead_is_time_that_has_passed() {
-    for case in &CASES {
+    for case in CASES {
         let (outcome, time) = ended(case, "clock=1000@2", 20.0, f64::INFINITY);
         assert_eq!(outcome.as_deref(), Ok("TimedOut"), "{}", case.0);
         assert!((2.0..2.4).contains(&time), "{}: ended after {time} s", case.0);
@@ -267,7 +267,7 @@ fn a_clock_that_jumps_ahead_is_time_that_has_passed() {
 
 #[test]
 fn the_time_limit_and_who_watches_end_every_run() {
-    for case in &CASES {
+    for case in CASES {
         let (outcome, time) = ended(case, "", 1.23, f64::INFINITY);
         assert_eq!(outcome.as_deref(), Ok("TimedOut"), "{}", case.0);
         assert!((1.22..1.25).contains(&time), "{}: ended after {time} s", case.0);

@@ -59,21 +59,25 @@ fn put(
     size: [f64; 2],
     (name, colour): (&str, u32),
 ) {
-    let shape = match stream.below(3) {
-        0 => Shape::Cylinder { radius: stream.between(0.06, 0.12), height: stream.between(0.05, 0.2) },
-        1 => Shape::Sphere { radius: stream.between(0.06, 0.12) },
-        _ => Shape::Box {
+    let shape = if stream.below(2) == 0 {
+        Shape::Cylinder { radius: stream.between(0.06, 0.12), height: stream.between(0.05, 0.2) }
+    } else {
+        Shape::Box {
             length: stream.between(0.12, 0.3),
             width: stream.between(0.12, 0.2),
             height: stream.between(0.05, 0.2),
-        },
+        }
     };
     for _ in 0..100 {
         let place =
             Point::new(stream.between(MARGIN, size[0] - MARGIN), stream.between(MARGIN, size[1] - MARGIN));
         if places.iter().all(|other| (other - place).norm() > BETWEEN) {
-            // Heavier than the water in its place, all of them.
-            let kind = ObjectKind { mass: 20.0, ..ObjectKind::new(name, shape, Colour::from_hex(colour)) };
+            // They lie where they are, on a slope too.
+            let kind = ObjectKind {
+                fixed: true,
+                mass: 20.0,
+                ..ObjectKind::new(name, shape, Colour::from_hex(colour))
+            };
             let pose = Pose::new(place.x, place.y, stream.between(-PI, PI));
             world.objects.push(Object::new(Arc::new(kind), pose));
             places.push(place);

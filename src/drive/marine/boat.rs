@@ -1,5 +1,6 @@
 use std::ops::ControlFlow;
 
+use super::alignment::Alignment;
 use super::helm::{Helm, Push};
 use super::legs::{Legs, Steered, steer};
 use super::reckoning::Reckoning;
@@ -60,6 +61,9 @@ halts!(BoatOutcome { Arrived: "the time on station is over" });
 
 /// Steers a boat with two thrusters along waypoints, and keeps station at the last one.
 ///
+/// The position comes from the log and the compass, which is aligned by the heading at the start. An observer filters
+/// the motion in waves out of the control.
+///
 /// On a leg it uses line-of-sight guidance with integral action (Fossen 2021, section 12.3), and it slows down
 /// before a waypoint. The boat has no keel, so only its thrust corrects sideways drift: it points beyond the
 /// desired velocity by a fraction of the velocity error. On station it returns to its position, and estimates
@@ -89,6 +93,7 @@ halts!(BoatOutcome { Arrived: "the time on station is over" });
 pub struct Boat {
     parameters: BoatParameters,
     helm: Helm,
+    alignment: Alignment,
     reckoning: Reckoning,
     motion: SlowMotion,
     legs: Legs,
@@ -128,6 +133,7 @@ impl Boat {
         }
         Ok(Self {
             helm: Helm::new(craft, 0.8, parameters.period, DepthHoldParameters::default())?,
+            alignment: Alignment::at(start.heading),
             reckoning: Reckoning::at(start),
             motion: SlowMotion::default(),
             legs: Legs::new(all().collect(), parameters.speed, parameters.lookahead, parameters.reached),
@@ -146,7 +152,8 @@ impl Boat {
         let BoatObservation { attitude, rates, odometry } = *seen;
         self.helm.observe(time, &DiveObservation { depth: 0.0, attitude, rates })?;
         let (helm, seconds) = (&self.helm, self.helm.seconds());
-        self.reckoning.advance(odometry, helm.heading(), seconds);
+        self.alignment.learn(helm.turned(), seconds, helm.heading());
+        self.reckoning.advance(odometry, helm.heading() - self.alignment.off(), seconds);
         let (pose, log) = (self.reckoning.pose(), self.reckoning.velocity());
         self.motion.advance(helm.craft(), &pose, helm.turn_rate(), helm.pushed(), log, seconds);
         if self.legs.pass(self.reckoning.pose().position()) {

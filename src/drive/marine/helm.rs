@@ -19,6 +19,8 @@ pub(super) struct Helm {
     yaw: f64,
     pitch_rate: f64,
     turn_rate: f64,
+    /// What turn rates say it has turned since the observation before (rad).
+    turned: f64,
     /// The push ahead (N) that a boat's thrusters do.
     pushed: f64,
     before: f64,
@@ -66,6 +68,7 @@ impl Helm {
             yaw: 0.0,
             pitch_rate: 0.0,
             turn_rate: 0.0,
+            turned: 0.0,
             pushed: 0.0,
             before: 0.0,
             seconds: period,
@@ -83,8 +86,9 @@ impl Helm {
         self.before = time;
         let [pitch_rate, turn_rate] = levelled(seen);
         let turned = |before: f64, now: f64| 0.5 * (before + now) * self.seconds;
+        self.turned = turned(self.turn_rate, turn_rate);
         self.pitch = believed(self.pitch + turned(self.pitch_rate, pitch_rate), seen.attitude.pitch);
-        self.yaw = believed(self.yaw + turned(self.turn_rate, turn_rate), seen.attitude.yaw);
+        self.yaw = believed(self.yaw + self.turned, seen.attitude.yaw);
         (self.depth, self.pitch_rate, self.turn_rate) = (seen.depth, pitch_rate, turn_rate);
         Ok(())
     }
@@ -135,6 +139,11 @@ impl Helm {
     /// The body that it steers.
     pub(super) fn craft(&self) -> &Craft {
         &self.craft
+    }
+
+    /// What turn rates say it has turned since the observation before (rad).
+    pub(super) fn turned(&self) -> f64 {
+        self.turned
     }
 
     /// The turn rate (rad/s) that was read.

@@ -9,6 +9,7 @@
 //! - [`DepthHold`]: the depth controller inside them;
 //! - [`Thrust`]: the command of these behaviours to the thrusters.
 
+mod alignment;
 mod boat;
 mod colour_spotter;
 mod depth_hold;

@@ -84,6 +84,7 @@ pub struct PoolSearch {
     survey: Survey,
     spotter: ColourSpotter,
     camera: CameraSpec,
+    area: Aabb,
     /// Position of the servo at which the camera looks straight down.
     down: f64,
     finds: Vec<Find>,
@@ -124,6 +125,7 @@ impl PoolSearch {
             survey: Survey::new(robot, start, area, sides, parameters.survey)?,
             spotter: ColourSpotter::new(parameters.colour),
             camera,
+            area,
             down,
             finds: Vec::new(),
             found: None,
@@ -160,8 +162,9 @@ impl PoolSearch {
         );
         let eye = craft.to_world(Point3::new(self.camera.mount.x, self.camera.mount.y, self.camera.mount.z));
         let ray = craft.rotate(own);
-        let place = eye + ray * (eye.z / -ray.z);
-        Ok((ray.z < 0.0).then(|| place.xy()))
+        let place = (eye + ray * (eye.z / -ray.z)).xy();
+        // A wall is nearer to the light than the floor, and so is redder; what it hides is outside.
+        Ok((ray.z < 0.0 && self.area.contains(place)).then_some(place))
     }
 
     /// Adds a place to the thing that is there, or as another one.

@@ -78,7 +78,8 @@ halts!(SurveyOutcome { Covered: "all lanes are done" });
 /// section 8.5).
 ///
 /// The position, with its covariance, comes from Doppler log and compass, corrected by the distances to the four
-/// sides of a pool. Before diving, the depth sensor is zeroed by the craft's waterline.
+/// sides of a pool. Before diving, the depth sensor is zeroed by the craft's waterline. When the position becomes
+/// uncertain, the next lane is one along which a side can be measured.
 /// [`DepthMap`](super::DepthMap) makes a map of the soundings.
 ///
 /// ```

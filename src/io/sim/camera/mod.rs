@@ -1,7 +1,8 @@
 //! The simulated camera: a software rasteriser of the world's scene.
 //!
 //! A picture is made in three steps. [`ground`] fills it with sky and floor. Objects on the floor are split
-//! into flat [`face`]s and balls, drawn with a depth test. Water veils what is in it ([`murk`]). [`film`] converts it to bytes, with the room's
+//! into flat [`face`]s and balls, drawn with a depth test.
+//! Water veils what is in it ([`murk`]). [`film`] converts it to bytes, with the room's
 //! light and the errors of a real camera. [`fisheye`] samples such pictures through its lens. All arithmetic
 //! is identical on every platform, so the same scene gives the same bytes.
 
