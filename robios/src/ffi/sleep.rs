@@ -77,13 +77,17 @@ fn pass_until(end: f64, all_asleep_at: Option<f64>) -> Option<()> {
             Some(due) => (due - now).max(TICK),
             None => f64::INFINITY,
         };
-        let rest = (end - now).min(FOREVER);
+        let rest = rest_until(end, now);
         if rest > 0.0 { robios.pass(rest.min(most)) } else { Ok(()) }
     })
 }
 
-/// Longest time that passes at once while nothing is due (s).
+/// Time that passes at once while nothing is due (s).
 const FOREVER: f64 = 60.0;
+
+fn rest_until(end: f64, now: f64) -> f64 {
+    if end.is_finite() { end - now } else { FOREVER }
+}
 
 /// Lets the program wait until a time since the start (s). Timer functions are called in between.
 fn sleep_until(end: f64) -> Option<()> {
@@ -108,7 +112,7 @@ fn sleep(sleeper: &mut Sleeper) -> Option<()> {
             let now = robios.now();
             if now < end && alone {
                 let next = robios.timers.next().map_or(end, |due| due.min(end));
-                robios.pass((next - now).min(FOREVER))?;
+                robios.pass(rest_until(next, now))?;
             }
             Ok(robios.now())
         })?;
@@ -139,7 +143,9 @@ fn sleep(sleeper: &mut Sleeper) -> Option<()> {
             sleeper.listen();
             if standing.holds() && sleeper.is_next() {
                 pass_until(end, Some(now))?;
-            } else if !standing.may_hold() {
+            } else if standing.may_hold() {
+                glance();
+            } else {
                 sleeper.wait_to_be_told();
             }
         } else {
@@ -213,7 +219,9 @@ impl Standstill {
         if !self.found {
             self.turn = Turn::default();
         }
-        if !(before && still) || has_child() {
+        // Another process may end it, in real time.
+        self.found &= !has_child();
+        if !(self.found && before && still) {
             return false;
         }
         note_standstill(if joining().is_empty() { "" } else { ", and another for the end of a thread" });
@@ -282,7 +290,7 @@ pub(super) fn wait_for<T>(
         match enter(call, &mut ask)? {
             Waiting::Pressed(value) => return Some(value),
             Waiting::Until(time) => sleep_until(time)?,
-            Waiting::Forever => sleep_for(call, 60.0)?,
+            Waiting::Forever => sleep_for(call, FOREVER)?,
         }
     }
 }
