@@ -71,6 +71,7 @@ lessons!(
     safety,
     #[cfg(feature = "physics")]
     starman,
+    ramp,
     summit,
     survey,
     two_robots,

@@ -32,6 +32,7 @@ mod navigate;
 mod omni;
 mod pool_wall;
 mod quadtree;
+mod ramp;
 mod random_drive;
 mod replay;
 mod room;

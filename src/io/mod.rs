@@ -28,6 +28,7 @@
 //! | [`AlongWall<LidarWallFollower>`](crate::drive::LidarWallFollower) | [`Drive`], [`Lidar`], [`StallDetector`] |
 //! | [`LidarLeft`](crate::maze::LidarLeft), every [`Bug`](crate::nav::Bug), [`Navigator`](crate::nav::Navigator), [`Racer`](crate::race::Racer), [`EventRacer`](crate::race::EventRacer) | [`Drive`], [`Odometry`], [`Lidar`] |
 //! | [`SummitSearch`](crate::nav::SummitSearch) | [`Drive`], [`Odometry`], [`Lidar`], [`Inertial`] |
+//! | [`RampCrossing`](crate::nav::RampCrossing) | [`Drive`], [`Odometry`], [`Lidar`], [`Inertial`] |
 //! | [`Ascent`](crate::drive::terrain::Ascent) | [`Drive`], [`Odometry`], [`Lidar`], [`DistanceSensors`], [`Inertial`] |
 //! | [`LaneKeeper`](crate::drive::lane_keeping::LaneKeeper), [`BookLaneKeeper`](crate::drive::lane_keeping::BookLaneKeeper), [`MotionWatch`](crate::drive::motion_watch::MotionWatch) | [`Drive`], [`Odometry`], [`Camera`] |
 //! | [`ColourTracker`](crate::drive::colour::ColourTracker), [`PushHome`](crate::drive::colour::PushHome) | [`Drive`], [`Odometry`], [`Camera`], [`Lidar`], [`StallDetector`] |
