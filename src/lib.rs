@@ -49,7 +49,7 @@
 //! | 5 Swarms | any number of robots in one world; followers, chains, formations | [`io::sim`], [`drive`] |
 //! | 6 Wall following | walls of any shape, by distance sensors, PID or lidar | [`drive`] |
 //! | 7 Alternative drives | cars, Mecanum wheels, tracks: kinematics, control, simulation | [`kinematics`], [`drive`], [`io::sim`] |
-//! | 7 Alternative drives | hills: height fields, bodies in space, plans, the search for the summit | [`world::space`], [`nav::elevation`], [`nav`], [`drive::terrain`] |
+//! | 7 Alternative drives | hills: height fields, bodies in space, plans, the search for the summit, ramps | [`world::space`], [`nav::elevation`], [`nav`], [`drive::terrain`] |
 //! | 8 Boats and subs | craft in water and their control | [`kinematics::marine`], [`drive::marine`] |
 //! | 9 Mazes | models, files and generators, flood fill, exploration, time-optimal runs, a simulator's protocol | [`maze`], [`maze::files`], [`maze::generate`], [`maze::mms`] |
 //! | 10 Navigation | bug algorithms, navigation in a known world, reachable goals | [`nav`] |

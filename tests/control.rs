@@ -31,7 +31,8 @@ use roverlab::maze::{
     MazeRunnerParameters, RecursiveExplorer, Rig, Scale, WallState, mouse,
 };
 use roverlab::nav::{
-    BugKind, BugParameters, DistBug, Navigator, NavigatorParameters, SummitParameters, SummitSearch,
+    BugKind, BugParameters, DistBug, Navigator, NavigatorParameters, RampCrossing, SummitParameters,
+    SummitSearch,
 };
 use roverlab::race::{
     Cone, ConeTrack, EventParameters, EventRacer, GapDriver, RaceOutcome, Racer, RacerParameters,
@@ -166,6 +167,10 @@ const CASES: &[Case] = &[
     ("summit", RobotSpec::blizzard, |robot, limit, stop| {
         let parameters = SummitParameters::of(&RobotSpec::blizzard()).unwrap();
         driven(robot, &mut SummitSearch::new(parameters)?, limit, stop)
+    }),
+    ("ramp", RobotSpec::blizzard, |robot, limit, stop| {
+        let parameters = RampCrossing::parameters(&RobotSpec::blizzard()).unwrap();
+        driven(robot, &mut RampCrossing::new(parameters)?, limit, stop)
     }),
     ("ascent", RobotSpec::blizzard, |robot, limit, stop| {
         let spec = RobotSpec::blizzard();

@@ -72,6 +72,7 @@ lessons!(
     safety,
     #[cfg(feature = "physics")]
     starman,
+    ramp,
     summit,
     survey,
     two_robots,

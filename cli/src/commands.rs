@@ -19,7 +19,7 @@ use crate::view;
 use crate::{
     a_to_b, ackermann, boat, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug,
     dive, edges, follow_me, genetic, grid_benchmark, lane_keeping, lidar_scan, localise, micromouse, motion,
-    navigate, omni, pool_search, pool_wall, quadtree, random_drive, replay, safety, summit, survey,
+    navigate, omni, pool_search, pool_wall, quadtree, ramp, random_drive, replay, safety, summit, survey,
     terrain_plan, wall_following,
 };
 
@@ -93,6 +93,7 @@ commands!(
     pool_search by run,
     pool_wall by run,
     quadtree by run_plain,
+    ramp by run,
     random_drive by run,
     replay by run_printing,
     safety by run,

@@ -33,6 +33,7 @@ mod omni;
 mod pool_search;
 mod pool_wall;
 mod quadtree;
+mod ramp;
 mod random_drive;
 mod replay;
 mod room;

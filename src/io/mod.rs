@@ -30,6 +30,7 @@
 //! | [`SummitSearch`](crate::nav::SummitSearch) | [`Drive`], [`Odometry`], [`Lidar`], [`Inertial`] |
 //! | [`Ascent::by_lidar`](crate::drive::terrain::Ascent::by_lidar) | [`Drive`], [`Odometry`], [`Lidar`], [`Inertial`] |
 //! | [`Ascent::by_distance_sensors`](crate::drive::terrain::Ascent::by_distance_sensors) | [`Drive`], [`Odometry`], [`DistanceSensors`], [`Inertial`] |
+//! | [`RampCrossing`](crate::nav::RampCrossing) | [`Drive`], [`Odometry`], [`Lidar`], [`Inertial`] |
 //! | [`Ascent`](crate::drive::terrain::Ascent) | [`Drive`], [`Odometry`], [`Lidar`], [`DistanceSensors`], [`Inertial`] |
 //! | [`LaneKeeper`](crate::drive::lane_keeping::LaneKeeper), [`BookLaneKeeper`](crate::drive::lane_keeping::BookLaneKeeper), [`MotionWatch`](crate::drive::motion_watch::MotionWatch) | [`Drive`], [`Odometry`], [`Camera`] |
 //! | [`ColourTracker`](crate::drive::colour::ColourTracker), [`PushHome`](crate::drive::colour::PushHome) | [`Drive`], [`Odometry`], [`Camera`], [`Lidar`], [`StallDetector`] |

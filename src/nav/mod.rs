@@ -19,4 +19,7 @@ pub use bug::{
 };
 pub use navigate::{Navigator, NavigatorEvent, NavigatorOutcome, NavigatorParameters, NavigatorPhase};
 pub use reachability::{CellPath, Reachability};
-pub use summit::{Fence, SummitObservation, SummitOutcome, SummitParameters, SummitPhase, SummitSearch};
+pub use summit::{
+    Fence, RampCrossing, RampLeg, RampOutcome, SummitObservation, SummitOutcome, SummitParameters,
+    SummitPhase, SummitSearch,
+};

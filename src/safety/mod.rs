@@ -42,10 +42,17 @@
 //! program and sensors, and brakes if necessary; its documentation lists what it detects, how soon, and what
 //! it cannot detect. [`StoppingModel`] bounds the stopping distance, including the [`SpeedError`].
 //! [`BaseStation`] is the remote end.
+//!
+//! [`CliffGuard`] keeps any robot from driving over edges, with distance sensors that look down (book, section
+//! 7.4).
 
 mod cause;
 #[cfg(test)]
 mod claim_tests;
+mod cliff_guard;
+#[cfg(test)]
+mod cliff_guard_tests;
+mod cliff_parameters;
 mod health;
 mod machine;
 mod monitor;
@@ -58,6 +65,8 @@ mod supervised_robot;
 mod supervised_tests;
 
 pub use cause::{Causes, Requests};
+pub use cliff_guard::CliffGuard;
+pub use cliff_parameters::CliffGuardParameters;
 pub use health::HealthLimits;
 pub use machine::{SafetyCore, SafetyInputs, SafetyState};
 pub use monitor::{Deadline, Debounce, SignalHealth, SignalLimits, SignalMonitor, is_inside};

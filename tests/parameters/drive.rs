@@ -188,8 +188,10 @@ fn diving() {
     check!(SurveyParameters = SurveyParameters::default(),
         |p| Survey::new(&RobotSpec::mako(), start, area, true, p)?,
         { BoundedFromZero: margin; NotNegative: depth; Positive: spacing, speed, density, period; } but hold);
-    check!(PoolSearchParameters = PoolSearchParameters::default(),
-        |p| PoolSearch::new(&RobotSpec::mako(), start, area, true, p)?, { } but colour, survey);
+    let search = |survey| PoolSearchParameters { survey, ..PoolSearchParameters::default() };
+    check!(SurveyParameters = SurveyParameters::default(),
+        |p| PoolSearch::new(&RobotSpec::mako(), start, area, true, search(p))?,
+        { BoundedFromZero: margin; NotNegative: depth; Positive: spacing, speed, density, period; } but hold);
     check!(BoatParameters = BoatParameters::default(),
         |p| Boat::new(&CraftSpec::solar_raft(), start, &[Point::new(9.0, 9.0)], p)?,
         { NotNegative: station; Positive: speed, lookahead, reached, period; });

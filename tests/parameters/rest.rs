@@ -4,8 +4,8 @@ use roverlab::io::sim::{NoiseModel, SimOptions, Simulation};
 use roverlab::io::wrappers::{Manoeuvring, ManoeuvringParameters};
 use roverlab::random::Stream;
 use roverlab::safety::{
-    BaseStation, Deadline, Debounce, HealthLimits, SignalLimits, SignalMonitor, SpeedError, Supervised,
-    SupervisedParameters,
+    BaseStation, CliffGuard, CliffGuardParameters, Deadline, Debounce, HealthLimits, SignalLimits,
+    SignalMonitor, SpeedError, Supervised, SupervisedParameters,
 };
 use roverlab::vision::{Hog, HogParameters};
 use roverlab::world::generate::{CourseOptions, RoomOptions, obstacle_course, room};
@@ -108,6 +108,9 @@ fn safety() {
         { NotNegative: share, offset; });
     check!(HealthLimits = HealthLimits::default(), |p| supervised(SupervisedParameters { health: p, ..parameters() })?,
         { Positive: acceleration, speed_step, age; Count: repeats; });
+    let spec = RobotSpec::s4();
+    check!(CliffGuardParameters = CliffGuardParameters::of(&spec), |p| CliffGuard::new(MockRobot::new(), &spec, p).map(|_| ())?,
+        { Positive: drop; Bounded: speed, creep, period; } but stopping);
     check!(SignalLimits = SignalLimits { age: 0.2, rate: 2.0, step: 0.1, repeats: 3 }, |p| SignalMonitor::new(p)?,
         { Positive: age; NotNegative: rate, step; Count: repeats; });
     for limit in [f64::NAN, f64::INFINITY, -1.0, 0.0] {

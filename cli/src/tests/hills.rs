@@ -3,7 +3,7 @@
 use std::fs;
 
 use super::support::{Ended, number, run, temporary};
-use crate::summit;
+use crate::{ramp, summit};
 use clap::Parser;
 use roverlab::geometry::math;
 
@@ -55,6 +55,8 @@ fn what_is_no_hill_is_refused() {
         ("summit", vec!["--world", flat, "--start", "700,700,0"], "without hills"),
         ("summit", vec!["--slope", "0"], "--slope"),
         ("summit", vec!["--goal", "1,1"], "--goal"),
+        ("ramp", vec!["--world", flat, "--start", "700,700,0"], "without hills"),
+        ("ramp", vec!["--goal", "1,1"], "--goal"),
         ("terrain_plan", vec!["--world", flat, "--start", "700,700,0"], "without hills"),
         ("terrain_plan", vec!["--robot", "R2D2"], "expected one of"),
         ("terrain_plan", vec!["--goal", "99999,0"], "outside"),
@@ -62,6 +64,22 @@ fn what_is_no_hill_is_refused() {
         let (status, _, err) = run(command, &options);
         assert!(status == 2 && err.contains(expected), "{command} {options:?}: {err}");
     }
+}
+
+#[test]
+fn a_robot_crosses_levels() {
+    let (status, report, err): Ended = run("ramp", &["--seed", "1", "--noise", "1"]);
+    assert_eq!((status, report["outcome"].as_str(), err.as_str()), (0, Some("crossed"), ""), "{report}");
+    assert!(report["crossed"] == true && number(&report, "edge_distance_mm") > 0.0, "{report}");
+    assert!((number(&report, "level_mm") - 200.0).abs() < 10.0, "{report}");
+    assert!(number(&report, "height_mm") < 20.0 && number(&report, "max_tilt_deg") < 25.0, "{report}");
+}
+
+#[test]
+fn levels_of_a_campaign_are_crossed() {
+    let args = ramp::Args::try_parse_from(["ramp", "--campaign", "--runs", "2", "--noise", "1"]).unwrap();
+    let trials = ramp::trials(&args).unwrap();
+    assert!(trials.iter().all(|trial| trial.crossed && !trial.is_lost()), "{trials:?}");
 }
 
 #[test]

@@ -34,28 +34,37 @@ const CLIMBED: f64 = 0.6;
 const MIDDLE: f64 = 0.4;
 const BETWEEN: f64 = 0.3;
 
+fn wheel_diameter(spec: &RobotSpec) -> f64 {
+    match spec.drive {
+        DriveSpec::Differential { wheel_diameter, .. }
+        | DriveSpec::Tracked { wheel_diameter, .. }
+        | DriveSpec::Ackermann { wheel_diameter, .. }
+        | DriveSpec::Omni { wheel_diameter, .. } => wheel_diameter,
+        DriveSpec::Craft(_) => 0.0,
+    }
+}
+
 impl Climber {
     /// The limits of a robot, from its friction, its wheels or belts and the height of its centre of mass: seven
     /// tenths of the slope on which it would slip or tip over.
     pub fn of(spec: &RobotSpec) -> Self {
+        let step = 0.5 * CLIMBED * wheel_diameter(spec);
+        Self { slope: TRUSTED * Self::steepest(spec), step, radius: spec.footprint.bounding_radius() }
+    }
+
+    /// The slope in radians on which a robot slips or tips over.
+    pub fn steepest(spec: &RobotSpec) -> f64 {
         let reach = spec.footprint.bounding_radius();
-        let (wheel_diameter, support) = match spec.drive {
-            DriveSpec::Differential { wheel_diameter, track, .. } => {
-                (wheel_diameter, (BETWEEN * reach).min(0.5 * track))
-            }
-            DriveSpec::Tracked { wheel_diameter, track, length, .. } => {
-                (wheel_diameter, 0.5 * track.min(length))
-            }
-            DriveSpec::Ackermann { wheel_diameter, track, wheelbase, .. }
-            | DriveSpec::Omni { wheel_diameter, track, wheelbase, .. } => {
-                (wheel_diameter, 0.5 * track.min(wheelbase))
+        let support = match spec.drive {
+            DriveSpec::Differential { track, .. } => (BETWEEN * reach).min(0.5 * track),
+            DriveSpec::Tracked { track, length, .. } => 0.5 * track.min(length),
+            DriveSpec::Ackermann { track, wheelbase, .. } | DriveSpec::Omni { track, wheelbase, .. } => {
+                0.5 * track.min(wheelbase)
             }
             // Craft climb nothing.
-            DriveSpec::Craft(_) => (0.0, 0.0),
+            DriveSpec::Craft(_) => 0.0,
         };
-        let (tips, slips) = (math::atan2(support, MIDDLE * spec.height), math::atan(spec.friction));
-        let (slope, step) = (TRUSTED * tips.min(slips), 0.5 * CLIMBED * wheel_diameter);
-        Self { slope, step, radius: reach }
+        math::atan2(support, MIDDLE * spec.height).min(math::atan(spec.friction))
     }
 
     /// The same limits with another maximum slope (rad).

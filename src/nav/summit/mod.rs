@@ -1,12 +1,19 @@
-//! The search for the highest place that a robot can reach (book, section 7.4).
+//! Drives over unknown hills (book, section 7.4): the search for the highest place that a robot can reach, and
+//! the crossing of a level by two ramps.
 
 mod align;
+mod axis;
 mod drive;
+mod explorer;
 mod parameters;
+mod ramp;
 mod reckoning;
 mod search;
 mod sight_map;
+mod straight;
 mod sweep;
 
+pub use explorer::{SummitObservation, SummitPhase};
 pub use parameters::{Fence, SummitParameters};
-pub use search::{SummitObservation, SummitOutcome, SummitPhase, SummitSearch};
+pub use ramp::{RampCrossing, RampLeg, RampOutcome};
+pub use search::{SummitOutcome, SummitSearch};

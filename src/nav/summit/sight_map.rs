@@ -1,6 +1,6 @@
 use super::parameters::SummitParameters;
 use super::sweep::Beam;
-use crate::geometry::{Aabb, Point, Point3, Vector, math};
+use crate::geometry::{Aabb, Point, Point3, Pose3, Vector, math};
 use crate::nav::elevation::{Climber, ElevationMap};
 use crate::nav::grid::GridComponents;
 use crate::world::{BitGrid, GridCell, HeightField};
@@ -12,6 +12,8 @@ pub(super) struct SightMap {
     side: usize,
     resolution: f64,
     extent: f64,
+    /// Two beams above each other that meet the ground less than this many metres apart show what is between.
+    gap: f64,
     /// The weight of what was measured, and its mean.
     seen: Vec<(f64, f64)>,
     ceilings: Vec<f64>,
@@ -19,8 +21,8 @@ pub(super) struct SightMap {
     shunned: Vec<bool>,
 }
 
-/// Two beams above each other that meet the ground less than this many metres apart show what is between.
-const GAP: f64 = 0.35;
+/// Cosine of the largest tilt of a robot that stands: 60 degrees.
+const MIN_UPRIGHT: f64 = 0.5;
 /// The weight of what is between.
 const BETWEEN: f64 = 0.05;
 /// Metres at which a measurement weighs half.
@@ -61,12 +63,13 @@ const DROP: f64 = 0.04;
 const CAUTION: f64 = 0.05;
 
 impl SightMap {
-    pub(super) fn new(resolution: f64, extent: f64) -> Self {
+    pub(super) fn new(resolution: f64, extent: f64, gap: f64) -> Self {
         let side = (2.0 * extent / resolution).round() as usize + 1;
         Self {
             side,
             resolution,
             extent,
+            gap,
             seen: vec![(0.0, 0.0); side * side],
             ceilings: vec![f64::INFINITY; side * side],
             shunned: vec![false; side * side],
@@ -127,7 +130,7 @@ impl SightMap {
 
     /// Forgets all that was seen.
     pub(super) fn clear(&mut self) {
-        *self = Self::new(self.resolution, self.extent);
+        *self = Self::new(self.resolution, self.extent, self.gap);
     }
 
     /// Takes in the beams of one azimuth, from the lowest tilt up.
@@ -159,7 +162,7 @@ impl SightMap {
     fn bridge(&mut self, from: Point3, to: Point3) {
         let way = to - from;
         let run = way.xy().norm();
-        if run > GAP {
+        if run > self.gap {
             return;
         }
         let parts = (run / self.resolution).ceil();
@@ -190,6 +193,19 @@ impl SightMap {
     /// The ground under a robot that stands.
     pub(super) fn stand(&mut self, place: Point, elevation: f64) {
         self.measure(place, elevation, 1.0);
+    }
+
+    /// The plane on which a robot stands, as far as it carries it.
+    pub(super) fn stand_on(&mut self, robot: &Pose3, radius: f64) {
+        let (middle, up) = (robot.position, robot.up());
+        let reach = (radius / self.resolution) as i32;
+        for (x, y) in (-reach..=reach).flat_map(|x| (-reach..=reach).map(move |y| (x, y))) {
+            let away = Vector::new(f64::from(x), f64::from(y)) * self.resolution;
+            if away.norm() <= radius {
+                let rise = -away.dot(&up.xy()) / up.z.max(MIN_UPRIGHT);
+                self.measure(middle.xy() + away, middle.z + rise, 1.0);
+            }
+        }
     }
 
     /// Notes that the robot cannot stand around a place.

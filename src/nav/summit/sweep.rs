@@ -8,9 +8,17 @@ const TILTS: [f64; 24] = [
     -2.2, -1.2, 0.0, 2.0, 5.0, 9.0, 14.0, 20.0,
 ];
 
+/// The same for levels nearby: a ramp behind a crest shows only to beams steeper than itself.
+const NEARBY: [f64; 40] = [
+    -60.0, -54.0, -48.0, -44.0, -40.0, -37.0, -34.0, -32.0, -30.0, -28.5, -27.0, -25.5, -24.0, -23.0, -22.0,
+    -21.0, -20.0, -19.0, -18.0, -17.0, -16.0, -15.0, -14.0, -13.0, -12.0, -11.0, -10.0, -9.0, -8.0, -7.0,
+    -6.0, -5.0, -4.0, -3.0, -2.0, -1.0, 0.0, 3.0, 8.0, 15.0,
+];
+
 /// Scans at many tilts from one place, with the attitude in the meantime.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(super) struct Sweep {
+    tilts: &'static [f64],
     /// By tilt and then by beam: unit directions in the robot's frame, and metres.
     rings: Vec<Vec<(Vector3, f64)>>,
     attitudes: Vec<Attitude>,
@@ -32,9 +40,19 @@ impl Beam {
 }
 
 impl Sweep {
+    /// A sweep that shows ground far away.
+    pub(super) fn wide() -> Self {
+        Self { tilts: &TILTS, rings: Vec::new(), attitudes: Vec::new() }
+    }
+
+    /// A sweep that shows ground nearby.
+    pub(super) fn nearby() -> Self {
+        Self { tilts: &NEARBY, ..Self::wide() }
+    }
+
     /// The tilt of the next scan, in radians; `None` once it is complete.
     pub(super) fn next_tilt(&self) -> Option<f64> {
-        TILTS.get(self.rings.len()).map(|&degrees| units::from_deg(degrees))
+        self.tilts.get(self.rings.len()).map(|&degrees| units::from_deg(degrees))
     }
 
     /// Adds the scan of the tilt that is next.

@@ -47,6 +47,7 @@ const EXCEPTIONS: &[(&str, &str)] = &[
     ("io::sim::Simulation::watch", CLOSURE),
     ("io::wrappers::", ROBOT),
     ("maze::MazeRunner", ROBOT),
+    ("safety::CliffGuard", ROBOT),
     ("safety::Supervised", ROBOT),
     // Functions of the caller's own.
     ("evolve::Genetic", GENES),

@@ -9,6 +9,8 @@ use crate::kinematics::{PlanarTwist, advance_planar};
 use crate::random::Stream;
 use crate::world::{HeightField, RobotSpec};
 
+mod table;
+
 /// A field of 8 m by 8 m; heights are a function of the position from its centre.
 fn field(samples: usize, height: impl FnMut(Point) -> f64) -> HeightField {
     let area = Aabb::new(Point::new(-4.0, -4.0), Point::new(4.0, 4.0));

@@ -1,0 +1,50 @@
+use std::num::NonZero;
+
+use crate::common::{CommonArgs, OF_ONE_RUN};
+
+/// The command line of `ramp`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    about = "Drives a tracked robot up a ramp, across a level and down another ramp",
+    after_help = "\
+Without --world, the levels are generated from --seed: ramps of 7 to 20 degrees, and friction coefficients of 0.4 to 1. A
+world needs hills: a line `terrain WIDTH HEIGHT TOP FILE`, and a start in front of a ramp. A Blizzard drives where it has no
+robot. The robot knows neither the slope nor where the ramps are.
+
+With --campaign, many generated levels.
+
+JSON fields:
+  crossed                     whether it went up by one ramp and came down by another
+  edge_distance_mm            smallest true distance between the outline and an edge, or null
+  height_mm                   true elevation at the end
+  level_mm                    highest true elevation
+  max_tilt_deg                the most that the robot was tilted
+  slip_percent                how far it moved otherwise than its wheels said, as a share of their way
+  friction                    coefficient of friction
+  looks                       how often it has looked around
+  time_limit_s, picture
+  runs, passed, falls, median_edge_distance_mm, wrong_seeds   with --campaign only
+Outcomes: crossed, no_way_up, no_way_down, stuck, tipped, fell, drowned, timed_out, failed; with --campaign: passed, wrong."
+)]
+pub(crate) struct Args {
+    /// Cross many levels.
+    #[arg(long)]
+    pub(crate) campaign: bool,
+
+    /// Levels of a campaign; each has the next seed.
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
+    pub(crate) runs: u64,
+
+    /// Number of threads in a campaign [default: one per core].
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub(crate) threads: Option<NonZero<usize>>,
+
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
+    ("always", &["goal"]),
+    ("campaign", OF_ONE_RUN),
+    ("!campaign", &["runs", "threads"]),
+]);

@@ -1,0 +1,86 @@
+use roverlab::io::Mishap;
+use roverlab::nav::RampOutcome;
+
+use super::Args;
+use super::cross::{Passage, cross, levels};
+use super::job::SECONDS;
+use crate::common::{Failure, Outcome, Report, millimetres, share_out, threads};
+use crate::driving::{Conditions, RESERVE};
+use crate::terrain::{Ride, median};
+
+/// A crossing of generated levels.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Trial {
+    pub(crate) seed: u64,
+    pub(crate) crossed: bool,
+    pub(crate) outcome: Option<RampOutcome>,
+    pub(crate) mishap: Option<Mishap>,
+    pub(crate) edge_distance: f64,
+    pub(crate) sim_time: f64,
+}
+
+impl Trial {
+    /// Whether the robot fell or tipped.
+    pub(crate) fn is_lost(&self) -> bool {
+        self.mishap.is_some_and(|mishap| mishap != Mishap::Stuck)
+    }
+}
+
+/// Smallest part of the levels that has to be crossed; no robot may fall.
+const CROSSED: f64 = 0.99;
+
+/// The campaign's work.
+pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
+    let trials = trials(args)?;
+    let crossed = trials.iter().filter(|trial| trial.crossed).count();
+    let falls = trials.iter().filter(|trial| trial.is_lost()).count();
+    let wrong = || trials.iter().filter(|trial| !trial.crossed || trial.is_lost());
+    for trial in wrong() {
+        args.common.tell(format_args!("seed {}: {:?}, {:?}", trial.seed, trial.outcome, trial.mishap));
+    }
+    let good = falls == 0 && crossed as f64 >= CROSSED * args.runs as f64;
+    let outcome = if good { Outcome::verdict("passed") } else { Outcome::failure("wrong") };
+    let edge_distance = median(trials.iter().map(|trial| trial.edge_distance).collect());
+    Ok(Report { sim_time: Some(trials.iter().map(|trial| trial.sim_time).sum()), ..Report::new(outcome) }
+        .field("runs", args.runs)
+        .field("passed", crossed)
+        .field("falls", falls)
+        .field("median_edge_distance_mm", millimetres(edge_distance))
+        .field("wrong_seeds", wrong().map(|trial| trial.seed).collect::<Vec<_>>()))
+}
+
+/// All crossings, in the order of the seeds.
+pub(crate) fn trials(args: &Args) -> Result<Vec<Trial>, Failure> {
+    share_out("levels", args.runs, threads(args.threads), |index| {
+        trial(args, args.common.seed.wrapping_add(index))
+    })
+}
+
+fn trial(args: &Args, seed: u64) -> Result<Trial, Failure> {
+    let hike = levels(seed);
+    let conditions = Conditions {
+        seed,
+        noise: args.common.noise,
+        light: 1.0,
+        keys: Vec::new(),
+        pushing: false,
+        others: Vec::new(),
+        ideal_encoders: false,
+        time_limit: args.common.time_limit.unwrap_or(SECONDS),
+        reserve: RESERVE,
+        common: None,
+    };
+    let run = cross(&hike, &conditions, |_| {}, |_| {})?;
+    let passage = Passage::of(&hike, &run);
+    let outcome = run.ending.as_ref().ok().map(|ended| ended.outcome);
+    let mishap = Ride::of(&run).and_then(|ride| ride.end.mishap);
+    let lost = mishap.is_some_and(|mishap| mishap != Mishap::Stuck);
+    Ok(Trial {
+        seed,
+        crossed: outcome == Some(RampOutcome::Crossed) && passage.crossed && !lost,
+        outcome,
+        mishap,
+        edge_distance: passage.edge_distance,
+        sim_time: run.sim_time,
+    })
+}
