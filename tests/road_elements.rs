@@ -195,7 +195,8 @@ impl Table {
             let along = 0.07 * frame as f64;
             let here = setting.course.pose(along, setting.aside(along));
             let next = setting.course.pose(along + 0.02, setting.aside(along + 0.02));
-            let heading = (next.position() - here.position()).y.atan2((next.position() - here.position()).x);
+            let way = next.position() - here.position();
+            let heading = math::atan2(way.y, way.x);
             truth.move_robot(0, 0, Pose::new(here.x, here.y, heading)).unwrap();
             car.wait(0.04).unwrap();
             car.image_into(&mut image).unwrap();
