@@ -56,7 +56,7 @@
 //! | 10 Navigation | planning on grid maps and graphs: A\*, Dijkstra, jump points, any angle, quadtrees | [`nav::grid`], [`nav::graph`] |
 //! | 11 Robot vision | edges, colours, blobs, lines, motion; driving by colour and by motion | [`vision`], [`vision::images`], [`vision::motion`], [`drive::colour`], [`drive::motion_watch`] |
 //! | 12 Evolution | genetic algorithms, CMA evolution strategy; a walking robot | [`evolve`], `evolve::checkpoint`, `io::sim::starman` |
-//! | 13 Driverless cars | roads and their files, the lane by camera, the referee of Free Drive | [`world::road`], [`vision::lane_markings`], [`drive::lane_keeping`], [`drive::traffic`] |
+//! | 13 Driverless cars | roads and their files, the lane and what is on the road by camera, the referee of Free Drive | [`world::road`], [`vision::lane_markings`], [`vision::road_elements`], [`drive::lane_keeping`], [`drive::traffic`] |
 //! | 14 Formula SAE | cone tracks, centre lines, racing lines, racing cars, referee | [`race`] |
 //! | 14 Formula SAE | safety: state machine, monitors, stopping distance | [`safety`] |
 //!

@@ -17,7 +17,7 @@
 //! # }
 //! ```
 //!
-//! [`motion`] detects motion, and [`lane_markings`] the lane ahead of a car. Robots that drive by camera are
+//! [`motion`] detects motion, [`lane_markings`] the lane ahead of a car, and [`road_elements`] what is on it. Robots that drive by camera are
 //! in [`drive`](crate::drive).
 //!
 //! The module `images` (feature `image`) has the same kernels on images of the crate `image`; they return new
@@ -66,6 +66,7 @@ pub mod motion;
 mod parallel;
 mod planes;
 mod projection;
+pub mod road_elements;
 mod segment_order;
 mod sobel;
 #[cfg(test)]

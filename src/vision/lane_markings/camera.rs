@@ -49,27 +49,51 @@ impl RoadCamera {
 
     /// Projects a ground point in the robot's frame to column and row in an image of a given size. The centre
     /// of pixel (0, 0) is (0.5, 0.5). `pitch` is added to the tilt (rad). `None` behind the camera.
-    pub fn project(&self, place: Point, pitch: f64, (width, height): (u32, u32)) -> Option<(f64, f64)> {
+    pub fn project(&self, place: Point, pitch: f64, size: (u32, u32)) -> Option<(f64, f64)> {
+        self.projection(pitch, size).of(place)
+    }
+
+    /// The projection to images of a size, for many points.
+    pub(in crate::vision) fn projection(&self, pitch: f64, (width, height): (u32, u32)) -> Projection {
         let (sin, cos) = math::sin_cos(self.tilt + pitch);
-        let (ahead, up) = (place.x - self.ahead, -self.height);
-        // Right, down, and along the optical axis.
-        let (x, y, z) = (-place.y, ahead * sin - up * cos, ahead * cos + up * sin);
-        let focal = self.focal(width);
-        let scale = if self.fisheye {
-            let aside = math::hypot(x, y);
-            let angle = math::atan2(aside, z);
-            if aside > 1e-9 { focal * angle / aside } else { focal / z }
-        } else if z > 1e-3 {
-            focal / z
-        } else {
-            return None;
-        };
-        Some((0.5 * f64::from(width) + scale * x, 0.5 * f64::from(height) + scale * y))
+        let middle = (0.5 * f64::from(width), 0.5 * f64::from(height));
+        Projection { camera: *self, sin, cos, focal: self.focal(width), middle }
     }
 
     /// Apparent motion of a ground point per radian of upward pitch (m/rad).
     pub(super) fn lift(&self, place: Point) -> Vector {
         let ahead = place.x - self.ahead;
         Vector::new((ahead * ahead + self.height * self.height) / self.height, ahead * place.y / self.height)
+    }
+}
+
+/// Mapping from level ground to pixels at a pitch, with its constants computed once.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::vision) struct Projection {
+    camera: RoadCamera,
+    sin: f64,
+    cos: f64,
+    /// Pixels; for a fisheye, pixels per radian.
+    focal: f64,
+    middle: (f64, f64),
+}
+
+impl Projection {
+    /// Column and row of a ground point in the robot's frame.
+    #[inline]
+    pub(in crate::vision) fn of(&self, place: Point) -> Option<(f64, f64)> {
+        let (ahead, up) = (place.x - self.camera.ahead, -self.camera.height);
+        // Right, down, and along the optical axis.
+        let (x, y, z) = (-place.y, ahead * self.sin - up * self.cos, ahead * self.cos + up * self.sin);
+        let scale = if self.camera.fisheye {
+            let aside = math::hypot(x, y);
+            let angle = math::atan2(aside, z);
+            if aside > 1e-9 { self.focal * angle / aside } else { self.focal / z }
+        } else if z > 1e-3 {
+            self.focal / z
+        } else {
+            return None;
+        };
+        Some((self.middle.0 + scale * x, self.middle.1 + scale * y))
     }
 }

@@ -2,7 +2,7 @@ use super::curve::{Curve, bend_at};
 use super::model::Road;
 use super::{MarkingFilter, MarkingPoint, RoadCamera};
 use crate::ParameterError;
-use crate::geometry::{Point, Pose, math};
+use crate::geometry::{Point, Pose, Vector, math};
 use crate::parameter::require;
 use crate::vision::GrayView;
 
@@ -57,6 +57,17 @@ impl LaneEstimate {
         bend / (1.0 - bend * self.middle)
     }
 
+    /// The road as estimated, to look at what is on it.
+    pub(in crate::vision) fn road_ahead(&self) -> RoadAhead {
+        let (offset, heading) = self.from_road;
+        RoadAhead {
+            curve: Curve::new(&self.bends),
+            car: Pose::new(0.0, offset, heading),
+            edge: self.edge / self.size,
+            middle: self.middle / self.size,
+        }
+    }
+
     /// Pose on the lane's centre line at a distance ahead along the road (m), in the robot's frame.
     pub fn place(&self, ahead: f64) -> Pose {
         let (point, forward) = Curve::new(&self.bends).at(ahead / self.size);
@@ -66,6 +77,28 @@ impl LaneEstimate {
         let (offset, heading) = self.from_road;
         let own = Pose::new(0.0, offset, heading).to_local(Point::new(x, y));
         Pose::new(own.x * self.size, own.y * self.size, math::atan2(forward.y, forward.x) - heading)
+    }
+}
+
+/// The road ahead of a car at the scale of the rules.
+#[derive(Debug, Clone)]
+pub(in crate::vision) struct RoadAhead {
+    curve: Curve,
+    /// The car on the road: x along the road, y to the left of its centre line.
+    car: Pose,
+    /// Distance from the road's centre line to an edge line, and to the left to the own lane's centre (m).
+    pub(in crate::vision) edge: f64,
+    pub(in crate::vision) middle: f64,
+}
+
+impl RoadAhead {
+    /// Point of the road's centre line at a distance ahead (m), and the direction to the left there, in the
+    /// robot's frame.
+    pub(in crate::vision) fn at(&self, ahead: f64) -> (Point, Vector) {
+        let (point, forward) = self.curve.at(ahead);
+        let (sin, cos) = math::sin_cos(-self.car.heading);
+        let aside = Vector::new(-forward.y, forward.x);
+        (self.car.to_local(point), Vector::new(cos * aside.x - sin * aside.y, sin * aside.x + cos * aside.y))
     }
 }
 

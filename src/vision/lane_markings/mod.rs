@@ -15,4 +15,5 @@ mod tests;
 
 pub use camera::RoadCamera;
 pub use filter::{MarkingFilter, MarkingPoint};
+pub(in crate::vision) use finder::RoadAhead;
 pub use finder::{LaneEstimate, LaneMarkingFinder, RoadModel};

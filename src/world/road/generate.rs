@@ -22,6 +22,9 @@ pub struct RoadCourseOptions {
     pub crossings: f64,
     /// Probability of a crosswalk on a straight with enough room.
     pub zebras: f64,
+    /// Probability of parking areas, parallel on the right and perpendicular on the left, on a straight with
+    /// enough room.
+    pub parking: f64,
     /// Patches beside the road per metre.
     pub artefacts: f64,
 }
@@ -38,6 +41,7 @@ impl Default for RoadCourseOptions {
             longest_gap: 1.0,
             crossings: 0.6,
             zebras: 0.0,
+            parking: 0.0,
             artefacts: 0.3,
         }
     }
@@ -74,6 +78,8 @@ const ATTEMPTS: u64 = 2000;
 const SHORTEST: f64 = 0.3;
 /// Smallest bend (rad).
 const GENTLEST: f64 = 0.15;
+/// Lengths of parking areas (m): 1.8 m along the road on the right, and four spots of 350 mm on the left.
+const PARKING: (f64, f64) = (1.8, 1.4);
 /// Smallest radius of a road's inner edge, by the rules.
 const INNER: f64 = 1.0;
 
@@ -269,6 +275,9 @@ impl Marker<'_> {
                 continue;
             }
             let middle = self.random.between(0.35, 0.65) * element.length + from;
+            if self.parking(middle, element.length) {
+                continue;
+            }
             if element.length > 2.4 && self.random.chance(self.options.crossings) {
                 if self.room_for_arms(middle) && self.take(middle - 1.0, middle + 1.0) {
                     let angle = self.random.between(70.0, 110.0).to_radians();
@@ -290,6 +299,24 @@ impl Marker<'_> {
                 self.put(middle, RoadMarkKind::Speed(value, struck));
             }
         }
+    }
+
+    /// Adds parking areas on both sides of a straight. Courses without any draw no random number for them.
+    fn parking(&mut self, middle: f64, straight: f64) -> bool {
+        let chance = self.options.parking;
+        let long = PARKING.0.max(PARKING.1);
+        // Room for the slanted ends, and 1 m to the next element.
+        let half = 0.5 * long + 0.6;
+        let has_room = chance > 0.0 && straight > 2.0 * half + 0.4;
+        if !(has_room && self.random.chance(chance) && self.room_for_arms(middle)) {
+            return false;
+        }
+        if !self.take(middle - half, middle + half) {
+            return false;
+        }
+        self.put(middle - 0.5 * PARKING.0, RoadMarkKind::Parking(RoadSide::Right, PARKING.0));
+        self.put(middle - 0.5 * PARKING.1, RoadMarkKind::Parking(RoadSide::Left, PARKING.1));
+        true
     }
 
     /// Whether the arms of a crossing would not overlap the road.

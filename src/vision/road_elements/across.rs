@@ -1,0 +1,136 @@
+//! Lines across a lane, and crosswalks.
+
+use std::f64::consts::TAU;
+
+use super::finder::{Detection, RoadElementKind};
+use super::view::{COLUMNS, ROWS, RoadView, columns, left};
+use crate::geometry::math;
+use crate::vision::lane_markings::RoadAhead;
+
+/// Width of stop and give-way lines, by the rules (m).
+const BROAD: f64 = 0.038;
+/// Period across the road of the dashes of give-way lines, and of the stripes of crosswalks, by the rules (m).
+const GIVE_WAY: f64 = 0.140;
+const STRIPES: f64 = 0.078;
+/// The same of the chequers of a start line, which is about 50 mm long (m).
+const CHEQUERS: f64 = 0.050;
+/// Length of a crosswalk's stripes, by the rules (m).
+const ZEBRA: f64 = 0.40;
+/// Distance from a lane's lines to what is examined (m): the lines' own width and the error of the lane.
+const MARGIN: f64 = 0.035;
+/// Share of a lane that has to be in view.
+const VISIBLE: f64 = 0.7;
+/// Least mean contrast: of a stop line, half of which may be worn or blurred; of a give-way line, of which
+/// four sevenths are painted; and of a line across the other lane.
+const SOLID: f64 = 0.55;
+const DASHED: f64 = 0.22;
+const OTHER: f64 = 0.20;
+/// Least amplitude at the period of dashes as a share of the mean. That of dashes is 1.08.
+const PERIODIC: f64 = 0.55;
+/// Least amplitude of a row of a crosswalk, and of a row of chequers. That of fresh paint is 0.32.
+const STRIPED: f64 = 0.13;
+const CHEQUERED: f64 = 0.12;
+
+/// Mean of a signal across a lane, and its amplitude at a period.
+#[derive(Debug, Clone, Copy, Default)]
+struct Spectrum {
+    mean: f64,
+    amplitude: f64,
+    visible: f64,
+}
+
+impl Spectrum {
+    /// Of a signal between two distances to the left of the road's centre line.
+    fn of(range: (f64, f64), period: f64, signal: impl Fn(usize) -> Option<f64>) -> Self {
+        let columns = columns(range.0, range.1);
+        let all = columns.len() as f64;
+        let (mut count, mut sum, mut real, mut imaginary) = (0.0, 0.0, 0.0, 0.0);
+        for column in columns {
+            let Some(value) = signal(column) else { continue };
+            let (sin, cos) = math::sin_cos(TAU * left(column) / period);
+            count += 1.0;
+            sum += value;
+            real += value * cos;
+            imaginary += value * sin;
+        }
+        if count == 0.0 {
+            return Self::default();
+        }
+        Self { mean: sum / count, amplitude: math::hypot(real, imaginary) / count, visible: count / all }
+    }
+}
+
+/// Inner parts of the own lane and of the other one.
+fn lanes(road: &RoadAhead) -> [(f64, f64); 2] {
+    let inner = (MARGIN, road.edge - MARGIN);
+    let outer = (-inner.1, -inner.0);
+    if road.middle > 0.0 { [inner, outer] } else { [outer, inner] }
+}
+
+/// Finds lines across the own lane.
+pub(super) fn lines(view: &RoadView, road: &RoadAhead, found: &mut Vec<Detection>) {
+    let [own, other] = lanes(road);
+    let spectrum = |row: usize, lane| Spectrum::of(lane, GIVE_WAY, |column| view.across(row, column, BROAD));
+    let rows: Vec<Spectrum> = (0..ROWS).map(|row| spectrum(row, own)).collect();
+    for row in 1..ROWS - 1 {
+        let here = rows[row];
+        let is_peak = here.mean > rows[row - 1].mean && here.mean >= rows[row + 1].mean;
+        if here.visible < VISIBLE || here.mean < DASHED || !is_peak {
+            continue;
+        }
+        let beyond = spectrum(row, other);
+        let is_chequered = [row - 1, row + 1].iter().any(|&row| chequers(view, row, own) > CHEQUERED);
+        let kind = if here.amplitude > PERIODIC * here.mean {
+            RoadElementKind::GiveWayLine
+        } else if is_chequered || (beyond.visible > 0.5 && beyond.mean > OTHER) {
+            RoadElementKind::StartLine
+        } else if here.mean > SOLID {
+            RoadElementKind::StopLine
+        } else {
+            continue;
+        };
+        found.push(Detection { kind, ahead: view.ahead(row) - 0.5 * BROAD });
+    }
+}
+
+/// Amplitude of a row of chequers across a lane.
+fn chequers(view: &RoadView, row: usize, lane: (f64, f64)) -> f64 {
+    brightness(view, row, lane, CHEQUERS).amplitude
+}
+
+fn brightness(view: &RoadView, row: usize, range: (f64, f64), period: f64) -> Spectrum {
+    Spectrum::of(range, period, |column| view.sees(row, column).then(|| view.brightness(row, column)))
+}
+
+/// Finds crosswalks: their near edges.
+pub(super) fn zebras(view: &RoadView, road: &RoadAhead, found: &mut Vec<Detection>) {
+    let inner = road.edge - MARGIN;
+    let striped = |row: usize| {
+        let spectrum = brightness(view, row, (-inner, inner), STRIPES);
+        spectrum.visible > 0.5 && spectrum.amplitude > STRIPED
+    };
+    let mut row = 0;
+    while row < ROWS {
+        if !striped(row) {
+            row += 1;
+            continue;
+        }
+        let from = row;
+        while row < ROWS && striped(row) {
+            row += 1;
+        }
+        // Blur lengthens it, and the limits of the view cut it.
+        let long = view.ahead(row.min(ROWS - 1)) - view.ahead(from);
+        if (0.3 * ZEBRA..1.5 * ZEBRA).contains(&long) && begins_in_view(view, road, from) {
+            found.push(Detection { kind: RoadElementKind::Zebra, ahead: view.ahead(from) });
+        }
+    }
+}
+
+/// Whether the road just before a row is in view.
+fn begins_in_view(view: &RoadView, road: &RoadAhead, row: usize) -> bool {
+    let inner = columns(-road.edge, road.edge);
+    let before = row.saturating_sub(4);
+    let seen = inner.clone().filter(|&column| column < COLUMNS && view.sees(before, column)).count();
+    row >= 4 && 2 * seen > inner.len()
+}

@@ -1,0 +1,126 @@
+//! Crossings: edge lines that end where a line leaves the road.
+
+use super::finder::{Detection, RoadElementKind};
+use super::view::{CELL, ROWS, RoadView, column, columns, left};
+use crate::geometry::math;
+use crate::vision::lane_markings::RoadAhead;
+
+/// Width of the line of an arm (m).
+const LINE: f64 = 0.02;
+/// Strip beside the road where the line of an arm is looked for: least distance from the edge line, and width
+/// (m).
+const STRIP: (f64, f64) = (0.04, 0.15);
+/// Cotangents of the angle between road and arm, 70 to 110 degrees by the rules.
+const SLOPES: i32 = 7;
+const SLOPE: f64 = 0.058;
+/// Least mean contrast of an arm's line, and of an edge line.
+const LEAVES: f64 = 0.33;
+const EDGE: f64 = 0.35;
+/// Centre of a bright line beside that of an edge line (cells): halfway to that of a stop line, 29 mm.
+const OUTER: f64 = 1.5;
+/// Length before and behind a crossing's middle without edge line (m): lanes are at least 350 mm wide.
+const OPEN: f64 = 0.30;
+/// Most of this length on which an edge line may seem to be.
+const MOST: f64 = 0.25;
+/// Least part of it in view (m).
+const VISIBLE: f64 = 0.12;
+/// Length of edge line that has to precede (m).
+const BEFORE: f64 = 0.20;
+
+/// Finds the middle of the nearest crossing on one side of the road: 1 to the left, -1 to the right.
+pub(super) fn on_side(view: &RoadView, road: &RoadAhead, side: f64, found: &mut Vec<Detection>) {
+    let best: Vec<(f64, f64)> = (0..ROWS).map(|row| leaving(view, road.edge, side, row)).collect();
+    for row in 2..ROWS - 2 {
+        let (contrast, slope) = best[row];
+        let is_peak = (row - 2..=row + 2).all(|other| best[other].0 <= contrast);
+        if contrast < LEAVES || !is_peak {
+            continue;
+        }
+        // Half the angle between the road and the arm: the near line meets the edge so far before the middle.
+        let angle = math::atan2(1.0, slope);
+        let middle = view.ahead(row) + road.edge * math::tan(0.5 * angle);
+        if is_open(view, road.edge, side, middle) && has_edge_before(view, road.edge, side, middle) {
+            let kind = RoadElementKind::Crossing { left: side > 0.0, right: side < 0.0 };
+            found.push(Detection { kind, ahead: middle });
+            // Next come the arm's other lines.
+            return;
+        }
+    }
+}
+
+/// Contrast of the clearest line that leaves the road from its edge at a row, and its slope: distance along
+/// the road per distance from the edge.
+fn leaving(view: &RoadView, edge: f64, side: f64, row: usize) -> (f64, f64) {
+    let mut best = (0.0, 0.0);
+    for step in -SLOPES..=SLOPES {
+        let slope = SLOPE * f64::from(step);
+        // The arm's line begins where the arm is as far from the crossing's middle as the edge line.
+        let cosine = slope / math::hypot(1.0, slope);
+        let from = edge + STRIP.0.max(edge * cosine + 0.02);
+        let (a, b) = (side * from, side * (from + STRIP.1));
+        let strip = columns(a.min(b), a.max(b));
+        let (mut count, mut sum) = (0, 0.0);
+        for column in strip.clone() {
+            let out = (side * left(column) - edge) / CELL;
+            let at = row as f64 + slope * out;
+            if at < 0.0 || at >= ROWS as f64 {
+                continue;
+            }
+            if let Some(contrast) = view.across(at as usize, column, LINE) {
+                count += 1;
+                sum += contrast;
+            }
+        }
+        let mean = sum / f64::from(count.max(1));
+        if 4 * count as usize >= 3 * strip.len() && mean > best.0 {
+            best = (mean, slope);
+        }
+    }
+    best
+}
+
+/// Share of rows with an edge line between two distances ahead, and the number of rows in view.
+fn edge_line(view: &RoadView, edge: f64, side: f64, (from, to): (f64, f64)) -> (f64, usize) {
+    let (mut seen, mut present) = (0, 0);
+    for row in view.row(from)..=view.row(to) {
+        if let Some(is_present) = is_edge(view, edge, side, row) {
+            seen += 1;
+            present += usize::from(is_present);
+        }
+    }
+    (present as f64 / seen.max(1) as f64, seen)
+}
+
+/// Whether there is an edge line at a row, rather than a line at which the traffic of an arm stops: that is
+/// next to where the edge line would be, on the outer side. `None` out of view.
+fn is_edge(view: &RoadView, edge: f64, side: f64, row: usize) -> Option<bool> {
+    let cell = |out: i32| column(side * (edge + CELL * f64::from(out)));
+    let cells = -4..=7;
+    if !view.sees(row, cell(*cells.start())) || !view.sees(row, cell(*cells.end())) {
+        return None;
+    }
+    let bright = |out: i32| view.brightness(row, cell(out));
+    let darkest = cells.clone().map(bright).fold(1.0, f64::min);
+    let brightest = cells.clone().map(bright).fold(0.0, f64::max);
+    let half = 0.5 * (darkest + brightest);
+    let (mut weight, mut moment) = (0.0, 0.0);
+    for out in cells {
+        let above = (bright(out) - half).max(0.0);
+        weight += above;
+        moment += above * f64::from(out);
+    }
+    Some(brightest - darkest > EDGE && moment / weight < OUTER)
+}
+
+fn is_open(view: &RoadView, edge: f64, side: f64, middle: f64) -> bool {
+    let (present, seen) = edge_line(view, edge, side, (middle - OPEN, middle + OPEN));
+    seen as f64 * CELL >= VISIBLE && present <= MOST
+}
+
+/// Whether there is an edge line before a crossing. Without it, a line that leaves the road may be the arm's
+/// second one.
+fn has_edge_before(view: &RoadView, edge: f64, side: f64, middle: f64) -> bool {
+    let end = middle - edge - 0.10;
+    let (present, seen) = edge_line(view, edge, side, (end - BEFORE, end));
+    seen as f64 * CELL >= 0.5 * BEFORE && present > 0.4
+}

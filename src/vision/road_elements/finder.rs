@@ -1,0 +1,302 @@
+use super::view::RoadView;
+use super::{across, beside, crossing, obstacle};
+use crate::ParameterError;
+use crate::geometry::math;
+use crate::vision::GrayView;
+use crate::vision::lane_markings::{LaneEstimate, RoadCamera, RoadModel};
+
+/// Kinds of a [`RoadElement`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum RoadElementKind {
+    /// A stop line across the own lane; its place is its near edge.
+    StopLine,
+    /// A give-way line across the own lane; its place is its near edge.
+    GiveWayLine,
+    /// The chequered line where laps start.
+    StartLine,
+    /// A crosswalk; its place is its near edge.
+    Zebra,
+    /// A crossing with the arms that have been seen; its place is its middle.
+    Crossing {
+        /// Whether there is an arm on the left.
+        left: bool,
+        /// Whether there is an arm on the right.
+        right: bool,
+    },
+    /// A box on the road. Its place is that of its foot.
+    Obstacle {
+        /// Its right side, to the left of the own lane's centre (m).
+        right: f64,
+        /// Its left side, to the left of the own lane's centre (m).
+        left: f64,
+    },
+    /// A parking area beside the road; its place is where it begins.
+    Parking {
+        /// Whether it is on the left, with spots across the road.
+        left: bool,
+    },
+}
+
+/// Something on the road ahead.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RoadElement {
+    /// What it is.
+    pub kind: RoadElementKind,
+    /// Distance ahead of the robot's origin along the road (m); negative once it is behind.
+    pub ahead: f64,
+    /// Its speed along the road (m/s), for obstacles; otherwise 0.
+    pub speed: f64,
+}
+
+/// What one image shows, at the scale of the rules.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Detection {
+    pub(super) kind: RoadElementKind,
+    pub(super) ahead: f64,
+}
+
+/// Something tracked.
+#[derive(Debug, Clone)]
+struct Track {
+    kind: RoadElementKind,
+    ahead: f64,
+    /// Metres per second along the road.
+    speed: f64,
+    evidence: f64,
+    /// Whether the last image shows it.
+    is_seen: bool,
+}
+
+/// Finds what is on the road ahead, and tracks it while the car drives.
+///
+/// ```
+/// use roverlab::vision::GrayView;
+/// use roverlab::vision::lane_markings::{LaneMarkingFinder, RoadCamera, RoadModel};
+/// use roverlab::vision::road_elements::{RoadElementFinder, RoadElementKind};
+///
+/// let camera = RoadCamera { field_of_view: 1.6, fisheye: false, tilt: -0.4, height: 0.25, ahead: 0.06 };
+/// let mut image = vec![40; 320 * 240];
+/// let mut paint = |x: std::ops::Range<u32>, y: std::ops::Range<i32>| {
+///     for (x, y) in x.flat_map(|x| y.clone().map(move |y| (x, y))) {
+///         let place = roverlab::geometry::Point::new(f64::from(x) / 400.0, f64::from(y) / 400.0);
+///         if let Some((column, row)) = camera.project(place, 0.0, (320, 240))
+///             && (0.0..320.0).contains(&column)
+///             && (0.0..240.0).contains(&row)
+///         {
+///             image[row as usize * 320 + column as usize] = 220;
+///         }
+///     }
+/// };
+/// // The lines of a lane that is 400 mm wide, and a stop line from 700 mm on.
+/// for left in [-84, 84, 252] {
+///     paint(80..1200, left - 4..left + 4);
+/// }
+/// paint(280..295, -80..80);
+/// let (mut lane, road) = (LaneMarkingFinder::new(camera, RoadModel::default())?, RoadModel::default());
+/// let mut finder = RoadElementFinder::new(camera, road)?;
+/// let view = GrayView::new(&image, 320, 240)?;
+/// for _ in 0..5 {
+///     let lane = lane.see(view, (0.0, 0.0));
+///     finder.see(view, &lane, 0.0, 0.04);
+/// }
+/// let [line] = finder.elements().collect::<Vec<_>>()[..] else { panic!("one line") };
+/// assert_eq!(line.kind, RoadElementKind::StopLine);
+/// assert!((line.ahead - 0.7).abs() < 0.03, "{line:?}");
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct RoadElementFinder {
+    size: f64,
+    view: RoadView,
+    /// Distance from the road's centre line to the left to the own lane's centre in the last image (m).
+    middle: f64,
+    /// Distance from the road's centre line to its edge lines in the last image (m).
+    edge: f64,
+    found: Vec<Detection>,
+    tracks: Vec<Track>,
+}
+
+/// Evidence of a detection, and of none where there should be one; that of something present; and the most.
+const HIT: f64 = 1.0;
+const MISS: f64 = -0.6;
+const PRESENT: f64 = 2.0;
+const MOST: f64 = 5.0;
+/// Distances ahead of the camera between which what is there is detected reliably (m).
+const RELIABLE: (f64, f64) = (0.30, 0.85);
+/// Distance behind the robot's origin at which things are forgotten (m).
+const BEHIND: f64 = -1.0;
+/// Area beside a crosswalk where pedestrians wait, from its near edge (m): 450 mm by the rules, and the error.
+const WAITING: std::ops::Range<f64> = -0.10..0.52;
+/// Share of a detection's place in the running estimate, and the same for an obstacle's speed.
+const SHARE: f64 = 0.4;
+const SPEED_SHARE: f64 = 0.2;
+
+impl RoadElementFinder {
+    /// Creates a finder. Fails for a camera or a road out of range.
+    pub fn new(camera: RoadCamera, road: RoadModel) -> Result<Self, ParameterError> {
+        camera.validate()?;
+        let size = road.size;
+        crate::parameter::require("size of the road", size, (0.1..=10.0).contains(&size), "0.1 to 10")?;
+        let own = RoadCamera { height: camera.height / size, ahead: camera.ahead / size, ..camera };
+        Ok(Self {
+            size,
+            view: RoadView::new(own),
+            middle: 0.0,
+            edge: 0.0,
+            found: Vec::new(),
+            tracks: Vec::new(),
+        })
+    }
+
+    /// Things that are present, nearest first.
+    pub fn elements(&self) -> impl Iterator<Item = RoadElement> {
+        let size = self.size;
+        self.tracks.iter().filter(|track| track.evidence >= track.needed()).map(move |track| {
+            let kind = match track.kind {
+                RoadElementKind::Obstacle { right, left } => {
+                    RoadElementKind::Obstacle { right: right * size, left: left * size }
+                }
+                other => other,
+            };
+            RoadElement { kind, ahead: track.ahead * size, speed: track.speed * size }
+        })
+    }
+
+    /// Whether the last image shows a box on the road between two distances ahead of the robot's origin (m), on
+    /// a crosswalk as well, whose stripes hide the box's foot.
+    pub fn sees_box(&self, (from, to): (f64, f64)) -> bool {
+        let places = (from / self.size, to / self.size);
+        obstacle::is_occupied(&self.view, self.edge, places)
+    }
+
+    /// Discards everything.
+    pub fn forget(&mut self) {
+        self.tracks.clear();
+    }
+
+    /// Processes an image with the lane found in it, after the car has driven a distance (m) in some seconds.
+    pub fn see(&mut self, image: GrayView<'_>, lane: &LaneEstimate, metres: f64, seconds: f64) {
+        let metres = metres * math::cos(lane.heading) / self.size;
+        for track in &mut self.tracks {
+            track.ahead += track.speed * seconds - metres;
+            track.is_seen = false;
+        }
+        if !lane.lost {
+            self.detect(image, lane);
+            for detection in std::mem::take(&mut self.found) {
+                self.associate(&detection, seconds);
+            }
+        }
+        self.judge(lane.lost);
+        self.tracks.sort_by(|a, b| a.ahead.total_cmp(&b.ahead));
+    }
+
+    fn detect(&mut self, image: GrayView<'_>, lane: &LaneEstimate) {
+        let road = lane.road_ahead();
+        self.view.straighten(image, &road, lane.pitch);
+        (self.middle, self.edge) = (road.middle, road.edge);
+        let (view, found) = (&self.view, &mut self.found);
+        found.clear();
+        let zebras = self.tracks.iter().filter(|track| track.kind == RoadElementKind::Zebra);
+        let zebras: Vec<f64> = zebras.map(|track| track.ahead).collect();
+        let waiting = |ahead: f64| zebras.iter().any(|zebra| WAITING.contains(&(ahead - zebra)));
+        obstacle::boxes(view, &road, waiting, found);
+        across::zebras(view, &road, found);
+        across::lines(view, &road, found);
+        // Boxes hide edge lines, and their outlines look like lines that leave the road.
+        if found.iter().all(|detection| !matches!(detection.kind, RoadElementKind::Obstacle { .. })) {
+            crossing::on_side(view, &road, 1.0, found);
+            crossing::on_side(view, &road, -1.0, found);
+        }
+        beside::parking(view, &road, found);
+    }
+
+    /// Updates the track of a detection, or begins one.
+    fn associate(&mut self, detection: &Detection, seconds: f64) {
+        let near = |track: &&mut Track| track.is_near(detection);
+        let by_distance = |a: &&mut Track, b: &&mut Track| a.off(detection).total_cmp(&b.off(detection));
+        if let Some(track) = self.tracks.iter_mut().filter(near).min_by(by_distance) {
+            track.update(detection, seconds);
+            return;
+        }
+        let Detection { kind, ahead } = *detection;
+        self.tracks.push(Track { kind, ahead, speed: 0.0, evidence: HIT, is_seen: true });
+    }
+
+    /// Lowers the evidence of what should have been seen, and drops what is not there.
+    fn judge(&mut self, is_blind: bool) {
+        let from = self.view.from();
+        let view = &self.view;
+        let reliable = |track: &Track| {
+            let row = view.row(track.ahead);
+            let is_in_view = match track.kind {
+                RoadElementKind::Obstacle { right, left } => {
+                    [right, left].iter().all(|side| view.sees(row, super::view::column(side + self.middle)))
+                }
+                // Arms of a crossing and areas beside the road may be outside the view.
+                RoadElementKind::Crossing { .. } | RoadElementKind::Parking { .. } => false,
+                _ => view.sees(row, super::view::column(self.middle)),
+            };
+            is_in_view && (from + RELIABLE.0..from + RELIABLE.1).contains(&track.ahead)
+        };
+        for track in &mut self.tracks {
+            if !track.is_seen && !is_blind && reliable(track) {
+                track.evidence += MISS;
+            }
+        }
+        self.tracks.retain(|track| track.evidence > 0.0 && track.ahead > BEHIND);
+    }
+}
+
+impl Track {
+    /// Evidence from which it counts as present. The lines of an arm are short, and patches beside a gap in the
+    /// edge line look like them.
+    fn needed(&self) -> f64 {
+        if matches!(self.kind, RoadElementKind::Crossing { .. }) { PRESENT + 1.0 } else { PRESENT }
+    }
+
+    fn off(&self, detection: &Detection) -> f64 {
+        (self.ahead - detection.ahead).abs()
+    }
+
+    /// Whether a detection can be of this thing.
+    fn is_near(&self, detection: &Detection) -> bool {
+        use RoadElementKind::{Crossing, Obstacle, Parking};
+        let gate = match (self.kind, detection.kind) {
+            (Crossing { .. }, Crossing { .. }) => 0.45,
+            (Obstacle { right, left }, Obstacle { right: r, left: l })
+                if r < left + 0.05 && l > right - 0.05 =>
+            {
+                0.25
+            }
+            (Parking { left }, Parking { left: same }) if left == same => 1.0,
+            (one, other) if one == other => 0.12,
+            _ => return false,
+        };
+        self.off(detection) <= gate
+    }
+
+    fn update(&mut self, detection: &Detection, seconds: f64) {
+        use RoadElementKind::{Crossing, Obstacle, Parking};
+        let off = detection.ahead - self.ahead;
+        match (&mut self.kind, detection.kind) {
+            (Crossing { left, right }, Crossing { left: l, right: r }) => {
+                *left |= l;
+                *right |= r;
+                self.ahead += 0.25 * off;
+            }
+            (Obstacle { right, left }, Obstacle { right: r, left: l }) => {
+                *right += SHARE * (r - *right);
+                *left += SHARE * (l - *left);
+                self.ahead += SHARE * off;
+                self.speed += SPEED_SHARE * off / seconds.max(1e-3);
+            }
+            // An area begins where its line was first seen; later, the view cuts it.
+            (Parking { .. }, Parking { .. }) => self.ahead += if off < 0.0 { SHARE * off } else { 0.0 },
+            _ => self.ahead += SHARE * off,
+        }
+        self.evidence = (self.evidence + if self.is_seen { 0.0 } else { HIT }).min(MOST);
+        self.is_seen = true;
+    }
+}

@@ -1,0 +1,29 @@
+//! What a driver meets on a road (book, chapter 13), found by camera on the ground: stop and give-way lines,
+//! crosswalks, crossings, parking areas, and white boxes that stand on the road.
+//!
+//! [`RoadElementFinder`] straightens the road in each image by the estimate of
+//! [`LaneMarkingFinder`](super::lane_markings::LaneMarkingFinder): a picture of the ground whose rows are places
+//! along the road and whose columns are distances beside its centre line. Sizes there are those of the rules
+//! whatever the bend, so that one matched filter per element suffices:
+//!
+//! | element | evidence in the straightened picture |
+//! |---|---|
+//! | stop line | a bright bar 38 mm long across the own lane, and none across the other lane |
+//! | give-way line | the same with a period of 140 mm across |
+//! | start line | a bar at half the contrast of paint across both lanes |
+//! | crosswalk | rows with a period of 78 mm across the road |
+//! | crossing | an edge line that ends, and a line that leaves the road there |
+//! | parking area | a line parallel to the edge, where the area ends by the rules |
+//! | obstacle | a sharp step to a wide bright area: the foot of a box |
+//!
+//! What is found is tracked by odometry. It counts as present after several images, and is kept while the car
+//! passes it out of the camera's view.
+
+mod across;
+mod beside;
+mod crossing;
+mod finder;
+mod obstacle;
+mod view;
+
+pub use finder::{RoadElement, RoadElementFinder, RoadElementKind};
