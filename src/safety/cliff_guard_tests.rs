@@ -62,7 +62,9 @@ fn manoeuvres_end_at_an_edge() {
     assert_eq!(robot.pose().unwrap(), Pose::default());
     robot.straight(-0.5, 0.2).unwrap();
     robot.wait_done().unwrap();
-    assert!((robot.pose().unwrap().x + 0.5).abs() < 1e-6 && robot.inner().is_at_edge());
+    let pose = robot.pose().unwrap();
+    assert!((pose.x + 0.5).abs() < 2e-3, "{pose:?}");
+    assert!(robot.inner().is_at_edge());
 }
 
 #[test]

@@ -17,6 +17,9 @@ const RISE: f64 = 0.3;
 /// Metres that things keep from the walls, so that the camera passes over them, and from each other.
 const MARGIN: f64 = 1.3;
 const BETWEEN: f64 = 0.5;
+/// Start of the craft (m), and the distance that things keep from it: its radius and half of a thing.
+const START: Point = Point::new(1.7, 1.7);
+const AROUND_START: f64 = 1.0;
 /// Other things, at most, and their colours: orange is the nearest to red.
 const OTHERS: usize = 6;
 const COLOURS: [(&str, u32); 8] = [
@@ -48,7 +51,7 @@ pub(super) fn scene(seed: u64) -> Scene {
         let other = COLOURS[stream.below(COLOURS.len())];
         put(&mut world, &mut stream, &mut places, size, other);
     }
-    Scene::with_robot(world, surveyor(), Pose::new(1.7, 1.7, 0.5 * PI))
+    Scene::with_robot(world, surveyor(), Pose::new(START.x, START.y, 0.5 * PI))
 }
 
 /// Puts something on the floor where there is room; nothing after a hundred trials.
@@ -71,7 +74,9 @@ fn put(
     for _ in 0..100 {
         let place =
             Point::new(stream.between(MARGIN, size[0] - MARGIN), stream.between(MARGIN, size[1] - MARGIN));
-        if places.iter().all(|other| (other - place).norm() > BETWEEN) {
+        let is_free = (START - place).norm() > AROUND_START
+            && places.iter().all(|other| (other - place).norm() > BETWEEN);
+        if is_free {
             // They lie where they are, on a slope too.
             let kind = ObjectKind {
                 fixed: true,

@@ -30,7 +30,7 @@ fn mako_goes_round_a_pool_without_touching_it() {
 fn small_pool(name: &str, lines: &str) -> String {
     let world = temporary(&format!("{name}.wld"));
     let walls = "0 0 6000 0\n6000 0 6000 5000\n6000 5000 0 5000\n0 5000 0 0\n";
-    fs::write(&world, format!("floor 6000 5000\n{walls}{lines}")).unwrap();
+    fs::write(&world, format!("floor 6000 5000\nposition 2000 2000 90\n{walls}{lines}")).unwrap();
     world.to_str().unwrap().to_owned()
 }
 

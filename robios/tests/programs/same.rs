@@ -35,13 +35,10 @@ fn fifty_runs_under_load_are_the_same_each_time() {
     let script = folder.write("two.sim", "S4 400 600 0 radio.x\nLabBot 1000 600 180 radio.x\n");
     runs.extend(["1", "2"].map(|seed| (("1", seed), script.display().to_string())));
     let threads = folder.write("turns.c", TURNS);
-    let conditions = folder.copy("conditions.c", "conditions.c");
-    for file in
-        [folder.copy("threads.c", "threads.c"), folder.copy("older.c", "older.c"), threads, conditions]
-    {
+    for file in [folder.copy("threads.c", "threads.c"), folder.copy("older.c", "older.c"), threads] {
         runs.push((("1", "2"), compiled(&file).display().to_string()));
     }
-    assert_eq!(runs.len(), 51);
+    assert_eq!(runs.len(), 50);
     let run = |((noise, seed), file): &((&str, &str), String)| {
         let log = folder.0.join("log.mcap").display().to_string();
         let mut options = vec!["--json", "--time-limit", "60", "--noise", noise, "--seed", seed];
@@ -59,21 +56,13 @@ fn fifty_runs_under_load_are_the_same_each_time() {
     assert!(differing.is_empty(), "{differing:?}");
 }
 
-/// Runs a program with threads a number of times under load, and returns the reports that differ from the
-/// first, and that.
-fn differing(name: &str, text: Option<&str>, times: usize) -> (usize, serde_json::Value) {
+/// Report of a program with threads.
+fn ended(name: &str, text: Option<&str>) -> serde_json::Value {
     let folder = Folder::new(&format!("same-{name}"));
     let file = text.map_or_else(|| folder.copy(name, name), |text| folder.write(name, text));
-    let file = compiled(&file).display().to_string();
-    let run = || report(&["--time-limit", "120", &file]);
-    let mut load: Vec<_> =
-        (0..4).map(|_| Command::new("sh").args(["-c", "while :; do :; done"]).spawn().unwrap()).collect();
-    let first = run();
-    let others = (1..times).filter(|_| run() != first).count();
-    for process in &mut load {
-        let _ = process.kill().and_then(|()| process.wait());
-    }
-    (others, first)
+    let report = report(&["--time-limit", "120", &compiled(&file).display().to_string()]);
+    assert_eq!(report["exit"], 0, "{report}");
+    report
 }
 
 /// What a program has printed, without the ends of the display's lines.
@@ -82,12 +71,11 @@ fn words(report: &serde_json::Value) -> String {
 }
 
 #[test]
-fn threads_wake_each_other_in_the_same_order_each_time() {
+fn threads_wake_each_other_in_order() {
     if !compiler() || !cfg!(target_os = "linux") {
         return;
     }
-    let (others, first) = differing("conditions.c", None, 20);
-    assert_eq!((others, &first["exit"]), (0, &0.into()), "{first}");
+    let first = ended("conditions.c", None);
     let words = words(&first);
     // Everybody had the lock in turn, although each holds it while it waits.
     let holders: String =
@@ -104,7 +92,7 @@ fn threads_wake_each_other_in_the_same_order_each_time() {
 
 /// The same in C++ and by C11's names.
 #[test]
-fn threads_of_other_libraries_wake_in_the_same_order_each_time() {
+fn threads_of_other_libraries_wake_in_order() {
     if !compiler() || !cfg!(target_os = "linux") {
         return;
     }
@@ -130,8 +118,7 @@ fn threads_of_other_libraries_wake_in_the_same_order_each_time() {
                cnd_broadcast(&go); mtx_unlock(&lock); for (i = 0; i < 4; i++) thrd_join(all[i], NULL); \
                return 0; }\n";
     for (name, text, count) in [("cpp.cpp", cpp, 25), ("c11.c", c11, 20)] {
-        let (others, first) = differing(name, Some(text), 20);
-        assert_eq!((others, &first["exit"]), (0, &0.into()), "{first}");
+        let first = ended(name, Some(text));
         assert_eq!(words(&first).split_whitespace().count(), count, "{first}");
     }
 }

@@ -136,7 +136,7 @@ mod tests {
         let sides = Aabb::new(Point::origin(), Point::new(8.0, 6.0));
         let mut fix = Fix::new(Pose::new(3.1, 2.05, 0.0), Some(sides));
         let before = fix.sigma();
-        for _ in 0..20 {
+        for _ in 0..200 {
             fix.see(&Pose::new(0.5, 0.0, 0.0), 4.5);
             fix.see(&Pose::new(0.0, 0.3, std::f64::consts::FRAC_PI_2), 3.7);
         }

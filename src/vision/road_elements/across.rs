@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::finder::{Detection, RoadElementKind};
+use super::element::{Detection, RoadElementKind};
 use super::view::{COLUMNS, ROWS, RoadView, columns, left};
 use crate::geometry::math;
 use crate::vision::lane_markings::RoadAhead;

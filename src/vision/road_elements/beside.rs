@@ -1,6 +1,6 @@
 //! Parking areas beside the road.
 
-use super::finder::{Detection, RoadElementKind};
+use super::element::{Detection, RoadElementKind};
 use super::view::{ROWS, RoadView, column};
 use crate::vision::lane_markings::RoadAhead;
 

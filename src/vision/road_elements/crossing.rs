@@ -1,6 +1,6 @@
 //! Crossings: edge lines that end where a line leaves the road.
 
-use super::finder::{Detection, RoadElementKind};
+use super::element::{Detection, RoadElementKind};
 use super::view::{CELL, ROWS, RoadView, column, columns, left};
 use crate::geometry::math;
 use crate::vision::lane_markings::RoadAhead;

@@ -1,60 +1,10 @@
+use super::element::{Detection, RoadElement, RoadElementKind};
 use super::view::RoadView;
 use super::{across, beside, crossing, obstacle};
 use crate::ParameterError;
 use crate::geometry::math;
 use crate::vision::GrayView;
 use crate::vision::lane_markings::{LaneEstimate, RoadCamera, RoadModel};
-
-/// Kinds of a [`RoadElement`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum RoadElementKind {
-    /// A stop line across the own lane; its place is its near edge.
-    StopLine,
-    /// A give-way line across the own lane; its place is its near edge.
-    GiveWayLine,
-    /// The chequered line where laps start.
-    StartLine,
-    /// A crosswalk; its place is its near edge.
-    Zebra,
-    /// A crossing with the arms that have been seen; its place is its middle.
-    Crossing {
-        /// Whether there is an arm on the left.
-        left: bool,
-        /// Whether there is an arm on the right.
-        right: bool,
-    },
-    /// A box on the road. Its place is that of its foot.
-    Obstacle {
-        /// Its right side, to the left of the own lane's centre (m).
-        right: f64,
-        /// Its left side, to the left of the own lane's centre (m).
-        left: f64,
-    },
-    /// A parking area beside the road; its place is where it begins.
-    Parking {
-        /// Whether it is on the left, with spots across the road.
-        left: bool,
-    },
-}
-
-/// Something on the road ahead.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RoadElement {
-    /// What it is.
-    pub kind: RoadElementKind,
-    /// Distance ahead of the robot's origin along the road (m); negative once it is behind.
-    pub ahead: f64,
-    /// Its speed along the road (m/s), for obstacles; otherwise 0.
-    pub speed: f64,
-}
-
-/// What one image shows, at the scale of the rules.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Detection {
-    pub(super) kind: RoadElementKind,
-    pub(super) ahead: f64,
-}
 
 /// Something tracked.
 #[derive(Debug, Clone)]

@@ -22,8 +22,10 @@
 mod across;
 mod beside;
 mod crossing;
+mod element;
 mod finder;
 mod obstacle;
 mod view;
 
-pub use finder::{RoadElement, RoadElementFinder, RoadElementKind};
+pub use element::{RoadElement, RoadElementKind};
+pub use finder::RoadElementFinder;

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::finder::{Detection, RoadElementKind};
+use super::element::{Detection, RoadElementKind};
 use super::view::{CELL, COLUMNS, ROWS, RoadView, columns, left};
 use crate::vision::lane_markings::RoadAhead;
 

@@ -36,6 +36,8 @@ const EXCEPTIONS: &[(&str, &str)] = &[
     ("drive::Chase::after", ROBOT),
     ("drive::Follower::step", BORROWS),
     ("drive::RandomDrive::by_distance_sensors", ROBOT),
+    ("drive::terrain::Ascent::by_distance_sensors", ROBOT),
+    ("drive::terrain::Ascent::by_lidar", ROBOT),
     ("evolve::Gait::settle", ROBOT),
     ("evolve::Gait::walk", ROBOT),
     ("io::control::", ROBOT),
@@ -49,6 +51,7 @@ const EXCEPTIONS: &[(&str, &str)] = &[
     ("maze::MazeRunner", ROBOT),
     ("safety::CliffGuard", ROBOT),
     ("safety::Supervised", ROBOT),
+    ("vision::road_elements::RoadElementFinder::see", "takes what a `LaneMarkingFinder` makes"),
     // Functions of the caller's own.
     ("evolve::Genetic", GENES),
     ("evolve::Parallel", CLOSURE),
