@@ -98,14 +98,15 @@ fn changes(ride: &[TruthInSpace], elevation: f64) -> Option<[Point; 2]> {
 }
 
 /// How a crossing ended in truth.
-pub(crate) fn outcome(ended: &Crossed, ride: Option<&Ride>, passage: &Passage) -> Outcome {
+pub(crate) fn outcome(ended: Crossed, ride: Option<&Ride>, passage: &Passage) -> Outcome {
     let Some(ride) = ride else { return Outcome::failure("failed") };
     match (ride.end.mishap, ended.outcome) {
         (Some(mishap), _) if mishap != Mishap::Stuck => Outcome::failure(word(mishap)),
         (_, RampOutcome::Crossed) if passage.crossed => Outcome::verdict("crossed"),
         (_, RampOutcome::NoWayUp) => Outcome::verdict("no_way_up"),
+        (_, RampOutcome::NoWayDown) => Outcome::verdict("no_way_down"),
         // The robot is wrong about what it has crossed.
-        (_, RampOutcome::NoWayDown | RampOutcome::Crossed) => Outcome::verdict("no_way_down"),
+        (_, RampOutcome::Crossed) => Outcome::failure("not_crossed"),
         (_, RampOutcome::Stuck) => Outcome::failure("stuck"),
         _ => Outcome::failure("timed_out"),
     }

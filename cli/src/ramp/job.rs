@@ -29,7 +29,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     ));
     let run = cross(&hike, &conditions, paced(common), |words| common.tell(words))?;
     let (ride, passage) = (Ride::of(&run), Passage::of(&hike, &run));
-    let report = run.report(|ended| outcome(ended, ride.as_ref(), &passage));
+    let report = run.report(|ended| outcome(*ended, ride.as_ref(), &passage));
     let report = fields(report, &hike, &run, ride, &passage).field("time_limit_s", conditions.time_limit);
     Ok(common.draw(report, "ramp.svg", || picture(&hike, &run, ride, &passage)))
 }
