@@ -62,7 +62,7 @@ use image::RgbImage;
 /// let spec = CliffGuard::equip(plain, &parameters);
 /// // The ground ends ahead on the left after the first two looks.
 /// let robot = (21..29).fold(MockRobot::new().with_ideal_drive(), |robot, id| robot.with_distance(Psd(id), 0.2));
-/// let robot = robot.with_distance(Psd(25), vec![0.2, 0.2, 0.6]);
+/// let robot = robot.with_distance(Psd(25), [vec![0.2; 2], vec![0.6; 1000]].concat());
 /// let mut robot = CliffGuard::new(robot, &spec, parameters)?;
 /// robot.set_speed(Twist::new(0.2, 0.0))?;
 /// robot.wait(5.0)?;

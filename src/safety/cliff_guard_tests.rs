@@ -60,6 +60,8 @@ fn manoeuvres_end_at_an_edge() {
     robot.straight(0.5, 0.2).unwrap();
     robot.wait_done().unwrap();
     assert_eq!(robot.pose().unwrap(), Pose::default());
+    // A held robot stays held until it stops or moves.
+    robot.stop().unwrap();
     robot.straight(-0.5, 0.2).unwrap();
     robot.wait_done().unwrap();
     let pose = robot.pose().unwrap();

@@ -46,7 +46,8 @@ fn a_survey_maps_a_pool_with_honest_uncertainty() {
         "{report}"
     );
     assert!(number(report, "position_error_p95_mm") < 100.0 && number(report, "way_ratio") < 1.3, "{report}");
-    assert!(number(report, "inside_2_sigma_percent") > 80.0 && report["by_walls"] == true, "{report}");
+    // Only the sides of a terrain tell the position.
+    assert!(number(report, "inside_2_sigma_percent") > 80.0 && report["by_walls"] == false, "{report}");
     let table = fs::read_to_string(map.with_extension("csv")).unwrap();
     assert_eq!(table.lines().count(), 1 + 5 * 4, "{table}");
 }
@@ -86,7 +87,7 @@ fn what_is_no_water_is_refused() {
         ("boat", vec!["--course", "x"], "waypoints in mm"),
         ("survey", vec!["--spacing", "1"], "200 to"),
         ("pool_search", vec!["--light", "-1"], "--light"),
-        ("pool_search", vec!["--world", &wet, "--robot", "SolarRaft"], "PSD"),
+        ("pool_search", vec!["--world", &wet, "--robot", "SolarRaft"], "camera"),
         ("dive", vec!["--depth", "9000"], "1.9 m"),
     ] {
         let (status, _, err) = run(command, &options);
