@@ -1,5 +1,5 @@
 use roverlab::geometry::units;
-use roverlab::picture::{Mark, Picture};
+use roverlab::picture::Picture;
 use roverlab::world::RobotSpec;
 
 use super::Args;
@@ -55,6 +55,5 @@ fn picture(hike: &Hike, run: &Run<Crossed>, ride: Option<Ride>, passage: &Passag
     let tilt = ride.map_or(0.0, |ride| degrees(ride.max_tilt));
     picture.caption(format!("{metres:.1} m in {seconds:.0} s, tilted up to {tilt:.0} degrees"));
     run.draw(&mut picture, hike.spec());
-    picture.mark(Mark::Start, hike.start().position());
     picture
 }

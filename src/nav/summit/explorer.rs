@@ -63,7 +63,7 @@ enum State {
     BackingOff { from: Point, sign: f64 },
 }
 
-/// What a [`SummitSearch`] sees at a step.
+/// What a [`SummitSearch`](crate::nav::SummitSearch) sees at a step.
 #[derive(Debug, Clone, Default)]
 pub struct SummitObservation {
     /// Where odometry takes the robot to be.
