@@ -37,7 +37,7 @@ pub enum Request {
     Scan,
     /// Sets the lidar for later scans.
     ConfigureLidar(LidarSettings),
-    /// Sets the size of later images, as an index into [`Resolution::ALL`].
+    /// Sets the size of later images, as an index into [`Resolution::ALL`](roverlab::io::Resolution::ALL).
     SetResolution(u8),
     /// An image of the camera.
     Image,
