@@ -231,7 +231,7 @@ fn nonsense_is_refused_by_name() {
 
 mod campaigns {
     #[test]
-    #[ignore = "a campaign of minutes"]
+    #[ignore = "takes minutes: cargo test --release --lib -- --ignored energy_never_rises"]
     fn energy_never_rises_from_100_000_starts() {
         super::energy_falls(100_000, 10.0, 7);
     }

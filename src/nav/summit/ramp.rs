@@ -77,9 +77,9 @@ pub enum RampOutcome {
     NoWayUp,
     /// It found no other ramp down.
     NoWayDown,
-    /// It cannot stand where it is, or does not get on.
+    /// The map shows no safe ground under the robot, or the robot makes no progress.
     Stuck,
-    /// The time was over.
+    /// The time limit came first.
     TimedOut,
     /// The run was stopped by its observer.
     Stopped,

@@ -1,5 +1,5 @@
 //! What a driver meets on a road (book, chapter 13), found by camera on the ground: stop and give-way lines,
-//! crosswalks, crossings, parking areas, and white boxes that stand on the road.
+//! zebra crossings, crossings, parking areas, and white boxes that stand on the road.
 //!
 //! [`RoadElementFinder`] straightens the road in each image by the estimate of
 //! [`LaneMarkingFinder`](super::lane_markings::LaneMarkingFinder): a picture of the ground whose rows are places
@@ -11,13 +11,17 @@
 //! | stop line | a bright bar 38 mm long across the own lane, and none across the other lane |
 //! | give-way line | the same with a period of 140 mm across |
 //! | start line | a bar at half the contrast of paint across both lanes |
-//! | crosswalk | rows with a period of 78 mm across the road |
+//! | zebra crossing | rows with a period of 78 mm across the road |
 //! | crossing | an edge line that ends, and a line that leaves the road there |
 //! | parking area | a line parallel to the edge, where the area ends by the rules |
 //! | obstacle | a sharp step to a wide bright area: the foot of a box |
 //!
 //! What is found is tracked by odometry. It counts as present after several images, and is kept while the car
 //! passes it out of the camera's view.
+//!
+//! Limits: on three generated courses (1,008 frames), on which the filters were tuned, start lines, zebra crossings
+//! and crossings had an F1 score of 1.0, and obstacles 0.94. On other courses crossings were missed, or found
+//! where there were none. Stop and give-way lines and parking areas were in none of these frames.
 
 mod across;
 mod beside;

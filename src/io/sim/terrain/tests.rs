@@ -364,7 +364,7 @@ mod campaigns {
     use super::*;
 
     #[test]
-    #[ignore = "takes an hour"]
+    #[ignore = "takes an hour: cargo test --release --lib -- --ignored a_million_starts"]
     fn a_million_starts_without_motors() {
         let (mut stream, robots) = (Stream::new(1), robots());
         let mut wrong = Vec::new();
@@ -378,7 +378,7 @@ mod campaigns {
     }
 
     #[test]
-    #[ignore = "takes minutes"]
+    #[ignore = "takes minutes: cargo test --release --lib -- --ignored ten_million_driven_ticks"]
     fn ten_million_driven_ticks_above_the_ground() {
         let (mut stream, robots) = (Stream::new(2), robots());
         let (mut ticks, mut runs) = (0, 0);
