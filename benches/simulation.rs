@@ -1,5 +1,7 @@
 //! The questions that a simulator asks a world, beside parry2d's answers to the same.
 
+#[path = "simulation/craft.rs"]
+mod craft;
 #[path = "simulation/robots.rs"]
 mod robots;
 
@@ -302,6 +304,8 @@ criterion_group!(
     building_time,
     robots::one_robot,
     robots::racing,
+    craft::one_craft,
+    craft::craft_fleet,
     robots::fleet,
     robots::growth
 );

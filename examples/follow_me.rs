@@ -46,6 +46,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut behaviour = Follower::new(parameters)?;
         fleet.control(follower, PERIOD, move |robot| {
             let (time, pose, scan) = (robot.now()?, robot.pose()?, robot.scan()?);
+            scan.validate()?;
             // Things of its size may be the robot ahead; the follower tracks the one that moves as expected.
             let candidates = robots_in(&scan, leader_radius);
             let obstacles: Vec<Point> = scan.points().collect();

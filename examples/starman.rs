@@ -46,7 +46,7 @@ fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
     for (index, posture) in strip.iter().enumerate().step_by(3) {
         let style = Style::new(ramp(index as f64 / last)).opacity(0.6);
         picture.disc(at(posture.body), StarmanSpec::book().body_radius, style.clone());
-        for limb in posture.segments {
+        for limb in &posture.segments {
             picture.line(limb.map(at), style.clone());
         }
     }

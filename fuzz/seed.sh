@@ -3,7 +3,7 @@
 set -eu
 cd "$(dirname "$0")"
 data=../tests/data
-for target in wld maz robi esobj sim ros_map movingai track maze recording; do mkdir -p "corpus/$target"; done
+for target in wld maz robi esobj sim ros_map movingai track maze recording image worker checkpoint weights; do mkdir -p "corpus/$target"; done
 for target in wld maz robi; do
     for file in "$data"/formats/*."$target" "$data/broken/$target"/*."$target"; do
         [ "$(wc -c < "$file")" -gt 4096 ] || cp "$file" "corpus/$target/"
@@ -22,3 +22,9 @@ cp "$data"/cones/*.csv "$data"/cones/*.yaml corpus/track/
 cp "$data"/mazes/* "$data"/broken/maz/*.maz corpus/maze/
 # The beginnings of recordings: `-max_len` leaves no more of them.
 for log in "$data"/logs/*.mcap; do head -c 4096 "$log" > "corpus/recording/$(basename "$log")"; done
+cp "$data"/formats/*.png "$data"/formats/*.pgm corpus/image/
+printf 'ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n0 1\n2 3\n' > corpus/image/ground.asc
+printf '7 3 0 1e80c8288090\n7 3 1 00ff\n' > corpus/worker/two
+printf '{"version":1,"settings":"fuzz","state":{"genomes":[[1,2],[3,4]],"seed":1,"generation":0,"fitness":[],"best":null,"history":[]}}' > corpus/checkpoint/two
+# A header of 60 bytes, and one number.
+printf '\074\0\0\0\0\0\0\0{"signs":{"dtype":"F32","shape":[1,1],"data_offsets":[0,4]}}\0\0\0\0' > corpus/weights/one

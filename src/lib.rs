@@ -43,7 +43,7 @@
 //! |---|---|---|
 //! | 1 Robots and simulation | simulated worlds and robots; random worlds | [`io::sim`], [`world`], [`world::generate`] |
 //! | 1 Robots and simulation | EyeSim's files, ROS maps and others | [`world::formats`] |
-//! | 2 Sensors and programs | robot capabilities; the loop of all behaviours; wrappers that add noise or faults | [`io`], [`io::control`], [`io::wrappers`], [`io::delegate`] |
+//! | 2 Sensors and programs | robot capabilities; the loop of all behaviours; wrappers that add noise or faults; first steps, a ring by radio | [`io`], [`io::control`], [`io::wrappers`], [`io::delegate`], [`drive`] |
 //! | 3 Driving | random drive, coverage, point to point, path followers, PID | [`drive`], [`kinematics`] |
 //! | 4 Lidar | scans, features, noise filters; localisation in a known world | [`scan`] |
 //! | 5 Swarms | any number of robots in one world; followers, chains, formations | [`io::sim`], [`drive`] |
@@ -56,7 +56,7 @@
 //! | 10 Navigation | planning on grid maps and graphs: A\*, Dijkstra, jump points, any angle, quadtrees | [`nav::grid`], [`nav::graph`] |
 //! | 11 Robot vision | edges, colours, blobs, lines, motion; driving by colour and by motion | [`vision`], [`vision::images`], [`vision::motion`], [`drive::colour`], [`drive::motion_watch`] |
 //! | 12 Evolution | genetic algorithms, CMA evolution strategy; a walking robot | [`evolve`], `evolve::checkpoint`, `io::sim::starman` |
-//! | 13 Driverless cars | roads and their files, the lane and what is on the road by camera, the referee of Free Drive | [`world::road`], [`vision::lane_markings`], [`vision::road_elements`], [`drive::lane_keeping`], [`drive::traffic`] |
+//! | 13 Driverless cars | roads and their files, the lane, what is on the road and signs by camera, driving in traffic, the referees of Free Drive and Obstacle Evasion | [`world::road`], [`vision::lane_markings`], [`vision::road_elements`], [`vision::signs`], [`drive::lane_keeping`], [`drive::traffic`], [`drive::parking`] |
 //! | 14 Formula SAE | cone tracks, centre lines, racing lines, racing cars, referee | [`race`] |
 //! | 14 Formula SAE | safety: state machine, monitors, stopping distance | [`safety`] |
 //!
@@ -155,6 +155,8 @@ mod guide {
     struct Evolution;
     #[doc = include_str!("../docs/guide/roads.md")]
     struct Roads;
+    #[doc = include_str!("../docs/guide/traffic.md")]
+    struct InTraffic;
     #[doc = include_str!("../docs/guide/racing.md")]
     struct Racing;
     #[cfg(feature = "testing")]

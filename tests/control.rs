@@ -1,227 +1,31 @@
 //! The loop that runs every behaviour: clocks that stop, jump and run backwards, time limits, errors, and the
 //! stop at the end.
 
+#[path = "control/cases.rs"]
+mod cases;
+#[path = "control/faults.rs"]
+mod faults;
+#[path = "control/strays.rs"]
+mod strays;
+
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 
-use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
-use roverlab::drive::lane_keeping::{BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters};
-use roverlab::drive::marine::{
-    Boat, BoatParameters, Dive, DiveParameters, PoolSearch, PoolSearchParameters, PoolWall,
-    PoolWallParameters, Survey, SurveyParameters,
-};
-use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
-use roverlab::drive::terrain::{Ascent, AscentParameters, SlopeSensor};
-use roverlab::drive::{
-    AToB, AToBParameters, AlongWall, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters, Goal,
-    LidarWallFollower, LidarWallFollowerParameters, Method, OmniDriver, OmniParameters, OmniTracker,
-    PidWallFollower, PidWallFollowerParameters, RandomDrive, RandomDriveParameters, Tour, TourParameters,
-    TwoLevelWallFollower, WallFollower, WallFollowerParameters,
-};
-use roverlab::evolve::Gait;
-use roverlab::geometry::{Aabb, Point, Pose, Twist};
-use roverlab::io::control::{Behaviour, Command, Decision, Halt, Run, Senses, run, until};
-use roverlab::io::sim::{Fleet, SimOptions, SimRobot, Simulation};
+use cases::{CASES, Case, Robot, START, rig, room};
+use roverlab::drive::{AToB, AToBParameters, Goal, Method};
+use roverlab::geometry::{Point, Pose, Twist};
+use roverlab::io::control::{Behaviour, Decision, Halt, Run, Senses, run};
+use roverlab::io::sim::{Fleet, SimOptions, Simulation};
 use roverlab::io::wrappers::Faulty;
-use roverlab::io::{Call, Clock, Drive, Error, ErrorKind, MockRobot, Odometry, Result};
-use roverlab::kinematics::marine::CraftSpec;
-use roverlab::kinematics::{Ackermann, OdometryErrors, Omni};
+use roverlab::io::{Call, Clock, Drive, Error, ErrorKind, MockRobot, Result};
 use roverlab::maze::{
-    Direction, LeftHand, LeftHandParameters, LidarLeft, LidarLeftParameters, Maze, MazeRunner,
-    MazeRunnerParameters, RecursiveExplorer, Rig, Scale, WallState, mouse,
+    Direction, Maze, MazeRunner, MazeRunnerParameters, RecursiveExplorer, Scale, WallState, mouse,
 };
-use roverlab::nav::{
-    BugKind, BugParameters, DistBug, Navigator, NavigatorParameters, RampCrossing, SummitParameters,
-    SummitSearch,
-};
-use roverlab::race::{
-    Cone, ConeTrack, EventParameters, EventRacer, GapDriver, RaceOutcome, Racer, RacerParameters,
-};
-use roverlab::random::Stream;
-use roverlab::vision::lane_markings::RoadModel;
-use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod};
-use roverlab::world::{RobotSpec, Scene, World};
+use roverlab::nav::{BugParameters, DistBug};
+use roverlab::race::{Cone, ConeTrack, RaceOutcome, Racer, RacerParameters};
+use roverlab::world::{RobotSpec, Scene};
 
-type Robot = Faulty<SimRobot>;
-
-/// A behaviour: its name, its robot, and a run within a limit that is stopped at a time. None of them is done
-/// in 5 s.
-type Case = (&'static str, fn() -> RobotSpec, fn(&mut Robot, f64, f64) -> Result<String>);
-
-const GOAL: Point = Point::new(3.0, 2.0);
-const START: Pose = Pose::new(3.0, 3.0, 0.3);
-const CORRIDOR: f64 = 0.36;
-
-fn driven<B>(robot: &mut Robot, behaviour: &mut B, limit: f64, stop: f64) -> Result<String>
-where
-    B: Senses<Robot> + ?Sized,
-    B::Command: Command<Robot>,
-    B::Outcome: std::fmt::Debug,
-{
-    let outcome = run(robot, behaviour, limit, |_, _, step| until(step.time >= stop))?;
-    Ok(format!("{outcome:?}"))
-}
-
-const CASES: &[Case] = &[
-    ("lane", RobotSpec::s4, |robot, limit, stop| {
-        let camera = RobotSpec::s4().camera.as_ref().unwrap().into();
-        let mut behaviour = LaneKeeper::new(camera, RoadModel::default(), LaneKeeperParameters::default())?;
-        driven(robot, &mut behaviour, limit, stop)
-    }),
-    ("the book's lane", RobotSpec::s4, |robot, limit, stop| {
-        let mut behaviour = BookLaneKeeper::new(BookLaneParameters::default())
-            .map_err(|error| Error::new(ErrorKind::Other, error.to_string()))?;
-        driven(robot, &mut behaviour, limit, stop)
-    }),
-    ("turn", RobotSpec::s4, |robot, limit, stop| a_to_b(Method::Turn, robot, limit, stop)),
-    ("spline", RobotSpec::s4, |robot, limit, stop| a_to_b(Method::Spline, robot, limit, stop)),
-    ("by another estimate", RobotSpec::s4, |robot, limit, stop| {
-        let mut behaviour = AToB::new(Method::Dog, Goal::point(GOAL), AToBParameters::default())?;
-        driven(robot, &mut behaviour.by(Robot::pose), limit, stop)
-    }),
-    ("chase", RobotSpec::s4, |robot, limit, stop| {
-        let mut behaviour = Chase::new(Method::Dog, ChaseParameters::default())?;
-        let goal = |_: &mut Robot, time| Ok(Pose::new(1.0 + time, 0.0, 0.0));
-        driven(robot, &mut behaviour.after(goal), limit, stop)
-    }),
-    ("car", RobotSpec::car, |robot, limit, stop| {
-        let driver = CarDriver::new(Ackermann::new(0.12, 0.1, 0.5).unwrap(), 0.5).unwrap();
-        let goal = Goal::point(Point::new(2.0, -2.0));
-        let mut behaviour = CarToB::new(Method::Arc, goal, driver, CarToBParameters::default())?;
-        driven(robot, &mut behaviour, limit, stop)
-    }),
-    ("Mecanum", RobotSpec::omni, |robot, limit, stop| {
-        let driver = OmniDriver::new(Omni::mecanum(0.2, 0.2).unwrap(), 0.5).unwrap();
-        let tracker = OmniTracker::new(Pose::default(), &[GOAL], OmniParameters::default())?;
-        driven(robot, &mut tracker.by(driver), limit, stop)
-    }),
-    ("dive", RobotSpec::mako, |robot, limit, stop| {
-        driven(robot, &mut Dive::new(&CraftSpec::mako(), DiveParameters::default())?, limit, stop)
-    }),
-    ("pool wall", RobotSpec::mako, |robot, limit, stop| {
-        driven(robot, &mut PoolWall::new(&RobotSpec::mako(), PoolWallParameters::default())?, limit, stop)
-    }),
-    ("survey", RobotSpec::mako, |robot, limit, stop| {
-        let area = Aabb::new(Point::origin(), Point::new(8.0, 8.0));
-        let parameters = SurveyParameters::default();
-        driven(robot, &mut Survey::new(&RobotSpec::mako(), START, area, true, parameters)?, limit, stop)
-    }),
-    ("pool search", RobotSpec::mako, |robot, limit, stop| {
-        let area = Aabb::new(Point::origin(), Point::new(8.0, 8.0));
-        let parameters = PoolSearchParameters::default();
-        driven(robot, &mut PoolSearch::new(&RobotSpec::mako(), START, area, true, parameters)?, limit, stop)
-    }),
-    ("boat", RobotSpec::solar_raft, |robot, limit, stop| {
-        let course = [Point::new(9.0, 3.0)];
-        let mut boat = Boat::new(&CraftSpec::solar_raft(), START, &course, BoatParameters::default())?;
-        driven(robot, &mut boat, limit, stop)
-    }),
-    ("tour", RobotSpec::s4, |robot, limit, stop| {
-        let corners = [START.position(), Point::new(5.0, 5.0), Point::new(1.0, 5.0)];
-        driven(robot, &mut Tour::new(&corners, TourParameters::default())?, limit, stop)
-    }),
-    ("wall", RobotSpec::s4, |robot, limit, stop| {
-        let follower = WallFollower::new(WallFollowerParameters::default())?;
-        driven(robot, &mut AlongWall::new(follower), limit, stop)
-    }),
-    ("wall by PID", RobotSpec::s4, |robot, limit, stop| {
-        let follower = PidWallFollower::new(PidWallFollowerParameters::default())?;
-        driven(robot, &mut AlongWall::new(follower), limit, stop)
-    }),
-    ("wall by lidar", RobotSpec::s4, |robot, limit, stop| {
-        let follower = LidarWallFollower::new(LidarWallFollowerParameters::default())?;
-        driven(robot, &mut AlongWall::new(follower), limit, stop)
-    }),
-    ("wall as printed", RobotSpec::s4, |robot, limit, stop| {
-        driven(robot, &mut AlongWall::new(TwoLevelWallFollower::default()), limit, stop)
-    }),
-    ("random", RobotSpec::s4, |robot, limit, stop| {
-        let mut behaviour = RandomDrive::new(RandomDriveParameters::default(), Stream::new(1))?;
-        driven(robot, &mut behaviour, limit, stop)
-    }),
-    ("left hand", RobotSpec::s4, |robot, limit, stop| {
-        let mut rule = LeftHand::new(LeftHandParameters::as_printed(), Direction::North)?;
-        driven(robot, &mut rule, limit, stop)
-    }),
-    ("left hand, controlled", RobotSpec::s4, |robot, limit, stop| {
-        let drive = roverlab::maze::CellDriveParameters::pid(&rig(&RobotSpec::s4())?, Scale::DOUBLED, 0.18);
-        let mut rule = LeftHand::new(LeftHandParameters::controlled(drive), Direction::North)?;
-        driven(robot, &mut rule, limit, stop)
-    }),
-    ("left by lidar", RobotSpec::s4, |robot, limit, stop| {
-        let mut follower = LidarLeft::new(LidarLeftParameters::for_corridor(CORRIDOR))?;
-        driven(robot, &mut follower, limit, stop)
-    }),
-    ("bug", RobotSpec::s4, |robot, limit, stop| {
-        let mut bug = BugKind::Bug2.with(GOAL, BugParameters::default())?;
-        driven(robot, bug.as_mut(), limit, stop)
-    }),
-    ("DistBug", RobotSpec::s4, |robot, limit, stop| {
-        driven(robot, &mut DistBug::new(GOAL, BugParameters::default())?, limit, stop)
-    }),
-    ("navigate", RobotSpec::s4, |robot, limit, stop| {
-        let goal = Point::new(5.5, 5.5);
-        let mut navigator = Navigator::new(&room(), START, goal, NavigatorParameters::default())?;
-        driven(robot, &mut navigator, limit, stop)
-    }),
-    ("summit", RobotSpec::blizzard, |robot, limit, stop| {
-        let parameters = SummitParameters::of(&RobotSpec::blizzard()).unwrap();
-        driven(robot, &mut SummitSearch::new(parameters)?, limit, stop)
-    }),
-    ("ramp", RobotSpec::blizzard, |robot, limit, stop| {
-        let parameters = RampCrossing::parameters(&RobotSpec::blizzard()).unwrap();
-        driven(robot, &mut RampCrossing::new(parameters)?, limit, stop)
-    }),
-    ("ascent", RobotSpec::blizzard, |robot, limit, stop| {
-        let spec = RobotSpec::blizzard();
-        let mut ascent = Ascent::new(SlopeSensor::lidar(&spec).unwrap(), AscentParameters::of(&spec))?;
-        driven(robot, &mut ascent, limit, stop)
-    }),
-    ("colour", RobotSpec::s4, |robot, limit, stop| {
-        let mut tracker = ColourTracker::new(finder(), ColourTrackerParameters::default())?;
-        driven(robot, &mut tracker, limit, stop)
-    }),
-    ("home", RobotSpec::s4, |robot, limit, stop| {
-        let mut push = PushHome::new(finder(), Point::origin(), PushHomeParameters::default())?;
-        driven(robot, &mut push, limit, stop)
-    }),
-    ("motion", RobotSpec::s4, |robot, limit, stop| {
-        driven(robot, &mut MotionWatch::new(MotionWatchParameters::new(1.0)).unwrap(), limit, stop)
-    }),
-    ("gait", RobotSpec::s4, |robot, limit, stop| {
-        let gait = Gait::from_bytes(&[30, 128, 200, 40, 128, 90], 2, 1)?;
-        driven(robot, &mut gait.walking(), limit, stop)
-    }),
-    ("gap", RobotSpec::car, |robot, limit, stop| driven(robot, &mut GapDriver::default(), limit, stop)),
-    ("racer", RobotSpec::s4, |robot, limit, stop| {
-        driven(robot, &mut Racer::new(RacerParameters::default())?, limit, stop)
-    }),
-    ("event", RobotSpec::s4, |robot, limit, stop| {
-        let parameters = EventParameters { patience: [99.0; 2], ..EventParameters::default() };
-        driven(robot, &mut EventRacer::acceleration(parameters)?, limit, stop)
-    }),
-];
-
-fn a_to_b(method: Method, robot: &mut Robot, limit: f64, stop: f64) -> Result<String> {
-    let mut behaviour = AToB::new(method, Goal::point(GOAL), AToBParameters::default())?;
-    driven(robot, &mut behaviour, limit, stop)
-}
-
-fn finder() -> ColourFinder {
-    let camera = RobotSpec::s4().camera.unwrap();
-    ColourFinder::new(42, 10, FindMethod::Blob, CameraGeometry::from(&camera)).unwrap()
-}
-
-fn rig(spec: &RobotSpec) -> Result<Rig> {
-    let errors = OdometryErrors { wheel_scale: 0.0, wheel_mismatch: 0.0, track: 0.0, slip: 0.0 };
-    Rig::new(spec, errors, 0.01)
-}
-
-fn room() -> World {
-    World::walled(6.0, 6.0)
-}
-
-/// A robot in the room with a fault of its clock, and the simulation, which ends by itself after a minute.
+/// A robot in the room with a fault, and the simulation, which ends by itself after a minute.
 fn robot(spec: RobotSpec, fault: &str) -> (Robot, Simulation) {
     let options = SimOptions { time_limit: Some(60.0), ..SimOptions::ideal() };
     let simulation = Simulation::new(&Scene::with_robot(room(), spec, START), options).unwrap();

@@ -47,6 +47,7 @@ lessons!(
     distbug,
     dive,
     edges,
+    first_steps,
     follow_me,
     genetic,
     grid_planning,
@@ -63,6 +64,7 @@ lessons!(
     #[cfg(feature = "testing")]
     own_planner,
     own_robot,
+    parking,
     path_following,
     pool_search,
     quadtree,
@@ -70,11 +72,13 @@ lessons!(
     #[cfg(feature = "log")]
     record_replay,
     safety,
+    signs,
     #[cfg(feature = "physics")]
     starman,
     ramp,
     summit,
     survey,
+    traffic,
     two_robots,
     wall_following,
     world_files,

@@ -237,7 +237,7 @@ fn a_blind_lidar_and_a_stopped_clock_end_the_run_with_an_error() {
     let observation = LidarObservation { scan, ..LidarObservation::default() };
     assert_eq!(
         bug.step(0.0, &observation).unwrap_err().to_string(),
-        "every range of the lidar scan is NaN; expected metres or +infinity"
+        "lidar scan is NaN and NaN at beams 0 and 1; expected a distance at one of two neighbours at least"
     );
 
     let fault: Fault = "clock@2".parse().unwrap();

@@ -18,7 +18,7 @@ use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Shape};
 
 /// Kinds that are counted, each with the distances ahead of the camera where it has to be found, and the
 /// distance within which it has to be there (m).
-const KINDS: [(&str, (f64, f64), f64); 7] = [
+const KINDS: [(&str, (f64, f64), f64); 8] = [
     ("stop line", (0.25, 0.95), 0.08),
     ("give-way line", (0.25, 0.95), 0.08),
     ("start line", (0.25, 0.95), 0.08),
@@ -26,6 +26,7 @@ const KINDS: [(&str, (f64, f64), f64); 7] = [
     ("crossing", (0.20, 1.00), 0.25),
     ("obstacle", (0.30, 0.95), 0.10),
     ("parking", (0.20, 0.70), 0.15),
+    ("barred area", (0.30, 0.80), 0.15),
 ];
 
 /// Row of a kind in the table.
@@ -38,6 +39,7 @@ fn row(kind: RoadElementKind) -> usize {
         RoadElementKind::Crossing { .. } => 4,
         RoadElementKind::Obstacle { .. } => 5,
         RoadElementKind::Parking { .. } => 6,
+        RoadElementKind::Barred { .. } => 7,
         other => panic!("a kind without a row: {other:?}"),
     }
 }
@@ -130,6 +132,7 @@ fn truths(course: &RoadCourse) -> Vec<(usize, f64)> {
             RoadMarkKind::Start => truths.push((2, mark.at)),
             RoadMarkKind::Zebra => truths.push((3, mark.at)),
             RoadMarkKind::Parking(RoadSide::Right | RoadSide::Left, _) => truths.push((6, mark.at)),
+            RoadMarkKind::Barred(RoadSide::Right, ..) => truths.push((7, mark.at)),
             RoadMarkKind::Crossing(crossing) => truths.extend(of_crossing(course, mark.at, &crossing)),
             _ => {}
         }

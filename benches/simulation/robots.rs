@@ -18,7 +18,7 @@ use roverlab::world::{
 use roverlab_bench::{building, free_poses, thicket};
 
 /// Seconds between a robot's decisions.
-const PERIOD: f64 = 0.1;
+pub(super) const PERIOD: f64 = 0.1;
 
 /// A robot that looks around with its lidar ten times a second.
 struct Looker {
@@ -73,7 +73,7 @@ fn discs() -> World {
 /// Seconds that pass in the world for one of ours, by the fastest of many slices: what else the machine does
 /// counts as little as can be.
 #[allow(clippy::disallowed_methods, reason = "a benchmark is about real time")]
-fn real_time_factor(slices: usize, seconds: f64, mut run: impl FnMut()) -> f64 {
+pub(super) fn real_time_factor(slices: usize, seconds: f64, mut run: impl FnMut()) -> f64 {
     let times = (0..slices).map(|_| {
         let start = Instant::now();
         run();
@@ -208,7 +208,7 @@ fn apart(poses: Vec<Pose>, robots: usize) -> Vec<Pose> {
     kept
 }
 
-fn run(fleet: &mut Fleet<'_>, seconds: f64) {
+pub(super) fn run(fleet: &mut Fleet<'_>, seconds: f64) {
     fleet.run_for(black_box(seconds)).expect("nothing fails");
 }
 

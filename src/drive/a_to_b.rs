@@ -7,6 +7,7 @@ use super::{Path, PathFollower, PathFollowerParameters, Waypoint};
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, angle_difference};
 use crate::io::control::Manoeuvre;
+use crate::io::reading::check_pose;
 use crate::io::{Error, Result};
 use crate::parameter::{require_positive, require_up_to};
 
@@ -124,6 +125,8 @@ pub struct AToBObservation {
 pub enum AToBOutcome {
     /// The estimated pose is at the goal.
     Reached,
+    /// The robot stands elsewhere by its estimate: corrections have not helped.
+    Missed,
     /// The drive has stalled.
     Blocked,
     /// The time limit came first.
@@ -156,7 +159,7 @@ pub enum AToBOutcome {
 #[derive(Debug, Clone, PartialEq)]
 pub struct AToB {
     method: Method,
-    goal: Goal,
+    pub(super) goal: Goal,
     /// Points that a spline passes on its way.
     via: Vec<Point>,
     pub(super) parameters: AToBParameters,
@@ -217,9 +220,7 @@ impl AToB {
     /// The next command; `None` at the end. Fails if the pose is not finite.
     pub fn step(&mut self, observation: &AToBObservation) -> Result<Option<Manoeuvre>> {
         let pose = observation.pose;
-        if !pose.is_finite() {
-            return Err(Error::invalid_input("observed pose", format!("{pose:?}"), "finite numbers"));
-        }
+        check_pose(&pose)?;
         match &mut self.phase {
             Phase::Begin => self.begin(pose),
             Phase::Turning if observation.done => {

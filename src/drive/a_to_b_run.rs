@@ -1,11 +1,16 @@
 use std::ops::ControlFlow;
 
+use super::a_to_b::HANDOVER;
 use super::{AToB, AToBObservation, AToBOutcome};
 use crate::geometry::Pose;
 use crate::io::control::{Behaviour, Decision, Manoeuvre, SensedBy, Senses, halts};
 use crate::io::{Manoeuvres, Odometry, Result, StallDetector};
 
-halts!(AToBOutcome { Reached: "the goal is reached", Blocked: "something holds the robot" });
+halts!(AToBOutcome {
+    Reached: "the goal is reached",
+    Missed: "the robot stands beside the goal",
+    Blocked: "something holds the robot",
+});
 
 impl Behaviour for AToB {
     type Observation = AToBObservation;
@@ -20,6 +25,9 @@ impl Behaviour for AToB {
         Ok(match AToB::step(self, seen)? {
             _ if seen.stalled => ControlFlow::Break(AToBOutcome::Blocked),
             Some(command) => ControlFlow::Continue(command),
+            None if seen.pose.distance_to(self.goal.position) > HANDOVER => {
+                ControlFlow::Break(AToBOutcome::Missed)
+            }
             None => ControlFlow::Break(AToBOutcome::Reached),
         })
     }

@@ -5,7 +5,8 @@ use super::{Goal, Method, Path, PathFollower, PathFollowerParameters, Steering};
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, angle_difference};
 use crate::io::control::{Behaviour, Command, Decision, Senses, halts};
-use crate::io::{Error, Motors, Odometry, Result, Servos, StallDetector};
+use crate::io::reading::check_pose;
+use crate::io::{Motors, Odometry, Result, Servos, StallDetector};
 use crate::kinematics::{Ackermann, CarState};
 use crate::parameter::{require, require_positive, require_up_to};
 
@@ -250,9 +251,7 @@ impl CarToB {
 
     /// Speed and steering for the car at a pose; `None` at the end. Fails if the pose is not finite.
     pub fn step(&mut self, pose: Pose) -> Result<Option<CarState>> {
-        if !pose.is_finite() {
-            return Err(Error::invalid_input("observed pose", format!("{pose:?}"), "finite numbers"));
-        }
+        check_pose(&pose)?;
         if let Some(state) = self.back(pose) {
             return Ok(Some(state));
         }

@@ -1,5 +1,6 @@
 use super::way::Way;
 use crate::geometry::{Point, Pose, Twist, math};
+use crate::io::reading::check_pose;
 use crate::io::{Error, Result};
 use crate::parameter::require_positive;
 
@@ -66,9 +67,7 @@ impl Cruise {
     /// The next velocity; `points` are the obstacles in the robot's frame (m). Fails if the pose is not
     /// finite.
     pub fn step(&mut self, pose: Pose, points: &[Point]) -> Result<Twist> {
-        if !pose.is_finite() {
-            return Err(Error::invalid_input("observed pose", format!("{pose:?}"), "finite numbers"));
-        }
+        check_pose(&pose)?;
         let CruiseParameters { speed, turn_rate, radius, margin, ahead, arrival } = self.parameters;
         if pose.distance_to(self.waypoints[self.next]) < arrival {
             self.next = (self.next + 1) % self.waypoints.len();

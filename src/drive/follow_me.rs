@@ -3,8 +3,9 @@ use std::f64::consts::PI;
 use super::way::{AHEAD, BRAKING, TURN_GAIN, Way};
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, Vector, math, normalize_angle};
-use crate::io::{Error, LidarScan, Result};
-use crate::parameter::{require, require_positive, require_up_to};
+use crate::io::reading::check_pose;
+use crate::io::{LidarScan, Result};
+use crate::parameter::{require, require_finite, require_positive, require_up_to};
 
 /// Parameters of [`Follower`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -135,10 +136,8 @@ impl Follower {
 
     /// The next velocity. Fails if pose or time is not finite.
     pub fn step(&mut self, seen: &FollowerObservation<'_>) -> Result<Twist> {
-        if !(seen.pose.is_finite() && seen.time.is_finite()) {
-            let found = format!("{:?} at {} s", seen.pose, seen.time);
-            return Err(Error::invalid_input("observed pose", found, "finite numbers"));
-        }
+        require_finite("time", seen.time)?;
+        check_pose(&seen.pose)?;
         self.track(seen);
         let parameters = self.parameters;
         let Some(target) = self.target else { return Ok(Twist::STOP) };

@@ -10,6 +10,8 @@
 //! - [`Chase`]: the same four methods towards a moving goal;
 //! - [`CarToB`]: the same methods for a car, within its turning circle (chapter 7);
 //! - [`OmniTracker`]: along a route with any heading, on wheels with rollers (chapter 7);
+//! - [`FirstSteps`]: to a wall and back, and round a circle; [`RadioRing`]: a count passed on by radio
+//!   (chapter 2);
 //! - [`RandomDrive`]: straight on, with random turns at obstacles (chapter 3);
 //! - [`CoveragePlan`], [`Tour`] and [`CoverageMap`]: the whole floor in lanes (chapters 3 and 6);
 //! - [`Follower`], [`Formation`] and [`Cruise`]: following a robot by sight or in a radio formation, and the
@@ -17,7 +19,8 @@
 //! - [`WallFollower`]: along walls of any shape by three distance sensors (chapter 6), besides
 //!   [`PidWallFollower`], [`LidarWallFollower`] and the book's [`TwoLevelWallFollower`];
 //! - [`colour`]: to an object of a taught colour, and home with it (chapter 11);
-//! - [`lane_keeping`]: along the lane of a road by camera, and [`traffic`]: its referee (chapter 13);
+//! - [`lane_keeping`]: along the lane of a road by camera; [`traffic`]: past obstacles, and the referees;
+//!   [`parking`]: beside the road (chapter 13);
 //! - [`marine`]: craft in water (chapter 8);
 //! - [`motion_watch`]: turning towards motion (chapter 11);
 //! - [`terrain`]: up the steepest way (chapter 7);
@@ -31,6 +34,7 @@ pub mod colour;
 mod coverage;
 mod cruise;
 mod dubins;
+mod first_steps;
 mod follow_me;
 mod follower;
 mod formation;
@@ -38,8 +42,11 @@ pub mod lane_keeping;
 pub mod marine;
 pub mod motion_watch;
 mod omni;
+mod outline;
+pub mod parking;
 mod path;
 mod pid;
+mod radio_ring;
 mod random_drive;
 mod relay;
 mod spline;
@@ -53,6 +60,7 @@ pub use car::{CarCommand, CarDriver, CarObservation, CarOutcome, CarToB, CarToBP
 pub use chase::{Chase, ChaseObservation, ChaseOutcome, ChaseParameters};
 pub use coverage::{CoverageMap, CoverageMapParameters, CoveragePlan, Tour, TourOutcome, TourParameters};
 pub use cruise::{Cruise, CruiseParameters};
+pub use first_steps::{FirstSteps, FirstStepsOutcome, FirstStepsParameters, FirstTask};
 pub use follow_me::{Follower, FollowerObservation, FollowerParameters, robots_in};
 pub use follower::{PathFollower, PathFollowerParameters, Steering};
 pub use formation::Formation;
@@ -61,6 +69,7 @@ pub use omni::{
 };
 pub use path::{Path, PathPoint, Waypoint};
 pub use pid::{Pid, PidParameters};
+pub use radio_ring::{RadioRing, RadioRingParameters, RingMessages, RingObservation, RingOutcome};
 pub use random_drive::{RandomDrive, RandomDriveObservation, RandomDriveParameters};
 pub use relay::{RelayTuner, UltimateGain};
 pub use spline::Hermite;

@@ -4,6 +4,7 @@ use super::follower::PATIENCE;
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Vector, angle_difference, direction, normalize_angle};
 use crate::io::control::{Behaviour, Command, Decision, Senses, halts};
+use crate::io::reading::check_pose;
 use crate::io::{Error, Motors, Odometry, Result};
 use crate::kinematics::{Omni, PlanarTwist};
 use crate::parameter::{require_finite, require_positive};
@@ -182,9 +183,8 @@ impl OmniTracker {
     /// The velocity for a robot at a pose and a time (s); `None` at the end of the route. Fails if either is
     /// not finite.
     pub fn step(&self, time: f64, pose: Pose) -> Result<Option<PlanarTwist>> {
-        if !(pose.is_finite() && time.is_finite()) {
-            return Err(Error::invalid_input("observed pose", format!("{pose:?}"), "finite numbers"));
-        }
+        require_finite("time", time)?;
+        check_pose(&pose)?;
         let now = self.reference(time);
         let away = now.pose.position() - pose.position();
         let turned = angle_difference(now.pose.heading, pose.heading);

@@ -6,7 +6,8 @@ use super::way::{AHEAD, ALIGNED, BRAKING, TURN_GAIN, Way};
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, angle_difference, direction, normalize_angle};
 use crate::io::control::{Behaviour, Decision, Halt, SensedBy, Senses};
-use crate::io::{DistanceSensors, Error, ErrorKind, Lidar, LidarScan, Odometry, Psd, Result};
+use crate::io::reading::{check_distances, check_pose, check_scan};
+use crate::io::{DistanceSensors, ErrorKind, Lidar, LidarScan, Odometry, Psd, Result};
 use crate::parameter::require_positive;
 use crate::random::Stream;
 
@@ -100,9 +101,7 @@ impl RandomDrive {
     /// The next velocity, from the odometry pose and the obstacle points in the robot's frame. Fails if the
     /// pose is not finite.
     pub fn step(&mut self, pose: Pose, points: &[Point]) -> Result<Twist> {
-        if !pose.is_finite() {
-            return Err(Error::invalid_input("observed pose", format!("{pose:?}"), "finite numbers"));
-        }
+        check_pose(&pose)?;
         let RandomDriveParameters { speed, turn_rate, safe, .. } = self.parameters;
         if let Some(heading) = self.turning_to {
             let rest = angle_difference(heading, pose.heading);
@@ -198,6 +197,7 @@ impl RandomDriveObservation {
     fn look<R: DistanceSensors + Lidar + ?Sized>(&mut self, robot: &mut R) -> Result<()> {
         match robot.scan_into(&mut self.scan) {
             Ok(()) => {
+                check_scan(&self.scan)?;
                 self.points.clear();
                 self.points.extend(self.scan.points());
                 Ok(())
@@ -214,6 +214,7 @@ impl RandomDriveObservation {
         let WallSensors { front, left, right, .. } = WallSensors::default();
         let mut hit = |psd, mount: Pose| -> Result<Option<Point>> {
             let range = robot.distance(psd)?;
+            check_distances("observed distance", &[range])?;
             Ok(range.is_finite().then(|| mount.position() + direction(mount.heading) * range))
         };
         let ahead = hit(Psd::FRONT, front)?;

@@ -26,13 +26,14 @@
 //! | [`AlongWall<WallFollower>`](crate::drive::WallFollower), [`AlongWall<PidWallFollower>`](crate::drive::PidWallFollower), [`AlongWall<TwoLevelWallFollower>`](crate::drive::TwoLevelWallFollower), [`MazeRunner`](crate::maze::MazeRunner) | [`Drive`], [`Odometry`], [`DistanceSensors`], [`StallDetector`] |
 //! | [`LeftHand`](crate::maze::LeftHand) | [`Drive`], [`Odometry`], [`DistanceSensors`], [`Manoeuvres`], [`StallDetector`] |
 //! | [`AlongWall<LidarWallFollower>`](crate::drive::LidarWallFollower) | [`Drive`], [`Lidar`], [`StallDetector`] |
-//! | [`LidarLeft`](crate::maze::LidarLeft), every [`Bug`](crate::nav::Bug), [`Navigator`](crate::nav::Navigator), [`Racer`](crate::race::Racer), [`EventRacer`](crate::race::EventRacer) | [`Drive`], [`Odometry`], [`Lidar`] |
+//! | [`FirstSteps`](crate::drive::FirstSteps), [`LidarLeft`](crate::maze::LidarLeft), every [`Bug`](crate::nav::Bug), [`Navigator`](crate::nav::Navigator), [`Racer`](crate::race::Racer), [`EventRacer`](crate::race::EventRacer) | [`Drive`], [`Odometry`], [`Lidar`] |
 //! | [`SummitSearch`](crate::nav::SummitSearch) | [`Drive`], [`Odometry`], [`Lidar`], [`Inertial`] |
 //! | [`Ascent::by_lidar`](crate::drive::terrain::Ascent::by_lidar) | [`Drive`], [`Odometry`], [`Lidar`], [`Inertial`] |
 //! | [`Ascent::by_distance_sensors`](crate::drive::terrain::Ascent::by_distance_sensors) | [`Drive`], [`Odometry`], [`DistanceSensors`], [`Inertial`] |
 //! | [`RampCrossing`](crate::nav::RampCrossing) | [`Drive`], [`Odometry`], [`Lidar`], [`Inertial`] |
 //! | [`Ascent`](crate::drive::terrain::Ascent) | [`Drive`], [`Odometry`], [`Lidar`], [`DistanceSensors`], [`Inertial`] |
-//! | [`LaneKeeper`](crate::drive::lane_keeping::LaneKeeper), [`BookLaneKeeper`](crate::drive::lane_keeping::BookLaneKeeper), [`MotionWatch`](crate::drive::motion_watch::MotionWatch) | [`Drive`], [`Odometry`], [`Camera`] |
+//! | [`LaneKeeper`](crate::drive::lane_keeping::LaneKeeper), [`TrafficDriver`](crate::drive::traffic::TrafficDriver), [`BookLaneKeeper`](crate::drive::lane_keeping::BookLaneKeeper), [`MotionWatch`](crate::drive::motion_watch::MotionWatch), [`MotionApproach`](crate::drive::motion_watch::MotionApproach) | [`Drive`], [`Odometry`], [`Camera`] |
+//! | [`ParkingDriver`](crate::drive::parking::ParkingDriver) | [`Drive`], [`Odometry`], [`Camera`], [`DistanceSensors`] |
 //! | [`ColourTracker`](crate::drive::colour::ColourTracker), [`PushHome`](crate::drive::colour::PushHome) | [`Drive`], [`Odometry`], [`Camera`], [`Lidar`], [`StallDetector`] |
 //! | [`CarToB`](crate::drive::CarToB) | [`Motors`], [`Servos`], [`Odometry`], [`StallDetector`] |
 //! | [`GapDriver`](crate::race::GapDriver) | [`Motors`], [`Servos`], [`Lidar`] |
@@ -42,6 +43,9 @@
 //! | [`PoolWall`](crate::drive::marine::PoolWall) | [`Motors`], [`Odometry`], [`DepthSensor`], [`DistanceSensors`], [`Inertial`] |
 //! | [`Survey`](crate::drive::marine::Survey) | [`Motors`], [`Odometry`], [`DepthSensor`], [`DistanceSensors`], [`Inertial`] |
 //! | [`GaitWalk`](crate::evolve::GaitWalk) | [`Servos`] |
+//! | [`RadioRing`](crate::drive::RadioRing) | [`Radio`] |
+//! | [`RadioCar`](crate::drive::traffic::RadioCar) | [`Drive`], [`Odometry`], [`Camera`], [`Radio`] |
+//! | [`RoadStation`](crate::drive::traffic::RoadStation) | [`Display`], [`Keys`], [`Radio`] |
 
 mod actuators;
 mod camera;
@@ -59,6 +63,7 @@ mod lidar;
 mod mock;
 mod psd;
 mod radio;
+pub(crate) mod reading;
 #[macro_use]
 pub mod wrappers;
 mod fleet;

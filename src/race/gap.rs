@@ -3,6 +3,7 @@ use std::ops::ControlFlow;
 use crate::ParameterError;
 use crate::geometry::units;
 use crate::io::control::{Behaviour, Command, Decision, Halt, Senses};
+use crate::io::reading::check_scan;
 use crate::io::{Lidar, LidarScan, Motors, Result, Servos};
 use crate::parameter::require;
 
@@ -101,6 +102,7 @@ impl Behaviour for GapDriver {
     }
 
     fn step(&mut self, _time: f64, scan: &LidarScan) -> Decision<Self> {
+        check_scan(scan)?;
         Ok(ControlFlow::Continue(GapCommand { motor: self.speed, servo: GapDriver::step(self, scan) }))
     }
 }

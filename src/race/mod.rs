@@ -7,7 +7,8 @@
 //! - [`CentreLine`]: the track between cones, by a triangulation, with or without colours;
 //! - [`GapDriver`]: the book's driver, which steers for the nearest gap in one scan;
 //! - [`Racer`]: detects cones in scans ([`sightings`]), maps them in the first lap ([`ConeMap`]), then races;
-//!   a [`LineTracker`] keeps the car on its line; a [`Referee`] takes times and counts penalties;
+//!   a [`LineTracker`] keeps the car on its line; a [`Referee`] takes times and counts penalties; a
+//!   [`PlaceReferee`] judges several cars that race for places;
 //! - [`EventRacer`]: drives an acceleration or a skidpad, whose layouts are known; an [`EventReferee`] takes
 //!   the times;
 //! - [`minimum_curvature`]: the racing line within a [`Corridor`]; [`SpeedProfile`]: the speeds along it,
@@ -37,6 +38,8 @@ mod legs;
 mod map;
 mod mesh;
 mod pair;
+mod passing;
+mod places;
 mod profile;
 mod racer;
 #[cfg(test)]
@@ -78,6 +81,7 @@ pub use lane::lane;
 pub use lane_model::{Lane, LaneParameters};
 pub use map::{ConeMap, ConeMapParameters};
 pub use pair::CentreLineParameters;
+pub use places::{Overtaking, PlaceReferee};
 pub use profile::{CarLimits, SpeedProfile};
 pub use racer::{RacePhase, Racer, RacerParameters};
 pub use racing_line::{CarOutline, LineSolver, RacingLine, RacingLineParameters, minimum_curvature};

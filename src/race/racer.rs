@@ -2,98 +2,26 @@ use super::ClosedSpline;
 use super::centre_line::CentreLine;
 use super::cone::{Cone, RUN_UP};
 use super::error::LineError;
-use super::grip::GripLimit;
 use super::lane::lane_where;
-use super::lane_model::{Lane, LaneParameters, Way};
+use super::lane_model::{Lane, Way};
 use super::lap::{around_lap, holds, without_kinks};
-use super::map::{ConeMap, ConeMapParameters, FRESH, SHORTEST_LAP, STRIDE};
-use super::pair::CentreLineParameters;
-use super::profile::{CarLimits, SpeedProfile};
-use super::racing_line::{CarOutline, LineSolver, RacingLineParameters};
+use super::map::{ConeMap, FRESH, SHORTEST_LAP, STRIDE};
+use super::passing::Passing;
+use super::profile::SpeedProfile;
+use super::racing_line::{LineSolver, RacingLineParameters};
 use super::reckoning::Reckoning;
 use super::sight::{ConeSighting, sightings};
-use super::tracker::{CRAWL, LineTracker, LineTrackerParameters};
-use super::tyres::Tyres;
+use super::tracker::{CRAWL, LineTracker};
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist};
 use crate::io::LidarScan;
-use crate::parameter::require_positive;
 
+mod others;
+mod parameters;
 #[cfg(test)]
 mod tests;
 
-/// Parameters of [`Racer`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RacerParameters {
-    /// Number of laps; the first one is for mapping.
-    pub laps: usize,
-    /// Limits of tyres and motors.
-    pub limits: CarLimits,
-    /// Limits while the track is unknown; the top speed is that of the first lap.
-    pub first_lap: CarLimits,
-    /// Outline of the car, for the clearance from cones.
-    pub outline: CarOutline,
-    /// Parameters of the centre line.
-    pub centre_line: CentreLineParameters,
-    /// Parameters of the map.
-    pub map: ConeMapParameters,
-    /// Parameters of the lane search in the first lap.
-    pub lane: LaneParameters,
-    /// Parameters of the line tracker.
-    pub tracker: LineTrackerParameters,
-    /// Control period (s).
-    pub period: f64,
-}
-
-impl Default for RacerParameters {
-    fn default() -> Self {
-        Self {
-            laps: 10,
-            limits: CarLimits {
-                // A thirtieth of the grip and a fifteenth of the steering are reserved for control errors.
-                grip: GripLimit::Balance(Tyres { grip: 11.6, lock: 0.58, ..Tyres::default() }),
-                drive: 8.0,
-                brake: 9.5,
-                top_speed: 30.0,
-                turning: 1.2,
-            },
-            // Slow in tight bends, which are seen late and where the car also responds late.
-            first_lap: CarLimits {
-                grip: GripLimit::Ellipse { across: 5.0, turned: 1.0, along: 5.0 },
-                ..CarLimits::circle(5.0, 3.0, 5.0, 6.0)
-            },
-            outline: CarOutline { half_width: 0.7, nose: 2.15, ahead: 0.9, room: 0.5 },
-            centre_line: CentreLineParameters::default(),
-            map: ConeMapParameters::default(),
-            lane: LaneParameters::default(),
-            tracker: LineTrackerParameters::default(),
-            period: 0.05,
-        }
-    }
-}
-
-impl RacerParameters {
-    /// Checks the parameters.
-    ///
-    /// # Errors
-    ///
-    /// If one is out of range.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        self.limits.validate().map_err(|error| error.of("limits"))?;
-        self.first_lap.validate().map_err(|error| error.of("first lap"))?;
-        self.outline.validate().map_err(|error| error.of("outline"))?;
-        self.centre_line.validate().map_err(|error| error.of("centre line"))?;
-        self.map.validate().map_err(|error| error.of("map"))?;
-        self.lane.validate().map_err(|error| error.of("lane"))?;
-        self.tracker.validate().map_err(|error| error.of("tracker"))?;
-        require_positive("control period", self.period)
-    }
-
-    /// Parameters for a car whose tyres do not slip.
-    pub fn rolling() -> Self {
-        Self { tracker: LineTrackerParameters::rolling(), ..Self::default() }
-    }
-}
+pub use parameters::RacerParameters;
 
 /// Phase of a race.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -139,6 +67,11 @@ pub struct Racer {
     in_front: bool,
     reckoning: Reckoning,
     tracker: Option<LineTracker>,
+    /// Other cars: seen points, and how one is passed on the known track.
+    others: Vec<Vec<Point>>,
+    passing: Option<Passing>,
+    /// Whether it has met another car on the known track.
+    has_met: bool,
     solver: LineSolver,
     /// Number of decisions since the path was planned.
     stale: u32,
@@ -166,9 +99,6 @@ const BEHIND_POSES: usize = 4;
 /// Distance within which the lane decides on which side a cone is; farther off, it changes between
 /// observations (m).
 const VOTES: f64 = 5.0;
-/// Other cars: distance from the line within which one is in the way, distance ahead at which it begins to
-/// matter, and distance kept from the centre of this car to the end of the other (m).
-const OTHERS: (f64, f64, f64) = (1.5, 24.0, 4.5);
 /// Number of initial steps without motion: a cone needs several detections, and the wheels take a third of a
 /// second to turn fully.
 const LOOKS: u32 = 10;
@@ -201,6 +131,9 @@ impl Racer {
             in_front: false,
             reckoning: Reckoning::default(),
             tracker: None,
+            others: Vec::new(),
+            passing: None,
+            has_met: false,
             solver: LineSolver::default(),
             stale: 0,
             plan_again: false,
@@ -237,6 +170,7 @@ impl Racer {
 
     /// Command for a pose and a velocity by odometry and a scan.
     pub fn step(&mut self, odometry: Pose, speed: Twist, scan: &LidarScan) -> Twist {
+        self.see_others(scan);
         self.decide(odometry, speed, &sightings(scan))
     }
 
@@ -259,22 +193,6 @@ impl Racer {
         self.behind_others(command, seen)
     }
 
-    /// Limits a command to keep a distance from objects ahead that are too large for cones, such as other
-    /// cars.
-    fn behind_others(&self, command: Twist, seen: &[ConeSighting]) -> Twist {
-        let Some(line) = &self.tracker else { return command };
-        let others = seen.iter().filter(|sighting| !sighting.is_cone());
-        let places = others.map(|sighting| self.map.pose().to_world(sighting.position));
-        let gaps = places.filter_map(|place| line.distance_to(place, OTHERS.0, OTHERS.1));
-        let Some(gap) = gaps.min_by(f64::total_cmp) else { return command };
-        let fastest = (self.parameters.first_lap.brake * (gap - OTHERS.2).max(0.0)).sqrt();
-        if command.linear <= fastest {
-            return command;
-        }
-        let slower = fastest.max(NEXT_TO_NONE);
-        Twist::new(slower, slower * curvature_of(command))
-    }
-
     fn command(&mut self, speed: Twist) -> Twist {
         match self.phase {
             RacePhase::Finished | RacePhase::Lost => self.brake(speed),
@@ -283,12 +201,14 @@ impl Racer {
                     self.phase = RacePhase::Lost;
                     return self.brake(speed);
                 }
-                if std::mem::take(&mut self.plan_again)
+                if self.is_alone()
+                    && std::mem::take(&mut self.plan_again)
                     && let Ok(tracker) = self.whole_track()
                 {
                     // Every lap improves the map.
-                    self.tracker = Some(tracker);
+                    self.take_line(tracker, speed);
                 }
+                self.pass_others(speed);
                 self.follow(speed)
             }
             RacePhase::Mapping => {
@@ -475,18 +395,26 @@ impl Racer {
             let places: Vec<Point> = cones.iter().map(|cone| cone.position).collect();
             around_lap(&places, &driven, &self.parameters.lane)?
         };
-        let p = &self.parameters;
-        let found = self.solver.solve_for(&corridor, &p.outline, &RacingLineParameters::default())?;
-        let spline = ClosedSpline::through(&found.points)?;
-        let mut points: Vec<Point> = spline.resample(0.5).iter().map(|place| place.position).collect();
-        without_kinks(&mut points);
-        let profile = SpeedProfile::closed(&points, &p.limits)?;
-        // A curvature beyond the steering results from cones on the wrong side.
-        if profile.curvatures.iter().any(|bend| bend.abs() > p.tracker.curvature) {
-            return Err(LineError::NoWay);
-        }
-        Ok(LineTracker::new(points, profile, true, p.tracker)?)
+        let (p, line) = (&self.parameters, RacingLineParameters::default());
+        let margins = self.solver.margins_for(&corridor, &p.outline, &line)?;
+        let found = self.solver.solve_within(&corridor, &corridor.room(&margins), &line);
+        let tracker = tracker_along(&found.points, p)?;
+        self.passing = Some(Passing::new(corridor, p.outline, margins, found.offsets, tracker.profile()));
+        Ok(tracker)
     }
+}
+
+/// Tracks a closed line as fast as possible.
+fn tracker_along(line: &[Point], p: &RacerParameters) -> Result<LineTracker, LineError> {
+    let spline = ClosedSpline::through(line)?;
+    let mut points: Vec<Point> = spline.resample(0.5).iter().map(|place| place.position).collect();
+    without_kinks(&mut points);
+    let profile = SpeedProfile::closed(&points, &p.limits)?;
+    // A curvature beyond the steering results from cones on the wrong side.
+    if profile.curvatures.iter().any(|bend| bend.abs() > p.tracker.curvature) {
+        return Err(LineError::NoWay);
+    }
+    Ok(LineTracker::new(points, profile, true, p.tracker)?)
 }
 
 fn curvature_of(twist: Twist) -> f64 {

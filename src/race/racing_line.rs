@@ -100,14 +100,14 @@ impl LineSolver {
         Ok(self.solve_within(corridor, &corridor.free(parameters.margin)?, parameters))
     }
 
-    /// The line for a car with an outline: in a bend, its nose needs more room outside, its tail inside.
-    /// Where the track is too narrow, the car takes the middle.
-    pub(super) fn solve_for(
+    /// The room that a car with an outline needs to the right and to the left of its line: in a bend, its nose
+    /// needs more outside, its tail inside.
+    pub(super) fn margins_for(
         &mut self,
         corridor: &Corridor,
         outline: &CarOutline,
         parameters: &RacingLineParameters,
-    ) -> Result<RacingLine, LineError> {
+    ) -> Result<Vec<[f64; 2]>, LineError> {
         check(corridor)?;
         let n = corridor.stations().len();
         let mut margins = vec![outline.sides(0.0); n];
@@ -116,18 +116,31 @@ impl LineSolver {
             let bends = bends(&rough.points);
             margins = bends.iter().map(|bend| outline.sides(*bend)).collect();
         }
-        Ok(self.solve_within(corridor, &corridor.room(&margins), parameters))
+        Ok(margins)
     }
 
-    fn solve_within(
+    /// The line within ranges of offsets.
+    pub(super) fn solve_within(
         &mut self,
         corridor: &Corridor,
         free: &[[f64; 2]],
         parameters: &RacingLineParameters,
     ) -> RacingLine {
+        self.solve_from(corridor, free, &vec![0.0; free.len()], parameters)
+    }
+
+    /// The same, searched from other offsets than those of the centre line.
+    pub(super) fn solve_from(
+        &mut self,
+        corridor: &Corridor,
+        free: &[[f64; 2]],
+        first: &[f64],
+        parameters: &RacingLineParameters,
+    ) -> RacingLine {
         let stations = corridor.stations();
         let n = stations.len();
-        let mut offsets: Vec<f64> = free.iter().map(|[low, high]| 0.0_f64.clamp(*low, *high)).collect();
+        let bounded = first.iter().zip(free);
+        let mut offsets: Vec<f64> = bounded.map(|(first, [low, high])| first.clamp(*low, *high)).collect();
         let mut energy = energy(stations, &offsets);
         let (mut wanted, mut trial) = (vec![0.0; n], vec![0.0; n]);
         let mut iterations = 0;

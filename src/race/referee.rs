@@ -54,6 +54,8 @@ pub struct Referee {
     started: Option<f64>,
     /// Number of stations passed since.
     passed: i64,
+    /// Number of stations from the line to the car, over all laps; negative before the line.
+    driven: i64,
     last: f64,
 }
 
@@ -62,12 +64,27 @@ impl Referee {
     /// given positions in its frame.
     pub fn new(corridor: Corridor, wheels: [Point; 4]) -> Self {
         let verdict = RaceScore::default();
-        Self { corridor, wheels, verdict, nearest: None, outside: false, started: None, passed: 0, last: 0.0 }
+        Self {
+            corridor,
+            wheels,
+            verdict,
+            nearest: None,
+            outside: false,
+            started: None,
+            passed: 0,
+            driven: 0,
+            last: 0.0,
+        }
     }
 
     /// Result so far.
     pub fn verdict(&self) -> &RaceScore {
         &self.verdict
+    }
+
+    /// Distance from the line along the centre line, over all laps (m); negative before the line.
+    pub fn distance(&self) -> f64 {
+        self.driven as f64 * self.corridor.length() / self.corridor.stations().len() as f64
     }
 
     /// Takes the pose of the car at a time, and the number of cones knocked over so far.
@@ -78,10 +95,17 @@ impl Referee {
         let before = self.nearest.unwrap_or_else(|| self.search(place, 0, n));
         // Between two calls, a car stays within a window of some metres.
         let now = self.search(place, before + n - WINDOW.min(n / 3), 2 * WINDOW.min(n / 3) + 1);
-        self.nearest = Some(now);
         let step = (now + n + n / 2 - before) % n;
         let step = step as i64 - (n / 2) as i64;
         self.passed += step;
+        self.driven = if self.nearest.is_some() {
+            self.driven + step
+        } else if now > n / 2 {
+            now as i64 - n as i64
+        } else {
+            now as i64
+        };
+        self.nearest = Some(now);
         let crossed = step > 0 && now < before;
         if crossed && (self.started.is_none() || self.passed > (n / 2) as i64) {
             let share = (n - before) as f64 / step as f64;

@@ -5,6 +5,7 @@ use super::racer::{RacePhase, Racer};
 use super::sight::{ConeSighting, sightings};
 use crate::geometry::{Pose, Twist};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
+use crate::io::reading::check_scan;
 use crate::io::{Lidar, LidarScan, Odometry, Result};
 
 /// Observation of a racer.
@@ -38,7 +39,7 @@ halts!(RaceOutcome { Finished: "the race is finished", Lost: "the car is lost" }
 
 /// Implements the behaviour traits for a racer with phases.
 macro_rules! races {
-    ($racer:ident, $phase:ident) => {
+    ($racer:ident, $phase:ident, $look:expr) => {
         impl Behaviour for $racer {
             type Observation = RaceObservation;
             type Command = Twist;
@@ -49,6 +50,8 @@ macro_rules! races {
             }
 
             fn step(&mut self, _time: f64, seen: &RaceObservation) -> Decision<Self> {
+                check_scan(&seen.scan)?;
+                $look(self, &seen.scan);
                 let command = self.decide(seen.odometry, seen.speed, &seen.cones);
                 Ok(match self.phase() {
                     _ if !self.is_done(seen.speed) => ControlFlow::Continue(command),
@@ -69,5 +72,6 @@ macro_rules! races {
     };
 }
 
-races!(Racer, RacePhase);
-races!(EventRacer, EventPhase);
+races!(Racer, RacePhase, Racer::see_others);
+// Events are driven alone.
+races!(EventRacer, EventPhase, |_: &mut EventRacer, _: &LidarScan| ());

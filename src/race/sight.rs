@@ -55,6 +55,24 @@ const STEP: f64 = 0.3;
 /// assert!(found.len() == 1 && found[0].is_cone() && (found[0].position.x - 5.05).abs() < 0.02);
 /// ```
 pub fn sightings(scan: &LidarScan) -> Vec<ConeSighting> {
+    runs(scan).iter().filter_map(|run| finish(scan, run)).collect()
+}
+
+/// The points of things that are too large for cones, such as other cars, in the robot's frame.
+pub(super) fn bodies(scan: &LidarScan) -> Vec<Vec<Point>> {
+    let place = |&beam: &usize| {
+        scan.mount.to_world(Point::origin() + direction(scan.angle(beam)) * scan.ranges[beam])
+    };
+    let things = runs(scan).into_iter().map(|run| run.iter().map(place).collect::<Vec<Point>>());
+    let is_large = |thing: &Vec<Point>| {
+        let ends = thing.first().zip(thing.last());
+        ends.is_some_and(|(first, last)| (last - first).norm() >= ConeSighting::WIDEST_CONE)
+    };
+    things.filter(is_large).collect()
+}
+
+/// Runs of beams with adjacent ends.
+fn runs(scan: &LidarScan) -> Vec<Vec<usize>> {
     let mut found = Vec::new();
     let mut run: Vec<usize> = Vec::new();
     let mut misses = 0;
@@ -65,13 +83,12 @@ pub fn sightings(scan: &LidarScan) -> Vec<ConeSighting> {
         }
         let near = run.last().is_some_and(|&last| (scan.ranges[last] - range).abs() < STEP && misses <= 1);
         if !near {
-            found.extend(finish(scan, &run));
-            run.clear();
+            found.push(std::mem::take(&mut run));
         }
         run.push(beam);
         misses = 0;
     }
-    found.extend(finish(scan, &run));
+    found.push(run);
     found
 }
 

@@ -331,20 +331,6 @@ fn merge(a: Beam, b: Beam) -> Beam {
     if a.range < b.range { a } else { b }
 }
 
-/// Rejects non-finite odometry and scans of NaN only.
-pub(crate) fn check_measured(odometry: &Pose, scan: &LidarScan) -> Result<()> {
-    if !odometry.is_finite() {
-        let Pose { x, y, heading } = odometry;
-        let found = format!("{x} m, {y} m, {heading} rad");
-        return Err(Error::invalid_input("odometry", found, "finite numbers"));
-    }
-    if !scan.ranges.is_empty() && scan.ranges.iter().all(|range| range.is_nan()) {
-        let expected = "metres or +infinity";
-        return Err(Error::invalid_input("every range of the lidar scan", f64::NAN, expected));
-    }
-    Ok(())
-}
-
 /// Rejects scans that do not cover a full turn.
 fn check(scan: &LidarScan) -> Result<()> {
     let covered = scan.angle_increment * scan.ranges.len() as f64;

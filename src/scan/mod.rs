@@ -16,7 +16,6 @@ mod matcher;
 mod reference;
 
 pub use filter::ScanFilter;
-pub(crate) use filter::check_measured;
 pub use landmark::{Landmark, LandmarkFilter};
 pub use lidar::{
     Extremum, ExtremumKind, ScanCorner, ScanFeatures, ScanFeaturesParameters, ScanObject, ScanWall,

@@ -4,22 +4,29 @@ use roverlab::drive::marine::{
     Boat, BoatParameters, DepthHoldParameters, Dive, DiveParameters, PoolSearch, PoolSearchParameters,
     PoolWall, PoolWallParameters, Survey, SurveyParameters,
 };
-use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
+use roverlab::drive::motion_watch::{
+    MotionApproach, MotionApproachParameters, MotionWatch, MotionWatchParameters,
+};
+use roverlab::drive::parking::{ParkingDriver, ParkingKind, ParkingParameters};
 use roverlab::drive::terrain::{Ascent, AscentParameters, SlopeSensor};
+use roverlab::drive::traffic::{
+    RoadSharing, RoadSharingParameters, RoadStation, RoadStationParameters, TrafficDriver, TrafficParameters,
+};
 use roverlab::drive::{
     AToB, AToBParameters, AlongWall, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters,
-    CoverageMap, CoverageMapParameters, Cruise, CruiseParameters, Follower, FollowerParameters, Formation,
-    Goal, LidarWallFollower, LidarWallFollowerParameters, Method, OmniDriver, OmniParameters, OmniTracker,
-    Path, PathFollower, PathFollowerParameters, Pid, PidParameters, PidWallFollower,
-    PidWallFollowerParameters, RandomDrive, RandomDriveParameters, Steering, Tour, TourParameters,
-    TwoLevelWallFollower, WallFollower, WallFollowerParameters, WallSensors,
+    CoverageMap, CoverageMapParameters, Cruise, CruiseParameters, FirstSteps, FirstStepsParameters,
+    FirstTask, Follower, FollowerParameters, Formation, Goal, LidarWallFollower, LidarWallFollowerParameters,
+    Method, OmniDriver, OmniParameters, OmniTracker, Path, PathFollower, PathFollowerParameters, Pid,
+    PidParameters, PidWallFollower, PidWallFollowerParameters, RadioRing, RadioRingParameters, RandomDrive,
+    RandomDriveParameters, Steering, Tour, TourParameters, TwoLevelWallFollower, WallFollower,
+    WallFollowerParameters, WallSensors,
 };
 use roverlab::geometry::{Aabb, Point, Pose};
 use roverlab::kinematics::marine::CraftSpec;
 use roverlab::kinematics::{Ackermann, Omni};
 use roverlab::random::Stream;
 use roverlab::vision::lane_markings::{RoadCamera, RoadModel};
-use roverlab::vision::motion::MotionParameters;
+use roverlab::vision::motion::{FlowDetector, FlowParameters, MotionParameters};
 use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod};
 use roverlab::world::{RobotSpec, World};
 
@@ -43,12 +50,27 @@ fn colours_and_motion() {
         { Positive: speed, turn_speed, radius, leg, period; NotNegative: margin, gap, memory; });
     check!(PushHomeParameters = home(), |p| ends(RobotSpec::s4(), PushHome::new(finder(), GOAL, p)?),
         { Positive: round, push_speed, correction, near; NotNegative: clearance, foresight; } but tracker);
+    let camera = CameraGeometry { field_of_view: 1.0, height: 0.06, ahead: 0.06 };
+    check!(MotionApproachParameters = MotionApproachParameters::new(camera), |p| ends(RobotSpec::s4(), MotionApproach::new(p)?),
+        { Positive: speed, turn_speed, period, reach, half_width; Bounded: apart; } but flow, patience);
+    check!(FlowParameters = FlowParameters::new(camera), |p| { FlowDetector::new(p)?; },
+        { CountUpTo: slack; NotNegative: overhang; } but camera, motion);
     check!(MotionWatchParameters = MotionWatchParameters::new(1.0), |p| ends(RobotSpec::s4(), MotionWatch::new(p)?),
         { Bounded: field_of_view; Positive: turn_speed, period; NotNegative: parallax, patience; }
         but standing, turning);
     check!(MotionParameters = MotionParameters::default(),
         |p| ends(RobotSpec::s4(), MotionWatch::new(MotionWatchParameters { turning: p, ..MotionWatchParameters::new(1.0) })?),
         { Bounded: block; NotNegative: threshold; Positive: least_noise; });
+}
+
+#[test]
+fn first_steps() {
+    for task in [FirstTask::Wall, FirstTask::Circle] {
+        check!(FirstStepsParameters = FirstStepsParameters::default(), |p| ends(RobotSpec::s4(), FirstSteps::new(task, p)?),
+            { NotNegative: gap; Positive: diameter, radius, speed, turn_rate, period; });
+    }
+    check!(RadioRingParameters = RadioRingParameters::default(), |p| ends(RobotSpec::s4(), RadioRing::new(true, p)?),
+        { Count: tries; Positive: repetition, period; });
 }
 
 #[test]
@@ -167,6 +189,16 @@ fn lanes() {
     check!(BookLaneParameters = BookLaneParameters::default(),
         |p| BookLaneKeeper::new(p)?,
         { Positive: period, speed, gain; BoundedFromZero: horizon; });
+    check!(TrafficParameters = TrafficParameters::default(),
+        |p| TrafficDriver::new(camera(), RoadModel::default(), p)?,
+        { Positive: brake; NotNegative: gap, following, clearance; } but lane, passing, halts, body);
+    check!(RoadSharingParameters = RoadSharingParameters::default(), |p| RoadSharing::new(p)?,
+        { Positive: interval, memory, brake; NotNegative: gap, clearance; } but body);
+    check!(RoadStationParameters = RoadStationParameters::default(), |p| RoadStation::new(p)?,
+        { Positive: period, memory; });
+    check!(ParkingParameters = ParkingParameters::default(),
+        |p| ParkingDriver::new(camera(), RoadModel::default(), ParkingKind::Parallel, p)?,
+        { Positive: brake, clearance, curvature; } but speed, body, wheels);
     check!(RoadModel = RoadModel::default(), |p| LaneKeeper::new(camera(), p, LaneKeeperParameters::default())?,
         { Bounded: size, line_width; } but left_hand);
     check!(RoadCamera = camera(), |p| LaneKeeper::new(p, RoadModel::default(), LaneKeeperParameters::default())?,
@@ -187,11 +219,11 @@ fn diving() {
     let start = Pose::new(2.0, 2.0, 0.0);
     check!(SurveyParameters = SurveyParameters::default(),
         |p| Survey::new(&RobotSpec::mako(), start, area, true, p)?,
-        { BoundedFromZero: margin; NotNegative: depth; Positive: spacing, speed, density, period; } but hold);
+        { BoundedFromZero: margin; NotNegative: depth; Positive: spacing, speed, density, period; } but altitude, hold);
     let search = |survey| PoolSearchParameters { survey, ..PoolSearchParameters::default() };
     check!(SurveyParameters = SurveyParameters::default(),
         |p| PoolSearch::new(&RobotSpec::mako(), start, area, true, search(p))?,
-        { BoundedFromZero: margin; NotNegative: depth; Positive: spacing, speed, density, period; } but hold);
+        { BoundedFromZero: margin; NotNegative: depth; Positive: spacing, speed, density, period; } but altitude, hold);
     check!(BoatParameters = BoatParameters::default(),
         |p| Boat::new(&CraftSpec::solar_raft(), start, &[Point::new(9.0, 9.0)], p)?,
         { NotNegative: station; Positive: speed, lookahead, reached, period; });

@@ -24,7 +24,7 @@ fn simulation(spec: RobotSpec, options: SimOptions) -> roverlab::io::Result<()> 
 #[test]
 fn the_simulator() {
     check!(SimOptions = SimOptions::default(), |p| simulation(RobotSpec::s4(), p)?,
-        { BoundedFromZero: light; Bounded: call_duration, patience; NotNegative: time_limit; Positive: trail_interval; }
+        { BoundedFromZero: light, radio_loss; Bounded: call_duration, patience; NotNegative: time_limit; Positive: trail_interval; }
         but seed, noise, pushing, ideal_encoders);
     check!(NoiseModel = NoiseModel::real(),
         |p| simulation(RobotSpec::s4(), SimOptions { noise: p, ..SimOptions::default() })?,
@@ -36,7 +36,7 @@ fn the_simulator() {
 fn robots() {
     let s4 = RobotSpec::s4;
     check!(RobotSpec = s4(), |p| simulation(p, SimOptions::default())?, { Positive: height; NotNegative: mass, friction; }
-        but name, drive, motor, footprint, mast, psds, lidar, camera, depth_sensor, dvl, inertial, model, mesh, body);
+        but name, drive, motor, footprint, mast, psds, lidar, camera, depth_sensor, dvl, inertial, compass, model, mesh, body);
     check!(MotorSpec = MotorSpec::default(), |p| simulation(RobotSpec { motor: p, ..s4() }, SimOptions::default())?,
         { NotNegative: time_constant; Positive: max_acceleration; });
     check!(PsdSpec = s4().psds[0].clone(),
@@ -142,8 +142,14 @@ fn worlds_and_pictures() {
 #[cfg(feature = "physics")]
 #[test]
 fn a_walking_robot() {
-    use roverlab::io::sim::starman::{Starman, StarmanSpec};
+    use roverlab::io::sim::starman::{BodyPlan, LimbPlan, Starman, StarmanSpec};
     check!(StarmanSpec = StarmanSpec::book(), |p| Starman::new(&p)?,
         { Positive: body_radius, body_mass, limb_length, limb_radius, limb_mass, friction, servo_speed, servo_torque;
           Bounded: servo_range, time_step; });
+    let body = |limb: LimbPlan| BodyPlan { limbs: vec![limb], ..BodyPlan::default() };
+    check!(BodyPlan = body(LimbPlan::default()), |p| Starman::of(&p)?,
+        { NotNegative: length; Positive: radius, mass, friction, servo_speed, servo_torque; Bounded: time_step; }
+        but limbs);
+    check!(LimbPlan = LimbPlan::default(), |p| Starman::of(&body(p))?,
+        { AroundZero: hinge, rest; Positive: length, radius, mass; Bounded: range; } but parent);
 }

@@ -1,6 +1,7 @@
 use image::RgbImage;
 
 use crate::geometry::Pose;
+use crate::io::reading::{check_image, check_pose, check_scan};
 use crate::io::{Camera, Lidar, LidarScan, Odometry, Result, StallDetector};
 
 /// Observation of the colour-driven behaviours.
@@ -28,6 +29,13 @@ impl ColourObservation {
         robot.scan_into(&mut self.scan)?;
         (self.pose, self.stalled) = (robot.pose()?, robot.is_stalled()?);
         Ok(())
+    }
+
+    pub(super) fn check(&self) -> Result<()> {
+        check_pose(&self.pose)?;
+        check_scan(&self.scan)?;
+        // Behaviours that do not need the camera at the moment leave the image as it is.
+        if self.image.is_empty() { Ok(()) } else { check_image(&self.image) }
     }
 
     pub(super) fn at(&self, time: f64) -> Sight<'_> {

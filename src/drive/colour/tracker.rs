@@ -309,6 +309,7 @@ impl Behaviour for ColourTracker {
     }
 
     fn step(&mut self, time: f64, seen: &ColourObservation) -> Decision<Self> {
+        seen.check()?;
         Ok(match self.steer(&seen.at(time)).map_err(io::Error::caused_by)? {
             _ if seen.stalled => ControlFlow::Break(ColourOutcome::Blocked),
             Some(twist) => ControlFlow::Continue(twist),

@@ -3,6 +3,7 @@ use std::ops::ControlFlow;
 use super::super::way::{ALIGNED, TURN_GAIN};
 use crate::geometry::{Point, Pose, Twist, angle_difference, math};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
+use crate::io::reading::check_pose;
 use crate::io::{Error, Odometry, Result};
 use crate::parameter::require_positive;
 
@@ -82,8 +83,11 @@ impl Tour {
         ((self.next - 1) as f64 / legs as f64).min(1.0)
     }
 
-    /// The next velocity; `None` at the end.
+    /// The next velocity; `None` at the end. Without a finite pose the robot stands.
     pub fn step(&mut self, pose: Pose) -> Option<Twist> {
+        if !pose.is_finite() {
+            return Some(Twist::STOP);
+        }
         let TourParameters { speed, turn_rate, arrival, reach, lag, .. } = self.parameters;
         loop {
             let (&from, &to) = (self.corners.get(self.next - 1)?, self.corners.get(self.next)?);
@@ -136,6 +140,7 @@ impl Behaviour for Tour {
 
     fn step(&mut self, _time: f64, place: &Option<Pose>) -> Decision<Self> {
         let Some(place) = *place else { return Ok(ControlFlow::Continue(Twist::STOP)) };
+        check_pose(&place)?;
         Ok(Tour::step(self, place).map_or(ControlFlow::Break(TourOutcome::Finished), ControlFlow::Continue))
     }
 }

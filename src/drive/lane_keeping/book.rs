@@ -29,10 +29,10 @@ impl Default for BookLaneParameters {
     }
 }
 
-/// The book's lane keeper. It converts the image to grey, smooths it, and finds edges and straight lines in its
-/// lower part. It averages the lines that lean to the right and those that lean to the left, and commands a
-/// curvature proportional to the offset of the middle between the two. A missing side is assumed at its last
-/// distance; if both are missing, the curvature is kept.
+/// The book's lane keeper. It converts the image to grey, smooths it, and finds edges and straight lines in
+/// its lower part. It averages the lines that lean to the right and those that lean to the left, and commands
+/// a curvature proportional to the offset of the middle between the two. A missing side is assumed at its
+/// last distance; if both are missing, the curvature is kept.
 #[derive(Debug)]
 pub struct BookLaneKeeper {
     parameters: BookLaneParameters,
@@ -140,6 +140,7 @@ impl Behaviour for BookLaneKeeper {
     }
 
     fn step(&mut self, _time: f64, seen: &LaneObservation) -> Decision<Self> {
+        seen.check()?;
         let lines = self.lines(&seen.image).map_err(io::Error::caused_by)?;
         let size = (f64::from(seen.image.width()), f64::from(seen.image.height()));
         let bend = self.steer(&lines, size);

@@ -56,6 +56,16 @@ impl LaneKeeperParameters {
     }
 }
 
+/// Path and speed that a planner asks of a [`LaneKeeper`].
+#[derive(Debug, Clone, Copy)]
+pub(in crate::drive) struct Guide {
+    /// Distance to the left of the lane's centre (m), its slope, and its second derivative (1/m) where the
+    /// car is when the command takes effect.
+    pub(in crate::drive) path: [f64; 3],
+    /// Maximum speed (m/s).
+    pub(in crate::drive) speed: f64,
+}
+
 /// Keeps a car, or a two-wheeled robot, in the centre of its lane by camera and odometry. If the lane is
 /// lost, it stops and continues to look.
 #[derive(Debug, Clone)]
@@ -63,8 +73,9 @@ pub struct LaneKeeper {
     parameters: LaneKeeperParameters,
     finder: LaneMarkingFinder,
     gray: Vec<u8>,
-    /// Odometry at the last image.
+    /// Odometry at the last image, and the distance driven to it since the one before (m).
     before: Option<Pose>,
+    driven: f64,
     lane: Option<LaneEstimate>,
 }
 
@@ -82,7 +93,7 @@ impl LaneKeeper {
     ) -> Result<Self, ParameterError> {
         parameters.validate()?;
         let finder = LaneMarkingFinder::new(camera, road)?;
-        Ok(Self { parameters, finder, gray: Vec::new(), before: None, lane: None })
+        Ok(Self { parameters, finder, gray: Vec::new(), before: None, driven: 0.0, lane: None })
     }
 
     /// The lane as estimated in the last step.
@@ -112,30 +123,49 @@ impl LaneKeeper {
             (before.to_local(odometry.position()).x, turn)
         });
         self.before = Some(odometry);
+        self.driven = driven.0;
         let lane = self.finder.see(GrayView::new(&self.gray, width, height)?, driven);
         Ok(self.lane.insert(lane))
     }
 
+    /// Distance driven between the last two images (m).
+    pub(in crate::drive) fn driven(&self) -> f64 {
+        self.driven
+    }
+
+    /// The last image, of a width (pixels), in grey.
+    pub(in crate::drive) fn gray(&self, width: u32) -> Result<GrayView<'_>, ImageError> {
+        let width = width as usize;
+        GrayView::new(&self.gray, width, self.gray.len() / width.max(1))
+    }
+
     /// The command for the estimated lane at a speed.
     fn steer(&self, lane: &LaneEstimate, speed: f64) -> Twist {
+        self.steer_by(lane, speed, &Guide { path: [0.0; 3], speed: self.parameters.speed })
+    }
+
+    /// The command that follows a path beside the lane's centre.
+    pub(in crate::drive) fn steer_by(&self, lane: &LaneEstimate, speed: f64, guide: &Guide) -> Twist {
         let p = &self.parameters;
         if lane.lost {
             return Twist::STOP;
         }
-        let wanted = self.fastest(lane, speed);
+        let wanted = self.fastest(lane, speed, guide.speed);
         // Pose of the car when the command takes effect.
         let ahead = (p.delay * speed).max(0.0);
         let settling = p.settling[0] + p.settling[1] * speed.max(0.0);
-        let offset = lane.offset + ahead * math::sin(lane.heading);
-        let back = offset.clamp(-0.3, 0.3) / (settling * settling) + 2.0 * math::sin(lane.heading) / settling;
-        let bend = lane.curvature_at(ahead) - back;
+        let [beside, slope, bend] = guide.path;
+        let offset = lane.offset + ahead * math::sin(lane.heading) - beside;
+        let heading = lane.heading - math::atan(slope);
+        let back = offset.clamp(-0.3, 0.3) / (settling * settling) + 2.0 * math::sin(heading) / settling;
+        let bend = lane.curvature_at(ahead) + bend - back;
         Twist::new(wanted, wanted * bend)
     }
 
-    /// Maximum speed for the bends ahead and the visible distance.
-    fn fastest(&self, lane: &LaneEstimate, speed: f64) -> f64 {
+    /// Maximum speed up to a limit for the bends ahead and the visible distance.
+    fn fastest(&self, lane: &LaneEstimate, speed: f64, limit: f64) -> f64 {
         let p = &self.parameters;
-        let mut most = p.speed;
+        let mut most = limit;
         for i in 0..(p.sight / STRIDE) as u32 {
             let ahead = STRIDE * f64::from(i);
             let bend = lane.curvature_at(ahead).abs().max(1e-6);
@@ -144,7 +174,7 @@ impl LaneKeeper {
         }
         // Drive slowly where the lane is extrapolated.
         let doubt = lane.sigmas[0] / 0.03 + lane.sigmas[1] / 0.08;
-        (most / (1.0 + doubt * doubt)).max(CREEP.min(p.speed))
+        (most / (1.0 + doubt * doubt)).max(CREEP.min(limit))
     }
 }
 
@@ -158,6 +188,7 @@ impl Behaviour for LaneKeeper {
     }
 
     fn step(&mut self, _time: f64, seen: &LaneObservation) -> Decision<Self> {
+        seen.check()?;
         let lane = self.see(&seen.image, seen.odometry).map_err(io::Error::caused_by)?.clone();
         Ok(ControlFlow::Continue(self.steer(&lane, seen.speed)))
     }

@@ -42,12 +42,14 @@ mod book;
 mod keeper;
 
 pub use book::{BookLaneKeeper, BookLaneParameters};
+pub(in crate::drive) use keeper::Guide;
 pub use keeper::{LaneKeeper, LaneKeeperParameters};
 
 use image::RgbImage;
 
-use crate::geometry::Pose;
+use crate::geometry::{Pose, Twist};
 use crate::io::control::halts;
+use crate::io::reading::{check_image, check_pose, check_speed};
 use crate::io::{Camera, Odometry, Result};
 use crate::vision::lane_markings::RoadCamera;
 use crate::world::CameraSpec;
@@ -68,6 +70,13 @@ impl LaneObservation {
         robot.image_into(&mut self.image)?;
         (self.odometry, self.speed) = (robot.pose()?, robot.speed()?.linear);
         Ok(())
+    }
+
+    /// Fails for readings that are none.
+    pub(in crate::drive) fn check(&self) -> Result<()> {
+        check_image(&self.image)?;
+        check_pose(&self.odometry)?;
+        check_speed(&Twist::new(self.speed, 0.0))
     }
 }
 

@@ -8,6 +8,7 @@ use super::slow_motion::SlowMotion;
 use super::{DepthHoldParameters, DiveObservation, Thrust};
 use crate::geometry::{Point, Pose, Vector, Vector3};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
+use crate::io::reading::check_pose;
 use crate::io::{Attitude, Error, Inertial, Odometry, Result};
 use crate::kinematics::marine::CraftSpec;
 use crate::parameter::{require_not_negative, require_positive};
@@ -152,7 +153,7 @@ impl Boat {
         let BoatObservation { attitude, rates, odometry } = *seen;
         self.helm.observe(time, &DiveObservation { depth: 0.0, attitude, rates })?;
         let (helm, seconds) = (&self.helm, self.helm.seconds());
-        self.alignment.learn(helm.turned(), seconds, helm.heading());
+        self.alignment.learn(helm.turned(), seconds, attitude.yaw);
         self.reckoning.advance(odometry, helm.heading() - self.alignment.off(), seconds);
         let (pose, log) = (self.reckoning.pose(), self.reckoning.velocity());
         self.motion.advance(helm.craft(), &pose, helm.turn_rate(), helm.pushed(), log, seconds);
@@ -203,9 +204,7 @@ impl Behaviour for Boat {
     fn step(&mut self, time: f64, seen: &BoatObservation) -> Decision<Self> {
         let BoatObservation { attitude, rates, odometry } = *seen;
         DiveObservation { depth: 0.0, attitude, rates }.check()?;
-        if !odometry.is_finite() {
-            return Err(Error::invalid_input("observed pose", format!("{odometry:?}"), "finite numbers"));
-        }
+        check_pose(&odometry)?;
         self.notice(time, seen)?;
         if self.legs.is_over() && time - self.since >= self.parameters.station {
             return Ok(ControlFlow::Break(BoatOutcome::Arrived));

@@ -22,6 +22,9 @@ const AROUND: i32 = 252;
 const TOLERANCE: i32 = 10;
 /// A quarter of the full saturation: water with its veil takes the rest. Noise makes less of gray ground.
 const LIMITS: HueLimits = HueLimits { min_saturation: 64, min_intensity: 8 };
+/// The least level of a colour's brightest channel: three quarters of the ground's. A thing of a colour reflects that
+/// about as well as the gray ground does; what is dark has a colour by noise, or by the veil of turbid water.
+const BRIGHT: u8 = 96;
 /// Pixels of the smallest thing.
 const LEAST: usize = 12;
 
@@ -44,9 +47,11 @@ impl ColourSpotter {
         self.mask.extend(image.pixels().map(|pixel| {
             let level =
                 |channel: usize| (u32::from(pixel.0[channel]) * GROUND / ground[channel]).min(255) as u8;
-            let found = hue([level(0), level(1), level(2)], HueScale::Robios, LIMITS);
+            let levels = [level(0), level(1), level(2)];
+            let found = hue(levels, HueScale::Robios, LIMITS);
             let off = (i32::from(found) - i32::from(self.hue)).rem_euclid(AROUND);
-            u8::from(i32::from(found) < AROUND && off.min(AROUND - off) <= TOLERANCE)
+            let is_bright = levels.iter().any(|level| *level >= BRIGHT);
+            u8::from(is_bright && i32::from(found) < AROUND && off.min(AROUND - off) <= TOLERANCE)
         }));
         let mask = GrayView::new(&self.mask, width, height)?;
         let whole = self.components.find(mask, LEAST).iter().filter(|blob| {
@@ -106,7 +111,9 @@ mod tests {
     #[test]
     fn other_colours_gray_things_and_darkness_are_none() {
         let mut spotter = ColourSpotter::new(Colour::RED);
-        for other in [[230, 140, 20], [40, 60, 200], [30, 160, 60], [60, 60, 60], [250, 250, 250]] {
+        for other in
+            [[230, 140, 20], [40, 60, 200], [30, 160, 60], [60, 60, 60], [90, 30, 30], [250, 250, 250]]
+        {
             assert_eq!(spotter.find(&picture(other, 1.0)).unwrap(), None, "{other:?}");
         }
         assert_eq!(spotter.find(&picture([200, 30, 30], 0.0)).unwrap(), None);

@@ -6,7 +6,7 @@ use crate::parameter::{require_not_negative, require_positive};
 /// Parameters of [`DepthHold`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DepthHoldParameters {
-    /// Maximum rate of change of the depth reference (m/s).
+    /// Maximum speed of the depth reference relative to its goal (m/s).
     pub speed: f64,
     /// Bandwidth of the reference (rad/s). A change of depth takes about four of its inverses longer than at
     /// constant speed.
@@ -46,7 +46,7 @@ pub struct DepthHold {
     craft: Craft,
     reserve: f64,
     lag: f64,
-    /// The reference's depth, and its speed.
+    /// The reference's depth, and its speed relative to the goal.
     wanted: [f64; 2],
     /// The observer's depth, speed down, and unknown force down in N.
     depth: f64,
@@ -88,11 +88,18 @@ impl DepthHold {
     /// The downward force (N) that brings a craft whose sensor reads `depth` to `goal` and keeps it there,
     /// `seconds` after the last step.
     pub fn step(&mut self, depth: f64, goal: f64, seconds: f64) -> f64 {
+        self.follow(depth, [goal, 0.0, 0.0], seconds)
+    }
+
+    /// Like [`step`](DepthHold::step), for a goal that itself moves, as with the floor below a craft that keeps its
+    /// altitude: its depth (m), speed (m/s) and acceleration (m/s²) downwards.
+    pub fn follow(&mut self, depth: f64, [goal, rate, bend]: [f64; 3], seconds: f64) -> f64 {
         self.observe(depth, seconds);
-        let acceleration = self.lead(goal, seconds);
+        self.wanted[0] += rate * seconds;
+        let acceleration = self.lead(goal, seconds) + bend;
         let control = self.parameters.control;
         let off = self.wanted[0] - self.depth;
-        let closing = control * control * off + 2.0 * control * (self.wanted[1] - self.speed);
+        let closing = control * control * off + 2.0 * control * (self.wanted[1] + rate - self.speed);
         let inertia = self.craft.inertia()[2];
         inertia * (acceleration + closing) + self.drag(self.speed) + self.reserve - self.unknown
     }
@@ -124,7 +131,7 @@ impl DepthHold {
         self.unknown += inertia * rate * rate * rate * seconds * off;
     }
 
-    /// Moves the reference on; returns its acceleration.
+    /// Moves the reference towards its goal; returns its acceleration.
     fn lead(&mut self, goal: f64, seconds: f64) -> f64 {
         let DepthHoldParameters { speed, approach, .. } = self.parameters;
         let wished = (0.5 * approach * (goal - self.wanted[0])).clamp(-speed, speed);

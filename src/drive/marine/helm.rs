@@ -166,10 +166,16 @@ impl Helm {
 
     /// The thrusters' commands that bring the craft to a depth and push it.
     pub(super) fn thrust(&mut self, depth: f64, push: Push) -> Result<Thrust> {
+        self.thrust_along([depth, 0.0, 0.0], push)
+    }
+
+    /// The thrusters' commands that keep the craft at a depth that moves with a speed and an acceleration (m, m/s,
+    /// m/s²), and push it.
+    pub(super) fn thrust_along(&mut self, goal: [f64; 3], push: Push) -> Result<Thrust> {
         let (turning, inertia) = (self.turning, self.craft.inertia());
         let level = inertia[4] * turning * (turning * -self.pitch - 2.0 * self.pitch_rate);
         let Some(hold) = &mut self.hold else { return Thrust::new(&[]) };
-        let down = hold.step(self.depth, depth, self.seconds);
+        let down = hold.follow(self.depth, goal, self.seconds);
         let upright = Wrench { force: Vector3::z() * -down, moment: Vector3::y() * level };
         let upright = self.allocation.share(&upright);
         hold.told(down * upright.share);

@@ -3,7 +3,8 @@
 //!
 //! - [`Dive`]: goes to a depth and stays there, level and on a heading, by pressure sensor and inertial unit;
 //! - [`PoolWall`]: follows the sides of a pool at a depth, by distance sensors;
-//! - [`Survey`]: drives lanes over the floor, localised by walls, Doppler log and compass; [`DepthMap`] maps it;
+//! - [`Survey`]: drives lanes over the floor at a depth or an altitude, localised by walls, Doppler log and compass;
+//!   [`DepthMap`] maps it;
 //! - [`PoolSearch`]: drives the same lanes with the camera pointing down, and finds an object by its colour;
 //! - [`Boat`]: follows a course and keeps station at its end;
 //! - [`DepthHold`]: the depth controller inside them;
@@ -16,6 +17,7 @@ mod depth_hold;
 mod depth_map;
 mod dive;
 mod fix;
+mod floor_track;
 mod helm;
 mod legs;
 mod observation;

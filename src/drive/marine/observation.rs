@@ -1,4 +1,5 @@
-use crate::geometry::{Pose, Vector3};
+use crate::geometry::Vector3;
+use crate::io::reading::check_attitude;
 use crate::io::{Attitude, DepthSensor, Error, Inertial, Result};
 
 /// Depth, attitude and turn rates of a craft: the readings of [`Dive`](super::Dive).
@@ -25,26 +26,10 @@ impl DiveObservation {
         if !(self.depth.is_finite() && self.depth >= 0.0) {
             return Err(Error::invalid_input("observed depth", self.depth, "a finite number of at least 0"));
         }
-        let Attitude { roll, pitch, yaw } = self.attitude;
-        let angles = [roll, pitch, yaw, self.rates.y, self.rates.z];
-        match angles.iter().find(|angle| !angle.is_finite()) {
-            Some(angle) => Err(Error::invalid_input("observed attitude", angle, "finite numbers")),
+        check_attitude(&self.attitude)?;
+        match [self.rates.y, self.rates.z].iter().find(|rate| !rate.is_finite()) {
+            Some(rate) => Err(Error::invalid_input("observed turn rate", rate, "a finite number")),
             None => Ok(()),
         }
-    }
-}
-
-/// Fails for a pose that is none.
-pub(super) fn check_pose(pose: &Pose) -> Result<()> {
-    let expected = "finite numbers";
-    let wrong = || Error::invalid_input("observed pose", format!("{pose:?}"), expected);
-    if pose.is_finite() { Ok(()) } else { Err(wrong()) }
-}
-
-/// Fails for the first distance that is none. Infinity is the distance of nothing in range.
-pub(super) fn check_ranges(ranges: &[f64]) -> Result<()> {
-    match ranges.iter().find(|range| range.is_nan() || **range < 0.0) {
-        Some(range) => Err(Error::invalid_input("observed distance", range, "at least 0")),
-        None => Ok(()),
     }
 }

@@ -2,12 +2,12 @@ use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
 
 use super::helm::Helm;
-use super::observation::{check_pose, check_ranges};
 use super::reckoning::Reckoning;
 use super::wall_memory::WallMemory;
 use super::{DepthHoldParameters, DiveObservation, Thrust};
 use crate::geometry::{Point, Pose, Vector, WallSide, direction, math, normalize_angle};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
+use crate::io::reading::{check_distances, check_pose};
 use crate::io::{DepthSensor, DistanceSensors, Error, Inertial, Odometry, Psd, Result};
 use crate::parameter::{require_not_negative, require_positive, require_up_to};
 use crate::world::{DriveSpec, RobotSpec};
@@ -60,6 +60,8 @@ pub struct PoolWallObservation {
     pub front: f64,
     /// Reading of the distance sensor at the side of the wall (m).
     pub side: f64,
+    /// Reading of the distance sensor at the other side (m).
+    pub far: f64,
 }
 
 /// Outcome of a drive along the sides of a pool.
@@ -76,12 +78,13 @@ pub enum PoolWallOutcome {
 
 halts!(PoolWallOutcome { Round: "all laps are done" });
 
-/// Follows the sides of a pool at a depth, by the distance sensors ahead and at one side (book, section 8.5).
+/// Follows the sides of a pool at a depth, by the distance sensors ahead and at both sides (book, section 8.5).
 ///
 /// It remembers the points that the sensors have hit, placed by dead reckoning, and extrapolates the wall beside
 /// it by a parabola as long as there is no gap. It steers by pure pursuit: of the points at the lookahead
 /// distance, to the one nearest to the wall that keeps the desired distance from all known walls. This one rule
-/// rounds outer corners, turns before walls ahead, and approaches a wall from afar.
+/// rounds outer corners, turns before walls ahead, and approaches a wall from afar. The sensor at the other side
+/// shows a wall that the craft approaches at a small angle with the wrong side: the beam ahead meets it farther on.
 ///
 /// ```
 /// use roverlab::drive::marine::{PoolWall, PoolWallOutcome, PoolWallParameters};
@@ -108,6 +111,7 @@ pub struct PoolWall {
     /// Places of the sensors in the craft's frame, mirrored if the wall is on the right.
     front: Point,
     side: Point,
+    far: Point,
     lap: Option<Lap>,
 }
 
@@ -160,7 +164,7 @@ const NEARLY: f64 = 0.6;
 const CLOSE: f64 = 2.5;
 
 impl PoolWall {
-    /// Creates a drive for a craft with distance sensors ahead and at the wall's side. Fails without them, and for
+    /// Creates a drive for a craft with distance sensors ahead and at both sides. Fails without them, and for
     /// parameters out of range.
     pub fn new(robot: &RobotSpec, parameters: PoolWallParameters) -> Result<Self> {
         let DriveSpec::Craft(craft) = &robot.drive else {
@@ -175,10 +179,11 @@ impl PoolWall {
         if parameters.laps == 0 {
             return Err(Error::invalid_input("laps", 0, "at least 1"));
         }
-        let side = wall_sensor(parameters.side);
+        let mirror = mirror(parameters.side);
+        let [side, far] = sensors(parameters.side);
         let place = |psd: Psd| {
             let spec = robot.psds.iter().find(|spec| spec.id == psd.0);
-            spec.map(|spec| Point::new(spec.mount.x, spec.mount.y.abs()))
+            spec.map(|spec| Point::new(spec.mount.x, mirror * spec.mount.y))
                 .ok_or_else(|| Error::unsupported(psd))
         };
         let helm = Helm::new(craft, 0.8, parameters.period, parameters.hold)?;
@@ -186,6 +191,7 @@ impl PoolWall {
             helm,
             front: place(Psd::FRONT)?,
             side: place(side)?,
+            far: place(far)?,
             reckoning: Reckoning::default(),
             walls: WallMemory::default(),
             lap: None,
@@ -198,14 +204,9 @@ impl PoolWall {
         self.lap.map_or(0, |lap| lap.number)
     }
 
-    /// 1 with the wall on the left, -1 with a mirrored world.
-    fn mirror(&self) -> f64 {
-        if self.parameters.side == WallSide::Left { 1.0 } else { -1.0 }
-    }
-
     fn notice(&mut self, time: f64, seen: &PoolWallObservation) -> Result<()> {
         self.helm.observe(time, &seen.dive)?;
-        let sense = self.mirror();
+        let sense = mirror(self.parameters.side);
         let Pose { x, y, heading } = seen.odometry;
         let mirrored = Pose::new(x, sense * y, sense * heading);
         self.reckoning.advance(mirrored, sense * self.helm.heading(), self.helm.seconds());
@@ -214,7 +215,8 @@ impl PoolWall {
             range.is_finite().then(|| pose.to_world(sensor + way * range))
         };
         let side = hit(self.side, Vector::y(), seen.side);
-        self.walls.add(pose.position(), side, hit(self.front, Vector::x(), seen.front));
+        let others = [hit(self.front, Vector::x(), seen.front), hit(self.far, -Vector::y(), seen.far)];
+        self.walls.add(pose.position(), side, others);
         Ok(())
     }
 
@@ -278,16 +280,21 @@ impl PoolWall {
         let deep = (seen.dive.depth - depth).abs() < BEGIN || self.lap.is_some();
         let wanted = if deep { speed * math::cos(off).max(0.0) } else { 0.0 };
         let wanted = wanted.min(free.max(0.0));
-        let push = self.helm.push(velocity.x, wanted, self.mirror() * turn);
+        let push = self.helm.push(velocity.x, wanted, mirror(self.parameters.side) * turn);
         self.helm.thrust(depth, push)
     }
 }
 
-/// The distance sensor at a side.
-fn wall_sensor(side: WallSide) -> Psd {
+/// 1 with the wall on the left, -1 with a mirrored world.
+fn mirror(side: WallSide) -> f64 {
+    if side == WallSide::Left { 1.0 } else { -1.0 }
+}
+
+/// The distance sensors at the side of the wall and at the other one.
+fn sensors(side: WallSide) -> [Psd; 2] {
     match side {
-        WallSide::Left => Psd::LEFT,
-        WallSide::Right => Psd::RIGHT,
+        WallSide::Left => [Psd::LEFT, Psd::RIGHT],
+        WallSide::Right => [Psd::RIGHT, Psd::LEFT],
     }
 }
 
@@ -303,7 +310,7 @@ impl Behaviour for PoolWall {
     fn step(&mut self, time: f64, seen: &PoolWallObservation) -> Decision<Self> {
         seen.dive.check()?;
         check_pose(&seen.odometry)?;
-        check_ranges(&[seen.front, seen.side])?;
+        check_distances("observed distance", &[seen.front, seen.side, seen.far])?;
         self.notice(time, seen)?;
         self.count(seen.side);
         if self.laps() >= self.parameters.laps {
@@ -318,7 +325,9 @@ impl<R: DepthSensor + Inertial + Odometry + DistanceSensors + ?Sized> Senses<R> 
         seen.dive.read(robot)?;
         seen.odometry = robot.pose()?;
         seen.front = robot.distance(Psd::FRONT)?;
-        seen.side = robot.distance(wall_sensor(self.parameters.side))?;
+        let [side, far] = sensors(self.parameters.side);
+        seen.side = robot.distance(side)?;
+        seen.far = robot.distance(far)?;
         Ok(())
     }
 }

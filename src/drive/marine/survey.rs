@@ -2,13 +2,14 @@ use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
 use super::fix::Fix;
+use super::floor_track::FloorTrack;
 use super::helm::Helm;
 use super::legs::{Legs, Steered, over_ground, steer};
-use super::observation::{check_pose, check_ranges};
 use super::zero::Zero;
 use super::{DepthHoldParameters, DiveObservation, Sounding, Thrust};
-use crate::geometry::{Aabb, Point, Pose, Vector};
+use crate::geometry::{Aabb, Point, Pose, Vector, math};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
+use crate::io::reading::{check_distances, check_pose};
 use crate::io::{DepthSensor, DistanceSensors, Error, Inertial, Odometry, Psd, Result};
 use crate::parameter::{require, require_not_negative, require_positive};
 use crate::world::{DriveSpec, RobotSpec};
@@ -20,8 +21,10 @@ pub struct SurveyParameters {
     pub spacing: f64,
     /// Distance kept from the craft's centre to the border of the area, enough to turn on the spot (m).
     pub margin: f64,
-    /// Depth of the pressure sensor (m).
+    /// Depth of the pressure sensor (m); with an altitude, the least one.
     pub depth: f64,
+    /// Altitude above the floor to hold, of the distance sensor that points down (m); `None` to hold the depth.
+    pub altitude: Option<f64>,
     /// Speed on a lane (m/s).
     pub speed: f64,
     /// Density of the water, by which the depth sensor is zeroed afloat (kg/m³).
@@ -39,6 +42,7 @@ impl Default for SurveyParameters {
             spacing: 1.0,
             margin: 1.0,
             depth: 0.5,
+            altitude: None,
             speed: 0.6,
             density: 1000.0,
             period: 0.1,
@@ -74,8 +78,8 @@ pub enum SurveyOutcome {
 
 halts!(SurveyOutcome { Covered: "all lanes are done" });
 
-/// Drives lanes at a depth over the floor of a pool or of open water, with a sounding at each step (book,
-/// section 8.5).
+/// Drives lanes over the floor of a pool or of open water, at a depth or at an altitude above the floor, with a
+/// sounding at each step (book, section 8.5).
 ///
 /// The position, with its covariance, comes from Doppler log and compass, corrected by the distances to the four
 /// sides of a pool. Before diving, the depth sensor is zeroed by the craft's waterline. When the position becomes
@@ -109,6 +113,8 @@ pub struct Survey {
     helm: Helm,
     fix: Fix,
     zero: Zero,
+    /// What the sensor that looks down says of the floor, as a depth of that sensor at the floor.
+    floor: FloorTrack,
     /// The lanes to come, and the range of the sensors to the sides (m).
     lanes: VecDeque<Lane>,
     sight: f64,
@@ -158,10 +164,13 @@ impl Survey {
         let DriveSpec::Craft(craft) = &robot.drive else {
             return Err(Error::invalid_input("robot", &robot.name, "a craft"));
         };
-        let SurveyParameters { spacing, margin, depth, speed, density, period, hold } = parameters;
+        let SurveyParameters { spacing, margin, depth, altitude, speed, density, period, hold } = parameters;
         require_positive("spacing", spacing)?;
         require_not_negative("margin", margin)?;
         require_not_negative("depth", depth)?;
+        if let Some(altitude) = altitude {
+            require_positive("altitude", altitude)?;
+        }
         require_positive("speed", speed)?;
         require_positive("density", density)?;
         require_positive("period", period)?;
@@ -178,6 +187,7 @@ impl Survey {
             helm: Helm::new(craft, 0.8, period, hold)?,
             fix: Fix::new(start, sides.then_some(area)),
             zero: Zero::afloat(craft.waterline(density) - up),
+            floor: FloorTrack::default(),
             lanes: lanes(&area, start.position(), spacing, margin)?,
             sight,
             legs: Legs::new(vec![start.position()], speed, LOOKAHEAD, REACHED),
@@ -204,6 +214,14 @@ impl Survey {
         self.ready
     }
 
+    /// The depth to steer for, its speed and acceleration (m, m/s, m/s²): that of the parameters, or the floor's less
+    /// the altitude where this is deeper.
+    fn goal(&self) -> [f64; 3] {
+        let SurveyParameters { depth, altitude, .. } = self.parameters;
+        let above = altitude.and_then(|altitude| self.floor.above(altitude));
+        above.filter(|[above, ..]| *above > depth).unwrap_or([depth, 0.0, 0.0])
+    }
+
     /// Goes on to the next lane. A craft that has become unsure of its place takes the next one along which it can
     /// see a side.
     fn go_on(&mut self, place: Point) {
@@ -226,14 +244,18 @@ impl Survey {
         let pose = self.fix.pose();
         let tilt = seen.dive.attitude.pitch.abs().max(seen.dive.attitude.roll.abs());
         self.zero.read(time, seen.dive.depth);
-        let is_good = tilt < LEVEL && seen.down.is_finite() && self.zero.is_over();
+        let has_echo = tilt < LEVEL && seen.down.is_finite();
+        let upright = math::cos(seen.dive.attitude.pitch) * math::cos(seen.dive.attitude.roll);
+        let echo = has_echo.then_some(seen.dive.depth + seen.down * upright);
+        self.floor.see(echo, self.helm.seconds());
+        let is_good = has_echo && self.zero.is_over();
         self.sounding = is_good.then(|| Sounding {
             place: pose.to_world(Point::new(self.down.x, 0.0)),
             depth: seen.dive.depth - self.zero.offset() + self.down.y + seen.down,
             sigma: self.fix.sigma(),
             datum: self.zero.sigma(),
         });
-        self.ready |= (seen.dive.depth - self.parameters.depth).abs() < BEGIN;
+        self.ready |= (seen.dive.depth - self.goal()[0]).abs() < BEGIN;
         Ok(())
     }
 }
@@ -288,8 +310,8 @@ impl Behaviour for Survey {
     fn step(&mut self, time: f64, seen: &SurveyObservation) -> Decision<Self> {
         seen.dive.check()?;
         check_pose(&seen.odometry)?;
-        check_ranges(&seen.ranges)?;
-        check_ranges(&[seen.down])?;
+        check_distances("observed distance", &seen.ranges)?;
+        check_distances("distance to the floor", &[seen.down])?;
         self.notice(time, seen)?;
         let pose = self.fix.pose();
         self.legs.pass(pose.position());
@@ -306,7 +328,7 @@ impl Behaviour for Survey {
         let wanted = self.legs.guide(pose.position(), self.helm.seconds());
         let Steered { turn, speed } = steer(&pose, over_ground(&pose, velocity), wanted);
         let push = self.helm.push(velocity.x, if self.ready { speed } else { 0.0 }, turn);
-        Ok(ControlFlow::Continue(self.helm.thrust(self.parameters.depth, push)?))
+        Ok(ControlFlow::Continue(self.helm.thrust_along(self.goal(), push)?))
     }
 }
 

@@ -10,6 +10,8 @@ use crate::geometry::{FittedLine, Point, Vector};
 pub(super) struct WallMemory {
     side: VecDeque<Point>,
     ahead: VecDeque<Point>,
+    /// At the other side.
+    far: VecDeque<Point>,
     /// How many of the newest points at the side follow each other without a gap.
     run: usize,
     /// Where the wall at the side goes on.
@@ -35,15 +37,17 @@ const ONWARD: f64 = 1.3;
 const SPACING: f64 = 0.1;
 
 impl WallMemory {
-    /// Takes notice of what the sensors at the side and ahead have hit from a place.
-    pub(super) fn add(&mut self, place: Point, side: Option<Point>, ahead: Option<Point>) {
+    /// Takes notice of what the sensors have hit from a place: the one at the side, and those ahead and at the other
+    /// side.
+    pub(super) fn add(&mut self, place: Point, side: Option<Point>, [ahead, far]: [Option<Point>; 2]) {
         let near = |point: &Point| (point - place).norm() < NEAR;
         let continues =
             side.zip(self.side.back()).is_some_and(|(point, before)| (point - before).norm() < GAP);
         self.run = if continues { self.run + 1 } else { usize::from(side.is_some()) };
         self.side.extend(side);
         self.ahead.extend(ahead.filter(near));
-        for points in [&mut self.side, &mut self.ahead] {
+        self.far.extend(far.filter(near));
+        for points in [&mut self.side, &mut self.ahead, &mut self.far] {
             points.retain(near);
             points.drain(..points.len().saturating_sub(KEPT));
         }
@@ -54,7 +58,7 @@ impl WallMemory {
 
     /// The nearest place of a wall that is known or goes on.
     pub(super) fn nearest(&self, place: Point) -> Option<Point> {
-        let points = self.side.iter().chain(&self.ahead).chain(&self.onward).copied();
+        let points = self.side.iter().chain(&self.ahead).chain(&self.far).chain(&self.onward).copied();
         points.min_by(|a, b| (a - place).norm_squared().total_cmp(&(b - place).norm_squared()))
     }
 
@@ -122,7 +126,7 @@ mod tests {
         let at = |angle: f64| Point::origin() + direction(angle) * 3.0;
         for i in 0..60 {
             let angle = 0.01 * f64::from(i);
-            memory.add(Point::origin() + direction(angle) * 2.2, Some(at(angle)), None);
+            memory.add(Point::origin() + direction(angle) * 2.2, Some(at(angle)), [None; 2]);
         }
         // 0.8 m beyond the last point, the wall itself and not its tangent.
         let beyond = at(0.59 + 0.8 / 3.0);
@@ -137,14 +141,14 @@ mod tests {
             memory.add(
                 Point::new(0.03 * f64::from(i), 0.0),
                 Some(Point::new(0.03 * f64::from(i), 0.8)),
-                None,
+                [None; 2],
             );
         }
         let on = Point::new(1.9, 0.8);
         assert!(memory.clearance(on) < 0.06);
-        memory.add(Point::new(1.2, 0.0), Some(Point::new(1.2, 3.5)), None);
+        memory.add(Point::new(1.2, 0.0), Some(Point::new(1.2, 3.5)), [None; 2]);
         assert!(memory.clearance(on) > 0.6);
-        memory.add(Point::new(1.23, 0.0), None, None);
+        memory.add(Point::new(1.23, 0.0), None, [None; 2]);
         assert!(memory.clearance(on) > 0.6);
     }
 }

@@ -4,6 +4,7 @@ use image::GrayImage;
 
 use crate::geometry::{Pose, Twist, angle_difference};
 use crate::io::control::{Behaviour, Decision, Halt, Senses};
+use crate::io::reading::check_pose;
 use crate::io::{self, Camera, Odometry, Resolution};
 use crate::parameter::{require_not_negative, require_positive};
 use crate::vision::motion::{Motion, MotionDetector, MotionParameters, TurnCompensator};
@@ -166,6 +167,7 @@ impl Behaviour for MotionWatch {
     }
 
     fn step(&mut self, time: f64, seen: &MotionWatchObservation) -> Decision<Self> {
+        check_pose(&seen.pose)?;
         let twist = MotionWatch::step(self, time, &seen.image, seen.pose).map_err(io::Error::caused_by)?;
         Ok(ControlFlow::Continue(twist))
     }

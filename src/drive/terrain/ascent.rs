@@ -4,7 +4,8 @@ use super::slope_sensor::{SlopeSensor, slope, steepness};
 use crate::ParameterError;
 use crate::geometry::{Point3, Pose, Twist, Vector, direction, math};
 use crate::io::control::{Behaviour, Decision, SensedBy, Senses, halts};
-use crate::io::{Attitude, DistanceSensors, Error, Inertial, Lidar, Odometry, Result};
+use crate::io::reading::{check_attitude, check_pose};
+use crate::io::{Attitude, DistanceSensors, Inertial, Lidar, Odometry, Result};
 use crate::parameter::{require, require_positive};
 use crate::world::RobotSpec;
 
@@ -221,11 +222,8 @@ impl Behaviour for Ascent {
     }
 
     fn step(&mut self, time: f64, seen: &AscentObservation) -> Decision<Self> {
-        let Attitude { roll, pitch, yaw } = seen.attitude;
-        if !seen.odometry.is_finite() || ![roll, pitch, yaw].iter().all(|angle| angle.is_finite()) {
-            let found = format!("{:?} {:?}", seen.odometry, seen.attitude);
-            return Err(Error::invalid_input("observed pose", found, "finite numbers"));
-        }
+        check_pose(&seen.odometry)?;
+        check_attitude(&seen.attitude)?;
         let AscentParameters { speed, turn_rate, smoothing, patience, gain, .. } = self.parameters;
         self.reckon(seen);
         if seen.attitude.frame().tilt() > self.parameters.slope + TOO_STEEP {

@@ -1,6 +1,7 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
 
 use crate::geometry::{Point3, Pose3, Vector, Vector3, direction, math, normalize_angle};
+use crate::io::reading::{check_distances, check_scan};
 use crate::io::{Attitude, DistanceSensors, Error, Lidar, LidarScan, LidarSettings, Psd, Result};
 use crate::world::{Mount, PsdSpec, RobotSpec};
 
@@ -115,6 +116,7 @@ impl SlopeSensor {
         points.clear();
         for ray in &self.rays {
             let range = robot.distance(ray.psd)?;
+            check_distances("observed distance", &[range])?;
             points.extend((range < REACH).then(|| ray.origin + ray.direction * range));
         }
         Ok(())
@@ -131,6 +133,7 @@ impl SlopeSensor {
         };
         points.clear();
         robot.scan_into(&mut self.scan)?;
+        check_scan(&self.scan)?;
         let (rise, run) = math::sin_cos(TILT);
         let beams = self.scan.ranges.iter().enumerate().filter(|(_, range)| **range < REACH);
         points.extend(beams.map(|(index, range)| {

@@ -136,6 +136,13 @@ impl FreeDrive {
         }
     }
 
+    /// The same for a car that starts at a position along the course's line (m).
+    #[must_use]
+    pub fn starting_at(mut self, along: f64) -> Self {
+        self.lane = self.course.locate(&self.course.pose(along, 0.0), Some(along));
+        self
+    }
+
     /// Record so far.
     pub fn score(&self) -> &FreeDriveScore {
         &self.score

@@ -2,6 +2,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use crate::ParameterError;
 use crate::geometry::{Pose, WallSide, normalize_angle};
+use crate::io::reading::{check_distances, check_pose};
 use crate::io::{Error, Result};
 use crate::parameter::{require, require_finite, require_positive};
 use crate::world::RobotSpec;
@@ -155,17 +156,12 @@ pub struct WallObservation {
 
 impl WallObservation {
     pub(super) fn check(&self) -> Result<()> {
-        let ranges = [("front", self.front), ("left", self.left), ("right", self.right)];
-        for (name, range) in ranges {
-            if range.is_nan() {
-                let name = format!("{name} range");
-                return Err(Error::invalid_input(&name, range, "metres, or infinity without a return"));
-            }
+        for (name, range) in
+            [("front range", self.front), ("left range", self.left), ("right range", self.right)]
+        {
+            check_distances(name, &[range])?;
         }
-        if self.pose.is_finite() {
-            return Ok(());
-        }
-        Err(Error::invalid_input("observed pose", format!("{:?}", self.pose), "finite numbers"))
+        check_pose(&self.pose)
     }
 
     /// Observation of the mirrored robot.

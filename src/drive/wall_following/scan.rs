@@ -2,6 +2,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::{FollowsWalls, WallSide};
 use crate::geometry::{FittedLine, Point, Twist, math};
+use crate::io::reading::check_scan;
 use crate::io::{Error, LidarScan, Result};
 use crate::parameter::require_positive;
 
@@ -85,8 +86,10 @@ impl LidarWallFollower {
         Ok(Self { parameters, met: false, aligned: false })
     }
 
-    /// The next velocity. Fails for a scan of fewer than 60 beams or less than half a turn.
+    /// The next velocity. Fails for a scan of fewer than 60 beams or less than half a turn, and for one with
+    /// neighbouring beams that are no distances.
     pub fn step(&mut self, scan: &LidarScan) -> Result<Twist> {
+        check_scan(scan)?;
         let LidarWallFollowerParameters { side, distance, speed, .. } = self.parameters;
         let span = scan.angle_increment * scan.ranges.len() as f64;
         if span.is_nan() || span < PI - 1e-6 || scan.ranges.len() < 60 {

@@ -58,9 +58,12 @@ impl TwoLevelWallFollower {
         Ok(Self { safe, speed, ..Self::default() })
     }
 
-    /// The next velocity.
+    /// The next velocity. Without a range ahead and one to the left, infinite or not, the robot stands.
     pub fn step(&mut self, observation: &WallObservation) -> Twist {
         let WallObservation { front, left, .. } = *observation;
+        if front.is_nan() || left.is_nan() {
+            return Twist::STOP;
+        }
         self.turning = if self.turning { front < 2.0 * left } else { front <= self.safe };
         if self.turning {
             self.met = true;

@@ -3,6 +3,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::fmt;
 use std::io::{self, Write};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
@@ -99,6 +100,8 @@ struct Message {
 const CHUNK_BYTES: usize = 1 << 20;
 /// Bytes that wait for robots that record nothing, at most.
 const MOST_WAITING: usize = 64 << 20;
+/// Time for which a robot far ahead waits for others that record nothing: their programs may hang.
+const PATIENCE: Duration = Duration::from_secs(60);
 /// Maximum duration of a chunk (ns): one second.
 const SECOND: u64 = 1_000_000_000;
 
@@ -143,7 +146,8 @@ impl<W: Write> LogWriter<W> {
     }
 
     /// Makes a robot more than `bytes` bytes ahead of the others wait for them, which bounds the buffered
-    /// bytes per robot. For robots that drive in their own threads without other synchronisation.
+    /// bytes per robot. For robots that drive in their own threads without other synchronisation. If the
+    /// others record nothing for a minute of real time, the robot goes on.
     pub fn hold_at_most(&self, bytes: usize) {
         self.lock().most_ahead = Some(bytes);
     }
@@ -196,7 +200,12 @@ impl<W: Write> LogWriter<W> {
         shared.drain();
         self.written.notify_all();
         while shared.is_recording() && shared.is_far_ahead(track) {
-            shared = self.written.wait(shared).unwrap_or_else(PoisonError::into_inner);
+            let waited = self.written.wait_timeout(shared, PATIENCE);
+            let (lock, wait) = waited.unwrap_or_else(PoisonError::into_inner);
+            shared = lock;
+            if wait.timed_out() {
+                return;
+            }
         }
     }
 

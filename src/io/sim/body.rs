@@ -190,7 +190,7 @@ impl Body {
             camera: spec.camera.map(|camera| {
                 Box::new(CameraDevice::new(camera, placement.elevation, streams.child("camera", 0)))
             }),
-            inertial: InertialUnit::of(spec.inertial, streams),
+            inertial: InertialUnit::of(spec.inertial, spec.compass, streams),
             depth: spec.depth_sensor.map(|own| Box::new(DepthGauge::new(own, streams.child("depth", 0)))),
             mailbox: VecDeque::new(),
             keys: VecDeque::new(),

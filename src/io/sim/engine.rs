@@ -1,4 +1,7 @@
+mod radio;
+
 use image::RgbImage;
+use radio::Radio;
 
 use super::body::Body;
 use super::camera::{CameraDevice, Moment, Studio};
@@ -10,9 +13,7 @@ use super::terrain::Hills;
 use super::watch::{Onlooking, Watcher};
 use super::{LONGEST, SimOptions, TICKS_PER_SECOND, TrailPoint};
 use crate::geometry::{Pose, Pose3, Twist, Vector3, units};
-use crate::io::{
-    Attitude, Error, ErrorKind, Key, LidarScan, LidarSettings, Psd, RadioMessage, Resolution, Result,
-};
+use crate::io::{Attitude, Error, ErrorKind, Key, LidarScan, LidarSettings, Psd, Resolution, Result};
 use crate::kinematics::{Displacement, PlanarMotion};
 use crate::parameter::{require_finite, require_positive};
 use crate::random::Stream;
@@ -30,7 +31,7 @@ pub(super) struct Engine {
     motions: Vec<PlanarMotion>,
     pub(super) contacts: Vec<Contact>,
     pub(super) movables: Vec<Movable>,
-    outbox: Vec<Letter>,
+    radio: Radio,
     moves: Vec<Move>,
     studio: Box<Studio>,
     /// Hills instead of a level floor.
@@ -55,19 +56,6 @@ pub(super) enum Thing {
     Robot(usize),
     Object(usize),
 }
-
-/// A radio message in transit.
-#[derive(Debug)]
-struct Letter {
-    from: u32,
-    to: u32,
-    data: Vec<u8>,
-}
-
-/// Longest radio message (bytes).
-const MAX_MESSAGE: usize = 65_536;
-/// Largest number of messages waiting for a robot; older ones are dropped.
-const MAX_MAILBOX: usize = 10_000;
 
 impl Ticking for Engine {
     fn time(&self) -> u64 {
@@ -97,7 +85,9 @@ impl Engine {
         let studio = Box::new(Studio::new(scene, &objects, &robots));
         let motions = vec![PlanarMotion::default(); bodies.len()];
         let trail_ticks = options.trail_interval.map(ticks_in);
+        let radio = Radio::new(options.radio_loss, root.child("radio", 0));
         let mut engine = Self {
+            radio,
             space,
             bodies,
             options,
@@ -105,7 +95,6 @@ impl Engine {
             motions,
             contacts: Vec::new(),
             movables: movables(&scene.world, &objects),
-            outbox: Vec::new(),
             moves: Vec::new(),
             studio,
             hills: None,
@@ -229,7 +218,7 @@ impl Engine {
             self.slide_things();
         }
         self.feel();
-        self.deliver();
+        self.radio.deliver(&mut self.bodies);
         self.tick += 1;
         self.extend_trails();
         self.show();
@@ -261,21 +250,6 @@ impl Engine {
                 let odometry = body.drive.get().odometry();
                 body.trail.push(TrailPoint { time, pose: body.pose(), odometry });
             }
-        }
-    }
-
-    /// Delivers the messages of this tick to the mailboxes, in an order independent of thread scheduling.
-    fn deliver(&mut self) {
-        if self.outbox.is_empty() {
-            return;
-        }
-        self.outbox.sort_by_key(|letter| letter.from);
-        for letter in self.outbox.drain(..) {
-            let mailbox = &mut self.bodies[letter.to as usize - 1].mailbox;
-            if mailbox.len() == MAX_MAILBOX {
-                mailbox.pop_front();
-            }
-            mailbox.push_back(RadioMessage { from: letter.from, data: letter.data });
         }
     }
 
@@ -448,15 +422,7 @@ impl Engine {
     }
 
     pub(super) fn send(&mut self, index: usize, to: u32, data: &[u8]) -> Result<()> {
-        if to == 0 || to as usize > self.bodies.len() {
-            let expected = format!("1 to {}", self.bodies.len());
-            return Err(Error::invalid_input("radio receiver", to, &expected));
-        }
-        if data.len() > MAX_MESSAGE {
-            return Err(Error::invalid_input("radio message length", data.len(), "at most 65536 bytes"));
-        }
-        self.outbox.push(Letter { from: index as u32 + 1, to, data: data.to_vec() });
-        Ok(())
+        self.radio.send(index, to, data, self.bodies.len())
     }
 }
 

@@ -9,6 +9,9 @@ use crate::world::InertialSpec;
 #[derive(Debug)]
 pub(super) struct InertialUnit {
     spec: InertialSpec,
+    /// Axes in which the attitude's error is a random walk: gravity bounds that of roll and pitch, and a compass that
+    /// of the yaw.
+    wanders: Vector3,
     pose: Pose3,
     velocity: Vector3,
     turn_rates: Vector3,
@@ -18,19 +21,19 @@ pub(super) struct InertialUnit {
 
 /// Time after which the random walk is as large as the bias (s).
 const WANDER: f64 = 60.0;
-/// Axes with a random walk: gravity bounds the errors of roll and pitch.
-const YAW: Vector3 = Vector3::new(0.0, 0.0, 1.0);
+/// Axes of turn rates and accelerations with a random walk.
 const ALL: Vector3 = Vector3::new(1.0, 1.0, 1.0);
 
 impl InertialUnit {
     /// Unit of a robot, if it has one.
-    pub(super) fn of(spec: InertialSpec, streams: &Stream) -> Option<Box<Self>> {
+    pub(super) fn of(spec: InertialSpec, compass: bool, streams: &Stream) -> Option<Box<Self>> {
         let none = spec == InertialSpec::default();
         let errors =
             ["attitude", "turn rates", "acceleration"].map(|name| Errors::new(streams.child(name, 0)));
         (!none).then(|| {
             Box::new(Self {
                 spec,
+                wanders: if compass { Vector3::zeros() } else { Vector3::z() },
                 pose: Pose3::default(),
                 velocity: Vector3::zeros(),
                 turn_rates: Vector3::zeros(),
@@ -61,7 +64,7 @@ impl InertialUnit {
     pub(super) fn attitude(&mut self, tick: u64, noise: &NoiseModel) -> Result<Attitude> {
         self.spec.attitude.ok_or_else(|| Error::unsupported("attitude"))?;
         let Attitude { roll, pitch, yaw } = Attitude::of(&self.pose);
-        let found = self.errors[0].add(Vector3::new(roll, pitch, yaw), noise.attitude, YAW, tick);
+        let found = self.errors[0].add(Vector3::new(roll, pitch, yaw), noise.attitude, self.wanders, tick);
         let [roll, pitch, yaw] = [found.x, found.y, found.z].map(normalize_angle);
         Ok(Attitude { roll, pitch, yaw })
     }

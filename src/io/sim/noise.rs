@@ -38,7 +38,7 @@ pub struct NoiseModel {
     /// Error of a Doppler log: relative, drawn once, and as many m/s in the mean of a second.
     pub doppler: f64,
     /// Error of the inertial unit's roll, pitch and yaw (rad): a constant one and one for each reading. The
-    /// yaw also drifts, by the same amount per minute.
+    /// yaw also drifts, by the same amount per minute, unless the robot has a compass.
     pub attitude: f64,
     /// The same for its turn rates (rad/s); the random walk applies to all three.
     pub turn_rate: f64,

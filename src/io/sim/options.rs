@@ -15,6 +15,8 @@ pub struct SimOptions {
     pub pushing: bool,
     /// Brightness of the light for cameras, as a factor; 1 is a well-lit room.
     pub light: f64,
+    /// Fraction of the radio messages that are lost.
+    pub radio_loss: f64,
     /// Whether encoders measure exactly instead of counting whole ticks.
     pub ideal_encoders: bool,
     /// Duration of every call of a robot (s), so that time passes in loops that only read sensors.
@@ -42,6 +44,7 @@ impl Default for SimOptions {
             noise: NoiseModel::real(),
             light: 1.0,
             pushing: false,
+            radio_loss: 0.0,
             ideal_encoders: false,
             call_duration: 1e-4,
             time_limit: None,
@@ -66,6 +69,7 @@ impl SimOptions {
     pub(super) fn validate(&self) -> Result<(), ParameterError> {
         self.noise.validate()?;
         require("light", self.light, (0.0..=100.0).contains(&self.light), "0 to 100")?;
+        require("radio loss", self.radio_loss, (0.0..=1.0).contains(&self.radio_loss), "0 to 1")?;
         let limit = self.time_limit.unwrap_or(0.0);
         require_not_negative("time limit", limit)?;
         require_up_to("patience", self.patience, LONGEST)?;

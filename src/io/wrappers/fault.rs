@@ -15,6 +15,10 @@ pub enum Sensor {
     Camera,
     /// Pose and velocity by odometry.
     Odometry,
+    /// The inertial unit.
+    Inertial,
+    /// The depth sensor of a craft.
+    Depth,
     /// All sensors.
     All,
 }
@@ -57,8 +61,8 @@ pub enum FaultKind {
 ///
 /// As text, a fault is `KIND@T`, `KIND:DEVICE@T`, `KIND@T-T2` or `KIND:DEVICE@T-T2` with times in seconds.
 /// The kinds are `stuck`, `lost`, `nan`, `jump`, `late`, `link`, `hang` and `clock`. The first three and
-/// `late` take a device: `front`, `left`, `right`, `back`, `psdN`, `lidar`, `camera`, `odometry` or, by
-/// default, `all`. An amount may follow kind or device after an equals sign:
+/// `late` take a device: `front`, `left`, `right`, `back`, `psdN`, `lidar`, `camera`, `odometry`, `inertial`,
+/// `depth` or, by default, `all`. An amount may follow kind or device after an equals sign:
 ///
 /// | text | means |
 /// |---|---|
@@ -106,7 +110,7 @@ impl Fault {
 /// Kinds of faults, for error messages.
 const KINDS: &str = "stuck, lost, nan, jump, late, link, hang or clock";
 /// Devices, for error messages.
-const DEVICES: &str = "front, left, right, back, psdN, lidar, camera, odometry or all";
+const DEVICES: &str = "front, left, right, back, psdN, lidar, camera, odometry, inertial, depth or all";
 /// Default age of late readings (s).
 const LATE: f64 = 0.5;
 /// Default duration of a hanging call (s).
@@ -209,6 +213,8 @@ fn parse_sensor(device: &str) -> std::result::Result<Sensor, String> {
         "lidar" => Sensor::Lidar,
         "camera" => Sensor::Camera,
         "odometry" => Sensor::Odometry,
+        "inertial" => Sensor::Inertial,
+        "depth" => Sensor::Depth,
         "all" => Sensor::All,
         other => match other.strip_prefix("psd").map(str::parse) {
             Some(Ok(id)) => Sensor::Psd(Psd(id)),
@@ -244,6 +250,8 @@ impl fmt::Display for Sensor {
             Sensor::Lidar => f.write_str("lidar"),
             Sensor::Camera => f.write_str("camera"),
             Sensor::Odometry => f.write_str("odometry"),
+            Sensor::Inertial => f.write_str("inertial"),
+            Sensor::Depth => f.write_str("depth"),
             Sensor::All => f.write_str("all"),
         }
     }
@@ -282,6 +290,8 @@ mod tests {
             Just(Sensor::Lidar),
             Just(Sensor::Camera),
             Just(Sensor::Odometry),
+            Just(Sensor::Inertial),
+            Just(Sensor::Depth),
             Just(Sensor::All)
         ]
     }
@@ -346,7 +356,7 @@ mod tests {
             ("stuck@5-2", "fault \"stuck@5-2\": the end, 2, is not after the start, 5"),
             (
                 "lost:nose@1",
-                "fault \"lost:nose@1\": unknown device \"nose\"; expected front, left, right, back, psdN, lidar, camera, odometry or all",
+                "fault \"lost:nose@1\": unknown device \"nose\"; expected front, left, right, back, psdN, lidar, camera, odometry, inertial, depth or all",
             ),
             ("link:front@1", "fault \"link:front@1\": link takes no device, found \"front\""),
             (

@@ -41,6 +41,10 @@ pub struct Faulty<R> {
     images: Memory<RgbImage>,
     poses: Memory<Pose>,
     speeds: Memory<Twist>,
+    attitudes: Memory<Attitude>,
+    turn_rates: Memory<Vector3>,
+    accelerations: Memory<Vector3>,
+    depths: Memory<f64>,
 }
 
 #[derive(Debug, Clone)]
@@ -79,6 +83,10 @@ impl<R> Faulty<R> {
             images: Memory::new(horizon),
             poses: Memory::new(horizon),
             speeds: Memory::new(horizon),
+            attitudes: Memory::new(horizon),
+            turn_rates: Memory::new(horizon),
+            accelerations: Memory::new(horizon),
+            depths: Memory::new(horizon),
         }
     }
 
@@ -305,7 +313,43 @@ impl<R: Odometry + Clock> Odometry for Faulty<R> {
     }
 }
 
+impl<R: Inertial + Clock> Inertial for Faulty<R> {
+    fn attitude(&mut self) -> Result<Attitude> {
+        let Some(time) = self.begin()? else { return self.inner.attitude() };
+        self.require(time, Sensor::Inertial, "inertial unit")?;
+        let fresh = self.inner.attitude()?;
+        let reading = self.attitudes.pass(time, fresh, self.disturbance(time, Sensor::Inertial));
+        let nan = Attitude { roll: f64::NAN, pitch: f64::NAN, yaw: f64::NAN };
+        Ok(if self.is_nan(time, Sensor::Inertial) { nan } else { reading })
+    }
+
+    fn turn_rates(&mut self) -> Result<Vector3> {
+        let Some(time) = self.begin()? else { return self.inner.turn_rates() };
+        self.require(time, Sensor::Inertial, "inertial unit")?;
+        let fresh = self.inner.turn_rates()?;
+        let reading = self.turn_rates.pass(time, fresh, self.disturbance(time, Sensor::Inertial));
+        Ok(if self.is_nan(time, Sensor::Inertial) { Vector3::repeat(f64::NAN) } else { reading })
+    }
+
+    fn acceleration(&mut self) -> Result<Vector3> {
+        let Some(time) = self.begin()? else { return self.inner.acceleration() };
+        self.require(time, Sensor::Inertial, "inertial unit")?;
+        let fresh = self.inner.acceleration()?;
+        let reading = self.accelerations.pass(time, fresh, self.disturbance(time, Sensor::Inertial));
+        Ok(if self.is_nan(time, Sensor::Inertial) { Vector3::repeat(f64::NAN) } else { reading })
+    }
+}
+
+impl<R: DepthSensor + Clock> DepthSensor for Faulty<R> {
+    fn depth(&mut self) -> Result<f64> {
+        let Some(time) = self.begin()? else { return self.inner.depth() };
+        self.require(time, Sensor::Depth, "depth sensor")?;
+        let fresh = self.inner.depth()?;
+        let reading = self.depths.pass(time, fresh, self.disturbance(time, Sensor::Depth));
+        Ok(if self.is_nan(time, Sensor::Depth) { f64::NAN } else { reading })
+    }
+}
+
 hooked! {
-    Faulty, ready, [Clock], Drive, Manoeuvres, StallDetector, Display, Keys, Radio, Motors, Servos, Encoders, Inertial,
-    DepthSensor
+    Faulty, ready, [Clock], Drive, Manoeuvres, StallDetector, Display, Keys, Radio, Motors, Servos, Encoders
 }

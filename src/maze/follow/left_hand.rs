@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use super::cell_drive::{CellDrive, CellDriveParameters, read};
 use crate::geometry::{Pose, Twist};
 use crate::io::control::{Behaviour, Decision, Manoeuvre, Senses, halts};
+use crate::io::reading::{check_distances, check_pose, check_speed};
 use crate::io::{DistanceSensors, Manoeuvres, Odometry, Result, StallDetector};
 use crate::maze::Direction;
 use crate::parameter::require_positive;
@@ -225,6 +226,9 @@ impl Behaviour for LeftHand {
     }
 
     fn step(&mut self, _time: f64, seen: &LeftHandObservation) -> Decision<Self> {
+        check_pose(&seen.pose)?;
+        check_speed(&seen.speed)?;
+        check_distances("observed distance", &seen.readings)?;
         let waits = Ok(ControlFlow::Continue(Manoeuvre::Continue));
         match self.phase {
             Phase::Choosing => self.turn_or_drive(seen),

@@ -3,6 +3,7 @@ use std::ops::ControlFlow;
 
 use crate::geometry::{Point, Pose, Twist};
 use crate::io::control::{Behaviour, Decision, Halt, Senses};
+use crate::io::reading::{check_pose, check_scan};
 use crate::io::{Lidar, LidarScan, Odometry, Result};
 use crate::parameter::{require_finite, require_positive};
 
@@ -84,8 +85,11 @@ impl LidarLeft {
         Ok(Self { parameters, turning_to: None })
     }
 
-    /// Velocity command for a pose by odometry and a scan.
+    /// Velocity command for a pose by odometry and a scan. Without readings to drive by, the robot stands.
     pub fn step(&mut self, pose: Pose, scan: &LidarScan) -> Twist {
+        if check_pose(&pose).and_then(|()| check_scan(scan)).is_err() {
+            return Twist::STOP;
+        }
         let p = &self.parameters;
         if let Some(heading) = self.turning_to {
             let rest = crate::geometry::angle_difference(heading, pose.heading);
@@ -141,6 +145,8 @@ impl Behaviour for LidarLeft {
     }
 
     fn step(&mut self, _time: f64, seen: &LidarLeftObservation) -> Decision<Self> {
+        check_pose(&seen.pose)?;
+        check_scan(&seen.scan)?;
         Ok(ControlFlow::Continue(LidarLeft::step(self, seen.pose, &seen.scan)))
     }
 }

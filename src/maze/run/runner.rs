@@ -4,6 +4,7 @@ use super::rig::Rig;
 use super::tracker::{TrajectoryTracker, TrajectoryTrackerParameters};
 use crate::geometry::{Pose, Twist, angle_difference};
 use crate::io::control::{Stopwatch, stopping};
+use crate::io::reading::{check_distances, check_pose};
 use crate::io::{Clock, DistanceSensors, Drive, Error, ErrorKind, Odometry, Result, StallDetector};
 use crate::maze::{
     Cell, Direction, ExplorationOutcome, ExplorationStep, Explorer, FastPlan, FastPlanner, Maze, RunLimits,
@@ -292,10 +293,12 @@ impl<'r, R: Clock + Drive + Odometry + StallDetector + DistanceSensors + ?Sized>
     /// Reads odometry and sensors, updates the estimate, and returns the readings.
     fn sense(&mut self) -> Result<[f64; 3]> {
         let odometry = self.robot.pose()?;
+        check_pose(&odometry)?;
         self.localiser.predict(odometry);
         let mut readings = [f64::INFINITY; 3];
         for (sensor, reading) in self.rig.sensors.iter().zip(&mut readings) {
             *reading = self.robot.distance(sensor.id)?;
+            check_distances("observed distance", &[*reading])?;
             self.localiser.correct(&self.maze, sensor, *reading);
         }
         Ok(readings)

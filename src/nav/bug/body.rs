@@ -3,10 +3,11 @@ use super::report::{BugEvent, BugOutcome, BugPhase};
 use super::wall_ends::{WallEnds, overhangs};
 use crate::geometry::{Point, Pose, Twist, Vector, WallSide, angle_difference, direction, math};
 use crate::io::control::LidarObservation;
+use crate::io::reading::{check_pose, check_scan};
 use crate::io::{Error, Result};
 use crate::nav::boundary::nearer_side;
 use crate::nav::surroundings::Surroundings;
-use crate::scan::{ScanFilter, ScanMatcher, check_measured};
+use crate::scan::{ScanFilter, ScanMatcher};
 
 /// State common to all bugs: localisation, perception and steering.
 ///
@@ -119,7 +120,8 @@ impl Body {
 
     /// Updates pose and surroundings from an observation.
     pub(super) fn perceive(&mut self, observation: &LidarObservation) -> Result<()> {
-        check_measured(&observation.odometry, &observation.scan)?;
+        check_pose(&observation.odometry)?;
+        check_scan(&observation.scan)?;
         self.measured.clear();
         self.measured.extend(observation.scan.points());
         self.pose = self.locate(observation);

@@ -8,7 +8,7 @@
 //! |---|---|---|
 //! | [`GridSearch`] | shortest octile, by Dijkstra's algorithm or A\* | nothing |
 //! | [`JumpPointSearch`] | shortest octile | a few operations for each 64 cells |
-//! | [`PreparedJumps`] | shortest octile | all jumps |
+//! | [`PreparedJumps`] | shortest octile | all jumps, up to 8 million |
 //! | [`AnyAngle`] | shortest of all, in any direction | what corners see, at first need or all at once |
 //! | [`LazyThetaStar`] | short, in any direction | nothing |
 //! | [`QuadtreePlanner`] | short, in any direction | a [`Quadtree`], and which of its leaves are neighbours |

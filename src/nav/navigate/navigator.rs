@@ -8,10 +8,11 @@ use super::route::Route;
 use super::steering::Steering;
 use crate::geometry::{Point, Pose, Twist, angle_difference};
 use crate::io::control::{Behaviour, Decision, Halt, LidarObservation, Senses};
+use crate::io::reading::{check_pose, check_scan};
 use crate::io::{Error, Lidar, Odometry, Result};
 use crate::kinematics::OUTLIER;
 use crate::nav::surroundings::Surroundings;
-use crate::scan::{ScanFilter, check_measured};
+use crate::scan::ScanFilter;
 use crate::world::{GridCell, World};
 
 /// Drives to a goal in a known world that may have changed (book, section 10.3 and after).
@@ -225,7 +226,8 @@ impl Navigator {
 
     /// Updates pose and obstacles from an observation.
     fn perceive(&mut self, observation: &LidarObservation) -> Result<()> {
-        check_measured(&observation.odometry, &observation.scan)?;
+        check_pose(&observation.odometry)?;
+        check_scan(&observation.scan)?;
         self.pose = if self.parameters.match_scans {
             self.locator.locate(observation.odometry, &observation.scan)
         } else {

@@ -1,3 +1,5 @@
+use std::ops::ControlFlow;
+
 use super::align::{Shift, align};
 use super::drive::{Drive, Step, cut};
 use super::parameters::SummitParameters;
@@ -6,7 +8,8 @@ use super::sight_map::{Chart, SightMap};
 use super::straight::Straight;
 use super::sweep::Sweep;
 use crate::geometry::{Point, Point3, Pose, Twist, Vector, angle_difference, direction, math};
-use crate::io::{Attitude, Error, Inertial, Lidar, LidarScan, LidarSettings, Odometry, Result};
+use crate::io::reading::{check_attitude, check_pose, check_scan};
+use crate::io::{Attitude, Inertial, Lidar, LidarScan, LidarSettings, Odometry, Result};
 use crate::nav::elevation::{GroundCosts, Objective};
 use crate::nav::grid::{GridPlanner, GridSearch, StepCosts};
 use crate::world::{BitGrid, GridCell};
@@ -40,6 +43,21 @@ pub(super) enum Event {
     Looked,
     /// The robot has looked around too often.
     Stuck,
+}
+
+impl Event {
+    /// What a behaviour does about it: it decides after a look, and ends as stuck with its explorer.
+    pub(super) fn answer<O>(
+        self,
+        stuck: O,
+        decide: impl FnOnce() -> ControlFlow<O, Twist>,
+    ) -> ControlFlow<O, Twist> {
+        match self {
+            Self::Go(twist) => ControlFlow::Continue(twist),
+            Self::Looked => decide(),
+            Self::Stuck => ControlFlow::Break(stuck),
+        }
+    }
 }
 
 /// What a search is doing.
@@ -312,12 +330,9 @@ impl Explorer {
 
     /// Processes an observation.
     pub(super) fn step(&mut self, time: f64, seen: &SummitObservation) -> Result<Event> {
-        let finite =
-            [seen.attitude.roll, seen.attitude.pitch, seen.attitude.yaw].iter().all(|a| a.is_finite());
-        if !seen.odometry.is_finite() || !finite {
-            let found = format!("{:?} {:?}", seen.odometry, seen.attitude);
-            return Err(Error::invalid_input("observed pose", found, "finite numbers"));
-        }
+        check_pose(&seen.odometry)?;
+        check_attitude(&seen.attitude)?;
+        check_scan(&seen.scan)?;
         self.reckoning.update(seen.odometry, seen.attitude, self.parameters.slide);
         let go = |twist| Ok(Event::Go(twist));
         match &mut self.state {

@@ -2,7 +2,7 @@ use std::ops::ControlFlow;
 
 use super::axis::{Ramp, is_sloped};
 use super::drive::length;
-use super::explorer::{Event, Explorer, SummitObservation, SummitPhase};
+use super::explorer::{Explorer, SummitObservation, SummitPhase};
 use super::parameters::SummitParameters;
 use super::sight_map::Chart;
 use super::straight::Straight;
@@ -297,11 +297,8 @@ impl Behaviour for RampCrossing {
     }
 
     fn step(&mut self, time: f64, seen: &SummitObservation) -> Decision<Self> {
-        Ok(match self.explorer.step(time, seen)? {
-            Event::Go(twist) => ControlFlow::Continue(twist),
-            Event::Looked => self.decide(time),
-            Event::Stuck => ControlFlow::Break(RampOutcome::Stuck),
-        })
+        let event = self.explorer.step(time, seen)?;
+        Ok(event.answer(RampOutcome::Stuck, || self.decide(time)))
     }
 }
 

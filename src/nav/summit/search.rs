@@ -1,7 +1,7 @@
 use std::ops::ControlFlow;
 
 use super::drive::length;
-use super::explorer::{Event, Explorer, SummitObservation, SummitPhase, climbing_costs};
+use super::explorer::{Explorer, SummitObservation, SummitPhase, climbing_costs};
 use super::parameters::SummitParameters;
 use super::sight_map::Chart;
 use crate::geometry::{Point, Pose, Twist};
@@ -230,11 +230,8 @@ impl Behaviour for SummitSearch {
     }
 
     fn step(&mut self, time: f64, seen: &SummitObservation) -> Decision<Self> {
-        Ok(match self.explorer.step(time, seen)? {
-            Event::Go(twist) => ControlFlow::Continue(twist),
-            Event::Looked => self.decide(time),
-            Event::Stuck => ControlFlow::Break(SummitOutcome::Stuck),
-        })
+        let event = self.explorer.step(time, seen)?;
+        Ok(event.answer(SummitOutcome::Stuck, || self.decide(time)))
     }
 }
 

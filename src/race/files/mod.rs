@@ -19,6 +19,8 @@ use super::{ConeTrack, Corridor};
 use crate::geometry::Point;
 use crate::world::formats::{FormatError, Location, shown};
 
+/// Maximum length of a file (bytes).
+const LONGEST: usize = 16 << 20;
 /// Maximum number of cones or stations in a file.
 const MOST: usize = 20_000;
 
@@ -48,8 +50,12 @@ pub enum TrackFile {
 ///
 /// # Errors
 ///
-/// If the text is not a track in one of the formats.
+/// If the text is not a track in one of the formats, or longer than 16 MiB.
 pub fn parse_track(text: &str, file: &str) -> Result<TrackFile, FormatError> {
+    if text.len() > LONGEST {
+        let found = format!("{} bytes", text.len());
+        return Err(FormatError::new(file, Location::START, found, "a file of at most 16 MiB"));
+    }
     let first = text.lines().find(|line| !line.trim().is_empty()).unwrap_or("");
     let first = first.trim_start_matches('\u{feff}').trim_start();
     if first.starts_with('[') {

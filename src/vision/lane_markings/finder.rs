@@ -57,6 +57,12 @@ impl LaneEstimate {
         bend / (1.0 - bend * self.middle)
     }
 
+    /// Distance that a car gains along the road's centre line while it drives a distance (m).
+    pub(crate) fn progress(&self, metres: f64) -> f64 {
+        let (offset, heading) = self.from_road;
+        metres * math::cos(heading) / (1.0 - self.bends[0] * offset).max(0.3)
+    }
+
     /// The road as estimated, to look at what is on it.
     pub(in crate::vision) fn road_ahead(&self) -> RoadAhead {
         let (offset, heading) = self.from_road;

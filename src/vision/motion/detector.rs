@@ -190,10 +190,48 @@ impl MotionDetector {
             loose: slack > 0,
             too_bright: self.blocks.iter().any(Block::is_clipped),
         };
-        let sectors = self.sectors(first.width(), judge);
-        let strongest = (0..3).max_by(|&a, &b| sectors[a].total_cmp(&sectors[b]));
-        let strongest = strongest.filter(|&sector| sectors[sector] > self.parameters.threshold);
+        let sectors = self.sectors(first.width(), judge, |_, _| ());
+        let strongest = self.strongest(sectors);
         Ok(Motion { sectors, mean_difference, noise, strongest })
+    }
+
+    /// Gain from the first image to the second.
+    pub(super) fn gain_between(&mut self, first: GrayView<'_>, second: GrayView<'_>) -> f64 {
+        self.sum(first, second);
+        1.0 / self.gain()
+    }
+
+    /// Judges two images by the difference of each pixel that nothing explains; the noise is the minimum. Also
+    /// returns the place of the largest change (column, row).
+    pub(super) fn judge(
+        &mut self,
+        first: GrayView<'_>,
+        second: GrayView<'_>,
+        unexplained: &[f64],
+    ) -> Result<(Motion, (f64, f64)), ImageError> {
+        self.sum(first, second);
+        let (width, size) = (first.width(), self.parameters.block);
+        let across = width.div_ceil(size);
+        for (index, off) in unexplained.iter().enumerate() {
+            self.blocks[index / width / size * across + index % width / size].unexplained += off;
+        }
+        let noise = self.parameters.least_noise;
+        let judge = Judge { gain: 1.0, noise, loose: true, too_bright: false };
+        let mut largest = (0.0, (0.0, 0.0));
+        let sectors = self.sectors(width, judge, |change, place| {
+            if change > largest.0 {
+                largest = (change, place);
+            }
+        });
+        let mean_difference = mean_difference(first, second)?;
+        let strongest = self.strongest(sectors);
+        Ok((Motion { sectors, mean_difference, noise, strongest }, largest.1))
+    }
+
+    /// The sector with the largest change, if that exceeds the threshold.
+    fn strongest(&self, sectors: [f64; 3]) -> Option<usize> {
+        let strongest = (0..3).max_by(|&a, &b| sectors[a].total_cmp(&sectors[b]));
+        strongest.filter(|&sector| sectors[sector] > self.parameters.threshold)
     }
 
     /// Sums the levels of both images over the blocks.
@@ -258,8 +296,8 @@ impl MotionDetector {
         }
     }
 
-    /// Largest change in each third of the image.
-    fn sectors(&self, width: usize, judge: Judge) -> [f64; 3] {
+    /// Largest change in each third of the image. `each` takes every group's change and centre.
+    fn sectors(&self, width: usize, judge: Judge, mut each: impl FnMut(f64, (f64, f64))) -> [f64; 3] {
         let size = self.parameters.block;
         let across = width.div_ceil(size);
         let down = self.blocks.len() / across;
@@ -272,7 +310,9 @@ impl MotionDetector {
                 // A group belongs to the sector of its centre.
                 let middle = ((2 * column + wide) * size / 2).min(width - 1);
                 let sector = &mut sectors[3 * middle / width];
-                *sector = sector.max(change.abs() / judge.noise);
+                let change = change.abs() / judge.noise;
+                *sector = sector.max(change);
+                each(change, (middle as f64, ((2 * row + high) * size / 2) as f64));
             }
         }
         sectors

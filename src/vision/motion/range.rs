@@ -33,6 +33,11 @@ impl Ranges {
         }
     }
 
+    /// Range at a pixel.
+    pub(super) fn at(&self, x: usize, y: usize) -> (u8, u8) {
+        self.squares[y * self.width + x]
+    }
+
     /// Ranges of a row.
     pub(super) fn row(&self, y: usize) -> impl Iterator<Item = (u8, u8)> + '_ {
         self.squares[y * self.width..][..self.width].iter().copied()

@@ -9,7 +9,8 @@ use crate::vision::lane_markings::RoadAhead;
 
 /// Width of stop and give-way lines, by the rules (m).
 const BROAD: f64 = 0.038;
-/// Period across the road of the dashes of give-way lines, and of the stripes of crosswalks, by the rules (m).
+/// Period across the road of the dashes of give-way lines, and of the stripes of crosswalks, by the rules
+/// (m).
 const GIVE_WAY: f64 = 0.140;
 const STRIPES: f64 = 0.078;
 /// The same of the chequers of a start line, which is about 50 mm long (m).
@@ -31,6 +32,30 @@ const PERIODIC: f64 = 0.55;
 const STRIPED: f64 = 0.13;
 const CHEQUERED: f64 = 0.12;
 
+/// A wave across the road, sampled at each column.
+#[derive(Debug, Clone)]
+struct Tone(Vec<(f64, f64)>);
+
+impl Tone {
+    fn new(period: f64) -> Self {
+        Self((0..COLUMNS).map(|column| math::sin_cos(TAU * left(column) / period)).collect())
+    }
+}
+
+/// The periods of markings across the road.
+#[derive(Debug, Clone)]
+pub(super) struct Tones {
+    give_way: Tone,
+    stripes: Tone,
+    chequers: Tone,
+}
+
+impl Tones {
+    pub(super) fn new() -> Self {
+        Self { give_way: Tone::new(GIVE_WAY), stripes: Tone::new(STRIPES), chequers: Tone::new(CHEQUERS) }
+    }
+}
+
 /// Mean of a signal across a lane, and its amplitude at a period.
 #[derive(Debug, Clone, Copy, Default)]
 struct Spectrum {
@@ -41,13 +66,13 @@ struct Spectrum {
 
 impl Spectrum {
     /// Of a signal between two distances to the left of the road's centre line.
-    fn of(range: (f64, f64), period: f64, signal: impl Fn(usize) -> Option<f64>) -> Self {
+    fn of(range: (f64, f64), tone: &Tone, signal: impl Fn(usize) -> Option<f64>) -> Self {
         let columns = columns(range.0, range.1);
         let all = columns.len() as f64;
         let (mut count, mut sum, mut real, mut imaginary) = (0.0, 0.0, 0.0, 0.0);
         for column in columns {
             let Some(value) = signal(column) else { continue };
-            let (sin, cos) = math::sin_cos(TAU * left(column) / period);
+            let (sin, cos) = tone.0[column];
             count += 1.0;
             sum += value;
             real += value * cos;
@@ -68,9 +93,10 @@ fn lanes(road: &RoadAhead) -> [(f64, f64); 2] {
 }
 
 /// Finds lines across the own lane.
-pub(super) fn lines(view: &RoadView, road: &RoadAhead, found: &mut Vec<Detection>) {
+pub(super) fn lines(view: &RoadView, tones: &Tones, road: &RoadAhead, found: &mut Vec<Detection>) {
     let [own, other] = lanes(road);
-    let spectrum = |row: usize, lane| Spectrum::of(lane, GIVE_WAY, |column| view.across(row, column, BROAD));
+    let spectrum = |row: usize, lane| Spectrum::of(lane, &tones.give_way, view.across(row, BROAD));
+    let chequers = |row: usize| brightness(view, row, own, &tones.chequers).amplitude;
     let rows: Vec<Spectrum> = (0..ROWS).map(|row| spectrum(row, own)).collect();
     for row in 1..ROWS - 1 {
         let here = rows[row];
@@ -79,7 +105,7 @@ pub(super) fn lines(view: &RoadView, road: &RoadAhead, found: &mut Vec<Detection
             continue;
         }
         let beyond = spectrum(row, other);
-        let is_chequered = [row - 1, row + 1].iter().any(|&row| chequers(view, row, own) > CHEQUERED);
+        let is_chequered = [row - 1, row + 1].iter().any(|&row| chequers(row) > CHEQUERED);
         let kind = if here.amplitude > PERIODIC * here.mean {
             RoadElementKind::GiveWayLine
         } else if is_chequered || (beyond.visible > 0.5 && beyond.mean > OTHER) {
@@ -89,24 +115,19 @@ pub(super) fn lines(view: &RoadView, road: &RoadAhead, found: &mut Vec<Detection
         } else {
             continue;
         };
-        found.push(Detection { kind, ahead: view.ahead(row) - 0.5 * BROAD });
+        found.push(Detection::new(kind, view.ahead(row) - 0.5 * BROAD));
     }
 }
 
-/// Amplitude of a row of chequers across a lane.
-fn chequers(view: &RoadView, row: usize, lane: (f64, f64)) -> f64 {
-    brightness(view, row, lane, CHEQUERS).amplitude
-}
-
-fn brightness(view: &RoadView, row: usize, range: (f64, f64), period: f64) -> Spectrum {
-    Spectrum::of(range, period, |column| view.sees(row, column).then(|| view.brightness(row, column)))
+fn brightness(view: &RoadView, row: usize, range: (f64, f64), tone: &Tone) -> Spectrum {
+    Spectrum::of(range, tone, |column| view.sees(row, column).then(|| view.brightness(row, column)))
 }
 
 /// Finds crosswalks: their near edges.
-pub(super) fn zebras(view: &RoadView, road: &RoadAhead, found: &mut Vec<Detection>) {
+pub(super) fn zebras(view: &RoadView, tones: &Tones, road: &RoadAhead, found: &mut Vec<Detection>) {
     let inner = road.edge - MARGIN;
     let striped = |row: usize| {
-        let spectrum = brightness(view, row, (-inner, inner), STRIPES);
+        let spectrum = brightness(view, row, (-inner, inner), &tones.stripes);
         spectrum.visible > 0.5 && spectrum.amplitude > STRIPED
     };
     let mut row = 0;
@@ -122,7 +143,7 @@ pub(super) fn zebras(view: &RoadView, road: &RoadAhead, found: &mut Vec<Detectio
         // Blur lengthens it, and the limits of the view cut it.
         let long = view.ahead(row.min(ROWS - 1)) - view.ahead(from);
         if (0.3 * ZEBRA..1.5 * ZEBRA).contains(&long) && begins_in_view(view, road, from) {
-            found.push(Detection { kind: RoadElementKind::Zebra, ahead: view.ahead(from) });
+            found.push(Detection::new(RoadElementKind::Zebra, view.ahead(from)));
         }
     }
 }

@@ -32,7 +32,7 @@ pub(super) fn parking(view: &RoadView, road: &RoadAhead, found: &mut Vec<Detecti
             }
             if last - from >= LONG {
                 let kind = RoadElementKind::Parking { left: side > 0.0 };
-                found.push(Detection { kind, ahead: view.ahead(from) });
+                found.push(Detection::new(kind, view.ahead(from)));
             }
         }
     }

@@ -1,5 +1,7 @@
 //! Crossings: edge lines that end where a line leaves the road.
 
+use std::ops::Range;
+
 use super::element::{Detection, RoadElementKind};
 use super::view::{CELL, ROWS, RoadView, column, columns, left};
 use crate::geometry::math;
@@ -27,9 +29,53 @@ const VISIBLE: f64 = 0.12;
 /// Length of edge line that has to precede (m).
 const BEFORE: f64 = 0.20;
 
+/// Contrast of a line across the road at each cell beside it on one side, where the lines of arms leave.
+struct Strip {
+    columns: Range<usize>,
+    contrast: Vec<Option<f64>>,
+}
+
+impl Strip {
+    fn new(view: &RoadView, edge: f64, side: f64) -> Self {
+        let far = begin(edge, SLOPE * f64::from(SLOPES)) + STRIP.1;
+        let (a, b) = (side * edge, side * far);
+        let columns = columns(a.min(b), a.max(b));
+        let mut contrast = Vec::with_capacity(ROWS * columns.len());
+        for row in 0..ROWS {
+            contrast.extend(columns.clone().map(view.across(row, LINE)));
+        }
+        Self { columns, contrast }
+    }
+
+    /// Whether a line may leave at each row: some cell within reach of the slopes is bright enough. On a free
+    /// road there is none, and nothing else is to be examined.
+    fn may_leave(&self) -> Vec<bool> {
+        let reach = (SLOPE * f64::from(SLOPES) * self.columns.len() as f64).ceil() as usize;
+        let is_bright = |cell: &Option<f64>| cell.is_some_and(|contrast| contrast >= LEAVES);
+        let bright: Vec<bool> =
+            self.contrast.chunks(self.columns.len()).map(|row| row.iter().any(is_bright)).collect();
+        let near = |row: usize| row.saturating_sub(reach)..(row + reach + 1).min(ROWS);
+        (0..ROWS).map(|row| bright[near(row)].contains(&true)).collect()
+    }
+
+    fn at(&self, row: usize, column: usize) -> Option<f64> {
+        self.contrast[row * self.columns.len() + column - self.columns.start]
+    }
+}
+
+/// Distance from the road's centre line at which the line of an arm begins: where the arm is as far from the
+/// crossing's middle as the edge line (m).
+fn begin(edge: f64, slope: f64) -> f64 {
+    let cosine = slope / math::hypot(1.0, slope);
+    edge + STRIP.0.max(edge * cosine + 0.02)
+}
+
 /// Finds the middle of the nearest crossing on one side of the road: 1 to the left, -1 to the right.
 pub(super) fn on_side(view: &RoadView, road: &RoadAhead, side: f64, found: &mut Vec<Detection>) {
-    let best: Vec<(f64, f64)> = (0..ROWS).map(|row| leaving(view, road.edge, side, row)).collect();
+    let strip = Strip::new(view, road.edge, side);
+    let may_leave = strip.may_leave();
+    let leaves = |row: usize| if may_leave[row] { leaving(&strip, road.edge, side, row) } else { (0.0, 0.0) };
+    let best: Vec<(f64, f64)> = (0..ROWS).map(leaves).collect();
     for row in 2..ROWS - 2 {
         let (contrast, slope) = best[row];
         let is_peak = (row - 2..=row + 2).all(|other| best[other].0 <= contrast);
@@ -41,7 +87,7 @@ pub(super) fn on_side(view: &RoadView, road: &RoadAhead, side: f64, found: &mut 
         let middle = view.ahead(row) + road.edge * math::tan(0.5 * angle);
         if is_open(view, road.edge, side, middle) && has_edge_before(view, road.edge, side, middle) {
             let kind = RoadElementKind::Crossing { left: side > 0.0, right: side < 0.0 };
-            found.push(Detection { kind, ahead: middle });
+            found.push(Detection::new(kind, middle));
             // Next come the arm's other lines.
             return;
         }
@@ -50,29 +96,27 @@ pub(super) fn on_side(view: &RoadView, road: &RoadAhead, side: f64, found: &mut 
 
 /// Contrast of the clearest line that leaves the road from its edge at a row, and its slope: distance along
 /// the road per distance from the edge.
-fn leaving(view: &RoadView, edge: f64, side: f64, row: usize) -> (f64, f64) {
+fn leaving(strip: &Strip, edge: f64, side: f64, row: usize) -> (f64, f64) {
     let mut best = (0.0, 0.0);
     for step in -SLOPES..=SLOPES {
         let slope = SLOPE * f64::from(step);
-        // The arm's line begins where the arm is as far from the crossing's middle as the edge line.
-        let cosine = slope / math::hypot(1.0, slope);
-        let from = edge + STRIP.0.max(edge * cosine + 0.02);
+        let from = begin(edge, slope);
         let (a, b) = (side * from, side * (from + STRIP.1));
-        let strip = columns(a.min(b), a.max(b));
+        let columns = columns(a.min(b), a.max(b));
         let (mut count, mut sum) = (0, 0.0);
-        for column in strip.clone() {
+        for column in columns.clone() {
             let out = (side * left(column) - edge) / CELL;
             let at = row as f64 + slope * out;
             if at < 0.0 || at >= ROWS as f64 {
                 continue;
             }
-            if let Some(contrast) = view.across(at as usize, column, LINE) {
+            if let Some(contrast) = strip.at(at as usize, column) {
                 count += 1;
                 sum += contrast;
             }
         }
         let mean = sum / f64::from(count.max(1));
-        if 4 * count as usize >= 3 * strip.len() && mean > best.0 {
+        if 4 * count as usize >= 3 * columns.len() && mean > best.0 {
             best = (mean, slope);
         }
     }

@@ -24,6 +24,20 @@ pub enum RoadElementKind {
         /// Its left side, to the left of the own lane's centre (m).
         left: f64,
     },
+    /// A barred area in the own lane; its place is where it begins.
+    Barred {
+        /// Its right side, to the left of the own lane's centre (m).
+        right: f64,
+        /// Its left side, to the left of the own lane's centre (m).
+        left: f64,
+        /// Its length as far as it is in view (m).
+        length: f64,
+    },
+    /// The number of a speed limit on the own lane (km/h at the scale of the rules: 36 are 1 m/s); its place is
+    /// its near edge.
+    SpeedLimit(u8),
+    /// The number of a speed limit that ends, struck out; its place is its near edge.
+    SpeedLimitEnd,
     /// A parking area beside the road; its place is where it begins.
     Parking {
         /// Whether it is on the left, with spots across the road.
@@ -47,4 +61,12 @@ pub struct RoadElement {
 pub(super) struct Detection {
     pub(super) kind: RoadElementKind,
     pub(super) ahead: f64,
+    /// Whether the limits of the view cut nothing of it.
+    pub(super) is_whole: bool,
+}
+
+impl Detection {
+    pub(super) fn new(kind: RoadElementKind, ahead: f64) -> Self {
+        Self { kind, ahead, is_whole: true }
+    }
 }

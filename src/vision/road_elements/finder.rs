@@ -1,8 +1,8 @@
+use super::across::Tones;
 use super::element::{Detection, RoadElement, RoadElementKind};
 use super::view::RoadView;
-use super::{across, beside, crossing, obstacle};
+use super::{across, barred, beside, centre, crossing, number, obstacle};
 use crate::ParameterError;
-use crate::geometry::math;
 use crate::vision::GrayView;
 use crate::vision::lane_markings::{LaneEstimate, RoadCamera, RoadModel};
 
@@ -58,6 +58,7 @@ struct Track {
 #[derive(Debug, Clone)]
 pub struct RoadElementFinder {
     size: f64,
+    tones: Tones,
     view: RoadView,
     /// Distance from the road's centre line to the left to the own lane's centre in the last image (m).
     middle: f64,
@@ -65,6 +66,8 @@ pub struct RoadElementFinder {
     edge: f64,
     found: Vec<Detection>,
     tracks: Vec<Track>,
+    /// Evidence that the centre line is dashed on the own side.
+    dashed: f64,
 }
 
 /// Evidence of a detection, and of none where there should be one; that of something present; and the most.
@@ -72,12 +75,17 @@ const HIT: f64 = 1.0;
 const MISS: f64 = -0.6;
 const PRESENT: f64 = 2.0;
 const MOST: f64 = 5.0;
+/// Most images for and against a dashed centre line.
+const DASHED: f64 = 3.0;
 /// Distances ahead of the camera between which what is there is detected reliably (m).
 const RELIABLE: (f64, f64) = (0.30, 0.85);
 /// Distance behind the robot's origin at which things are forgotten (m).
 const BEHIND: f64 = -1.0;
-/// Area beside a crosswalk where pedestrians wait, from its near edge (m): 450 mm by the rules, and the error.
+/// Area beside a crosswalk where pedestrians wait, from its near edge (m): 450 mm by the rules, and the
+/// error.
 const WAITING: std::ops::Range<f64> = -0.10..0.52;
+/// Length of a crosswalk, by the rules (m).
+const ZEBRA: f64 = 0.40;
 /// Share of a detection's place in the running estimate, and the same for an obstacle's speed.
 const SHARE: f64 = 0.4;
 const SPEED_SHARE: f64 = 0.2;
@@ -91,11 +99,13 @@ impl RoadElementFinder {
         let own = RoadCamera { height: camera.height / size, ahead: camera.ahead / size, ..camera };
         Ok(Self {
             size,
+            tones: Tones::new(),
             view: RoadView::new(own),
             middle: 0.0,
             edge: 0.0,
             found: Vec::new(),
             tracks: Vec::new(),
+            dashed: 0.0,
         })
     }
 
@@ -107,27 +117,47 @@ impl RoadElementFinder {
                 RoadElementKind::Obstacle { right, left } => {
                     RoadElementKind::Obstacle { right: right * size, left: left * size }
                 }
+                RoadElementKind::Barred { right, left, length } => {
+                    RoadElementKind::Barred { right: right * size, left: left * size, length: length * size }
+                }
                 other => other,
             };
             RoadElement { kind, ahead: track.ahead * size, speed: track.speed * size }
         })
     }
 
-    /// Whether the last image shows a box on the road between two distances ahead of the robot's origin (m), on
-    /// a crosswalk as well, whose stripes hide the box's foot.
-    pub fn sees_box(&self, (from, to): (f64, f64)) -> bool {
-        let places = (from / self.size, to / self.size);
-        obstacle::is_occupied(&self.view, self.edge, places)
+    /// Whether the last image shows a box between two distances ahead of the robot's origin (m), on the road
+    /// and up to a distance beyond its right edge (m). Nothing is a box that is no longer than `paint` (m),
+    /// the length of paint there: stripes of a crosswalk hide the feet of boxes.
+    pub fn sees_box(&self, (from, to): (f64, f64), beyond: f64, paint: f64) -> bool {
+        let edge = self.edge - 0.02;
+        let sides = [edge + beyond / self.size, edge];
+        obstacle::is_occupied(&self.view, sides, (from / self.size, to / self.size), paint / self.size)
+    }
+
+    /// Whether cars may cross the marking between the lanes from the own one, a little ahead.
+    pub fn may_pass(&self) -> bool {
+        self.dashed >= 0.0
+    }
+
+    /// Discards boxes between two distances ahead of the robot's origin (m), for whoever knows that they are gone.
+    pub fn forget_boxes(&mut self, (from, to): (f64, f64)) {
+        let gone = from / self.size..to / self.size;
+        let is_gone = |track: &Track| {
+            matches!(track.kind, RoadElementKind::Obstacle { .. }) && gone.contains(&track.ahead)
+        };
+        self.tracks.retain(|track| !is_gone(track));
     }
 
     /// Discards everything.
     pub fn forget(&mut self) {
         self.tracks.clear();
+        self.dashed = 0.0;
     }
 
     /// Processes an image with the lane found in it, after the car has driven a distance (m) in some seconds.
     pub fn see(&mut self, image: GrayView<'_>, lane: &LaneEstimate, metres: f64, seconds: f64) {
-        let metres = metres * math::cos(lane.heading) / self.size;
+        let metres = lane.progress(metres) / self.size;
         for track in &mut self.tracks {
             track.ahead += track.speed * seconds - metres;
             track.is_seen = false;
@@ -152,14 +182,24 @@ impl RoadElementFinder {
         let zebras: Vec<f64> = zebras.map(|track| track.ahead).collect();
         let waiting = |ahead: f64| zebras.iter().any(|zebra| WAITING.contains(&(ahead - zebra)));
         obstacle::boxes(view, &road, waiting, found);
-        across::zebras(view, &road, found);
-        across::lines(view, &road, found);
+        across::zebras(view, &self.tones, &road, found);
+        across::lines(view, &self.tones, &road, found);
         // Boxes hide edge lines, and their outlines look like lines that leave the road.
         if found.iter().all(|detection| !matches!(detection.kind, RoadElementKind::Obstacle { .. })) {
             crossing::on_side(view, &road, 1.0, found);
             crossing::on_side(view, &road, -1.0, found);
         }
         beside::parking(view, &road, found);
+        barred::barred(view, &road, found);
+        number::number(view, &road, found);
+        let near = found.iter().filter(|it| matches!(it.kind, RoadElementKind::Obstacle { .. }));
+        let hidden = near.map(|it| it.ahead).fold(f64::INFINITY, f64::min);
+        // The stripes of a crosswalk look like solid lines.
+        let hidden =
+            zebras.iter().copied().filter(|zebra| zebra + ZEBRA > view.from()).fold(hidden, f64::min);
+        if let Some(is_dashed) = centre::is_dashed(view, &road, hidden) {
+            self.dashed = (self.dashed + if is_dashed { 1.0 } else { -1.0 }).clamp(-DASHED, DASHED);
+        }
     }
 
     /// Updates the track of a detection, or begins one.
@@ -170,7 +210,7 @@ impl RoadElementFinder {
             track.update(detection, seconds);
             return;
         }
-        let Detection { kind, ahead } = *detection;
+        let Detection { kind, ahead, .. } = *detection;
         self.tracks.push(Track { kind, ahead, speed: 0.0, evidence: HIT, is_seen: true });
     }
 
@@ -185,7 +225,12 @@ impl RoadElementFinder {
                     [right, left].iter().all(|side| view.sees(row, super::view::column(side + self.middle)))
                 }
                 // Arms of a crossing and areas beside the road may be outside the view.
-                RoadElementKind::Crossing { .. } | RoadElementKind::Parking { .. } => false,
+                RoadElementKind::Crossing { .. }
+                | RoadElementKind::Parking { .. }
+                | RoadElementKind::Barred { .. }
+                // A number is read where it is sharp.
+                | RoadElementKind::SpeedLimit(_)
+                | RoadElementKind::SpeedLimitEnd => false,
                 _ => view.sees(row, super::view::column(self.middle)),
             };
             is_in_view && (from + RELIABLE.0..from + RELIABLE.1).contains(&track.ahead)
@@ -200,8 +245,8 @@ impl RoadElementFinder {
 }
 
 impl Track {
-    /// Evidence from which it counts as present. The lines of an arm are short, and patches beside a gap in the
-    /// edge line look like them.
+    /// Evidence from which it counts as present. The lines of an arm are short, and patches beside a gap in
+    /// the edge line look like them.
     fn needed(&self) -> f64 {
         if matches!(self.kind, RoadElementKind::Crossing { .. }) { PRESENT + 1.0 } else { PRESENT }
     }
@@ -212,7 +257,7 @@ impl Track {
 
     /// Whether a detection can be of this thing.
     fn is_near(&self, detection: &Detection) -> bool {
-        use RoadElementKind::{Crossing, Obstacle, Parking};
+        use RoadElementKind::{Barred, Crossing, Obstacle, Parking};
         let gate = match (self.kind, detection.kind) {
             (Crossing { .. }, Crossing { .. }) => 0.45,
             (Obstacle { right, left }, Obstacle { right: r, left: l })
@@ -220,6 +265,8 @@ impl Track {
             {
                 0.25
             }
+            // The near end of an area leaves the view before the rest does.
+            (Barred { length, .. }, Barred { .. }) => 0.3 + length,
             (Parking { left }, Parking { left: same }) if left == same => 1.0,
             (one, other) if one == other => 0.12,
             _ => return false,
@@ -228,7 +275,7 @@ impl Track {
     }
 
     fn update(&mut self, detection: &Detection, seconds: f64) {
-        use RoadElementKind::{Crossing, Obstacle, Parking};
+        use RoadElementKind::{Barred, Crossing, Obstacle, Parking};
         let off = detection.ahead - self.ahead;
         match (&mut self.kind, detection.kind) {
             (Crossing { left, right }, Crossing { left: l, right: r }) => {
@@ -236,11 +283,21 @@ impl Track {
                 *right |= r;
                 self.ahead += 0.25 * off;
             }
+            // Of a box that leaves the view, neither the foot nor the sides are known.
+            (Obstacle { .. }, Obstacle { .. }) if !detection.is_whole => {}
             (Obstacle { right, left }, Obstacle { right: r, left: l }) => {
                 *right += SHARE * (r - *right);
                 *left += SHARE * (l - *left);
                 self.ahead += SHARE * off;
                 self.speed += SPEED_SHARE * off / seconds.max(1e-3);
+            }
+            (Barred { right, left, length }, Barred { right: r, left: l, length: long }) => {
+                *right += SHARE * (r - *right);
+                *left += SHARE * (l - *left);
+                if off < 0.0 {
+                    self.ahead += SHARE * off;
+                }
+                *length = length.max(detection.ahead + long - self.ahead);
             }
             // An area begins where its line was first seen; later, the view cuts it.
             (Parking { .. }, Parking { .. }) => self.ahead += if off < 0.0 { SHARE * off } else { 0.0 },

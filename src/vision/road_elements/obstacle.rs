@@ -10,8 +10,14 @@ use crate::vision::lane_markings::RoadAhead;
 const WHITE: f64 = 0.30;
 /// Least step of brightness at its foot.
 const STEP: f64 = 0.30;
-/// Largest brightness beside it within 60 mm, relative to its own; a patch of light fades by a third at most.
+/// Largest brightness beside it, relative to its own, and the distance within which it is that dark (cells): a
+/// patch of light fades by a third at most in its middle, and on its fringe in half of that distance.
 const DIMMER: f64 = 0.6;
+const BESIDE: isize = 6;
+const SHARP: isize = 3;
+/// Least brightness of a column of a box's front, relative to the brightest one: between the strokes of numbers
+/// on the road, blurred by distance, it is half as bright or less.
+const EVEN: f64 = 0.6;
 /// Length of ground that the front of the lowest box covers (cells), as it stands in the way of the ground
 /// behind it.
 const TALL: usize = 14;
@@ -41,6 +47,7 @@ pub(super) fn boxes(
             column += 1;
         }
         if let Some(front) = front(&feet, from..column)
+            && is_even(view, &feet, front.clone())
             && ends_there(view, &feet, front.start, -1)
             && ends_there(view, &feet, front.end - 1, 1)
         {
@@ -51,40 +58,100 @@ pub(super) fn boxes(
             }
             let own = |column: usize| left(column) - road.middle;
             let kind = RoadElementKind::Obstacle { right: own(front.start), left: own(front.end - 1) };
-            found.push(Detection { kind, ahead: view.ahead(near) });
+            let sees = |column: usize| column < COLUMNS && view.sees(near, column);
+            let is_whole = front.start.checked_sub(1).is_some_and(sees) && sees(front.end);
+            found.push(Detection { kind, ahead: view.ahead(near), is_whole });
         }
     }
 }
 
-/// Whether there is a surface on the road that is wider than any paint, between two distances ahead (m).
-pub(super) fn is_occupied(view: &RoadView, edge: f64, (from, to): (f64, f64)) -> bool {
+/// Whether there is a surface that is wider and deeper than any paint and ends sharply, between two distances
+/// ahead (m), within distances to the right and to the left of the road's centre line (m). It also covers the
+/// ground behind paint of a length (m), along the camera's rays: it rises from the ground.
+pub(super) fn is_occupied(
+    view: &RoadView,
+    [right, left]: [f64; 2],
+    (from, to): (f64, f64),
+    paint: f64,
+) -> bool {
     let wide = (WIDE / CELL).ceil() as usize;
-    let is_wide = |&row: &usize| {
-        let mut run = 0;
-        columns(-edge + 0.02, edge - 0.02).any(|column| {
-            let is_bright = view.sees(row, column) && view.brightness(row, column) >= WHITE;
-            run = if is_bright { run + 1 } else { 0 };
-            run >= wide
-        })
+    let road = columns(-right, left);
+    let long = (paint / CELL).round() as usize;
+    let is_bright =
+        |row: usize, column: usize| view.sees(row, column) && view.brightness(row, column) >= WHITE;
+    let rises = |row: usize, column: usize| {
+        (row..(row + long).min(ROWS)).all(|other| is_bright(other, view.on_ray(row, column, other)))
     };
-    (view.row(from)..=view.row(to)).filter(is_wide).count() >= DEEP
+    let mut deep = vec![0; COLUMNS];
+    (view.row(from)..=view.row(to)).any(|row| {
+        let mut run = 0;
+        for column in road.clone() {
+            deep[column] = if is_bright(row, column) { deep[column] + 1 } else { 0 };
+            run = if deep[column] >= DEEP { run + 1 } else { 0 };
+            if run >= wide
+                && dims(view, row, column + 1 - run, -1, SHARP)
+                && dims_beyond(view, row, column)
+                && rises(row, column - run / 2)
+            {
+                return true;
+            }
+        }
+        false
+    })
 }
 
-/// Columns of a box's front: those whose feet are about as near as the nearest one. The others belong to its
-/// sides, and to what the box hides.
+/// Whether the surface to the left of a column ends sharply.
+fn dims_beyond(view: &RoadView, row: usize, column: usize) -> bool {
+    let is_bright = |&column: &usize| view.sees(row, column) && view.brightness(row, column) >= WHITE;
+    let last = (column..COLUMNS).take_while(is_bright).last().unwrap_or(column);
+    dims(view, row, last, 1, SHARP)
+}
+
+/// Columns of the nearest front in a run of columns that is wide enough for a box. Narrower ones are paint, a dash
+/// of the centre line for instance, above which the box behind it appears.
 fn front(feet: &[Option<usize>], columns: Range<usize>) -> Option<Range<usize>> {
+    let mut rest = vec![columns];
+    loop {
+        let nearest = |it: &Range<usize>| feet[it.clone()].iter().flatten().min().copied().unwrap_or(ROWS);
+        let (index, _) = rest.iter().enumerate().min_by_key(|(_, it)| nearest(it))?;
+        let columns = rest.swap_remove(index);
+        let front = nearest_front(feet, columns.clone())?;
+        if front.len() as f64 * CELL >= WIDE {
+            return Some(front);
+        }
+        rest.extend(
+            [columns.start..front.start, front.end..columns.end].into_iter().filter(|it| !it.is_empty()),
+        );
+    }
+}
+
+/// Columns whose feet are about as near as the nearest one. The others belong to a box's sides, and to what it
+/// hides.
+fn nearest_front(feet: &[Option<usize>], columns: Range<usize>) -> Option<Range<usize>> {
     let (nearest, near) =
         columns.clone().filter_map(|column| Some((column, feet[column]?))).min_by_key(|&(_, foot)| foot)?;
     let is_front = |&column: &usize| feet[column].is_some_and(|foot| foot <= near + ASKEW);
     let end = (nearest..columns.end).take_while(is_front).last()? + 1;
     let start = (columns.start..=nearest).rev().take_while(is_front).last()?;
-    ((end - start) as f64 * CELL >= WIDE).then_some(start..end)
+    Some(start..end)
+}
+
+/// Whether a front is about as bright everywhere, as one surface is; its outermost columns may be half covered.
+fn is_even(view: &RoadView, feet: &[Option<usize>], front: Range<usize>) -> bool {
+    let inner = front.start + 1..front.end - 1;
+    let bright = inner.filter_map(|column| {
+        let foot = feet[column]?;
+        Some(view.mean_brightness(foot + 1..foot + TALL, column))
+    });
+    let (least, most) =
+        bright.fold((f64::INFINITY, 0.0), |(least, most), it| (f64::min(least, it), f64::max(most, it)));
+    least >= EVEN * most
 }
 
 /// Nearest row of a column where a bright surface begins.
 fn foot(view: &RoadView, column: usize) -> Option<usize> {
     (0..ROWS - TALL).find(|&row| {
-        let blur = (view.depth(row) / CELL).ceil() as usize;
+        let blur = view.blur(row);
         let before = row.saturating_sub(blur + 3);
         if row < blur + 3 || !view.sees(before, column) || !view.sees(row + TALL - 1, column) {
             return false;
@@ -97,10 +164,13 @@ fn foot(view: &RoadView, column: usize) -> Option<usize> {
 
 /// Whether a surface ends sharply beside a column, as no patch of light does.
 fn ends_there(view: &RoadView, feet: &[Option<usize>], column: usize, out: isize) -> bool {
-    let Some(row) = feet[column].map(|foot| (foot + 1).min(ROWS - 1)) else { return false };
+    feet[column].is_some_and(|foot| dims(view, (foot + 1).min(ROWS - 1), column, out, BESIDE))
+}
+
+/// Whether a row is much darker beside a column within some cells. Out of view, it cannot be told.
+fn dims(view: &RoadView, row: usize, column: usize, out: isize, within: isize) -> bool {
     let inside = view.brightness(row, column);
-    let beyond = (1..=6).filter_map(|step| column.checked_add_signed(out * step));
-    // Out of view, it cannot be told.
+    let beyond = (1..=within).filter_map(|step| column.checked_add_signed(out * step));
     beyond
         .take_while(|&beyond| beyond < COLUMNS)
         .any(|beyond| !view.sees(row, beyond) || view.brightness(row, beyond) <= DIMMER * inside)

@@ -32,7 +32,11 @@ pub(super) struct RoadView {
     seen: Vec<Range<usize>>,
     /// Length of ground that a pixel covers at each row (m).
     depth: Vec<f64>,
+    /// The same in cells, rounded up.
+    blur: Vec<usize>,
     /// Brightness of the floor and of paint.
+    /// Distance of the camera to the left of the road's centre line (m).
+    left: f64,
     floor: f32,
     paint: f32,
 }
@@ -60,6 +64,8 @@ impl RoadView {
             sums: vec![0.0; (ROWS + 1) * COLUMNS],
             seen: vec![0..0; COLUMNS],
             depth: vec![0.0; ROWS],
+            blur: vec![0; ROWS],
+            left: 0.0,
             floor: 0.0,
             paint: 0.0,
         }
@@ -69,6 +75,8 @@ impl RoadView {
     pub(super) fn straighten(&mut self, image: GrayView<'_>, road: &RoadAhead, pitch: f64) {
         let size = (image.width() as u32, image.height() as u32);
         let projection = self.camera.projection(pitch, size);
+        let (centre, aside) = road.at(self.camera.ahead);
+        self.left = -centre.coords.dot(&aside);
         self.seen.fill(ROWS..ROWS);
         for row in 0..ROWS {
             let (centre, aside) = road.at(self.ahead(row));
@@ -79,6 +87,7 @@ impl RoadView {
                 (Some(near), Some(far)) => CELL / (near - far).abs().max(1e-3),
                 _ => CELL,
             };
+            self.blur[row] = (self.depth[row] / CELL).ceil() as usize;
             for column in 0..COLUMNS {
                 let seen = projection.of(centre + aside * left(column)).and_then(|at| sample(image, at));
                 let range = &mut self.seen[column];
@@ -139,14 +148,20 @@ impl RoadView {
         ((ahead - self.camera.ahead - NEAR) / CELL).round().clamp(0.0, (ROWS - 1) as f64) as usize
     }
 
+    /// Column where the camera's ray to a cell passes another row.
+    pub(super) fn on_ray(&self, row: usize, column: usize, other: usize) -> usize {
+        let away = |row: usize| NEAR + CELL * row as f64;
+        self::column(self.left + (left(column) - self.left) * away(other) / away(row))
+    }
+
     /// Distance of the camera ahead of the robot's origin (m).
     pub(super) fn from(&self) -> f64 {
         self.camera.ahead
     }
 
-    /// Length of ground that a pixel covers at a row (m).
-    pub(super) fn depth(&self, row: usize) -> f64 {
-        self.depth[row]
+    /// Cells that a pixel covers at a row, rounded up.
+    pub(super) fn blur(&self, row: usize) -> usize {
+        self.blur[row]
     }
 
     /// Whether a cell is in view.
@@ -175,22 +190,25 @@ impl RoadView {
         sum / rows.len().max(1) as f32
     }
 
-    /// Contrast of a line across the road at a cell, of a width along the road (m), with the floor before and
-    /// behind it; `None` if that is out of view.
-    pub(super) fn across(&self, row: usize, column: usize, width: f64) -> Option<f64> {
+    /// Contrast of a line across the road, of a width along the road (m), with the floor before and behind
+    /// it, at each column of a row; `None` if that is out of view.
+    pub(super) fn across(&self, row: usize, width: f64) -> impl Fn(usize) -> Option<f64> + '_ {
         let blur = self.depth[row];
         let count = ((width.max(blur) / CELL).round() as usize).max(1);
         let (gap, side) = ((0.5 * blur / CELL).ceil() as usize, 3);
-        let (from, to) = (row.checked_sub(count / 2)?, row - count / 2 + count);
-        let first = from.checked_sub(gap + side)?;
+        let to = (row + count).saturating_sub(count / 2);
         let last = to + gap + side;
-        let seen = &self.seen[column];
-        if first < seen.start || last > seen.end {
-            return None;
+        let first = row.checked_sub(count / 2 + gap + side);
+        move |column| {
+            let first = first?;
+            let seen = &self.seen[column];
+            if first < seen.start || last > seen.end {
+                return None;
+            }
+            let line = self.mean(to - count..to, column);
+            let beside = self.mean(first..first + side, column).max(self.mean(last - side..last, column));
+            Some(self.contrast(line, beside))
         }
-        let line = self.mean(from..to, column);
-        let beside = self.mean(first..first + side, column).max(self.mean(last - side..last, column));
-        Some(self.contrast(line, beside))
     }
 
     /// Contrast of a line along the road near a column, within two cells; `None` if that is out of view.

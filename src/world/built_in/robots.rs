@@ -58,6 +58,7 @@ impl RobotSpec {
             depth_sensor: None,
             dvl: None,
             inertial: InertialSpec::default(),
+            compass: false,
             model: None,
             mesh: None,
             body: Body::default(),
@@ -355,6 +356,7 @@ impl RobotSpec {
             lidar: None,
             camera: None,
             inertial: InertialSpec::ALL,
+            compass: true,
             body: Body { mass_centre: [0.0, 0.0, 0.08], ..Body::default() },
             ..Self::s4()
         }

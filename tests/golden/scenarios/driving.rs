@@ -1,7 +1,11 @@
 //! Driving to goals, along paths and over a whole floor; kinematics, controllers and landmarks.
 
 use roverlab::drive::lane_keeping::{BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters};
-use roverlab::drive::traffic::{FreeDrive, FreeDriveRules};
+use roverlab::drive::parking::{ParkingDriver, ParkingKind, ParkingLot, ParkingParameters};
+use roverlab::drive::traffic::{
+    BoxMotion, CarFront, FreeDrive, FreeDriveRules, ObstacleEvasion, RoadBox, TrafficActors, TrafficDriver,
+    TrafficParameters, TrafficScene,
+};
 use roverlab::drive::{
     AToB, AToBParameters, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters, CoverageMap,
     CoverageMapParameters, CoveragePlan, Goal, Method, OmniDriver, OmniParameters, OmniTracker, Path,
@@ -10,6 +14,7 @@ use roverlab::drive::{
 };
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::control::run;
+use roverlab::io::sim::Simulation;
 use roverlab::io::{Clock, Drive, Lidar, LidarScan, Odometry, Result};
 use roverlab::kinematics::{
     Ackermann, CarState, Differential, Displacement, OdometryErrors, OdometryUncertainty, Omni, PlanarTwist,
@@ -21,7 +26,7 @@ use roverlab::vision::lane_markings::RoadModel;
 use roverlab::world::road::{Appearance, RoadCourse, RoadCourseOptions, generate};
 use roverlab::world::{DriveSpec, ObjectKind, RobotSpec, Scene, Shape, World};
 
-use super::{Robot, Scenario, in_room, noise, note, other, ride, room};
+use super::{Robot, Scenario, in_room, noise, note, note_truth, other, ride, room};
 
 pub(super) const SCENARIOS: &[Scenario] = &[
     Scenario::new("kinematics", kinematics),
@@ -36,6 +41,8 @@ pub(super) const SCENARIOS: &[Scenario] = &[
     Scenario::new("landmarks", landmarks),
     Scenario::new("lane-keeping", lane_keeping),
     Scenario::new("lane-keeping-book", lane_keeping_book),
+    Scenario::new("traffic", traffic),
+    Scenario::new("parking", parking),
 ];
 
 const METHODS: [Method; 4] = [Method::Turn, Method::Arc, Method::Dog, Method::Spline];
@@ -341,4 +348,54 @@ fn lane_keeping_book() -> Result<String> {
     let (_, scene) = on_the_road()?;
     let mut keeper = BookLaneKeeper::new(BookLaneParameters::default()).map_err(other)?;
     ride(&scene, noise(1.0, 29), |robot| run(robot, &mut keeper, 2.0, |_, _, _| {}).map(drop))
+}
+
+/// A car in traffic: its states, the elements that it finds, and what the referee says. The first box stands
+/// and the second one drives before the car.
+fn traffic() -> Result<String> {
+    let mut scene = TrafficScene { course: on_the_road()?.0, boxes: Vec::new() };
+    for (along, motion) in [(1.6, BoxMotion::Static), (4.8, BoxMotion::Along(2.0))] {
+        scene.boxes.push(RoadBox { along, left: 0.0, size: [0.2, 0.15, 0.18], motion });
+    }
+    let look = Appearance { pixel: 0.004, wear: 0.2, glare: 2, seed: 5 };
+    let world = scene.scene(&look, RobotSpec::road_car()).map_err(other)?;
+    let spec = &world.robots[0].spec;
+    let camera = spec.camera.as_ref().expect("the car has a camera").into();
+    let mut driver = TrafficDriver::new(camera, RoadModel::default(), TrafficParameters::default())?;
+    let mut referee = ObstacleEvasion::new(scene.clone(), spec, 1);
+    let mut actors = TrafficActors::new(scene.clone());
+    let simulation = Simulation::new(&world, noise(1.0, 30))?;
+    let (mut car, truth) = (simulation.robot(0)?, simulation.truth());
+    let mut log = String::new();
+    note(&mut log, "drawn", &TrafficScene::drawn(scene.course, 30).boxes);
+    run(&mut car, &mut driver, 6.0, |_, driver, step| {
+        let speed = step.seen.speed;
+        for (index, pose) in actors.advance(step.time, CarFront { along: referee.front(), speed }) {
+            truth.move_object(0, index, pose)?;
+        }
+        note(&mut log, "state", &(driver.state(), driver.elements().collect::<Vec<_>>()));
+        referee.see(step.time, &truth.pose(0)?, speed, &actors);
+        Ok::<_, roverlab::io::Error>(())
+    })?;
+    note(&mut log, "score", referee.score());
+    note_truth(&mut log, &truth.robot(0)?);
+    Ok(log)
+}
+
+/// A car that parks across the road.
+fn parking() -> Result<String> {
+    let lot = ParkingLot::drawn(ParkingKind::Perpendicular, 31).map_err(other)?;
+    let look = Appearance { pixel: 0.004, wear: 0.2, glare: 2, seed: 31 };
+    let scene = lot.scene(&look).map_err(other)?;
+    let camera = scene.robots[0].spec.camera.as_ref().expect("the car has a camera").into();
+    let parameters = ParkingParameters::default();
+    let mut driver = ParkingDriver::new(camera, RoadModel::default(), lot.kind, parameters)?;
+    let mut outcome = String::new();
+    let mut log = ride(&scene, noise(1.0, 31), |robot| {
+        let ended = run(robot, &mut driver, 60.0, |_, _, _| {})?;
+        note(&mut outcome, "outcome", &ended);
+        Ok(())
+    })?;
+    note(&mut log, "lot", &(lot.spot, &lot.boxes));
+    Ok(log + &outcome)
 }

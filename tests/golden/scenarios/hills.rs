@@ -1,11 +1,13 @@
-//! Hills: the search for a summit, the steepest way up, and plans.
+//! Hills: the search for a summit, the steepest way up, ramps, edges, and plans.
 
 use roverlab::drive::terrain::{Ascent, AscentParameters, SlopeSensor};
-use roverlab::io::Result;
+use roverlab::geometry::{Pose, Twist};
 use roverlab::io::control::run;
+use roverlab::io::{Clock, Drive, Odometry, Result};
 use roverlab::nav::elevation::{Climber, ElevationMap, ElevationPlanner, Objective};
-use roverlab::nav::{Fence, SummitParameters, SummitSearch};
+use roverlab::nav::{Fence, RampCrossing, SummitParameters, SummitSearch};
 use roverlab::random::Stream;
+use roverlab::safety::{CliffGuard, CliffGuardParameters};
 use roverlab::world::generate::{Relief, ReliefKind, ReliefOptions, relief};
 use roverlab::world::{RobotSpec, Scene};
 
@@ -14,6 +16,8 @@ use super::{Scenario, noise, note, ride};
 pub(super) const SCENARIOS: &[Scenario] = &[
     Scenario::new("summit", summit),
     Scenario::new("steepest-ascent", ascent),
+    Scenario::new("ramp-crossing", crossing),
+    Scenario::new("cliff-guard", guard),
     Scenario::new("terrain-plan", plan),
 ];
 
@@ -56,6 +60,44 @@ fn ascent() -> Result<String> {
             Ok(())
         })?;
     }
+    Ok(log + &verdict)
+}
+
+/// The beginning of a crossing: onto a level of 0.2 m, by the first ramp.
+fn crossing() -> Result<String> {
+    let levels = made(ReliefKind::Ramp, 1);
+    let spec = RobotSpec::blizzard();
+    let parameters = RampCrossing::parameters(&spec).expect("it has a lidar");
+    let mut verdict = String::new();
+    let log = ride(&Scene::with_robot(levels.world, spec, levels.start), noise(1.0, 93), |robot| {
+        let mut crossing = RampCrossing::new(parameters)?;
+        let outcome = run(robot, &mut crossing, 60.0, |_, _, _| {})?;
+        note(&mut verdict, "crossing", &(outcome, crossing.phase(), crossing.pose(), crossing.looks()));
+        Ok(())
+    })?;
+    Ok(log + &verdict)
+}
+
+/// Blindly over a level, forwards and backwards, to its edges.
+fn guard() -> Result<String> {
+    let levels = made(ReliefKind::Ramp, 1);
+    let parameters = CliffGuardParameters::of(&RobotSpec::blizzard());
+    let spec = CliffGuard::equip(RobotSpec::blizzard(), &parameters);
+    let [_, up, across, _] = levels.way[..] else { unreachable!("the way of a ramp has four places") };
+    let middle = up + 0.5 * (across - up);
+    let start = Pose::new(middle.x, middle.y, levels.start.heading + 0.3);
+    let mut verdict = String::new();
+    let log = ride(&Scene::with_robot(levels.world, spec.clone(), start), noise(1.0, 94), |robot| {
+        let mut guarded = CliffGuard::new(robot, &spec, parameters)?;
+        for speed in [0.3, -0.3] {
+            guarded.set_speed(Twist::new(speed, 0.1))?;
+            for _ in 0..8 {
+                guarded.wait(0.5)?;
+                note(&mut verdict, "guard", &(guarded.speed()?, guarded.is_at_edge()));
+            }
+        }
+        Ok(())
+    })?;
     Ok(log + &verdict)
 }
 

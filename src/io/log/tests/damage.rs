@@ -38,13 +38,8 @@ fn several_runs_and_newer_schemas_are_named() {
     }
 }
 
-/// Whether to try every bit and every length, which takes many minutes.
-fn thorough() -> bool {
-    std::env::var_os("ROVERLAB_THOROUGH").is_some()
-}
-
-#[test]
-fn every_cut_gives_back_all_complete_chunks() {
+/// Cuts a file at many lengths, or at all of them.
+fn cut_off(thorough: bool) {
     let bytes = recorded(1.3);
     // Ends of the chunk records.
     let records = super::reader::records(&bytes, mcap::MAGIC.len()).map_while(|record| record);
@@ -53,9 +48,9 @@ fn every_cut_gives_back_all_complete_chunks() {
         .map(|record| record.end())
         .collect();
     assert!(ends.len() >= 2, "{ends:?}");
-    // All cuts near the ends of chunks and of the file, and some of the others; all of them if thorough.
+    // All cuts near the ends of chunks and of the file, and some of the others.
     let near = |cut: usize| ends.iter().chain([&0, &bytes.len()]).any(|end| end.abs_diff(cut) < 60);
-    for cut in (0..bytes.len()).filter(|&cut| cut % 61 == 0 || near(cut) || thorough()) {
+    for cut in (0..bytes.len()).filter(|&cut| cut % 61 == 0 || near(cut) || thorough) {
         let part = &bytes[..cut];
         assert!(Log::read(part.to_vec()).is_err(), "cut at {cut}");
         let complete = ends.iter().filter(|&&end| end <= cut).count();
@@ -73,7 +68,12 @@ fn every_cut_gives_back_all_complete_chunks() {
 }
 
 #[test]
-fn a_flipped_bit_costs_one_part_at_most() {
+fn every_cut_gives_back_all_complete_chunks() {
+    cut_off(false);
+}
+
+/// Flips a bit of some bytes, or every bit, and counts the parts that are lost.
+fn lose_parts(thorough: bool) {
     let attachments = ["a", "b"].map(|name| Attachment {
         name: name.into(),
         media_type: "text/plain".into(),
@@ -93,9 +93,12 @@ fn a_flipped_bit_costs_one_part_at_most() {
     let whole = recover(&bytes).unwrap();
     assert!(whole.chunks >= 2 && parts(&whole) == whole.chunks + 3);
     let start = bytes.len().min(700);
-    for place in (0..start).chain((start..bytes.len()).step_by(307)) {
+    let some = (0..start).chain((start..bytes.len()).step_by(307)).map(|place| (place, place % 8));
+    let all = (0..bytes.len()).flat_map(|place| (0..8).map(move |bit| (place, bit)));
+    let flips: Vec<(usize, usize)> = if thorough { all.collect() } else { some.collect() };
+    for (place, bit) in flips {
         let mut broken = bytes.clone();
-        broken[place] ^= 1 << (place % 8);
+        broken[place] ^= 1 << bit;
         let saved = recover(&broken).unwrap();
         let lost = parts(&whole) - parts(&saved);
         assert!(lost <= 1, "byte {place}: {lost} of {} parts", parts(&whole));
@@ -114,12 +117,16 @@ fn a_flipped_bit_costs_one_part_at_most() {
 }
 
 #[test]
-fn every_flipped_bit_is_found_out_or_harmless() {
+fn a_flipped_bit_costs_one_part_at_most() {
+    lose_parts(false);
+}
+
+/// Flips some bits of a file, or every bit, a single one each time.
+fn flip_bits(thorough: bool) {
     let bytes = recorded(0.2);
     let log = Log::read(bytes.clone()).unwrap();
     let mut found_out = 0;
-    // Single bits of some bytes, a different one each time; all of them if thorough.
-    let bits = (0..8 * bytes.len()).filter(|bit| bit % 401 == 0 || thorough());
+    let bits = (0..8 * bytes.len()).filter(|bit| bit % 401 == 0 || thorough);
     let mut flips = 0;
     for bit in bits {
         let place = bit / 8;
@@ -137,6 +144,34 @@ fn every_flipped_bit_is_found_out_or_harmless() {
     }
     println!("{found_out} of {flips} flipped bits are found out, the others are harmless");
     assert!(found_out > flips * 99 / 100, "{found_out} of {flips}");
+}
+
+#[test]
+fn every_flipped_bit_is_found_out_or_harmless() {
+    flip_bits(false);
+}
+
+/// Every bit and every length, in minutes:
+/// `(ulimit -v 500000; cargo test --release --all-features --lib damage::campaigns -- --ignored --test-threads 1)`,
+/// once the tests are built.
+mod campaigns {
+    #[test]
+    #[ignore = "a campaign of minutes, by the command above"]
+    fn every_length_gives_back_all_complete_chunks() {
+        super::cut_off(true);
+    }
+
+    #[test]
+    #[ignore = "a campaign of minutes, by the command above"]
+    fn every_bit_costs_one_part_at_most() {
+        super::lose_parts(true);
+    }
+
+    #[test]
+    #[ignore = "a campaign of minutes, by the command above"]
+    fn every_bit_is_found_out_or_harmless() {
+        super::flip_bits(true);
+    }
 }
 
 /// The first length in a file, that of the profile's name, once said 2 GiB to be asked for.

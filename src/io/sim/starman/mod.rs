@@ -2,7 +2,7 @@
 //!
 //! It moves in a vertical plane, on a floor with friction and under gravity. The physics engine `rapier2d`,
 //! whose results are the same on every platform, moves its body; the servos with their speed and limits are
-//! our own.
+//! our own. A [`BodyPlan`] describes other bodies that walk.
 //!
 //! ```
 //! use roverlab::io::sim::starman::{Starman, StarmanSpec};
@@ -23,13 +23,15 @@
 //! ```
 
 mod physics;
+mod plan;
 mod robot;
 mod servo;
 mod spec;
 
 pub use physics::{StarmanPosture, StarmanTruth};
+pub use plan::{BodyPlan, LimbPlan};
 pub use robot::Starman;
 pub use spec::StarmanSpec;
 
-/// Number of limbs.
+/// Number of limbs of the star.
 pub const LIMBS: usize = 5;

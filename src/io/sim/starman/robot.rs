@@ -2,8 +2,8 @@ use std::sync::Arc;
 
 use ambassador::Delegate;
 
-use super::physics::{Figure, StarmanTruth};
-use super::{LIMBS, StarmanSpec};
+use super::physics::{Build, Figure, StarmanTruth};
+use super::{BodyPlan, StarmanSpec};
 use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::delegate::{
     Colour, DisplayImage, DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, Pixel, Psd, RadioMessage,
@@ -41,7 +41,17 @@ impl Starman {
     /// A Starman in its initial standing position. Fails for a specification out of range.
     pub fn new(spec: &StarmanSpec) -> Result<Self> {
         spec.validate()?;
-        let world = Arc::new(Lockstep::new(Figure::new(spec), spec.time_step, 1, PATIENCE));
+        Self::built(&Build::star(spec), spec.time_step)
+    }
+
+    /// Another body that walks: its first limb is moved by servo 1. Fails for a plan out of range.
+    pub fn of(plan: &BodyPlan) -> Result<Self> {
+        plan.validate()?;
+        Self::built(&Build::of(plan), plan.time_step)
+    }
+
+    fn built(build: &Build, time_step: f64) -> Result<Self> {
+        let world = Arc::new(Lockstep::new(Figure::new(build), time_step, 1, PATIENCE));
         Ok(Self {
             program: Program::claim(&world, 0, CALL, None)?,
             lcd: Lcd::new(),
@@ -89,7 +99,7 @@ impl Servos for Starman {
     fn set_servo(&mut self, servo: u8, position: f64) -> Result<()> {
         self.call(|figure| {
             let limb = usize::from(servo).wrapping_sub(1);
-            if limb >= LIMBS {
+            if limb >= figure.servos() {
                 return Err(Error::unsupported(format!("servo {servo}")));
             }
             if !(-1.0..=1.0).contains(&position) {
@@ -170,6 +180,7 @@ signatures! { DepthSensor => lacks!("depth sensor") }
 
 #[cfg(test)]
 mod tests {
+    use super::super::LIMBS;
     use super::*;
     use crate::io::RobotIo;
 

@@ -2,6 +2,9 @@ use crate::ParameterError;
 use crate::parameter::{require, require_positive};
 use std::f64::consts::PI;
 
+/// Largest time step (s).
+pub(super) const MOST_STEP: f64 = 0.02;
+
 /// Dimensions and servos of a Starman. Lengths in metres, masses in kilograms, angles in radians.
 ///
 /// The form and the servos' range and speed are from the book; sizes and masses are those of a robot that
@@ -74,7 +77,7 @@ impl StarmanSpec {
         // With a wider range, neighbours would cross; with a larger time step, the solver cannot hold the
         // hinges.
         require("servo range", self.servo_range, self.servo_range <= PI / 5.0, "at most a tenth of a turn")?;
-        require("time step", self.time_step, self.time_step <= 0.02, "at most 0.02 s")
+        require("time step", self.time_step, self.time_step <= MOST_STEP, "at most 0.02 s")
     }
 }
 

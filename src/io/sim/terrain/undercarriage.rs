@@ -13,8 +13,6 @@ pub(super) struct Undercarriage {
     /// Square of the mean radius of gyration (m²).
     pub(super) gyration: f64,
     pub(super) feet: Vec<Foot>,
-    /// Sinking of a foot per acceleration of the body (s²).
-    pub(super) softness: f64,
     /// Coefficient of friction.
     pub(super) friction: f64,
 }
@@ -25,6 +23,8 @@ pub(super) struct Foot {
     /// Position relative to the centre of mass.
     pub(super) place: Vector3,
     pub(super) grip: Grip,
+    /// Sinking per acceleration of the body that it supports alone (s²).
+    pub(super) softness: f64,
 }
 
 /// Directions of a foot's friction.
@@ -43,8 +43,13 @@ pub(super) enum Grip {
     Free,
 }
 
-/// Sinking of a body on all its wheels (m).
+/// Sinking of a body on all its wheels, belts or corners (m).
 const SAG: f64 = 1e-4;
+/// The same of a body on springs, and their travel from there to the stop (m). Mecanum wheels need springs: a
+/// rigid body on uneven ground stands on two that are diagonal and hold it along one direction only.
+const SPRUNG: f64 = 3e-3;
+/// Number of corners on which an overturned body rests.
+const CORNERS: u32 = 4;
 /// Angles from straight down of the points of a wheel that may touch the ground (degrees).
 const RIM: [f64; 5] = [-60.0, -30.0, 0.0, 30.0, 60.0];
 /// Position of the centre of mass between axle and castor, as a fraction.
@@ -61,56 +66,81 @@ impl Undercarriage {
     pub(super) fn of(spec: &RobotSpec) -> Self {
         let (back, front) = ends(&spec.footprint);
         let mut feet = Vec::new();
-        let (wheels, ahead) = match spec.drive {
+        let ahead = match spec.drive {
             DriveSpec::Differential { wheel_diameter, track, .. } => {
                 let castor = if front > -back { front } else { back };
                 for side in [0.5, -0.5] {
                     let axle = Vector::new(0.0, side * track);
-                    wheel(&mut feet, axle, 0.5 * wheel_diameter, Grip::Driven(axle));
+                    feet.extend(wheel(axle, 0.5 * wheel_diameter, Grip::Driven(axle), 3));
                 }
-                feet.push(Foot { place: Vector3::new(castor, 0.0, 0.0), grip: Grip::Free });
-                (3, BETWEEN * castor)
+                feet.push(Foot::stiff(Vector3::new(castor, 0.0, 0.0), Grip::Free, 3));
+                BETWEEN * castor
             }
             DriveSpec::Tracked { wheel_diameter, track, length, width, .. } => {
                 belts(&mut feet, Tracked { track, length, width }, 0.5 * wheel_diameter);
-                (4, 0.0)
+                0.0
             }
             DriveSpec::Ackermann { wheel_diameter, track, wheelbase, .. } => {
                 for side in [0.5, -0.5] {
                     let (rear, steered) =
                         (Vector::new(0.0, side * track), Vector::new(wheelbase, side * track));
-                    wheel(&mut feet, rear, 0.5 * wheel_diameter, Grip::Driven(rear));
-                    wheel(&mut feet, steered, 0.5 * wheel_diameter, Grip::Rolling(steered));
+                    feet.extend(wheel(rear, 0.5 * wheel_diameter, Grip::Driven(rear), 4));
+                    feet.extend(wheel(steered, 0.5 * wheel_diameter, Grip::Rolling(steered), 4));
                 }
-                (4, 0.5 * wheelbase)
+                0.5 * wheelbase
             }
             DriveSpec::Omni { wheel_diameter, track, wheelbase, .. } => {
                 for (ahead, side) in [(0.5, 0.5), (0.5, -0.5), (-0.5, 0.5), (-0.5, -0.5)] {
                     let place = Vector::new(ahead * wheelbase, side * track);
                     let roller = Vector::new(1.0, -(ahead * side).signum()).normalize();
-                    wheel(&mut feet, place, 0.5 * wheel_diameter, Grip::Roller(place, roller));
+                    let stops: Vec<Foot> =
+                        wheel(place, 0.5 * wheel_diameter, Grip::Roller(place, roller), 4).collect();
+                    feet.extend(stops.iter().map(|stop| stop.sprung(4)));
+                    feet.extend(stops.iter().map(|stop| stop.raised(SPRUNG)));
                 }
-                (4, 0.0)
+                0.0
             }
-            DriveSpec::Craft(_) => (0, 0.0),
+            DriveSpec::Craft(_) => 0.0,
         };
         feet.extend(chassis(spec, ahead));
         let centre = stated_centre(spec).unwrap_or(Vector3::new(ahead, 0.0, MIDDLE * spec.height));
-        Self::new(feet, centre, gyration(spec), wheels, spec.friction)
+        Self::new(feet, centre, gyration(spec), spec.friction)
     }
 
     /// An undercarriage of feet at positions relative to the robot's origin.
-    pub(super) fn new(
-        mut feet: Vec<Foot>,
-        centre: Vector3,
-        gyration: f64,
-        wheels: u32,
-        friction: f64,
-    ) -> Self {
+    pub(super) fn new(mut feet: Vec<Foot>, centre: Vector3, gyration: f64, friction: f64) -> Self {
         for foot in &mut feet {
             foot.place -= centre;
         }
-        Self { centre, gyration, feet, softness: f64::from(wheels) * SAG / GRAVITY, friction }
+        Self { centre, gyration, feet, friction }
+    }
+}
+
+impl Foot {
+    /// One of `number` feet on which a body sinks by `sag`.
+    fn new(place: Vector3, grip: Grip, number: u32, sag: f64) -> Self {
+        Self { place, grip, softness: f64::from(number) * sag / GRAVITY }
+    }
+
+    /// One of `number` stiff feet that bear a body.
+    pub(super) fn stiff(place: Vector3, grip: Grip, number: u32) -> Self {
+        Self::new(place, grip, number, SAG)
+    }
+
+    /// The same foot on a spring, which a body's weight on `number` of them compresses to its place.
+    fn sprung(&self, number: u32) -> Self {
+        Self::new(self.raised(-SPRUNG).place, self.grip, number, SPRUNG)
+    }
+
+    fn raised(&self, up: f64) -> Self {
+        Self { place: self.place + Vector3::z() * up, ..*self }
+    }
+
+    /// Time constant with which it returns when unloaded (s): its damping over its stiffness. A body that it
+    /// supports alone is damped critically.
+    #[inline]
+    pub(super) fn relaxation(&self) -> f64 {
+        2.0 * self.softness.sqrt()
     }
 }
 
@@ -127,12 +157,13 @@ impl Grip {
     }
 }
 
-/// Points of a wheel's rim that may touch the ground.
-fn wheel(feet: &mut Vec<Foot>, axle: Vector, radius: f64, grip: Grip) {
-    feet.extend(RIM.map(|degrees| {
+/// Points of the rim of one of `number` wheels that may touch the ground.
+fn wheel(axle: Vector, radius: f64, grip: Grip, number: u32) -> impl Iterator<Item = Foot> {
+    RIM.into_iter().map(move |degrees| {
         let (sin, cos) = math::sin_cos(units::from_deg(degrees));
-        Foot { place: Vector3::new(axle.x + radius * sin, axle.y, radius * (1.0 - cos)), grip }
-    }));
+        let place = Vector3::new(axle.x + radius * sin, axle.y, radius * (1.0 - cos));
+        Foot::stiff(place, grip, number)
+    })
 }
 
 /// Points of belts that may touch the ground: below, and on the rise towards the wheels at their ends.
@@ -141,14 +172,15 @@ fn belts(feet: &mut Vec<Foot>, drive: Tracked, radius: f64) {
     for side in [1.0, -1.0] {
         // A belt's speed is that of the equivalent drive's wheel.
         let grip = Grip::Driven(Vector::new(0.0, side * half));
-        let below = drive.places(side).map(|place| Vector3::new(place.x, place.y, 0.0));
-        feet.extend(below.map(|place| Foot { place, grip }));
+        let below: Vec<_> = drive.places(side).map(|place| Vector3::new(place.x, place.y, 0.0)).collect();
+        let number = 2 * below.len() as u32;
+        feet.extend(below.into_iter().map(|place| Foot::stiff(place, grip, number)));
         for end in [0.5, -0.5] {
             for degrees in [30.0, 60.0, 90.0] {
                 let (sin, cos) = math::sin_cos(units::from_deg(degrees));
                 let x = end * drive.length + end.signum() * radius * sin;
                 let place = Vector3::new(x, side * 0.5 * drive.track, radius * (1.0 - cos));
-                feet.push(Foot { place, grip });
+                feet.push(Foot::stiff(place, grip, number));
             }
         }
     }
@@ -185,7 +217,7 @@ fn chassis(spec: &RobotSpec, belly: f64) -> Vec<Foot> {
         .into_iter()
         .flat_map(|height| outline.iter().map(move |corner| Vector3::new(corner.x, corner.y, height)));
     let belly = [Vector3::new(belly, 0.0, 0.5 * axle)];
-    corners.chain(belly).map(|place| Foot { place, grip: Grip::Body }).collect()
+    corners.chain(belly).map(|place| Foot::stiff(place, Grip::Body, CORNERS)).collect()
 }
 
 fn wheel_diameter(spec: &RobotSpec) -> f64 {

@@ -42,6 +42,8 @@ struct Cone {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Scanner {
     cones: Vec<Cone>,
+    /// Number of cones so far, which take the time.
+    pub(super) passed: u64,
 }
 
 impl Scanner {
@@ -62,6 +64,7 @@ impl Scanner {
             self.cones.push(cone);
         }
         while let Some(cone) = self.cones.pop() {
+            self.passed += 1;
             sight.pass(&cone, |next| {
                 sight.report(&next, &mut found);
                 self.cones.push(next);

@@ -15,9 +15,9 @@ use crate::world::{BitGrid, GridCell};
 ///
 /// Visibility from a point is found as in Anya, in integers: cones of sight are clipped by the free cells of
 /// one row after the other, and only corners that can bend a shortest path count. The corners visible from a
-/// corner are computed when a search first gets there, and kept; [`AnyAngle::prepare`] does so for all of
-/// them. The search is A\* over corners, and continues from each only in the directions that bend the path
-/// around its blocked cell.
+/// corner are computed when a search first gets there, and kept up to 192 MB; [`AnyAngle::prepare`] does so
+/// for all of them. The search is A\* over corners, and continues from each only in the directions that bend
+/// the path around its blocked cell.
 ///
 /// D. Harabor, A. Grastien, D. Öz, V. Aksakalli, *Optimal Any-Angle Pathfinding in Practice*, Journal of
 /// Artificial Intelligence Research 56, 2016; S. Oh, H. W. Leong, *Edge N-Level Sparse Visibility Graphs*,
@@ -58,6 +58,7 @@ struct View {
 
 /// Start of a view that has not been determined.
 const UNKNOWN: u32 = u32::MAX;
+const NOT_SCANNED: View = View { first: UNKNOWN, middle: 0, end: 0 };
 
 #[derive(Debug, Clone, Copy)]
 struct Seen {
@@ -65,6 +66,13 @@ struct Seen {
     x: i32,
     y: i32,
 }
+
+/// Number of visible corners, 12 bytes each, at which preparation ends, and at which all are forgotten: on a
+/// large lattice they would take gigabytes.
+const MOST_PREPARED: usize = 8_000_000;
+const MOST_SEEN: usize = 2 * MOST_PREPARED;
+/// Number of cones of sight at which preparation ends.
+const MOST_CONES: u64 = 16_000_000;
 
 /// Search state of a corner.
 #[derive(Debug, Clone, Copy, Default)]
@@ -93,11 +101,10 @@ impl AnyAngle {
     pub fn new(grid: &BitGrid) -> Self {
         let field = Field::new(grid);
         let corners = field.all_corners();
-        let unknown = View { first: UNKNOWN, middle: 0, end: 0 };
         Self {
             grid: grid.clone(),
             components: GridComponents::new(grid),
-            views: vec![unknown; corners.len()],
+            views: vec![NOT_SCANNED; corners.len()],
             labels: vec![Label::default(); corners.len()],
             field,
             corners,
@@ -108,11 +115,18 @@ impl AnyAngle {
         }
     }
 
-    /// Computes the visibility of every corner, which makes first queries as fast as later ones.
-    pub fn prepare(&mut self) {
+    /// Computes the visibility of every corner, which makes first queries as fast as later ones. Stops at 96
+    /// MB and after about two seconds, as large open floors with many single obstacles need far more. Returns
+    /// whether all corners are prepared; the others follow when a search first gets there.
+    pub fn prepare(&mut self) -> bool {
+        let last = self.scanner.passed + MOST_CONES;
         for corner in 0..self.corners.len() as u32 {
+            if self.seen.len() > MOST_PREPARED || self.scanner.passed > last {
+                return false;
+            }
             self.look(corner);
         }
+        true
     }
 
     /// Number of corners of the map.
@@ -148,6 +162,10 @@ impl AnyAngle {
         let view = self.views[number as usize];
         if view.first != UNKNOWN {
             return view;
+        }
+        if self.seen.len() > MOST_SEEN {
+            self.seen.clear();
+            self.views.fill(NOT_SCANNED);
         }
         let Self { field, scanner, seen, corners, .. } = self;
         let corner = corners[number as usize];

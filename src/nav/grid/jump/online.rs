@@ -32,8 +32,8 @@ pub struct JumpPointSearch {
 
 /// Every cell is a node.
 #[derive(Debug, Clone)]
-struct Cells {
-    planes: Planes,
+pub(super) struct Cells {
+    pub(super) planes: Planes,
     stride: usize,
     count: usize,
 }
@@ -41,9 +41,8 @@ struct Cells {
 impl JumpPointSearch {
     /// Creates a planner for a grid.
     pub fn new(grid: &BitGrid) -> Self {
-        let stride = grid.width() + 2;
-        let cells = Cells { planes: Planes::new(grid), stride, count: stride * (grid.height() + 2) };
-        Self { grid: grid.clone(), components: GridComponents::new(grid), cells, search: Search::default() }
+        let (components, cells) = (GridComponents::new(grid), Cells::new(grid));
+        Self { grid: grid.clone(), components, cells, search: Search::default() }
     }
 
     /// Ends of the last query's jumps, by path length.
@@ -73,6 +72,11 @@ impl JumpPointSearch {
 }
 
 impl Cells {
+    pub(super) fn new(grid: &BitGrid) -> Self {
+        let stride = grid.width() + 2;
+        Self { planes: Planes::new(grid), stride, count: stride * (grid.height() + 2) }
+    }
+
     #[inline]
     fn arrival(&self, at: Landing) -> Arrival {
         Arrival { node: (at.y * self.stride + at.x) as u32, at }

@@ -71,6 +71,14 @@ impl Plane {
         self.lanes[line * self.stride + index].free
     }
 
+    /// The jump points of a word that scans along its line reach: those with a free cell before them.
+    fn jump_points(&self, line: usize, index: usize) -> u64 {
+        let Lane { free, up, down } = self.lanes[line * self.stride + index];
+        let below = free << 1 | self.free_word_at(line, index, -1) >> 63;
+        let above = free >> 1 | self.free_word_at(line, index, 1) << 63;
+        free & ((up & below) | (down & above))
+    }
+
     #[inline]
     pub(super) fn is_free(&self, line: usize, at: usize) -> bool {
         self.lanes[line * self.stride + at / 64].free >> (at % 64) & 1 != 0
@@ -201,26 +209,29 @@ impl Planes {
         }
     }
 
-    /// Calls `land` with the jump points at which jumps from a cell in some directions end.
+    /// Calls `land` with the jump points at which jumps from a cell in some directions end. Returns the
+    /// number of scans.
     #[inline]
-    pub(super) fn jumps(&self, x: usize, y: usize, directions: u8, mut land: impl FnMut(Landing)) {
+    pub(super) fn jumps(&self, x: usize, y: usize, directions: u8, mut land: impl FnMut(Landing)) -> usize {
+        let mut scans = (directions & 0b101_0101).count_ones() as usize;
         for direction in [0, 2, 4, 6] {
             if directions >> direction & 1 != 0 {
                 self.straight(x, y, direction, &mut land);
             }
         }
         if directions >> 1 & 1 != 0 {
-            self.diagonal::<true, false>(x, y, &mut land);
+            scans += self.diagonal::<true, false>(x, y, &mut land);
         }
         if directions >> 3 & 1 != 0 {
-            self.diagonal::<true, true>(x, y, &mut land);
+            scans += self.diagonal::<true, true>(x, y, &mut land);
         }
         if directions >> 5 & 1 != 0 {
-            self.diagonal::<false, true>(x, y, &mut land);
+            scans += self.diagonal::<false, true>(x, y, &mut land);
         }
         if directions >> 7 != 0 {
-            self.diagonal::<false, false>(x, y, &mut land);
+            scans += self.diagonal::<false, false>(x, y, &mut land);
         }
+        scans
     }
 
     #[inline]
@@ -237,14 +248,16 @@ impl Planes {
         }
     }
 
-    /// Follows a diagonal. Its own cells are not reported; the ends of straight jumps from them are.
+    /// Follows a diagonal. Its own cells are not reported; the ends of straight jumps from them are. Returns
+    /// the number of scans.
     #[inline]
     fn diagonal<const EAST: bool, const SOUTH: bool>(
         &self,
         mut x: usize,
         mut y: usize,
         land: &mut impl FnMut(Landing),
-    ) {
+    ) -> usize {
+        let mut scans = 0;
         loop {
             let next_x = if EAST { x + 1 } else { x - 1 };
             let next_y = if SOUTH { y + 1 } else { y - 1 };
@@ -252,9 +265,10 @@ impl Planes {
                 && self.rows.is_free(next_y, x)
                 && self.rows.is_free(next_y, next_x);
             if !open {
-                return;
+                return scans;
             }
             (x, y) = (next_x, next_y);
+            scans += 2;
             self.straight(x, y, if EAST { 2 } else { 6 }, land);
             self.straight(x, y, if SOUTH { 4 } else { 0 }, land);
         }
@@ -295,18 +309,16 @@ impl Planes {
     }
 
     /// The jump points of a row, as words of bits including the border.
-    pub(super) fn jump_points(&self, y: usize, height: usize) -> Vec<u64> {
-        let line = &self.rows.lanes[y * self.rows.stride..][..self.rows.stride];
-        let mut words: Vec<u64> = line.iter().map(|lane| lane.free & (lane.up | lane.down)).collect();
-        debug_assert!(y <= height);
+    pub(super) fn jump_points(&self, y: usize) -> Vec<u64> {
+        let mut words: Vec<u64> =
+            (0..self.rows.stride).map(|index| self.rows.jump_points(y, index)).collect();
         for (index, word) in words.iter_mut().enumerate() {
             for bit in 0..64 {
                 let x = 64 * index + bit;
                 if (x + 1) * self.columns.stride > self.columns.lanes.len() {
                     break;
                 }
-                let lane = &self.columns.lanes[x * self.columns.stride + y / 64];
-                *word |= (lane.free & (lane.up | lane.down)) >> (y % 64) << 63 >> (63 - bit);
+                *word |= self.columns.jump_points(x, y / 64) >> (y % 64) << 63 >> (63 - bit);
             }
         }
         words

@@ -1,3 +1,4 @@
+use super::online::Cells;
 use super::planes::{Direction, Landing, Planes};
 use super::search::{Arrival, Jumps, Search};
 use crate::nav::grid::components::GridComponents;
@@ -10,9 +11,13 @@ use crate::world::{BitGrid, GridCell};
 /// contiguously. A query scans from its start and follows edges after that; each node checks whether it sees
 /// the goal.
 ///
+/// On large open floors with many single obstacles there are so many jumps that storing them takes long and
+/// gains little. There this planner scans during the search, as [`JumpPointSearch`](super::JumpPointSearch)
+/// does ([`is_prepared`](Self::is_prepared)).
+///
 /// D. Harabor, A. Grastien, *Improving Jump Point Search*, ICAPS 2014 (JPS+). Preparation time is
-/// proportional to the number of jump points and the lengths of the diagonals from them; memory is 32 bytes
-/// per jump point plus 12 bytes per jump.
+/// proportional to the number of jump points and the lengths of the diagonals from them, at most 100 million
+/// scans; memory is 32 bytes per jump point plus 12 bytes per jump, at most 8 million jumps.
 ///
 /// ```
 /// use roverlab::nav::grid::{GridPlanner, PreparedJumps};
@@ -27,10 +32,15 @@ use crate::world::{BitGrid, GridCell};
 pub struct PreparedJumps {
     grid: BitGrid,
     components: GridComponents,
-    planes: Planes,
-    graph: Graph,
+    cells: Cells,
+    /// Jumps between the jump points; `None` if there are too many.
+    graph: Option<Graph>,
     search: Search,
 }
+
+/// Maximum number of stored jumps, about 100 MB, and of scans to find them, about a second.
+const MOST_JUMPS: usize = 8_000_000;
+const MOST_SCANS: usize = 100_000_000;
 
 #[derive(Debug, Clone, Default)]
 struct Graph {
@@ -62,67 +72,84 @@ struct Edge {
 impl PreparedJumps {
     /// Prepares a map.
     pub fn new(grid: &BitGrid) -> Self {
-        let planes = Planes::new(grid);
-        let graph = Graph::new(grid, &planes);
+        let cells = Cells::new(grid);
+        let graph = Graph::new(grid, &cells.planes);
         let components = GridComponents::new(grid);
-        Self { grid: grid.clone(), components, planes, graph, search: Search::default() }
+        Self { grid: grid.clone(), components, cells, graph, search: Search::default() }
     }
 
-    /// Number of jump points of the map.
+    /// Whether jumps are stored, rather than scanned for during each search.
+    pub fn is_prepared(&self) -> bool {
+        self.graph.is_some()
+    }
+
+    /// Number of stored jump points.
     pub fn jump_points(&self) -> usize {
-        self.graph.nodes.len()
+        self.graph.as_ref().map_or(0, |graph| graph.nodes.len())
     }
 
-    /// Number of jumps between them.
+    /// Number of stored jumps between them.
     pub fn jumps(&self) -> usize {
-        self.graph.edges.len()
+        self.graph.as_ref().map_or(0, |graph| graph.edges.len())
     }
 }
 
 impl Graph {
-    fn new(grid: &BitGrid, planes: &Planes) -> Self {
+    /// The jumps of a map; `None` if there are too many.
+    fn new(grid: &BitGrid, planes: &Planes) -> Option<Self> {
         let stride = (grid.width() + 2).div_ceil(64);
         let mut graph = Self { stride, points: vec![0; stride], ..Self::default() };
         for y in 1..=grid.height() {
-            graph.points.extend(planes.jump_points(y, grid.height()));
+            graph.points.extend(planes.jump_points(y));
         }
         let mut count = 0;
         for word in &graph.points {
             graph.before.push(count);
             count += word.count_ones();
         }
-        graph.connect(planes);
-        graph
+        graph.connect(planes)?;
+        Some(graph)
     }
 
-    fn connect(&mut self, planes: &Planes) {
+    /// Finds the jumps of a map; `None` if there are too many.
+    fn connect(&mut self, planes: &Planes) -> Option<()> {
+        let mut scans = 0;
         for index in 0..self.points.len() {
             let mut rest = self.points[index];
             while rest != 0 {
                 let (x, y) = (index % self.stride * 64 + rest.trailing_zeros() as usize, index / self.stride);
                 rest &= rest - 1;
-                let node = self.node(planes, x, y);
+                let node = self.node(planes, x, y, &mut scans)?;
                 self.nodes.push(node);
             }
+            if self.edges.len() > MOST_JUMPS || scans > MOST_SCANS {
+                return None;
+            }
         }
+        Some(())
     }
 
-    fn node(&mut self, planes: &Planes, x: usize, y: usize) -> Node {
-        let onward = [0, 2, 4, 6].map(|direction| planes.onward(Landing { x, y, direction }));
+    /// The node of a jump point; `None` if it has more jumps than its counters hold.
+    fn node(&mut self, planes: &Planes, x: usize, y: usize, scans: &mut usize) -> Option<Node> {
+        let before = [(x, y + 1), (x - 1, y), (x, y - 1), (x + 1, y)];
+        let onward = [0, 1, 2, 3].map(|way| {
+            let arrives = planes.is_free(before[way].0, before[way].1);
+            if arrives { planes.onward(Landing { x, y, direction: 2 * way }) } else { 0 }
+        });
         // An arrival that only continues straight on makes no jump point.
         let all = onward.iter().filter(|mask| mask.count_ones() > 1).fold(0, |all, mask| all | mask);
         let first = self.edges.len() as u32;
         let mut ends = [0; 8];
         for (direction, end) in ends.iter_mut().enumerate() {
             if all >> direction & 1 != 0 {
-                planes.jumps(x, y, 1 << direction, |at| {
+                *scans += planes.jumps(x, y, 1 << direction, |at| {
                     let edge = self.edge(at);
                     self.edges.push(edge);
                 });
             }
-            *end = (self.edges.len() as u32 - first) as u16;
+            *end = u16::try_from(self.edges.len() as u32 - first).ok()?;
         }
-        Node { first, ends, onward }
+        Some(Node { first, ends, onward })
     }
 
     fn edge(&self, at: Landing) -> Edge {
@@ -176,8 +203,47 @@ impl Jumps for Prepared<'_> {
 impl GridPlanner for PreparedJumps {
     fn plan(&mut self, start: GridCell, goal: GridCell) -> Result<GridPath, PlanError> {
         check(&self.grid, &self.components, start, goal)?;
-        let jumps = Prepared { planes: &self.planes, graph: &self.graph };
-        let (turns, statistics) = self.search.run(&self.planes, &jumps, start, goal);
+        let Self { cells, search, .. } = self;
+        let (turns, statistics) = match &self.graph {
+            Some(graph) => {
+                let jumps = Prepared { planes: &cells.planes, graph };
+                search.run(&cells.planes, &jumps, start, goal)
+            }
+            None => search.run(&cells.planes, &*cells, start, goal),
+        };
         Ok(GridPath::through(&turns, statistics))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Corridors one cell wide, which cross at every second cell, with some walls.
+    fn corridors() -> BitGrid {
+        BitGrid::from_fn(41, 41, |x, y| (x % 2 == 1 || y % 2 == 1) && (3 * x + 5 * y) % 7 != 0).unwrap()
+    }
+
+    #[test]
+    fn what_is_not_stored_is_scanned_for() {
+        let grid = corridors();
+        let mut prepared = PreparedJumps::new(&grid);
+        assert!(prepared.is_prepared());
+        let mut unprepared = PreparedJumps { graph: None, ..prepared.clone() };
+        assert_eq!((unprepared.is_prepared(), unprepared.jump_points(), unprepared.jumps()), (false, 0, 0));
+        let start = GridCell::new(1, 1);
+        for goal in grid.free_cells() {
+            let cost = |path: Result<GridPath, PlanError>| path.map(|path| path.cost);
+            assert_eq!(cost(prepared.plan(start, goal)), cost(unprepared.plan(start, goal)), "{goal}");
+        }
+    }
+
+    /// A cell beside a corner is a jump point only for those that can arrive past the corner.
+    #[test]
+    fn corridors_have_jump_points_where_they_meet_and_nowhere_else() {
+        let cross = BitGrid::from_text("##.##\n##.##\n.....\n##.##\n##.##").unwrap();
+        assert_eq!(PreparedJumps::new(&cross).jump_points(), 1);
+        let bend = BitGrid::from_text("###.\n###.\n....").unwrap();
+        assert_eq!(PreparedJumps::new(&bend).jump_points(), 1);
     }
 }

@@ -74,6 +74,7 @@
 //! | `depth_sensor CHANNEL [Z]` | a depth sensor: its channel of `ANALOGRead`, and its height |
 //! | `dvl RANGE` | a craft's Doppler log, which sees the ground so far below: odometry is the way over ground |
 //! | `inertial` and 3, 6 or 9 channels | an inertial unit: channels of `ANALOGRead` for roll, pitch and yaw, turn rates, and accelerations, in the order forward, left, up: [`InertialSpec`](crate::world::InertialSpec); 0 0 0 for missing measurements |
+//! | `compass` | the inertial unit has a compass, so that its yaw does not drift |
 //! | `camera_view DEG` | the camera's horizontal field of view |
 //!
 //! ```

@@ -360,13 +360,13 @@ prop_compose! {
         let footprint = if disc { Footprint::Disc { radius: outline.0 } } else { Footprint::Rectangle(rectangle) };
         let motor = MotorSpec { time_constant: motor.0, max_acceleration: motor.1 };
         let model = Some(r"m\a b.obj".into());
-        let (depth_sensor, dvl) = (None, rates.then_some(9.5));
+        let (depth_sensor, dvl, compass) = (None, rates.then_some(9.5), tilts && rates);
         let inertial = InertialSpec {
             attitude: tilts.then_some([1, 2, 3]),
             turn_rates: rates.then_some([6, 5, 4]),
             acceleration: pulls.then_some([200, 8, 255]),
         };
-        RobotSpec { name, drive, motor, footprint, height, mast: None, mass, friction, psds, lidar, camera, depth_sensor, dvl, inertial, model, mesh: None, body }
+        RobotSpec { name, drive, motor, footprint, height, mast: None, mass, friction, psds, lidar, camera, depth_sensor, dvl, inertial, compass, model, mesh: None, body }
     }
 }
 

@@ -45,7 +45,8 @@ fn write_spec(text: &mut String, spec: &RobotSpec) -> Result {
     if let Some(range) = spec.dvl {
         writeln!(text, "dvl {}", millimetres(range))?;
     }
-    write_inertial(text, &spec.inertial)
+    write_inertial(text, &spec.inertial)?;
+    if spec.compass { writeln!(text, "compass") } else { Ok(()) }
 }
 
 fn write_inertial(text: &mut String, spec: &InertialSpec) -> Result {

@@ -1,0 +1,448 @@
+use std::ops::ControlFlow;
+
+use super::obstacles::{MOVES, Obstacle, SAME, ZEBRA, is_at, is_in_crossing, is_in_zebra, obstacles};
+use super::parameters::TrafficParameters;
+use super::shift::Shift;
+use crate::ParameterError;
+use crate::drive::lane_keeping::{Guide, LaneKeeper, LaneObservation, LaneOutcome};
+use crate::geometry::{Twist, math};
+use crate::io::control::{Behaviour, Decision, Senses};
+use crate::io::{self, Camera, Odometry};
+use crate::vision::lane_markings::{RoadCamera, RoadModel};
+use crate::vision::road_elements::{RoadElement, RoadElementFinder, RoadElementKind};
+
+/// State of a [`TrafficDriver`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum TrafficState {
+    /// Keeps its lane.
+    Follow,
+    /// Stays behind an obstacle that it may not pass.
+    Behind,
+    /// Is beside its lane to pass an obstacle.
+    Pass,
+    /// Returns to its lane.
+    Return,
+    /// Brakes before a line or a crosswalk.
+    Stop,
+    /// Stands before it.
+    Wait,
+}
+
+/// Drives a car in traffic by camera and odometry: in its lane, to a halt at lines and before pedestrians,
+/// and past obstacles.
+///
+/// | state | enters when | does | leaves when |
+/// |---|---|---|---|
+/// | `Follow` | at first | keeps the lane's centre | a line, an occupied crosswalk or an obstacle is near |
+/// | `Behind` | an obstacle is in the own lane, and the centre line is solid or the other lane is not free | stays `following` behind it | it may pass: `Pass`; the obstacle is gone: `Follow` |
+/// | `Pass` | an obstacle is in the own lane | shifts into the other lane | the obstacle is behind the rear axle: `Return` |
+/// | `Return` | it is passed | shifts back | the shift is over: `Follow` |
+/// | `Stop` | a stop line, a give-way line or a crosswalk with a pedestrian is ahead | brakes to stand `gap` before it | the car stands: `Wait`; the crosswalk is free: as before |
+/// | `Wait` | the car stands at the line | stands | the time of `halts` is over, and nobody is on the crosswalk or crossing: as before |
+///
+/// `Stop` and `Wait` add to the other states, whose path the car keeps. In each state, the speed is at most
+/// what bends and sight allow ([`LaneKeeper`]), what stops the car before a box in its way, and what the numbers
+/// of speed zones allow.
+///
+/// # Limits
+///
+/// The start box, signs, turns at crossings and oncoming traffic are not handled. Give-way lines of which less
+/// than a third is left are not seen. The number of a speed zone is read only when the car's front is at
+/// it, so that the car enters slow zones too fast. `roverlab traffic --campaign` counts what goes wrong.
+///
+/// ```
+/// use roverlab::drive::traffic::{TrafficDriver, TrafficParameters, TrafficState};
+/// use roverlab::vision::lane_markings::RoadModel;
+/// use roverlab::world::RobotSpec;
+/// let camera = RobotSpec::road_car().camera.as_ref().expect("the car has one").into();
+/// let driver = TrafficDriver::new(camera, RoadModel::default(), TrafficParameters::default())?;
+/// assert_eq!(driver.state(), TrafficState::Follow);
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct TrafficDriver {
+    parameters: TrafficParameters,
+    keeper: LaneKeeper,
+    finder: RoadElementFinder,
+    /// Direction of the other lane: 1 to the left, -1 to the right.
+    side: f64,
+    /// Metres per metre of the rules.
+    road_size: f64,
+    lateral: Lateral,
+    halt: Option<Halt>,
+    /// Towards the other lane.
+    shift: Shift,
+    /// Distance driven along the road (m), and the last time (s).
+    driven: f64,
+    time: Option<f64>,
+    /// Positions of lines where the car has stopped (m).
+    released: Vec<f64>,
+    /// Last time at which somebody was on the road ahead (s).
+    occupied: f64,
+    /// The obstacle that it passes, and time (s) and distance driven (m) when that was last seen.
+    passed: Option<(Obstacle, f64, f64)>,
+    /// Maximum speed that others allow, and that of the speed zone (m/s).
+    limit: f64,
+    zone: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Lateral {
+    Own,
+    Behind,
+    Pass,
+    Return,
+}
+
+/// A place by the distance driven (m) where the car stops.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Halt {
+    Approach {
+        place: f64,
+    },
+    /// Stands since a time (s).
+    Stand {
+        place: f64,
+        since: f64,
+    },
+}
+
+/// Distance from the car's front at which it begins to pass an obstacle (m).
+const NOTICE: f64 = 0.95;
+/// Free length of the other lane beyond an obstacle that it takes to return (m).
+const FREE_LANE: f64 = 1.0;
+/// Length of a crosswalk with what pedestrians hide behind it, and of a crossing between its line and the far
+/// edge (m).
+const CROSSWALK: f64 = 0.75;
+const CROSSING: f64 = 1.2;
+/// Distance beyond the right edge line at which traffic from the right has priority, by the rules (m).
+const PRIORITY: f64 = 0.25;
+/// Width of a line across the lane (m).
+const LINE: f64 = 0.04;
+/// Speed below which the car stands, and at which it rolls to a line (m/s).
+const STANDS: f64 = 0.02;
+const ROLLS: f64 = 0.05;
+/// Longest time for which an obstacle beside the car is not seen (s).
+const MEMORY: f64 = 3.0;
+/// Time for which the road has to be free (s).
+const FREE: f64 = 0.7;
+/// Number of a speed limit of 1 m/s, by the rules, and the share of a limit that is driven: the speed varies.
+const NUMBER: f64 = 36.0;
+const WITHIN: f64 = 0.93;
+/// Distance before a speed zone at which the car has slowed down, and behind it at which it speeds up (m).
+const SLOWED: f64 = 0.10;
+const ENDED: f64 = 0.15;
+/// Time in which a car that is too near falls back (s).
+const FALL_BACK: f64 = 0.5;
+/// Distance before an obstacle at which a car stands that passes it but is not yet aside (m).
+const SAFE: f64 = 0.06;
+
+impl TrafficDriver {
+    /// Creates a driver for a camera and a road. Fails for parameters out of range.
+    pub fn new(
+        camera: RoadCamera,
+        road: RoadModel,
+        parameters: TrafficParameters,
+    ) -> Result<Self, ParameterError> {
+        parameters.validate()?;
+        Ok(Self {
+            parameters,
+            keeper: LaneKeeper::new(camera, road, parameters.lane)?,
+            finder: RoadElementFinder::new(camera, road)?,
+            side: if road.left_hand { -1.0 } else { 1.0 },
+            road_size: road.size,
+            lateral: Lateral::Own,
+            halt: None,
+            shift: Shift::default(),
+            driven: 0.0,
+            time: None,
+            released: Vec::new(),
+            occupied: 0.0,
+            passed: None,
+            limit: f64::INFINITY,
+            zone: f64::INFINITY,
+        })
+    }
+
+    /// Limits the speed (m/s) until the next call, for whoever knows more of the road: other cars by radio.
+    pub fn set_limit(&mut self, speed: f64) {
+        self.limit = speed.max(0.0);
+    }
+
+    /// The state.
+    pub fn state(&self) -> TrafficState {
+        match (self.halt, self.lateral) {
+            (Some(Halt::Stand { .. }), _) => TrafficState::Wait,
+            (Some(Halt::Approach { .. }), _) => TrafficState::Stop,
+            (None, Lateral::Own) => TrafficState::Follow,
+            (None, Lateral::Behind) => TrafficState::Behind,
+            (None, Lateral::Pass) => TrafficState::Pass,
+            (None, Lateral::Return) => TrafficState::Return,
+        }
+    }
+
+    /// What it has found on the road.
+    pub fn elements(&self) -> impl Iterator<Item = RoadElement> {
+        self.finder.elements()
+    }
+
+    /// The lane keeper with its estimate.
+    pub fn keeper(&self) -> &LaneKeeper {
+        &self.keeper
+    }
+
+    /// Distance from the car's front to a place ahead of its origin (m).
+    fn gap(&self, ahead: f64) -> f64 {
+        ahead - self.parameters.body[0]
+    }
+
+    /// Maximum speed that lets the car stop within a distance (m).
+    fn stoppable(&self, distance: f64, speed: f64) -> f64 {
+        let free = distance - self.parameters.lane.delay * speed.max(0.0);
+        (2.0 * self.parameters.brake * free.max(0.0)).sqrt()
+    }
+
+    /// Updates the state. Returns the maximum speed.
+    fn decide(&mut self, time: f64, speed: f64) -> f64 {
+        let elements: Vec<RoadElement> = self.finder.elements().collect();
+        let most = self.halt_speed(time, speed, &elements).min(self.zone_speed(&elements));
+        // A wait that has just ended forgets what was crossing.
+        let elements: Vec<RoadElement> = self.finder.elements().collect();
+        let mut obstacles = obstacles(&elements, self.side);
+        // Those behind a line are no reason to change lanes before it: traffic may be crossing there.
+        if let Some(Halt::Approach { place } | Halt::Stand { place, .. }) = self.halt {
+            obstacles.retain(|it| it.ahead < place - self.driven);
+        }
+        // Nor is what is in a crossing: it drives on.
+        let (crossing, mut obstacles): (Vec<_>, Vec<_>) =
+            obstacles.into_iter().partition(|it| is_in_crossing(&elements, it.ahead));
+        self.remember(time, &mut obstacles);
+        self.change_lanes(&obstacles);
+        obstacles.extend(crossing);
+        most.min(self.free_speed(&obstacles))
+    }
+
+    /// Maximum speed in a speed zone and before one. A zone begins when the car's front reaches its number, and
+    /// ends when the rear has passed the one that is struck out.
+    fn zone_speed(&mut self, elements: &[RoadElement]) -> f64 {
+        let mut most = f64::INFINITY;
+        for RoadElement { kind, ahead, .. } in elements {
+            match *kind {
+                _ if is_in_zebra(elements, *ahead) => {}
+                RoadElementKind::SpeedLimit(number) => {
+                    let limit = WITHIN * self.road_size * f64::from(number) / NUMBER;
+                    let left = (self.gap(*ahead) - SLOWED).max(0.0);
+                    most = most.min((limit * limit + 2.0 * self.parameters.brake * left).sqrt());
+                    if left == 0.0 {
+                        self.zone = limit;
+                    }
+                }
+                RoadElementKind::SpeedLimitEnd if *ahead < -ENDED => self.zone = f64::INFINITY,
+                _ => {}
+            }
+        }
+        most.min(self.zone)
+    }
+
+    /// Stops at lines and crosswalks. Returns the maximum speed.
+    fn halt_speed(&mut self, time: f64, speed: f64, elements: &[RoadElement]) -> f64 {
+        if let Some(Halt::Stand { place, since }) = self.halt {
+            self.wait(time, (place, since), elements);
+            return 0.0;
+        }
+        let Some(place) = self.next_halt(elements) else {
+            self.halt = None;
+            return f64::INFINITY;
+        };
+        let left = self.gap(place - self.driven) - self.parameters.gap;
+        self.halt = Some(Halt::Approach { place });
+        if left < 0.03 && speed.abs() < STANDS {
+            self.halt = Some(Halt::Stand { place, since: time });
+            self.occupied = time;
+        }
+        if left < 0.01 { 0.0 } else { self.stoppable(left, speed).max(ROLLS) }
+    }
+
+    /// Waits at a line until its time is over and nobody is on the road.
+    fn wait(&mut self, time: f64, (place, since): (f64, f64), elements: &[RoadElement]) {
+        let ahead = place - self.driven;
+        let is_here = |element: &&RoadElement| (element.ahead - ahead).abs() < SAME;
+        let shows =
+            |kind: RoadElementKind| elements.iter().filter(is_here).any(|element| element.kind == kind);
+        let is_crosswalk = shows(RoadElementKind::Zebra);
+        let is_short = shows(RoadElementKind::GiveWayLine) && !shows(RoadElementKind::StopLine);
+        let is_occupied = if is_crosswalk {
+            self.sees_pedestrian(ahead)
+        } else {
+            self.finder.sees_box((ahead + LINE, ahead + LINE + CROSSING), PRIORITY, 0.0)
+        };
+        if is_occupied {
+            self.occupied = time;
+        }
+        let halt = self.parameters.halts[usize::from(is_short && !is_crosswalk)];
+        if time - since >= halt && time - self.occupied > FREE {
+            // What has crossed is gone: the road was seen to be free.
+            self.finder.forget_boxes((ahead, ahead + CROSSING));
+            self.released.push(place);
+            self.released.retain(|place| self.driven - place < 1.0);
+            self.halt = None;
+        }
+    }
+
+    /// Whether the car stops at a place ahead (m).
+    fn is_stopping_at(&self, ahead: f64) -> bool {
+        matches!(self.halt, Some(Halt::Approach { place }) if (place - self.driven - ahead).abs() < SAME)
+    }
+
+    /// Whether somebody is on a crosswalk a distance ahead (m): between its stripes, no foot tells a box.
+    fn sees_pedestrian(&self, ahead: f64) -> bool {
+        self.finder.sees_box((ahead, ahead + CROSSWALK), 0.0, ZEBRA)
+    }
+
+    /// The next place where the car has to stop, by the distance driven (m).
+    fn next_halt(&self, elements: &[RoadElement]) -> Option<f64> {
+        let has_to_stop = |element: &&RoadElement| match element.kind {
+            // By the rules, elements are a metre apart: a line at a crosswalk is one of its stripes' ends.
+            RoadElementKind::StopLine | RoadElementKind::GiveWayLine => !is_in_zebra(elements, element.ahead),
+            RoadElementKind::Zebra => {
+                elements.iter().any(|other| is_at(other, element.ahead))
+                    || self.is_stopping_at(element.ahead) && self.sees_pedestrian(element.ahead)
+            }
+            _ => false,
+        };
+        let is_open = |place: &f64| {
+            self.gap(place - self.driven) > -0.05
+                && self.released.iter().all(|done| (done - place).abs() > SAME)
+        };
+        elements.iter().filter(has_to_stop).map(|element| self.driven + element.ahead).find(is_open)
+    }
+
+    /// Keeps the obstacle that the car passes until it is behind, although it leaves the view before or is not
+    /// recognised beside the car.
+    fn remember(&mut self, time: f64, obstacles: &mut Vec<Obstacle>) {
+        if self.lateral != Lateral::Pass {
+            // The next one to be passed.
+            let reach = self.reach();
+            let next = obstacles.iter().find(|it| it.is_in_way(reach) && it.ahead + it.length > 0.0);
+            self.passed = next.map(|it| (*it, time, self.driven));
+            return;
+        }
+        let Some((last, seen, driven)) = self.passed else { return };
+        let speed = if last.speed > MOVES { last.speed } else { 0.0 };
+        let ahead = last.ahead + speed * (time - seen) - (self.driven - driven);
+        if let Some(it) = obstacles.iter().find(|it| (it.ahead - ahead).abs() < SAME) {
+            self.passed = Some((*it, time, self.driven));
+        } else if time - seen < MEMORY {
+            obstacles.push(Obstacle { ahead, ..last });
+        }
+    }
+
+    /// Distance to the left and right of the lane's centre within which obstacles are in the way (m).
+    fn reach(&self) -> f64 {
+        self.parameters.body[1] + self.parameters.clearance
+    }
+
+    /// Begins and ends passing.
+    fn change_lanes(&mut self, obstacles: &[Obstacle]) {
+        let reach = self.reach();
+        let is_near =
+            |it: &&Obstacle| it.is_in_way(reach) && it.ahead + it.length > 0.0 && self.gap(it.ahead) < NOTICE;
+        let beside = obstacles.iter().filter(is_near).map(|it| it.left + reach).reduce(f64::max);
+        match beside {
+            Some(beside) if self.shift.to() < beside - 0.03 => {
+                let may_pass = self.lateral == Lateral::Pass || self.finder.may_pass();
+                if may_pass && self.is_free(beside, obstacles) {
+                    self.shift = Shift::new(self.shift.at(self.driven)[0], beside + 0.02, self.driven);
+                    self.lateral = Lateral::Pass;
+                } else if self.lateral == Lateral::Own {
+                    self.lateral = Lateral::Behind;
+                }
+            }
+            None if self.lateral == Lateral::Pass => {
+                self.shift = Shift::new(self.shift.to(), 0.0, self.driven);
+                self.lateral = Lateral::Return;
+            }
+            None if self.lateral == Lateral::Behind || self.shift.is_over(self.driven) => {
+                self.lateral = Lateral::Own;
+            }
+            _ => {}
+        }
+    }
+
+    /// Whether no other obstacle is on a path at a distance beside the lane's centre (m).
+    fn is_free(&self, beside: f64, obstacles: &[Obstacle]) -> bool {
+        let half = self.parameters.body[1];
+        obstacles.iter().all(|it| {
+            let is_in_way = it.right < beside + half && it.left > beside - half;
+            let is_near = it.ahead + it.length > 0.0 && self.gap(it.ahead) < NOTICE + FREE_LANE;
+            !(is_in_way && is_near)
+        })
+    }
+
+    /// Maximum speed beside obstacles, and towards those in the way.
+    fn free_speed(&self, obstacles: &[Obstacle]) -> f64 {
+        let p = &self.parameters;
+        let moving = obstacles.iter().any(|it| it.speed > MOVES && it.ahead > -1.0);
+        let mut most = match self.lateral {
+            Lateral::Pass | Lateral::Return => p.passing[usize::from(moving)],
+            Lateral::Own | Lateral::Behind => p.lane.speed,
+        };
+        let Some(lane) = self.keeper.lane() else { return most };
+        // The front is further aside than the origin while the car turns.
+        let front = self.side * (lane.offset + p.body[0] * math::sin(lane.heading));
+        let stays = match self.lateral {
+            Lateral::Own => !self.finder.may_pass(),
+            Lateral::Behind => true,
+            Lateral::Pass | Lateral::Return => false,
+        };
+        let apart = if stays { p.following } else { SAFE };
+        for it in obstacles {
+            let is_in_way = front - p.body[1] < it.left + 0.01 && front + p.body[1] > it.right - 0.01;
+            if is_in_way && self.gap(it.ahead) > -0.02 {
+                let free = self.gap(it.ahead) - apart;
+                // Too near behind what moves, the car falls back.
+                let approach = if free > 0.0 { self.stoppable(free, 0.0) } else { free / FALL_BACK };
+                most = most.min((approach + it.speed.max(0.0)).max(0.0));
+            }
+        }
+        most
+    }
+}
+
+impl Behaviour for TrafficDriver {
+    type Observation = LaneObservation;
+    type Command = Twist;
+    type Outcome = LaneOutcome;
+
+    fn period(&self) -> f64 {
+        self.parameters.lane.period
+    }
+
+    fn step(&mut self, time: f64, seen: &LaneObservation) -> Decision<Self> {
+        seen.check()?;
+        let seconds = self.time.map_or(0.0, |before| time - before);
+        self.time = Some(time);
+        let lane = self.keeper.see(&seen.image, seen.odometry).map_err(io::Error::caused_by)?.clone();
+        let metres = self.keeper.driven();
+        self.driven += lane.progress(metres);
+        let gray = self.keeper.gray(seen.image.width()).map_err(io::Error::caused_by)?;
+        self.finder.see(gray, &lane, metres, seconds);
+        if lane.lost {
+            return Ok(ControlFlow::Continue(Twist::STOP));
+        }
+        let speed = self.decide(time, seen.speed).min(self.limit);
+        let delayed = self.driven + self.parameters.lane.delay * seen.speed.max(0.0);
+        let path = self.shift.at(delayed).map(|value| self.side * value);
+        Ok(ControlFlow::Continue(self.keeper.steer_by(&lane, seen.speed, &Guide { path, speed })))
+    }
+}
+
+impl<R: Camera + Odometry + ?Sized> Senses<R> for TrafficDriver {
+    fn prepare(&mut self, robot: &mut R) -> io::Result<()> {
+        self.keeper.prepare(robot)
+    }
+
+    fn sense(&mut self, robot: &mut R, time: f64, seen: &mut LaneObservation) -> io::Result<()> {
+        self.keeper.sense(robot, time, seen)
+    }
+}

@@ -1,0 +1,81 @@
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use super::*;
+use crate::geometry::{Pose, direction};
+use crate::race::{CarLimits, RacerParameters};
+
+const RADIUS: f64 = 60.0;
+
+fn at(way: f64) -> Pose {
+    let angle = way / RADIUS;
+    let place = direction(angle) * RADIUS;
+    Pose::new(place.x, place.y, angle + FRAC_PI_2)
+}
+
+/// A ring with a half width, on whose centre line the car is.
+fn passing(half_width: f64) -> Passing {
+    let n = 360;
+    let place = |k: i32| at(TAU * RADIUS * f64::from(k) / f64::from(n)).position();
+    let rows: Vec<_> = (0..n).map(|k| (place(k), half_width, half_width)).collect();
+    let corridor = Corridor::closed(&rows).unwrap();
+    let outline = RacerParameters::default().outline;
+    let parameters = RacingLineParameters::default();
+    let margins = LineSolver::default().margins_for(&corridor, &outline, &parameters).unwrap();
+    let points: Vec<Point> = corridor.stations().iter().map(|station| station.position).collect();
+    let profile = SpeedProfile::closed(&points, &CarLimits::circle(10.0, 8.0, 8.0, 12.0)).unwrap();
+    Passing::new(corridor, outline, margins, vec![0.0; 360], &profile)
+}
+
+/// Follows a car at 3 m/s, of which the rear is visible, for a second. Returns the last line and the
+/// distance driven.
+fn follow(passing: &mut Passing, aside: f64) -> (Option<Vec<Point>>, f64) {
+    let mut line = None;
+    for step in 0..20 {
+        let way = 0.15 * f64::from(step);
+        let rear = at(way + 10.0);
+        let points = [-0.7, 0.0, 0.7].map(|y| rear.to_world(Point::new(0.0, y + aside))).to_vec();
+        passing.watch(at(way).position(), 3.0, &[points], 0.05);
+        line = passing.change(&mut LineSolver::default(), |line| Some(line.to_vec())).or(line);
+    }
+    (line, 0.15 * 19.0)
+}
+
+#[test]
+fn a_slower_car_is_passed_where_there_is_more_room() {
+    for aside in [0.8, -0.8] {
+        let mut passing = passing(3.5);
+        let (line, way) = follow(&mut passing, aside);
+        let line = line.expect("a line around it");
+        // Beside the middle of the other car, some seconds later.
+        let beside = at(way + 20.0);
+        let nearest = line
+            .iter()
+            .map(|point| beside.to_local(*point))
+            .min_by(|a, b| a.coords.norm().total_cmp(&b.coords.norm()));
+        let offset = nearest.unwrap().y;
+        assert!(offset * aside < 0.0 && (offset - aside).abs() > 1.9, "{aside}: {offset}");
+        assert!(!passing.is_idle());
+    }
+}
+
+#[test]
+fn where_there_is_no_room_it_follows() {
+    let mut passing = passing(2.0);
+    assert!(follow(&mut passing, 0.0).0.is_none());
+    let limit = passing.limit(5.0, 4.5).expect("a car is in the way");
+    assert!((3.0..8.0).contains(&limit), "{limit}");
+}
+
+#[test]
+fn what_is_beside_the_track_or_past_does_not_matter() {
+    let mut passing = passing(3.5);
+    assert!(follow(&mut passing, 6.0).0.is_none() && passing.is_idle());
+    follow(&mut passing, 0.0);
+    assert!(!passing.is_idle());
+    // Far past it.
+    passing.watch(at(30.0).position(), 10.0, &[], 0.05);
+    let line = passing.change(&mut LineSolver::default(), |line| Some(line.len()));
+    let again = (0..5).find_map(|_| passing.change(&mut LineSolver::default(), |line| Some(line.len())));
+    assert!(line.or(again).is_some() && passing.is_idle(), "back to the racing line");
+    assert_eq!(passing.limit(5.0, 4.5), None);
+}

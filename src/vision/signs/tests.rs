@@ -1,0 +1,145 @@
+use proptest::prelude::*;
+
+use super::area::resample_into;
+use super::linear::dot;
+use super::{Area, LinearClassifier, LinearTraining, SignFinder, SignTrainer};
+use crate::random::Stream;
+use crate::vision::{GrayView, RgbView};
+
+/// Width and height of the pictures of the tests.
+const SIZE: (usize, usize) = (96, 72);
+
+/// A picture of gray noise with a sign: a red square with a white bar, or a blue disc.
+fn picture(class: usize, sign: Area, stream: &mut Stream) -> Vec<u8> {
+    let mut pixels = Vec::new();
+    for y in 0..SIZE.1 {
+        for x in 0..SIZE.0 {
+            let [u, v] = [(x as f64 - sign.left) / sign.width, (y as f64 - sign.top) / sign.height];
+            let inside = (0.0..1.0).contains(&u) && (0.0..1.0).contains(&v);
+            let noise = 80 + stream.below(60) as u8;
+            pixels.extend(match class {
+                0 if inside && (0.4..0.6).contains(&v) => [240; 3],
+                0 if inside => [200, 30, 40],
+                1 if (u - 0.5) * (u - 0.5) + (v - 0.5) * (v - 0.5) < 0.25 => [30, 50, 190],
+                _ => [noise; 3],
+            });
+        }
+    }
+    pixels
+}
+
+fn view(pixels: &[u8]) -> RgbView<'_> {
+    RgbView::new(pixels, SIZE.0, SIZE.1).unwrap()
+}
+
+fn place(stream: &mut Stream) -> Area {
+    let side = stream.between(22.0, 44.0);
+    let [left, top] = [SIZE.0, SIZE.1].map(|pixels| stream.between(0.0, pixels as f64 - side));
+    Area::new(left, top, side, side)
+}
+
+fn trainer() -> SignTrainer {
+    let mut stream = Stream::new(5);
+    let mut trainer = SignTrainer::new(["bar", "disc"]).unwrap();
+    for class in [0, 1].repeat(12) {
+        let area = place(&mut stream);
+        trainer.add(view(&picture(class, area, &mut stream)), &[(class, area)]).unwrap();
+    }
+    trainer
+}
+
+#[test]
+fn signs_are_found_told_apart_and_not_invented() {
+    let mut finder = SignFinder::new(trainer().finder(1).unwrap());
+    let mut stream = Stream::new(6);
+    for class in [0, 1].repeat(10) {
+        let area = place(&mut stream);
+        let found = finder.find(view(&picture(class, area, &mut stream))).unwrap();
+        assert_eq!(found.len(), 1, "{area:?}: {found:?}");
+        assert!(found[0].class == class && found[0].area.overlap(&area) > 0.5, "{area:?}: {found:?}");
+    }
+    let none = Area::new(-500.0, 0.0, 20.0, 20.0);
+    let found = finder.find(view(&picture(0, none, &mut stream))).unwrap();
+    assert!(found.is_empty(), "{found:?}");
+}
+
+#[test]
+fn equal_seeds_learn_equal_weights() {
+    let trainer = trainer();
+    assert_eq!(trainer.finder(3).unwrap(), trainer.finder(3).unwrap());
+    assert_ne!(trainer.classifier(3).unwrap(), trainer.classifier(4).unwrap());
+}
+
+#[test]
+fn nonsense_is_refused() {
+    assert!(SignTrainer::new(Vec::<String>::new()).is_err());
+    let mut trainer = trainer();
+    let pixels = picture(0, Area::new(9.0, 9.0, 30.0, 30.0), &mut Stream::new(1));
+    assert!(trainer.add(view(&pixels), &[(2, Area::new(0.0, 0.0, 9.0, 9.0))]).is_err(), "two classes");
+    for bad in [f64::NAN, f64::INFINITY, 0.0, -1.0, 1e300] {
+        assert!(trainer.add(view(&pixels), &[(0, Area::new(0.0, 0.0, bad, 9.0))]).is_err(), "{bad}");
+    }
+    let mut finder = SignFinder::new(trainer.classifier(1).unwrap());
+    assert!(finder.find(view(&pixels)).is_err(), "it knows no windows");
+    assert!(SignTrainer::new(["none"]).unwrap().finder(1).is_err(), "there is no sign");
+    let training = LinearTraining::default();
+    assert!(LinearClassifier::train(&[1.0, f32::NAN], &[0, 1], 2, training).is_err());
+    assert!(LinearClassifier::train(&[1.0, 2.0, 3.0], &[0, 1], 2, training).is_err());
+}
+
+#[cfg(feature = "weights")]
+#[test]
+fn models_are_read_back_and_damage_is_refused() {
+    use super::SignModel;
+    let trainer = trainer();
+    for model in [trainer.finder(1).unwrap(), trainer.classifier(1).unwrap()] {
+        let bytes = model.to_safetensors().unwrap();
+        assert_eq!(SignModel::from_safetensors(&bytes).unwrap(), model);
+        for length in (0..bytes.len()).step_by(97) {
+            assert!(SignModel::from_safetensors(&bytes[..length]).is_err(), "{length}");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(crate::testing::cases(32))]
+    /// The weights of a support vector machine separate what can be separated.
+    #[test]
+    fn samples_beside_a_line_are_learned(a in -2.0..2.0f32, b in -2.0..2.0f32, c in -1.0..1.0f32, seed in 0..99u64) {
+        let mut stream = Stream::new(seed);
+        let mut draw = || stream.between(-2.0, 2.0) as f32;
+        let points: Vec<[f32; 2]> = (0..60).map(|_| [draw(), draw()]).collect();
+        let far: Vec<[f32; 2]> = points.into_iter().filter(|[x, y]| (a * x + b * y + c).abs() > 0.5).collect();
+        prop_assume!(far.len() > 10);
+        let labels: Vec<usize> = far.iter().map(|[x, y]| usize::from(a * x + b * y + c < 0.0)).collect();
+        let training = LinearTraining { cost: 1000.0, passes: 400, seed };
+        let classifier = LinearClassifier::train(far.as_flattened(), &labels, 1, training).unwrap();
+        for (point, &label) in far.iter().zip(&labels) {
+            let mut score = [0.0];
+            classifier.scores(point, &mut score).unwrap();
+            prop_assert_eq!(score[0] > 0.0, label == 0, "{:?}: {}", point, score[0]);
+        }
+    }
+
+    #[test]
+    fn scalar_products_are_those_of_the_definition(values in proptest::collection::vec(-9.0..9.0f32, 0..99)) {
+        let sum: f64 = values.iter().map(|&value| f64::from(value) * f64::from(value)).sum();
+        prop_assert!((f64::from(dot(&values, &values)) - sum).abs() <= 1e-5 * sum);
+    }
+
+    /// Scaled to its own size, an image stays as it is; scaled to one pixel, it is its mean.
+    #[test]
+    fn patches_show_the_image(width in 1..20usize, height in 1..20usize, seed in 0..99u64) {
+        let mut stream = Stream::new(seed);
+        let pixels: Vec<u8> = (0..width * height).map(|_| stream.below(256) as u8).collect();
+        let (image, mut patch) = (GrayView::new(&pixels, width, height).unwrap(), Vec::new());
+        let all = Area::new(0.0, 0.0, width as f64, height as f64);
+        resample_into(image, all, (width, height), &mut patch);
+        prop_assert_eq!(&patch, &pixels);
+        if width <= 8 && height <= 8 {
+            resample_into(image, all, (1, 1), &mut patch);
+            let mean = pixels.iter().map(|&pixel| f64::from(pixel)).sum::<f64>() / pixels.len() as f64;
+            prop_assert!((f64::from(patch[0]) - mean).abs() <= 0.51, "{} for {}", patch[0], mean);
+        }
+    }
+}
