@@ -9,7 +9,9 @@ use std::{fs, io};
 const SOURCES: [&str; 2] = ["src", "../src"];
 
 fn main() -> io::Result<()> {
-    cc::Build::new().file("src/shim.c").warnings(true).compile("eyesim_shim");
+    if std::env::var_os("CARGO_CFG_TARGET_FAMILY").is_none_or(|family| family != "wasm") {
+        cc::Build::new().file("src/shim.c").warnings(true).compile("eyesim_shim");
+    }
     let mut files = BTreeSet::new();
     for folder in SOURCES {
         println!("cargo:rerun-if-changed={folder}");

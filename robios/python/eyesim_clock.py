@@ -112,6 +112,9 @@ def _of_fields(name, fixed):
 def _replace_time():
     _keep(_time, "sleep")
     for name in ("time", "monotonic", "perf_counter", "process_time", "thread_time"):
+        if not hasattr(_time, name):
+            # As in a page, which has no threads.
+            continue
         replacement = _clock(name, name != "time")
         setattr(_time, name, replacement)
         setattr(_time, name + "_ns", _nanoseconds(replacement))

@@ -46,20 +46,31 @@
 //! or the time is over: pose and path are those at that point, and contacts in between are counted in
 //! `collisions_after_end`.
 
+#![cfg_attr(target_family = "wasm", allow(dead_code, reason = "a page has neither threads nor processes"))]
+
 pub mod ask;
 pub mod costs;
 mod ffi;
 pub mod identity;
+#[cfg(not(target_family = "wasm"))]
 pub mod keyboard;
 pub mod keys;
 pub mod link;
+#[cfg_attr(target_family = "wasm", path = "memory_of_page.rs")]
 pub mod memory;
+#[cfg(target_family = "wasm")]
+pub mod page;
 pub mod plan;
+#[cfg(not(target_family = "wasm"))]
 pub mod process;
+#[cfg(not(target_family = "wasm"))]
+pub mod remote;
 pub mod report;
 pub mod robios;
 pub mod screen;
 pub mod seat;
 pub mod showing;
+pub mod verdict;
+#[cfg_attr(target_family = "wasm", path = "no_walker.rs")]
 mod walker;
 pub mod wire;

@@ -1,18 +1,15 @@
-//! Connection of a program's library to its world: in the same process, or through shared memory.
+//! Connection of a program's library to its world.
 
 use std::fmt;
-use std::sync::Arc;
 
 use roverlab::geometry::Pose;
+use roverlab::io::Result;
 use roverlab::io::sim::Simulation;
-use roverlab::io::{Error, ErrorKind, Result};
 
 use crate::ask::{Reply, Request};
-use crate::memory::Memory;
 use crate::plan::Plan;
 use crate::report::Stance;
 use crate::seat::{Seat, Terms};
-use crate::wire::{Answer, Question};
 
 /// Answers requests.
 pub trait Link: fmt::Debug + Send {
@@ -75,43 +72,4 @@ pub fn own_world(plan: &Plan) -> std::result::Result<Seat, String> {
     let terms = Terms::of(&options);
     let simulation = Simulation::new(&scene, options).map_err(|error| error.to_string())?;
     Seat::take(&simulation, &scene, plan.index, terms).map_err(|error| error.to_string())
-}
-
-/// A world in another process.
-#[derive(Debug)]
-pub struct Remote {
-    memory: Arc<Memory>,
-    now: f64,
-}
-
-impl Remote {
-    /// Connects to the world through shared memory.
-    pub fn new(memory: Arc<Memory>) -> Self {
-        Self { memory, now: 0.0 }
-    }
-}
-
-impl Drop for Remote {
-    fn drop(&mut self) {
-        self.memory.leave();
-    }
-}
-
-impl Link for Remote {
-    fn ask(&mut self, debt: f64, wanted: &[Request], request: &Request) -> Result<(Reply, Vec<Reply>)> {
-        let question = Question { debt, wanted: wanted.to_vec(), request: request.clone() };
-        let answer = Answer::decode(&self.memory.ask(&question.encode()));
-        let answer =
-            answer.ok_or_else(|| Error::new(ErrorKind::Disconnected, "the world's answer makes no sense"))?;
-        self.now = answer.now;
-        Ok((answer.reply?, answer.readings))
-    }
-
-    fn now(&mut self) -> f64 {
-        self.now
-    }
-
-    fn truth(&mut self) -> Option<Truth> {
-        None
-    }
 }

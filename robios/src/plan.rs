@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use roverlab::geometry::{Pose, units};
 use roverlab::io::sim::SimOptions;
-use roverlab::world::formats::{self, DiskFiles};
+use roverlab::world::formats::{self, DiskFiles, FileSource};
 use roverlab::world::{RobotPlacement, RobotSpec, Scene, World};
 
 use crate::costs::{Costs, Frames};
@@ -166,11 +166,23 @@ impl Plan {
     pub fn scene(&self) -> Result<(Scene, Vec<String>), String> {
         let mut warnings = Vec::new();
         let found = self.world.clone().or_else(|| only_world(&self.folder, &mut warnings));
-        let mut scene = match found {
-            Some(file) => {
-                let bytes = formats::read_file(&file).map_err(|error| error.to_string())?;
-                let mut files = DiskFiles::new();
-                let parsed = formats::parse_scene_tolerantly(bytes, &file.display().to_string(), &mut files);
+        let read = |file: &PathBuf| formats::read_file(file).map_err(|error| error.to_string());
+        let bytes = found.as_ref().map(read).transpose()?;
+        let world = found.as_deref().zip(bytes);
+        let scene = self.scene_of(world, &mut DiskFiles::new(), &mut warnings)?;
+        Ok((scene, warnings))
+    }
+
+    /// The same of a world's bytes, if any, and of what reads the files that these name.
+    pub fn scene_of(
+        &self,
+        world: Option<(&Path, Vec<u8>)>,
+        files: &mut dyn FileSource,
+        warnings: &mut Vec<String>,
+    ) -> Result<Scene, String> {
+        let mut scene = match world {
+            Some((file, bytes)) => {
+                let parsed = formats::parse_scene_tolerantly(bytes, &file.display().to_string(), files);
                 let parsed = parsed.map_err(|error| error.to_string())?;
                 warnings.extend(parsed.warnings.iter().map(ToString::to_string));
                 let mut names: Vec<_> =
@@ -186,7 +198,7 @@ impl Plan {
             }
             None => Scene::new(World::walled(DEFAULT_SIZE, DEFAULT_SIZE)),
         };
-        let spec = self.robot.as_deref().map(|name| robot(name, &mut warnings)).transpose()?;
+        let spec = self.robot.as_deref().map(|name| robot(name, warnings)).transpose()?;
         if scene.robots.is_empty() {
             let pose = start_in(&scene.world);
             let objects_before = scene.world.objects.len();
@@ -208,7 +220,7 @@ impl Plan {
             let (x, y, number) = (units::to_mm(x), units::to_mm(y), robot + 1);
             format!("robot {number} starts at {x:.0}, {y:.0} mm, {place}; expected free floor")
         }));
-        Ok((scene, warnings))
+        Ok(scene)
     }
 
     /// Options of the simulation. Robots push loose objects, as in EyeSim.

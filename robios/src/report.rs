@@ -82,6 +82,8 @@ pub struct Report {
     pub later_contacts: u64,
     /// Number of beeps and sounds.
     pub sounds: u64,
+    /// Functions called that no robot has, a bit for each of [`BEYOND_ROBOTS`].
+    pub beyond_robots: u8,
     /// Start of waiting for a radio message, if waiting (s).
     pub listening_since: Option<f64>,
     /// Text shown on the display, past and present.
@@ -90,7 +92,11 @@ pub struct Report {
     pub notes: Vec<String>,
 }
 
-const NUMBERS: usize = 19;
+/// The functions that tell a program where things are, or put them elsewhere: the simulator has them, robots
+/// have not.
+pub const BEYOND_ROBOTS: [&str; 4] = ["SIMGetRobot", "SIMSetRobot", "SIMGetObject", "SIMSetObject"];
+
+const NUMBERS: usize = 20;
 /// Size of the numbers and text lengths (bytes).
 const HEADER: usize = 8 * (NUMBERS + 3);
 /// Size of the visible rows (bytes).
@@ -98,6 +104,20 @@ const STANDING: usize = 24 * 1024;
 /// Size of the notes (bytes), one per line.
 pub const NOTES: usize = 16 * 1024;
 const HISTORY_START: usize = HEADER + STANDING + NOTES;
+
+impl Report {
+    /// Records the call of a function that no robot has.
+    pub(crate) fn note_beyond(&mut self, function: &str) {
+        let bit = BEYOND_ROBOTS.iter().position(|known| *known == function);
+        self.beyond_robots |= bit.map_or(0, |bit| 1 << bit);
+    }
+
+    /// Names of the functions called that no robot has.
+    pub fn beyond_robots(&self) -> Vec<&'static str> {
+        let called = |(bit, _): &(usize, &&'static str)| self.beyond_robots & (1 << bit) != 0;
+        BEYOND_ROBOTS.iter().enumerate().filter(called).map(|(_, name)| *name).collect()
+    }
+}
 
 /// Writer of a report.
 #[derive(Debug)]
@@ -136,6 +156,7 @@ impl ReportFile {
             report.stance.roll,
             report.stance.pitch,
             MISHAPS.iter().position(|&mishap| mishap == report.stance.mishap).unwrap_or_default() as f64,
+            f64::from(report.beyond_robots),
         ];
         let mut bytes = [0; 8 * NUMBERS];
         for (place, number) in bytes.as_chunks_mut::<8>().0.iter_mut().zip(numbers) {
@@ -207,6 +228,7 @@ impl Report {
             contacts: number(11) as u64,
             later_contacts: number(12) as u64,
             sounds: number(13) as u64,
+            beyond_robots: number(19) as u8,
             listening_since: Some(number(14)).filter(|&time| time >= 0.0 && number(0) > 0.0),
             text: history + &standing,
             notes: notes.lines().map(str::to_owned).collect(),
@@ -230,6 +252,7 @@ mod tests {
             pose: Pose::new(1.0, 2.0, 3.0),
             stance: Stance { elevation: 0.5, roll: 0.1, pitch: -0.2, mishap: Some(Mishap::Tipped) },
             contacts: 4,
+            beyond_robots: 3,
             listening_since: Some(1.0),
             ..Report::default()
         };

@@ -1,7 +1,7 @@
-//! A program's display for who watches: pixels and labels of the soft keys, through a socket to the runner.
+//! A program's display for who watches: pixels and labels of the soft keys.
 
+use std::fmt;
 use std::io::{self, Read, Write};
-use std::os::unix::net::UnixStream;
 
 use image::RgbImage;
 use roverlab::io::sim::Lcd;
@@ -12,18 +12,31 @@ const INTERVAL: f64 = 0.1;
 const LONGEST: usize = 4096;
 const WIDEST: u32 = 4096;
 
-/// Sending end of the socket.
-#[derive(Debug)]
+/// Receives the pixels of a display and its labels.
+type Show = dyn FnMut(&RgbImage, &str) -> io::Result<()> + Send;
+
+/// Shows a display to who watches it.
 pub struct Showing {
-    stream: UnixStream,
+    watcher: Box<Show>,
     shown: Option<(RgbImage, String)>,
     due: f64,
 }
 
+impl fmt::Debug for Showing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Showing").field("due", &self.due).finish_non_exhaustive()
+    }
+}
+
 impl Showing {
-    /// Shows a display at the other end of a socket.
-    pub fn new(stream: UnixStream) -> Self {
-        Self { stream, shown: None, due: 0.0 }
+    /// Shows a display to a watcher.
+    pub fn new(watcher: impl FnMut(&RgbImage, &str) -> io::Result<()> + Send + 'static) -> Self {
+        Self { watcher: Box::new(watcher), shown: None, due: 0.0 }
+    }
+
+    /// Shows a display at the other end of a stream, where [`read`] reads it.
+    pub fn through(mut stream: impl Write + Send + 'static) -> Self {
+        Self::new(move |image, menu| write(&mut stream, image, menu))
     }
 
     /// Sends the display at a time (s), if it has changed and something is due.
@@ -36,7 +49,7 @@ impl Showing {
             self.shown.as_ref().is_some_and(|(image, labels)| image == lcd.frame() && *labels == menu);
         self.due = time + INTERVAL;
         // Without a reader, nobody watches.
-        if !known && write(&mut self.stream, lcd.frame(), &menu).is_ok() {
+        if !known && (self.watcher)(lcd.frame(), &menu).is_ok() {
             self.shown = Some((lcd.frame().clone(), menu));
         }
     }
@@ -72,6 +85,8 @@ pub fn read(stream: &mut impl Read) -> io::Result<(RgbImage, String)> {
 
 #[cfg(test)]
 mod tests {
+    use std::os::unix::net::UnixStream;
+
     use roverlab::io::Display;
 
     use super::*;
@@ -84,7 +99,7 @@ mod tests {
             let shown: Vec<_> = std::iter::from_fn(|| read(&mut theirs).ok()).collect();
             shown
         });
-        let (mut showing, mut lcd) = (Showing::new(ours), Lcd::default());
+        let (mut showing, mut lcd) = (Showing::through(ours), Lcd::default());
         lcd.set_menu(["A", "", "", "END"]).unwrap();
         showing.show(&lcd, 0.0);
         lcd.print("hello").unwrap();

@@ -19,8 +19,12 @@ mod hills;
 mod library;
 #[path = "programs/limits.rs"]
 mod limits;
+#[path = "programs/menu.rs"]
+mod menu;
 #[path = "programs/page.rs"]
 mod page;
+#[path = "programs/roads.rs"]
+mod roads;
 #[path = "programs/said.rs"]
 mod said;
 #[path = "programs/same.rs"]
@@ -29,6 +33,8 @@ mod same;
 mod scripts;
 #[path = "programs/sight.rs"]
 mod sight;
+#[path = "programs/three.rs"]
+mod three;
 #[path = "programs/time.rs"]
 mod time;
 

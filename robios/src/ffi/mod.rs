@@ -17,6 +17,7 @@ mod camera;
 mod cancelling;
 #[cfg(target_os = "linux")]
 mod clock;
+#[cfg(not(target_family = "wasm"))]
 mod computing;
 #[cfg(target_os = "linux")]
 mod conditions;
@@ -29,19 +30,26 @@ mod lines;
 #[cfg(target_os = "linux")]
 mod locks;
 mod memory;
-#[cfg(target_os = "linux")]
 mod older;
 #[cfg(target_os = "linux")]
 mod original;
 mod radio;
+#[cfg(not(target_family = "wasm"))]
 mod real_time;
-mod runtime;
+#[cfg_attr(target_family = "wasm", path = "page/runtime.rs")]
+pub(crate) mod runtime;
 mod sensing;
+#[cfg_attr(target_family = "wasm", path = "page/sleep.rs")]
 mod sleep;
+#[cfg(not(target_family = "wasm"))]
 mod sleepers;
 mod system;
+#[cfg(target_os = "linux")]
+mod tasks;
+#[cfg(not(target_family = "wasm"))]
 mod threads;
 #[cfg(target_os = "linux")]
 mod turns;
 mod variadic;
+#[cfg(not(target_family = "wasm"))]
 mod watch;

@@ -14,11 +14,12 @@ use roverlab::io::{ErrorKind, Result};
 
 use crate::keyboard::Keyboard;
 use crate::keys::{KeyDesk, KeyPlan, Typed};
-use crate::link::{Link, Remote, own_world};
+use crate::link::{Link, own_world};
 use crate::memory::Memory;
 use crate::plan::{Plan, names};
+use crate::remote::Remote;
 use crate::report::{Report, ReportFile, Stage};
-use crate::robios::{Outlets, Robios};
+use crate::robios::{Callback, Outlets, Robios};
 use crate::showing::Showing;
 
 use super::computing;
@@ -137,6 +138,17 @@ fn serve<T>(
     answer.and_then(Result::ok)
 }
 
+/// Returns the timer's handle, or 0.
+#[unsafe(no_mangle)]
+extern "C" fn OSAttachTimer(scale: c_int, function: Option<Callback>) -> c_int {
+    let timer = function
+        .and_then(|function| enter("OSAttachTimer", |robios| robios.os_attach_timer(scale, function)));
+    if timer.is_some() {
+        watch_program();
+    }
+    timer.unwrap_or(0)
+}
+
 /// The program's time (s), without a call: no timer function runs, as the program may hold a lock.
 pub(super) fn peek_time() -> Option<f64> {
     let _inside = Inside::new().filter(|_| is_ours())?;
@@ -202,7 +214,7 @@ fn born() -> State {
 
 fn robot() -> std::result::Result<Robios, String> {
     let report = memory().map(|memory| ReportFile::new(Arc::clone(memory)));
-    let showing = inherited(names::SCREEN)?.map(Showing::new);
+    let showing = inherited(names::SCREEN)?.map(Showing::through);
     let outlets = Outlets { report, lcd: env::var_os(names::LCD).map(PathBuf::from), showing };
     let plan = Plan::from_environment()?;
     computing::set_factor(plan.cpu_time);

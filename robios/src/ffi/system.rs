@@ -4,9 +4,8 @@ use std::process::{Command, Stdio};
 #[cfg(target_os = "linux")]
 use super::cancelling::cancellable;
 use super::memory::{output_text, scatter, text};
-use super::runtime::{code, enter, watch_program};
+use super::runtime::{code, enter};
 use super::sleep::sleep_for;
-use crate::robios::Callback;
 
 /// Maximum number of bytes written to memory of unstated size.
 const ROOM: usize = 128;
@@ -79,17 +78,6 @@ extern "C-unwind" fn OSWait(milliseconds: c_int) -> c_int {
     })
 }
 
-/// Returns the timer's handle, or 0.
-#[unsafe(no_mangle)]
-extern "C" fn OSAttachTimer(scale: c_int, function: Option<Callback>) -> c_int {
-    let timer = function
-        .and_then(|function| enter("OSAttachTimer", |robios| robios.os_attach_timer(scale, function)));
-    if timer.is_some() {
-        watch_program();
-    }
-    timer.unwrap_or(0)
-}
-
 #[unsafe(no_mangle)]
 extern "C" fn OSDetachTimer(timer: c_int) -> c_int {
     code(enter("OSDetachTimer", |robios| robios.os_detach_timer(timer)))
@@ -131,12 +119,6 @@ extern "C" fn eyesim_time() -> f64 {
 extern "C" fn eyesim_sleep(seconds: f64) -> c_int {
     let sane = seconds.is_finite() && seconds >= 0.0;
     code(sane.then_some(()).and_then(|()| sleep_for("time", seconds.min(1e6))))
-}
-
-/// Records that the program has started a thread, for `eye.py`.
-#[unsafe(no_mangle)]
-extern "C" fn eyesim_note_thread() {
-    super::threads::note_thread();
 }
 
 /// Programs for the X window system call it.

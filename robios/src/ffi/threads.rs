@@ -117,6 +117,12 @@ pub(super) fn note_thread() {
     }
 }
 
+/// Records that the program has started a thread, for `eye.py`.
+#[unsafe(no_mangle)]
+extern "C" fn eyesim_note_thread() {
+    note_thread();
+}
+
 pub(super) fn alone() -> bool {
     !STARTED_THREADS.load(Ordering::Relaxed) && THREADS.load(Ordering::Relaxed) <= 1
 }

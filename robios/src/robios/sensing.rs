@@ -113,6 +113,7 @@ impl Robios {
 
     /// `SIMGetRobot`; 0 is the robot itself.
     pub fn sim_get_robot(&mut self, id: i32) -> Result<[i32; 4]> {
+        self.report.note_beyond("SIMGetRobot");
         let id = u32::try_from(id).map_err(|_| invalid("robot", id, "0 or more"))?;
         Ok(placed(self.pose_of(&Request::RobotAt(id))?))
     }
@@ -120,6 +121,7 @@ impl Robios {
     /// `SIMSetRobot`: x, y, z and phi. On hills the robot drops from z, unless the ground is higher; on a
     /// level floor its height stays.
     pub fn sim_set_robot(&mut self, id: i32, [x, y, z, phi]: [i32; 4]) -> Result<()> {
+        self.report.note_beyond("SIMSetRobot");
         let id = u32::try_from(id).map_err(|_| invalid("robot", id, "0 or more"))?;
         let z = units::from_mm(f64::from(z));
         self.order(&Request::PlaceRobot(id, pose_from([x, y, phi]), z))
@@ -127,12 +129,14 @@ impl Robios {
 
     /// `SIMGetObject`, numbered from 1.
     pub fn sim_get_object(&mut self, id: i32) -> Result<[i32; 4]> {
+        self.report.note_beyond("SIMGetObject");
         let id = u32::try_from(id).map_err(|_| invalid("object", id, "1 or more"))?;
         Ok(placed(self.pose_of(&Request::ObjectAt(id))?))
     }
 
     /// `SIMSetObject`.
     pub fn sim_set_object(&mut self, id: i32, pose: [i32; 3]) -> Result<()> {
+        self.report.note_beyond("SIMSetObject");
         let id = u32::try_from(id).map_err(|_| invalid("object", id, "1 or more"))?;
         self.order(&Request::PlaceObject(id, pose_from(pose)))
     }

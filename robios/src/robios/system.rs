@@ -3,7 +3,12 @@ use roverlab::io::Result;
 use super::{EPOCH, Robios, invalid};
 
 /// A timer function of a program.
+#[cfg(not(target_family = "wasm"))]
 pub(crate) type Callback = extern "C" fn();
+
+/// A timer function of a program in a page, by the page's number.
+#[cfg(target_family = "wasm")]
+pub(crate) type Callback = u32;
 
 /// Periodic functions.
 #[derive(Debug, Default)]

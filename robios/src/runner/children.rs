@@ -15,12 +15,13 @@ use eyesim::memory::Memory;
 use eyesim::plan::{BUILD, Plan, names};
 use eyesim::process;
 use eyesim::report::{Report, Stage};
+use eyesim::verdict::{Ending, Truth, Verdict};
 use roverlab::world::Scene;
 
 use super::options::{Options, whole};
 use super::panels::Panels;
 use super::programs::{Program, home, is_python, library};
-use super::verdict::{Ending, Stopwatch, Truth, Verdict};
+use super::stopwatch::Stopwatch;
 use super::work_folder::WorkFolder;
 
 /// A running program.
@@ -62,20 +63,12 @@ pub(crate) fn run_alone(
         Err(message) => (Ending::NotStarted(message), Report::default()),
     };
     let placed = &scene.robots[program.robot];
-    let mut truth = Truth { pose: placed.pose, ..Truth::default() };
-    if report.known {
-        truth = Truth {
-            // A call that waits beyond the time limit is cut off there.
-            time: report.time.min(options.time_limit),
-            pose: report.pose,
-            stance: report.stance,
-            odometry: report.odometry,
-            path_length: report.path_length,
-            contacts: report.contacts,
-            later_contacts: report.later_contacts,
-        };
-    }
-    Ok(vec![Verdict::new(program, ending, &report, truth)])
+    let truth = if report.known {
+        Truth::reported(&report, options.time_limit)
+    } else {
+        Truth { pose: placed.pose, ..Truth::default() }
+    };
+    Ok(vec![Verdict::new(&program.name, program.robot, ending, &report, truth)])
 }
 
 /// Starts a program in a run measured by a stopwatch. The inner error is the program's own failure to start.
@@ -279,7 +272,7 @@ impl Running {
         }
         let mut report = Report::read(&self.memory);
         let ending = match (report.stage, ending) {
-            (Stage::TimedOut, _) => Ending::OutOfTime("its simulated time was over".into()),
+            (Stage::TimedOut, _) => Ending::time_limit(),
             // Its calls have failed, whatever it made of that.
             (Stage::Refused, Ending::Exit(code, _)) => {
                 let reason = report.notes.pop().unwrap_or(last_words);

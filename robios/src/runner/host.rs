@@ -10,6 +10,7 @@ use eyesim::plan::{Plan, names};
 use eyesim::process;
 use eyesim::report::{Report, Stance};
 use eyesim::seat::{Seat, Terms};
+use eyesim::verdict::{Ending, Truth, Verdict};
 use eyesim::wire::{Answer, LONGEST_REQUEST, Question};
 use roverlab::geometry::Pose;
 use roverlab::io::log::{Header, LogFile, LogWriter};
@@ -23,7 +24,7 @@ use super::options::Options;
 use super::panels::Panels;
 use super::picture;
 use super::programs::Program;
-use super::verdict::{Ending, Stopwatch, Truth, Verdict};
+use super::stopwatch::Stopwatch;
 use super::work_folder::WorkFolder;
 
 /// The end of a program from its host's perspective.
@@ -55,7 +56,7 @@ pub(crate) fn run_together(
     folder: &WorkFolder,
     page: Option<&Beside>,
 ) -> Result<Vec<Verdict>, String> {
-    let trail = options.picture.is_some().then_some(TRAIL);
+    let trail = options.trail.or(options.picture.is_some().then_some(TRAIL));
     let sim_options = SimOptions { trail_interval: trail, ..plan.options() };
     let terms = Terms::of(&sim_options);
     // A recording contains all calls.
@@ -114,10 +115,13 @@ pub(crate) fn run_together(
         });
         let time = program_time(served.time, served.report.time).min(options.time_limit);
         let mut truth = truth(&world, program.robot, time, served.contacts);
+        if options.trail.is_none() {
+            truth.trail.clear();
+        }
         if let Some((odometry, path_length)) = served.walked {
             truth = Truth { odometry, path_length, ..truth };
         }
-        Verdict::new(program, served.ending, &served.report, truth)
+        Verdict::new(&program.name, program.robot, served.ending, &served.report, truth)
     });
     Ok(verdicts.collect())
 }
@@ -203,6 +207,7 @@ fn truth(world: &World, index: usize, time: f64, contacts: u64) -> Truth {
             path_length: robot.path_length,
             contacts,
             later_contacts: u64::from(robot.contacts).saturating_sub(contacts),
+            trail: robot.trail,
         },
     )
 }

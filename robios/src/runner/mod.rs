@@ -7,7 +7,7 @@ mod options;
 mod panels;
 mod picture;
 mod programs;
-mod verdict;
+mod stopwatch;
 mod work_folder;
 
 use std::io::Write;
@@ -15,9 +15,10 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
+use eyesim::verdict::{self, Summary, Verdict};
 use options::{Command, Options};
 use roverlab_view::serve::{Beside, Opening};
-use verdict::Summary;
+use stopwatch::Stopwatch;
 
 /// Exit status for a wrong command line or input file.
 const WRONG: u8 = 2;
@@ -36,6 +37,10 @@ pub(crate) fn main() -> ExitCode {
     let mut warnings = Vec::new();
     match options.command() {
         Command::Install(folder) => match install::install(&folder) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(message) => refuse(&message),
+        },
+        Command::Compile(source, program) => match programs::compile_to(&source, &program) {
             Ok(()) => ExitCode::SUCCESS,
             Err(message) => refuse(&message),
         },
@@ -81,7 +86,7 @@ fn warn(warnings: &mut Vec<String>, more: impl IntoIterator<Item = String>) {
 
 /// Runs the programs, and collects warnings about the files.
 fn run(options: &Options, warnings: &mut Vec<String>) -> Result<Summary, String> {
-    let stopwatch = verdict::Stopwatch::start();
+    let stopwatch = Stopwatch::start();
     let plan = options.plan()?;
     let (scene, odd) = plan.scene()?;
     warn(warnings, odd);
@@ -95,7 +100,8 @@ fn run(options: &Options, warnings: &mut Vec<String>) -> Result<Summary, String>
     let programs = programs::of(options, &scene, &folder)?;
     warn(warnings, programs.iter().filter_map(|program| program.warning.clone()));
     let page = options.view.map(|port| page(options, port)).transpose()?;
-    let watched = options.picture.is_some() || options.record.is_some() || page.is_some();
+    let watched =
+        page.is_some() || options.picture.is_some() || options.record.is_some() || options.trail.is_some();
     let own_world = programs.len() == 1 && !watched;
     let verdicts = if own_world {
         children::run_alone(&programs[0], &plan, &scene, options, &folder)
@@ -107,7 +113,7 @@ fn run(options: &Options, warnings: &mut Vec<String>) -> Result<Summary, String>
     }
     let mut verdicts = verdicts?;
     verdict::name_deadlocks(&mut verdicts);
-    warn(warnings, verdicts.iter().flat_map(verdict::Verdict::warnings));
+    warn(warnings, verdicts.iter().flat_map(Verdict::warnings));
     let (warnings, wall_time) = (std::mem::take(warnings), options.timing.then(|| stopwatch.seconds()));
     let summary = Summary { verdicts, warnings, seed: plan.seed, noise: plan.noise, wall_time };
     if let Some(page) = page {

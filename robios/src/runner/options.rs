@@ -6,6 +6,7 @@ use eyesim::costs::Costs;
 use eyesim::keys::KeyPlan;
 use eyesim::plan::{FRAME_RATE, Plan, parse_pose};
 use roverlab::geometry::Pose;
+use roverlab::io::sim::TICK;
 use roverlab::picture::FileType;
 
 /// Runs programs written for RoBIOS and EyeSim in simulated worlds, without a display and in virtual time.
@@ -19,7 +20,8 @@ use roverlab::picture::FileType;
     version,
     after_help = "Per robot, `--json` prints: program, exit (null if a signal or a limit has ended it), outcome (finished, \
                   collided, failed, crashed, timed_out), sim_time_s, pose, odometry, path_length_mm, collisions, \
-                  lcd_text, sounds, and error where there is one."
+                  lcd_text, sounds, and where there are some: error, beyond_robots (functions called that no robot has), \
+                  trail (with --trail)."
 )]
 pub(crate) struct Options {
     /// World or scene: .sim, .wld, .maz, or a ROS map.yaml [default: the script; the only .sim, or else the only
@@ -85,6 +87,15 @@ pub(crate) struct Options {
     #[arg(long, value_name = "FILE", value_parser = parse_picture)]
     pub(crate) picture: Option<PathBuf>,
 
+    /// Start programs outside the folder of the script that names them.
+    #[arg(long)]
+    pub(crate) allow_outside: bool,
+
+    /// Report the robots' true paths as `trail`, with a point every S simulated seconds: seconds, millimetres
+    /// and degrees.
+    #[arg(long, value_name = "S", value_parser = parse_interval)]
+    pub(crate) trail: Option<f64>,
+
     /// Record the robots' calls and answers.
     #[arg(long, value_name = "FILE.mcap")]
     pub(crate) record: Option<PathBuf>,
@@ -118,7 +129,7 @@ pub(crate) struct Options {
     pub(crate) timing: bool,
 
     /// A script (.sim), or a program: an executable, Python (.py), C (.c) or C++ (.cpp, .cc). Or install
-    /// FOLDER, to copy the library, headers and scripts to a folder.
+    /// FOLDER, to copy the library, headers and scripts to a folder; or compile SOURCE PROGRAM.
     #[arg(value_name = "PROGRAM", required = true)]
     pub(crate) program: PathBuf,
 
@@ -131,6 +142,8 @@ pub(crate) struct Options {
 pub(crate) enum Command {
     Run,
     Install(PathBuf),
+    /// Source text and program.
+    Compile(PathBuf, PathBuf),
 }
 
 impl Options {
@@ -138,6 +151,9 @@ impl Options {
     pub(crate) fn command(&self) -> Command {
         match self.arguments.as_slice() {
             [folder] if self.program == Path::new("install") => Command::Install(folder.into()),
+            [source, program] if self.program == Path::new("compile") => {
+                Command::Compile(source.into(), program.into())
+            }
             _ => Command::Run,
         }
     }
@@ -218,6 +234,11 @@ fn parse_factor(text: &str) -> Result<f64, String> {
 fn parse_seconds(text: &str) -> Result<f64, String> {
     let seconds = text.parse().ok().filter(|&seconds: &f64| seconds > 0.0 && seconds <= 1e6);
     seconds.ok_or_else(|| "expected a number of seconds above 0, at most a million".into())
+}
+
+fn parse_interval(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|seconds| (TICK..=1e6).contains(seconds));
+    seconds.ok_or_else(|| format!("expected {TICK} to a million seconds"))
 }
 
 /// Validates the plan here; the library parses it again.

@@ -6,7 +6,8 @@ use std::thread;
 
 use eyesim::showing;
 use roverlab::io::Key;
-use roverlab_view::serve::{Devices, Face};
+use roverlab_view::Face;
+use roverlab_view::serve::Devices;
 
 /// Displays and soft keys of the programs, for the page beside them. Copies share them.
 #[derive(Debug, Clone, Default)]

@@ -57,15 +57,23 @@ pub(crate) fn of(options: &Options, scene: &Scene, folder: &WorkFolder) -> Resul
 }
 
 /// A program named in a script: relative to the script, in the script's own folder, or else the only source
-/// text of that folder, with a warning.
+/// text of that folder, with a warning. Programs outside the script's folder need the user's leave.
 fn named(base: &Path, name: &str, robot: usize, options: &Options, folder: &WorkFolder) -> Program {
     let path = base.join(name.replace('\\', "/"));
     let beside = path.file_name().map(|file| base.join(file));
-    if let Some(file) = source(&path).or_else(|| source(&beside?)) {
+    let may_start = |file: &PathBuf| options.allow_outside || is_inside(file, base);
+    let there = source(&path);
+    let is_there = there.is_some();
+    if let Some(file) = there.filter(may_start).or_else(|| source(&beside?).filter(may_start)) {
         return prepared(name, Ok(file), robot, options, folder);
     }
+    if is_there {
+        let (path, base) = (path.display(), base.display());
+        let refused = format!("{path}: outside of {base}; expected a program inside, or --allow-outside");
+        return prepared(name, Err(refused), robot, options, folder);
+    }
     let place = path.parent().filter(|place| place.is_dir()).unwrap_or(base);
-    let Some(only) = only_source(place) else {
+    let Some(only) = only_source(place).filter(may_start) else {
         let missing =
             format!("{}: no such file; expected a program, or its source text beside it", path.display());
         return prepared(name, Err(missing), robot, options, folder);
@@ -76,6 +84,12 @@ fn named(base: &Path, name: &str, robot: usize, options: &Options, folder: &Work
         robot + 1
     );
     Program { warning: Some(warning), ..prepared(&instead, Ok(only), robot, options, folder) }
+}
+
+/// Whether a file is in a folder or below it. A link is where it leads to.
+fn is_inside(file: &Path, folder: &Path) -> bool {
+    let real = |path: &Path| std::fs::canonicalize(path);
+    matches!((real(file), real(folder)), (Ok(file), Ok(folder)) if file.starts_with(&folder))
 }
 
 fn prepared(
@@ -164,17 +178,23 @@ fn starts_here(path: &Path) -> bool {
     read.is_ok() && (magic == *b"\x7fELF" || magic[..2] == *b"#!" || !cfg!(target_os = "linux"))
 }
 
-/// Compiles a program with the appropriate script, including other necessary source texts.
+/// Compiles a program for a robot.
 fn compile(source: &Path, folder: &WorkFolder, robot: usize) -> Result<PathBuf, String> {
     let program = folder.file(&format!("program{robot}.x"));
-    let Some(mut message) = compile_files(&[source.to_owned()], &program)? else { return Ok(program) };
+    compile_to(source, &program)?;
+    Ok(program)
+}
+
+/// Compiles a program with the appropriate script, including other necessary source texts.
+pub(crate) fn compile_to(source: &Path, program: &Path) -> Result<(), String> {
+    let Some(mut message) = compile_files(&[source.to_owned()], program)? else { return Ok(()) };
     let mut files = vec![source.to_owned()];
     companions(source, &mut files, MOST_HEADERS);
     if files.len() > 1 && message.contains("undefined reference") {
         // If the complete program fails as well, its error is the relevant one.
-        match compile_files(&files, &program)? {
+        match compile_files(&files, program)? {
             Some(with_companions) => message = with_companions,
-            None => return Ok(program),
+            None => return Ok(()),
         }
     }
     let telling =

@@ -1,18 +1,33 @@
-use std::fs;
+use std::fs::{self, DirBuilder, File, OpenOptions};
+use std::io;
 use std::path::{Path, PathBuf};
 
-/// A temporary folder of this run, removed at its end.
+/// A temporary folder of this run, which only its user may enter. It is removed at the end of the run, or by
+/// a later run if this one is killed.
 #[derive(Debug)]
-pub(crate) struct WorkFolder(PathBuf);
+pub(crate) struct WorkFolder {
+    path: PathBuf,
+    /// Locked as long as the run lasts: the system unlocks it whatever ends the run.
+    _lock: File,
+}
+
+/// Beginning of the names of these folders.
+const PREFIX: &str = "robios-";
+/// File in them that is locked.
+const LOCK: &str = "lock";
 
 impl WorkFolder {
     pub(crate) fn new() -> Result<Self, String> {
-        let base = std::env::temp_dir();
+        Self::within(&std::env::temp_dir())
+    }
+
+    fn within(base: &Path) -> Result<Self, String> {
+        remove_leftovers(base);
         for attempt in 0..100 {
-            let path = base.join(format!("robios-{}-{attempt}", std::process::id()));
-            match fs::create_dir(&path) {
-                Ok(()) => return Ok(Self(path)),
-                Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {}
+            let path = base.join(format!("{PREFIX}{}-{attempt}", std::process::id()));
+            match create(&path) {
+                Ok(Some(lock)) => return Ok(Self { path, _lock: lock }),
+                Ok(None) => {}
                 Err(error) => {
                     return Err(format!("{}: {error}; expected a folder to write to", path.display()));
                 }
@@ -23,18 +38,87 @@ impl WorkFolder {
 
     /// Path of a file in it.
     pub(crate) fn file(&self, name: &str) -> PathBuf {
-        self.0.join(name)
+        self.path.join(name)
     }
 
     /// Path of the folder.
     pub(crate) fn path(&self) -> &Path {
-        &self.0
+        &self.path
     }
 }
 
 impl Drop for WorkFolder {
     fn drop(&mut self) {
-        // If removal fails, the system cleans up later.
-        let _ = fs::remove_dir_all(&self.0);
+        // If removal fails, a later run does it.
+        let _ = fs::remove_dir_all(&self.path);
+    }
+}
+
+/// Creates a folder and locks it; `None` if the name is taken, or another run has just removed it.
+fn create(path: &Path) -> io::Result<Option<File>> {
+    match private().create(path) {
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => return Ok(None),
+        created => created?,
+    }
+    let name = path.join(LOCK);
+    let lock = OpenOptions::new().write(true).create_new(true).open(&name)?;
+    let is_ours = lock.try_lock().is_ok() && name.exists();
+    Ok(is_ours.then_some(lock))
+}
+
+#[cfg(unix)]
+fn private() -> DirBuilder {
+    use std::os::unix::fs::DirBuilderExt;
+    let mut builder = DirBuilder::new();
+    builder.mode(0o700);
+    builder
+}
+
+#[cfg(not(unix))]
+fn private() -> DirBuilder {
+    DirBuilder::new()
+}
+
+/// Removes the folders of runs that were killed: nobody holds their locks. What cannot be removed belongs to
+/// others.
+fn remove_leftovers(base: &Path) {
+    let entries = fs::read_dir(base).into_iter().flatten().filter_map(Result::ok);
+    let named = entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(PREFIX));
+    for entry in named.filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir())) {
+        let lock = OpenOptions::new().write(true).open(entry.path().join(LOCK));
+        if lock.is_ok_and(|lock| lock.try_lock().is_ok()) {
+            let _ = fs::remove_dir_all(entry.path());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folders_of_killed_runs_are_removed_by_the_next_one() {
+        let base = std::env::temp_dir().join(format!("work-folders-{}", std::process::id()));
+        fs::create_dir_all(&base).unwrap();
+        let alive = WorkFolder::within(&base).unwrap();
+        // A killed run leaves a lock that nobody holds. Others' folders have none.
+        let (killed, other) = (base.join("robios-1-0"), base.join("robios-cache"));
+        for folder in [&killed, &other] {
+            fs::create_dir(folder).unwrap();
+            fs::write(folder.join("program0.x"), "text").unwrap();
+        }
+        fs::write(killed.join(LOCK), "").unwrap();
+        let next = WorkFolder::within(&base).unwrap();
+        assert!(!killed.exists() && other.exists() && alive.path().exists() && next.path() != alive.path());
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            assert_eq!(fs::metadata(next.path()).unwrap().permissions().mode() & 0o777, 0o700);
+        }
+        let gone = next.path().to_owned();
+        drop(next);
+        assert!(!gone.exists());
+        drop(alive);
+        fs::remove_dir_all(&base).unwrap();
     }
 }

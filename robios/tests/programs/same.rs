@@ -49,11 +49,28 @@ fn fifty_runs_under_load_are_the_same_each_time() {
         let told = robios(&options).stdout;
         (told, std::fs::read(&log).unwrap_or_default())
     };
-    let differing: Vec<_> = runs.iter().filter(|one| run(one) != run(one)).collect();
+    let differing: Vec<_> = runs.iter().filter_map(|one| differs(one, &run(one), &run(one))).collect();
     for process in &mut load {
         let _ = process.kill().and_then(|()| process.wait());
     }
-    assert!(differing.is_empty(), "{differing:?}");
+    assert!(differing.is_empty(), "{differing:#?}");
+}
+
+/// What two runs of a program printed, if it differs, or how long their recordings were.
+fn differs<R: std::fmt::Debug>(
+    what: R,
+    (one, one_log): &(Vec<u8>, Vec<u8>),
+    (other, other_log): &(Vec<u8>, Vec<u8>),
+) -> Option<String> {
+    let logs = || format!("{what:?}: recordings of {} and {} bytes", one_log.len(), other_log.len());
+    match (one == other, one_log == other_log) {
+        (true, true) => None,
+        (true, false) => Some(logs()),
+        (false, _) => {
+            let [one, other] = [one, other].map(|told| String::from_utf8_lossy(told));
+            Some(format!("{what:?}: {one} and {other}"))
+        }
+    }
 }
 
 /// Report of a program with threads.

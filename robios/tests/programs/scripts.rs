@@ -139,6 +139,30 @@ fn programs_are_found_by_names_of_other_systems() {
     assert_eq!(alone["lcd_text"], "C", "{alone}");
 }
 
+/// A script may start what lies beside it and below, wherever links lead.
+#[cfg(unix)]
+#[test]
+fn programs_outside_the_scripts_folder_need_leave() {
+    if !python() {
+        return;
+    }
+    let folder = Folder::new("outside");
+    let inside = folder.0.join("inside");
+    std::fs::create_dir(&inside).unwrap();
+    folder.write("who.py", "from eye import *\nLCDPrintf('outside')\n");
+    std::os::unix::fs::symlink(folder.0.join("who.py"), inside.join("link.py")).unwrap();
+    for name in ["../who.py", "link.py", "/bin/id"] {
+        let script = folder.write("inside/all.sim", &format!("S4 500 500 0 {name}\n"));
+        let all = run(&script);
+        assert_eq!(all["outcome"], "failed", "{all}");
+        let error = all["error"].as_str().unwrap();
+        assert!(error.contains("outside of") && error.contains("--allow-outside"), "{name}: {error}");
+    }
+    let script = folder.write("inside/all.sim", "S4 500 500 0 ../who.py\n");
+    let all = report(&["--allow-outside", script.to_str().unwrap()]);
+    assert_eq!(all["lcd_text"], "outside", "{all}");
+}
+
 /// The report names what ran, not what was asked for.
 #[test]
 fn the_only_source_text_takes_a_programs_place_with_a_warning() {

@@ -1,77 +1,97 @@
-use std::time::Instant;
+//! Results of programs, as JSON and as text.
 
-use eyesim::report::{Report, Stance};
 use roverlab::geometry::{Pose, normalize_angle, units};
+use roverlab::io::TrailPoint;
 use serde_json::{Value, json};
 
-use super::programs::Program;
-
-/// Measures wall-clock time.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Stopwatch(Instant);
-
-impl Stopwatch {
-    #[allow(
-        clippy::disallowed_methods,
-        reason = "for limits in real time and for the report; no result depends on it"
-    )]
-    pub(crate) fn start() -> Self {
-        Self(Instant::now())
-    }
-
-    pub(crate) fn seconds(&self) -> f64 {
-        self.0.elapsed().as_secs_f64()
-    }
-}
+use crate::report::{Report, Stance};
 
 /// How a program's process ended.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Ending {
+pub enum Ending {
     /// Exit status, and on failure its last words, or why it had no robot.
     Exit(i32, Option<String>),
+    /// By a signal.
     Signal(i32),
+    /// At a limit, with the reason.
     OutOfTime(String),
+    /// By something that programs must not do.
     Offence(String),
+    /// It could not be started, with the reason.
     NotStarted(String),
 }
 
 /// Ground truth of a robot at the end.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Truth {
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Truth {
     /// Time taken by its program (s).
-    pub(crate) time: f64,
-    pub(crate) pose: Pose,
-    pub(crate) stance: Stance,
-    pub(crate) odometry: Pose,
-    pub(crate) path_length: f64,
-    /// Until its program ended, and after.
-    pub(crate) contacts: u64,
-    pub(crate) later_contacts: u64,
+    pub time: f64,
+    /// True pose.
+    pub pose: Pose,
+    /// Attitude on hills.
+    pub stance: Stance,
+    /// Pose by odometry.
+    pub odometry: Pose,
+    /// Distance moved (m).
+    pub path_length: f64,
+    /// Number of contacts until its program ended.
+    pub contacts: u64,
+    /// Number of contacts after that.
+    pub later_contacts: u64,
+    /// True path, if it was asked for.
+    pub trail: Vec<TrailPoint>,
+}
+
+impl Ending {
+    /// At the limit of the simulated time.
+    pub fn time_limit() -> Self {
+        Self::OutOfTime("its simulated time was over".into())
+    }
+}
+
+impl Truth {
+    /// The truth of a report that knows it.
+    pub fn reported(report: &Report, time_limit: f64) -> Self {
+        Self {
+            // A call that waits beyond the time limit is cut off there.
+            time: report.time.min(time_limit),
+            pose: report.pose,
+            stance: report.stance,
+            odometry: report.odometry,
+            path_length: report.path_length,
+            contacts: report.contacts,
+            later_contacts: report.later_contacts,
+            ..Self::default()
+        }
+    }
 }
 
 /// Result of a program and its robot.
 #[derive(Debug)]
-pub(crate) struct Verdict {
+pub struct Verdict {
     program: String,
     robot: usize,
     ending: Ending,
     truth: Truth,
     lcd_text: String,
     sounds: u64,
+    beyond_robots: Vec<&'static str>,
     notes: Vec<String>,
     /// Time since which it had been waiting for a radio message at its end (s).
     listening_since: Option<f64>,
 }
 
 impl Verdict {
-    pub(crate) fn new(program: &Program, ending: Ending, report: &Report, truth: Truth) -> Self {
+    /// The result of the program with a name that drives the robot with an index.
+    pub fn new(program: &str, robot: usize, ending: Ending, report: &Report, truth: Truth) -> Self {
         Self {
-            program: program.name.clone(),
-            robot: program.robot,
+            program: program.to_owned(),
+            robot,
             ending,
             truth,
             lcd_text: report.text.clone(),
             sounds: report.sounds,
+            beyond_robots: report.beyond_robots(),
             notes: report.notes.clone(),
             listening_since: report.listening_since,
         }
@@ -83,7 +103,7 @@ impl Verdict {
     }
 
     /// Warnings about the program.
-    pub(crate) fn warnings(&self) -> impl Iterator<Item = String> {
+    pub fn warnings(&self) -> impl Iterator<Item = String> {
         self.notes.iter().map(|note| format!("{}: {note}", self.name()))
     }
 
@@ -137,6 +157,12 @@ impl Verdict {
         if self.truth.later_contacts > 0 {
             value["collisions_after_end"] = self.truth.later_contacts.into();
         }
+        if !self.beyond_robots.is_empty() {
+            value["beyond_robots"] = self.beyond_robots.clone().into();
+        }
+        if !self.truth.trail.is_empty() {
+            value["trail"] = self.truth.trail.iter().map(point).collect();
+        }
         if let Some(error) = self.error() {
             value["error"] = error.into();
         }
@@ -145,7 +171,7 @@ impl Verdict {
 }
 
 /// Adds to programs that a limit ended while waiting for radio messages which others waited too.
-pub(crate) fn name_deadlocks(verdicts: &mut [Verdict]) {
+pub fn name_deadlocks(verdicts: &mut [Verdict]) {
     let waits: Vec<_> = verdicts
         .iter()
         .map(|verdict| {
@@ -172,24 +198,27 @@ pub(crate) fn name_deadlocks(verdicts: &mut [Verdict]) {
 
 /// Results of all programs of a run.
 #[derive(Debug)]
-pub(crate) struct Summary {
-    pub(crate) verdicts: Vec<Verdict>,
+pub struct Summary {
+    /// Results, robot by robot.
+    pub verdicts: Vec<Verdict>,
     /// Warnings about files and programs.
-    pub(crate) warnings: Vec<String>,
-    pub(crate) seed: u64,
-    pub(crate) noise: f64,
+    pub warnings: Vec<String>,
+    /// Seed of the run.
+    pub seed: u64,
+    /// Noise level of the run.
+    pub noise: f64,
     /// Wall-clock time (s), if requested.
-    pub(crate) wall_time: Option<f64>,
+    pub wall_time: Option<f64>,
 }
 
 impl Summary {
     /// 0 if every program ended properly, without a contact.
-    pub(crate) fn status(&self) -> u8 {
+    pub fn status(&self) -> u8 {
         u8::from(self.verdicts.iter().any(|verdict| verdict.outcome() != "finished"))
     }
 
     /// One JSON object on one line: the first robot's fields, and all robots in a list.
-    pub(crate) fn json(&self) -> String {
+    pub fn json(&self) -> String {
         let robots: Vec<Value> = self.verdicts.iter().map(Verdict::value).collect();
         let worst = ["crashed", "failed", "timed_out", "collided"];
         let worst = worst.into_iter().find(|word| self.verdicts.iter().any(|v| v.outcome() == *word));
@@ -209,7 +238,7 @@ impl Summary {
     }
 
     /// The same as readable text.
-    pub(crate) fn words(&self) -> String {
+    pub fn words(&self) -> String {
         let mut lines = Vec::new();
         for verdict in &self.verdicts {
             let truth = &verdict.truth;
@@ -234,7 +263,7 @@ impl Summary {
 }
 
 /// Report of a run that could not start.
-pub(crate) fn refusal(message: &str, warnings: &[String]) -> String {
+pub fn refusal(message: &str, warnings: &[String]) -> String {
     let value = json!({
         "example": "robios",
         "outcome": "failed",
@@ -267,6 +296,14 @@ fn pose(pose: Pose) -> Value {
         "y_mm": rounded(units::to_mm(pose.y)),
         "heading_deg": rounded(units::to_deg(normalize_angle(pose.heading))),
     })
+}
+
+/// A point of a path: seconds, millimetres, millimetres and degrees.
+fn point(at: &TrailPoint) -> Value {
+    let TrailPoint { time, pose, .. } = at;
+    let heading = units::to_deg(normalize_angle(pose.heading));
+    let tenths = |value: f64| (value * 10.0).round() / 10.0 + 0.0;
+    json!([rounded(*time), tenths(units::to_mm(pose.x)), tenths(units::to_mm(pose.y)), tenths(heading)])
 }
 
 /// Without spurious digits from unit conversion, and without negative zero.

@@ -1,0 +1,3 @@
+import roam
+
+roam.anywhere(roam.duration())

@@ -1,0 +1,3 @@
+import roam
+
+roam.left_right(roam.duration())

@@ -1,0 +1,3 @@
+import roam
+
+roam.middle_line(roam.duration())
