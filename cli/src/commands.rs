@@ -12,16 +12,17 @@ use crate::common::{Failure, Onlooker, onlooker, parser, refused, run, run_plain
 #[cfg(test)]
 use crate::common::{Heeds, Unheeded};
 use crate::maze_drive::{explore as maze_explore, left as maze_left, lidar as maze_lidar};
-#[cfg(feature = "native")]
-use crate::starman;
 #[cfg(feature = "view")]
 use crate::view;
 use crate::{
-    a_to_b, ackermann, boat, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug,
-    dive, edges, follow_me, genetic, grid_benchmark, lane_keeping, lidar_scan, localise, micromouse, motion,
-    navigate, omni, pool_search, pool_wall, quadtree, ramp, random_drive, replay, safety, summit, survey,
-    terrain_plan, wall_following,
+    a_to_b, ackermann, base_station, boat, bug_compare, camera, color_tracking, cone_drive, cone_race,
+    coverage, distbug, dive, edges, first_steps, follow_me, genetic, grid_benchmark, lane_keeping,
+    lidar_scan, localise, micromouse, motion, navigate, omni, parking, ping, pool_search, pool_wall,
+    quadtree, ramp, random_drive, replay, safety, signs, summit, survey, terrain_plan, traffic,
+    wall_following,
 };
+#[cfg(feature = "native")]
+use crate::{grade, starman};
 
 /// Runs a command with its command line and its two output streams. Returns the exit status.
 type Run = fn(Vec<OsString>, &mut dyn Write, &mut dyn Write) -> u8;
@@ -67,6 +68,7 @@ macro_rules! commands {
 commands!(
     a_to_b by run,
     ackermann by run,
+    base_station by run,
     boat by run,
     bug_compare by run,
     camera by run,
@@ -75,10 +77,13 @@ commands!(
     cone_race by run,
     coverage by run,
     distbug by run,
-    dive by run_plain,
+    dive by run,
     edges by run,
+    first_steps by run,
     follow_me by run,
     genetic by run,
+    #[cfg(feature = "native")]
+    grade by run_plain,
     grid_benchmark by run_plain,
     lane_keeping by run,
     lidar_scan by run,
@@ -90,6 +95,8 @@ commands!(
     motion by run,
     navigate by run,
     omni by run,
+    parking by run,
+    ping by run,
     pool_search by run,
     pool_wall by run,
     quadtree by run_plain,
@@ -97,11 +104,13 @@ commands!(
     random_drive by run,
     replay by run_printing,
     safety by run,
+    signs by run_plain,
     #[cfg(feature = "native")]
     starman by run,
     summit by run,
     survey by run,
     terrain_plan by run_plain,
+    traffic by run,
     #[cfg(feature = "view")]
     view by run_printing,
     wall_following by run,

@@ -5,6 +5,7 @@
 
 mod a_to_b;
 mod ackermann;
+mod base_station;
 mod boat;
 mod bug_compare;
 mod camera;
@@ -19,8 +20,11 @@ mod distbug;
 mod dive;
 mod driving;
 mod edges;
+mod first_steps;
 mod follow_me;
 mod genetic;
+#[cfg(feature = "native")]
+mod grade;
 mod grid_benchmark;
 mod lane_keeping;
 mod lidar_scan;
@@ -30,6 +34,8 @@ mod micromouse;
 mod motion;
 mod navigate;
 mod omni;
+mod parking;
+mod ping;
 mod pool_search;
 mod pool_wall;
 mod quadtree;
@@ -38,6 +44,7 @@ mod random_drive;
 mod replay;
 mod room;
 mod safety;
+mod signs;
 #[cfg(feature = "native")]
 mod starman;
 mod summit;
@@ -46,6 +53,7 @@ mod terrain;
 mod terrain_plan;
 #[cfg(test)]
 mod tests;
+mod traffic;
 #[cfg(feature = "view")]
 mod view;
 mod wall_following;

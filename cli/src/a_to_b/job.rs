@@ -116,6 +116,7 @@ pub(crate) fn add_landmarks(args: &Args, trip: &mut Trip, options: &mut Options)
 fn report(args: &Args, trip: &Trip, run: &Run<Arrival>, heading: Option<f64>, limit: f64) -> Report {
     let report = run.report(|arrival| match arrival.outcome {
         AToBOutcome::Reached => Outcome::verdict("reached"),
+        AToBOutcome::Missed => Outcome::failure("missed"),
         AToBOutcome::Blocked => Outcome::failure("blocked"),
         _ => Outcome::failure("timed_out"),
     });

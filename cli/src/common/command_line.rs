@@ -37,7 +37,7 @@ const NOT_RECORDED: [&str; 17] = [
 const MET: [&str; 4] = ["seed", "noise", "quantised", "fault"];
 
 /// Options with names of input files.
-const FILES: [&str; 6] = ["world", "robot", "maze", "track", "line", "course"];
+const FILES: [&str; 7] = ["world", "robot", "maze", "track", "line", "course", "figure"];
 
 /// Options without a single driving robot to record: many runs at once, or none.
 const UNRECORDED: [&str; 5] = ["campaign", "plan", "input", "compare", "steps"];
@@ -166,17 +166,19 @@ fn recording(wanted: &str, command: &Command, file: &OsString) -> Result<Log, Fa
 fn affects_run(command: &Command, option: &str) -> bool {
     let name = name_of(option);
     let known = command.get_arguments().any(|arg| arg.get_long() == Some(name));
-    let is_own = |value: &str| {
-        value == recorded_name(name, Path::new(value)) || (name == "robot" && is_built_in(value))
-    };
+    let is_own = |value: &str| value == recorded_name(name, Path::new(value)) || is_built_in(name, value);
     known
         && !NOT_RECORDED.contains(&name.replace('-', "_").as_str())
         && (!FILES.contains(&name) || value_of(option).is_some_and(is_own))
 }
 
-/// Whether it is a built-in robot's name, and no file has it.
-fn is_built_in(name: &str) -> bool {
-    RobotSpec::predefined(name).is_some() && !Path::new(name).exists()
+/// Whether an option's value is the name of something built in, and no file.
+fn is_built_in(option: &str, value: &str) -> bool {
+    match option {
+        "robot" => RobotSpec::predefined(value).is_some() && !Path::new(value).exists(),
+        "figure" => Path::new(value).extension().is_none(),
+        _ => false,
+    }
 }
 
 /// Whether a recorded option is given again.
@@ -211,9 +213,8 @@ fn options(command: &Command, matches: &ArgMatches) -> Vec<String> {
         let values =
             matches.get_raw(id).into_iter().flatten().map(|value| value.to_string_lossy().into_owned());
         let is_file = FILES.contains(&id);
-        let is_name = |value: &str| id == "robot" && is_built_in(value);
         let values = values.map(|value| {
-            if is_file && !is_name(&value) { recorded_name(id, Path::new(&value)) } else { value }
+            if is_file && !is_built_in(id, &value) { recorded_name(id, Path::new(&value)) } else { value }
         });
         options.extend(values.map(|value| match &name {
             Some(name) => format!("{name}={value}"),

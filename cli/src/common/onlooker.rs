@@ -79,7 +79,7 @@ pub(crate) fn file(path: &Path) -> Option<io::Result<Vec<u8>>> {
 }
 
 /// Shows a scene to the onlooker, who may change it and watch it.
-pub(crate) fn watched(scene: &Scene) -> (Cow<'_, Scene>, Option<Box<dyn Watcher>>) {
+pub(super) fn watched(scene: &Scene) -> (Cow<'_, Scene>, Option<Box<dyn Watcher>>) {
     let shown = ask(|onlooker| {
         let mut scene = scene.clone();
         let watcher = onlooker.scene(&mut scene);

@@ -1,20 +1,22 @@
+mod recording;
+
 use std::collections::BTreeMap;
 use std::fmt;
-use std::io::ErrorKind;
 use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use roverlab::geometry::Pose;
-use roverlab::io::log::{Attachment, FleetIo, GroundTruth, Header, LogError, LogFile, LogWriter, Player};
+use roverlab::io::log::{FleetIo, GroundTruth, Player};
 use roverlab::io::sim::{Fleet, RobotTruth, SimOptions, Simulation, Watcher};
 use roverlab::io::wrappers::{Deadman, Fault, Faulty, Quantised};
 use roverlab::io::{self, Key, RobotIo, TruthInSpace};
 use roverlab::safety::{SpeedError, StoppingModel};
-use roverlab::world::{RobotPlacement, Scene, formats};
+use roverlab::world::{RobotPlacement, Scene};
 
 use super::library::{Library, alone};
 use super::supervision::{DEADMAN, Stops, guarded};
-use super::{CommonArgs, Failure, Origin, onlooker};
+use super::{CommonArgs, Failure, onlooker};
+use recording::{Recording, replayed_robot, replayed_truth};
 
 /// Whether robots can be recorded and replayed. A web page has no files, and omits the code.
 pub(super) const RECORDS: bool = cfg!(feature = "native");
@@ -63,14 +65,6 @@ enum Play {
     Apart(Vec<Simulation>),
     Recording(Player),
     Library(Library),
-}
-
-/// The recording being written, and the one being replayed.
-#[derive(Debug, Default)]
-struct Recording {
-    writer: Option<LogWriter<LogFile>>,
-    player: Option<Player>,
-    origin: Origin,
 }
 
 /// Robots stepped in one thread: simulated or replayed, and recorded if requested. Otherwise like a
@@ -275,35 +269,6 @@ impl CommonArgs {
     fn player(&self) -> Option<Player> {
         self.origin.facts().log.as_ref().map(Player::new)
     }
-
-    /// Starts the recording of `--record`.
-    fn recording(&self, scene: &Scene, player: Option<Player>) -> Result<Recording, Failure> {
-        let mut recording = Recording { writer: None, player, origin: self.origin.clone() };
-        self.origin.set_staged();
-        let Some(file) = self.record.as_ref().filter(|_| RECORDS) else { return Ok(recording) };
-        let facts = self.origin.facts();
-        let header = facts.log.as_ref().map_or_else(
-            || Header {
-                seed: Some(self.seed),
-                attachments: texts(scene).into_iter().chain(self.origin.files()).collect(),
-                ..Header::new(&facts.program, &facts.options)
-            },
-            |log| log.header().clone(),
-        );
-        let open = || if self.force { LogFile::replace(file) } else { LogFile::create(file) };
-        let open = || if self.fsync { open().map(LogFile::synced) } else { open() };
-        let writer = open().and_then(|sink| LogWriter::new(sink, &header)).map_err(|error| {
-            let expected = match error.kind() {
-                ErrorKind::AlreadyExists => ", or --force",
-                ErrorKind::ResourceBusy => "",
-                _ => "; expected a file that can be written",
-            };
-            Failure::input(format!("--record {}: {error}{expected}", file.display()))
-        })?;
-        writer.show(scene);
-        recording.writer = Some(writer);
-        Ok(recording)
-    }
 }
 
 /// Stopping models of a scene's robots.
@@ -315,26 +280,6 @@ fn motors(scene: &Scene) -> Vec<StoppingModel> {
         error: SpeedError::NONE,
     };
     scene.robots.iter().map(model).collect()
-}
-
-/// World and robots as text.
-fn texts(scene: &Scene) -> Vec<Attachment> {
-    let text = |name: String, text: String| Attachment {
-        name,
-        media_type: "text/plain".into(),
-        data: text.into_bytes(),
-    };
-    let mut files = vec![text("scene.wld".into(), formats::wld::print(&scene.world))];
-    let mut script = formats::sim::SimFile::for_scene(scene, "scene.wld");
-    for (index, robot) in scene.robots.iter().enumerate() {
-        if !scene.robots[..index].iter().any(|other| other.spec == robot.spec) {
-            let name = format!("scene.robot{}.robi", index + 1);
-            script.statements.insert(1, formats::sim::Statement::Robot(name.clone()));
-            files.push(text(name, formats::robi::print(&robot.spec)));
-        }
-    }
-    files.push(text("scene.sim".into(), formats::sim::print(&script)));
-    files
 }
 
 impl Stage {
@@ -430,6 +375,16 @@ impl Stage {
         })
     }
 
+    /// Moves an object of the scene at the next tick, on behalf of a robot's program. The images of a
+    /// recording show it where it was.
+    pub(crate) fn move_object(&self, robot: usize, object: usize, pose: Pose) -> io::Result<()> {
+        match &self.play {
+            Play::Simulation(simulation) => simulation.truth().move_object(robot, object, pose),
+            Play::Apart(simulations) => simulations[robot].truth().move_object(0, object, pose),
+            Play::Recording(_) | Play::Library(_) => Ok(()),
+        }
+    }
+
     /// Schedules a key press at a time since the start (s). A replayed robot's keys are in the recording.
     pub(crate) fn press_key(&self, index: usize, time: f64, key: Key) -> io::Result<()> {
         match &self.play {
@@ -461,56 +416,5 @@ impl Claimed {
         let Self { robot, guard } = self;
         let Some(Watch { truth, who, model, stops }) = guard else { return Ok(robot) };
         guarded(robot, truth, who, model, stops).map_err(Failure::run)
-    }
-}
-
-/// A robot of a recording.
-fn replayed_robot(player: &Player, index: usize) -> Result<Driven, Failure> {
-    if RECORDS {
-        Ok(Box::new(player.robot(index).map_err(|error| foreign(&error))?))
-    } else {
-        Err(no_recordings())
-    }
-}
-
-/// Ground truth of a robot of a recording.
-fn replayed_truth(player: &Player, index: usize) -> Result<StageTruth, Failure> {
-    if RECORDS {
-        Ok(Box::new(player.truth(index).map_err(|error| foreign(&error))?))
-    } else {
-        Err(no_recordings())
-    }
-}
-
-fn no_recordings() -> Failure {
-    Failure::input("--replay: found a recording; expected a program that replays")
-}
-
-/// The error for a recording without the robot, which belongs to another scene.
-fn foreign(error: &LogError) -> Failure {
-    Failure::input(format!("--replay: {error}"))
-}
-
-impl Recording {
-    /// Wraps a robot in a recorder, if there is a recording.
-    fn recorder(&self, robot: Driven, index: usize) -> Driven {
-        match &self.writer {
-            Some(writer) if RECORDS => Box::new(writer.recorder(robot, index)),
-            _ => robot,
-        }
-    }
-}
-
-impl Drop for Recording {
-    fn drop(&mut self) {
-        let finished = self.writer.take().map(|writer| writer.finish().and_then(LogFile::complete));
-        if let Some(Err(error)) = finished {
-            self.origin.note(format!("--record: the recording is incomplete: {error}"));
-        }
-        if let Some((time, call)) = self.player.as_ref().and_then(Player::rest) {
-            self.origin.note(format!(
-                "--replay: the run has ended; expected the call {call} at {time} s, as recorded"
-            ));
-        }
     }
 }

@@ -5,6 +5,7 @@ mod drawing;
 mod event;
 mod log;
 mod race;
+mod rival;
 
 use std::path::{Path, PathBuf};
 
@@ -14,6 +15,7 @@ use roverlab::race::{ClosedSpline, Event, EventCourse, TrackFile, parse_track};
 use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
 use crate::cones::{Course, Spoils, check_race, refuse};
 use race::{Ending, Settings};
+use rival::{Contest, Rival};
 
 /// Command line of `cone-race`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -35,6 +37,10 @@ to the right and the second one to the left. The car's nose starts and stops the
 A log of a drive (JSON, as in ft-fsd-path-planning) contains a car's own map over time. There is no race: in each frame
 the lane is computed and compared with the car's later path. With --sensors lidar, colours are ignored.
 
+With --rival, two racers of different kinds race for places: this one, and the book's program or a racer that knows the
+track from a recording. The slower one starts ahead. The faster one passes where the track is wide enough for two cars;
+generated tracks are. One referee watches both, and ends the race when the first car has driven its laps.
+
 JSON fields:
   event                                                laps, acceleration, skidpad, or log
   laps, cones_hit, off_course, lap_times_s, total_s    of the race; the total includes penalties, and the laps of an event
@@ -48,11 +54,16 @@ JSON fields:
   mapped                                               whether the whole track was planned after the first lap, or the
                                                        event's layout was found
   other_cones_hit, touched                             with a second car
+  place, lead_m, passed, overtakings,                  with a rival: place of this car; its distance ahead at the end; whether
+  rival_off_course                                     the faster car, which starts behind, is ahead at the end; times, and
+                                                       who overtook; how often the rival left the course
   tracks, clean, clean_share, finished                 of a campaign: finished are all races with complete laps, clean are
                                                        those without hit cones, leaving the course or contacts
   laps, cones_hit, off_course                          of a campaign: of all tracks, by the referee
   mean_racing_speed_m_s                                of a campaign: over all laps except the first ones
   mean_lap_over_optimum, worst_lap_over_optimum        of a campaign: over all flying laps; null without any
+  races, passed, passed_share, contacts, won           of a campaign with a rival: races in which the faster car passed, in
+                                                       which the cars touched, and which this car won
   frames, planned, wrong_side                          of a log: frames; with a lane; with a lane that has a coloured cone on
                                                        the wrong side
   from_driven_rms_m, from_driven_most_m                of a log: distance of the lane from the next 8 m of the path
@@ -61,7 +72,7 @@ Outcomes: finished, collided (a cone or the second car was touched, with any oth
 the course was left with all wheels), timed_out, failed (the car's program), impassable (the car does not fit between the
 cones, which is detected before the race), lost (no lane, or cones that contradict the map or the event: the car stops),
 missed (the car stops outside the lane behind its event's finish, or its laps differ from the referee's count),
-raced (a campaign), planned (a log)."
+won, beaten (a race for places), raced (a campaign), passed, wrong (a campaign with a rival: 9 in 10 passes without a contact, or not), planned (a log)."
 )]
 pub(crate) struct Args {
     /// Track to race on [default: a generated one].
@@ -95,6 +106,10 @@ pub(crate) struct Args {
     /// A slow second car drives ahead, in the middle of the lane that it sees. Only a lidar detects it.
     #[arg(long)]
     pub(crate) other: bool,
+
+    /// Race for places with another car, by lidar.
+    #[arg(long, value_enum, value_name = "PROGRAM", conflicts_with = "other")]
+    pub(crate) rival: Option<Rival>,
 
     /// Race on this many generated tracks, starting with --seed, and print a table.
     #[arg(long, value_name = "TRACKS", conflicts_with = "track", value_parser = clap::value_parser!(u32).range(1..=100_000))]
@@ -151,6 +166,9 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
             "--other: cars that drive by the camera alone do not see another one; expected lidar or both for --sensors",
         ));
     }
+    if args.rival.is_some() {
+        check_rival(args)?;
+    }
     let spoils = Spoils { false_cones: args.false_cones, missing: args.missing, gap: args.gap };
     if let Some(tracks) = args.campaign {
         return campaign::run(args, tracks, spoils);
@@ -162,6 +180,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
             TrackFile::Log(frames) => return log::follow(args, &frames),
             file => Course::for_its_event(file, path)?,
         },
+        None if args.rival.is_some() => Course::for_two(common.seed)?,
         None => Course::generated(common.seed)?,
     };
     if course.event.is_some() {
@@ -175,11 +194,49 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     }
     course.spoil(spoils, common.seed);
     let settings = args.settings(common.seed);
+    if let Some(rival) = args.rival {
+        return for_places(common, &course.shared(), &settings, rival);
+    }
     let stage = common.stage(&settings.scene(&course), settings.options())?;
     let outcome = race::race(&course, &settings, &stage)?;
     let rms = published.and_then(|other| distance(&other, &outcome.line));
     let report = report(&course, &outcome).field("racing_line_rms_m", rms.map(rounded));
     Ok(common.draw(report, "cone_race.svg", || drawing::picture(&course, &outcome)))
+}
+
+/// A race for places.
+fn for_places(
+    common: &CommonArgs,
+    course: &Course,
+    settings: &Settings,
+    rival: Rival,
+) -> Result<Report, Failure> {
+    let mut fleet = common.fleet(&rival.scene(course), settings.options())?;
+    let contest = rival::race(course, settings, rival, &mut *fleet)?;
+    drop(fleet);
+    let report = places(report(course, &contest.outcome), &contest, rival);
+    Ok(common.draw(report, "cone_race.svg", || drawing::picture(course, &contest.outcome)))
+}
+
+/// Adds places and overtakings to a report.
+fn places(report: Report, contest: &Contest, rival: Rival) -> Report {
+    let won = contest.places[0] == 1;
+    let outcome = match &contest.outcome.ending {
+        Ok(Ending::Finished) => Outcome::verdict(if won { "won" } else { "beaten" }),
+        _ => report.outcome,
+    };
+    let by = |by: bool| if by { "rival" } else { "racer" };
+    let overtakings: Vec<_> = contest
+        .overtakings
+        .iter()
+        .map(|(time, rival)| serde_json::json!({ "time_s": rounded(*time), "by": by(*rival) }))
+        .collect();
+    Report { outcome, ..report }
+        .field("place", contest.places[0])
+        .field("lead_m", rounded(contest.lead))
+        .field("passed", contest.is_passed(rival))
+        .field("overtakings", overtakings)
+        .field("rival_off_course", contest.rival_off_course)
 }
 
 /// Report on a track on which no race can start.
@@ -305,9 +362,21 @@ fn distance(other: &[Point], line: &[Point]) -> Option<f64> {
     Some((sum / places.len() as f64).sqrt())
 }
 
+/// Fails for an option without meaning for a race for places.
+fn check_rival(args: &Args) -> Result<(), Failure> {
+    let common = &args.common;
+    let given = [
+        ("--sensors", args.sensors != Sensors::Lidar),
+        ("--line", args.line.is_some()),
+        ("--supervised", common.supervised),
+        ("--fault", !common.fault.is_empty()),
+    ];
+    refuse(&given, "found a race for places, by lidar alone and without faults; expected it with one car")
+}
+
 /// Fails for an option without meaning for an acceleration or skidpad.
 fn check_event(args: &Args) -> Result<(), Failure> {
-    let given = [("--other", args.other), ("--line", args.line.is_some())];
+    let given = [("--other", args.other), ("--rival", args.rival.is_some()), ("--line", args.line.is_some())];
     refuse(
         &given,
         "found a track of an acceleration or a skidpad; expected one of laps, or a command line without it",

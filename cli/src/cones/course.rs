@@ -22,6 +22,9 @@ pub(crate) struct Course {
     pub(crate) start: Pose,
     /// Whether it is much wider than a Formula Student track, like TUM's circuits; the racer is informed.
     pub(crate) wide: bool,
+    /// Whether there is room for two cars abreast: about twice the width of a Formula Student track; the racer
+    /// is informed.
+    pub(crate) abreast: bool,
     /// The acceleration or skidpad event, if it is not a course of laps.
     pub(crate) event: Option<EventCourse>,
 }
@@ -45,6 +48,11 @@ pub(crate) struct Spoils {
 /// Distance from the rear axle at the start to the timing line, if a file has none ahead of the car (m).
 const RUN_UP: f64 = 6.0;
 
+/// Minimum and maximum width, and minimum radius of the centre line, of a track for two cars (m): in a bend, a
+/// car needs 1.8 m, and between them and the cones there is 0.5 m or more.
+const TWO_ABREAST: [f64; 2] = [6.5, 7.5];
+const LEAST_RADIUS: f64 = 7.0;
+
 /// The middle of the timing line: ahead of the car at the start, so that the first lap is timed as well.
 fn line_of(track: &ConeTrack, start: Pose) -> Point {
     let gates = track.gates.iter().map(|[a, b]| a + (b - a) * 0.5);
@@ -61,7 +69,23 @@ impl Course {
         let GeneratedTrack { track, corridor } =
             generate(seed, &TrackOptions::drawn(seed)).map_err(Failure::input)?;
         let start = track.start_pose().ok_or_else(|| Failure::input("the track has no start"))?;
-        Ok(Self { cones: track.cones, corridor, start, wide: false, event: None })
+        Ok(Self { cones: track.cones, corridor, start, wide: false, abreast: false, event: None })
+    }
+
+    /// A generated track on which two cars have room abreast.
+    pub(crate) fn for_two(seed: u64) -> Result<Self, Failure> {
+        let options = TrackOptions { width: TWO_ABREAST, radius: LEAST_RADIUS, ..TrackOptions::drawn(seed) };
+        let GeneratedTrack { track, corridor } = generate(seed, &options).map_err(Failure::input)?;
+        let start = track.start_pose().ok_or_else(|| Failure::input("the track has no start"))?;
+        Ok(Self { cones: track.cones, corridor, start, wide: false, abreast: true, event: None })
+    }
+
+    /// The same course, for two cars, if its mean width is more than that of usual tracks.
+    pub(crate) fn shared(self) -> Self {
+        let widths = self.corridor.stations().iter().map(|station| station.left + station.right);
+        let mean = widths.sum::<f64>() / self.corridor.stations().len() as f64;
+        let abreast = !self.wide && mean > 2.0 * LaneParameters::default().half_width[1];
+        Self { abreast, ..self }
     }
 
     /// The track of a file, for laps.
@@ -85,7 +109,7 @@ impl Course {
             && let Some(event) = EventCourse::of(track, &Self::outline())
         {
             let (cones, corridor) = (track.cones.clone(), event.corridor().clone());
-            return Ok(Self { cones, corridor, start, wide: false, event: Some(event) });
+            return Ok(Self { cones, corridor, start, wide: false, abreast: false, event: Some(event) });
         }
         Self::of_laps(file, path)
     }
@@ -104,7 +128,7 @@ impl Course {
                 let refused = |error| Failure::input(format!("--track {}: {error}", path.display()));
                 let GeneratedTrack { track, corridor } = lined(&corridor, 4.8).map_err(refused)?;
                 let start = track.start_pose().ok_or_else(|| Failure::input("the track has no start"))?;
-                Ok(Self { cones: track.cones, corridor, start, wide: true, event: None })
+                Ok(Self { cones: track.cones, corridor, start, wide: true, abreast: false, event: None })
             }
             TrackFile::Line(_) => Err(Failure::input(format!(
                 "--track {}: found a line without widths; expected a track",
@@ -131,7 +155,7 @@ impl Course {
         let line =
             CentreLine::round_track(&track.cones, start).map_err(|error| refused(error.to_string()))?;
         let corridor = line.corridor.beginning_near(line_of(track, start));
-        Ok(Self { cones: track.cones.clone(), corridor, start, wide: false, event: None })
+        Ok(Self { cones: track.cones.clone(), corridor, start, wide: false, abreast: false, event: None })
     }
 
     /// Removes and adds cones.
@@ -183,11 +207,12 @@ impl Course {
         })
     }
 
-    /// The pose in the middle, a distance behind the line (m).
+    /// The pose in the middle, a distance behind the line, or before it if that is negative (m).
     pub(crate) fn ahead(&self, metres: f64) -> Pose {
         let stations = self.corridor.stations();
         let spacing = self.corridor.length() / stations.len() as f64;
-        let station = stations[(metres / spacing) as usize % stations.len()];
+        let way = metres.rem_euclid(self.corridor.length());
+        let station = stations[(way / spacing) as usize % stations.len()];
         let heading = math::atan2(-station.normal.x, station.normal.y);
         Pose::new(station.position.x, station.position.y, heading)
     }
@@ -230,6 +255,10 @@ impl Course {
                 sharpest: 1.0,
                 ..LaneParameters::default()
             };
+        }
+        if self.abreast {
+            parameters.centre_line.width = [4.5, 9.0];
+            parameters.lane = LaneParameters { half_width: [2.4, 4.4], usual: 3.5, ..parameters.lane };
         }
         parameters
     }

@@ -2,8 +2,8 @@ use roverlab::geometry::{Vector, direction, units};
 use roverlab::random::Stream;
 use serde_json::json;
 
-use super::{Args, Dived, Plan, SETTLING, dive};
-use crate::common::{Failure, Report, campaign_report, rounded, wrong_seeds};
+use super::{Args, Dived, LIMIT, Plan, SETTLING, dive, options, scene};
+use crate::common::{Failure, Report, Stage, campaign_report, rounded, wrong_seeds};
 
 /// Depths between which a dive leads (m), and how far.
 const DEPTHS: [f64; 2] = [0.25, 1.45];
@@ -26,7 +26,7 @@ fn plan(args: &Args, seed: u64) -> Plan {
     let (start, depth) = if down { (shallow, shallow + step) } else { (shallow + step, shallow) };
     let current: Vector = direction(stream.between(-3.1, 3.1)) * stream.between(0.0, CURRENT);
     Plan {
-        noise: args.noise,
+        noise: args.common.noise,
         seed,
         start: Some(start),
         depth,
@@ -39,7 +39,10 @@ fn plan(args: &Args, seed: u64) -> Plan {
 /// Work of the campaign.
 pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
     let dives = args.trials.trials("dives", DIVES, args.common.seed, |seed| {
-        let done = dive(&plan(args, seed))?;
+        let plan = plan(args, seed);
+        let scene = scene(&plan);
+        let stage = Stage::simulated(&scene, options(&plan, LIMIT), Vec::new())?;
+        let done = dive(&plan, &scene, &stage, LIMIT, |_| {})?;
         Ok(Dived { trail: Vec::new(), ..done })
     })?;
     let wrong = wrong_seeds(&dives, Dived::is_good);
@@ -51,18 +54,18 @@ pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
     let least = dives.iter().map(|(_, done)| done.within).fold(1.0, f64::min);
     let contacts: u64 = dives.iter().map(|(_, done)| u64::from(done.contacts)).sum();
     let good = dives.len() - wrong.len();
-    if !args.common.json {
-        println!(
-            "dives    good  contacts  latest to settle  overshoot  least within 10 mm  heading\n\
-             {:>5}  {good:>6}  {contacts:>8}  {latest:>14.1} s  {:>6.1} mm  {:>16.1} %  {:>4.2} deg\n\
-             good: settles within {SETTLING} s, at most 50 mm beyond, then within 10 mm for 95 %, no contact; heading\n\
-             within {HEADING} degree in the root mean square of all",
-            dives.len(),
-            units::to_mm(overshoot),
-            100.0 * least,
-            units::to_deg(heading),
-        );
-    }
+    args.common.tell("dives    good  contacts  latest to settle  overshoot  least within 10 mm  heading");
+    args.common.tell(format_args!(
+        "{:>5}  {good:>6}  {contacts:>8}  {latest:>14.1} s  {:>6.1} mm  {:>16.1} %  {:>4.2} deg",
+        dives.len(),
+        units::to_mm(overshoot),
+        100.0 * least,
+        units::to_deg(heading),
+    ));
+    args.common.tell(format_args!(
+        "good: settles within {SETTLING} s, at most 50 mm beyond, then within 10 mm for 95 %, no contact;\n\
+         heading within {HEADING} degree in the root mean square of all",
+    ));
     let passed = wrong.is_empty() && heading <= units::from_deg(HEADING);
     let row = json!({
         "runs": dives.len(),

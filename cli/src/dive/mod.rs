@@ -7,12 +7,15 @@ use std::sync::Arc;
 use roverlab::drive::marine::{Dive, DiveOutcome, DiveParameters};
 use roverlab::geometry::{Point, Point3, Pose, Vector, units};
 use roverlab::io::control;
-use roverlab::io::sim::{SimOptions, Simulation};
+use roverlab::io::sim::SimOptions;
 use roverlab::kinematics::marine::CraftSpec;
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::world::{Colour, DriveSpec, RobotSpec, Scene, Water, World};
 
-use crate::common::{CampaignArgs, Failure, Outcome, PlainArgs, Report, millimetres, rounded};
+use crate::common::{
+    CampaignArgs, CommonArgs, Failure, OF_ONE_RUN, Outcome, Report, Stage, millimetres, rounded,
+};
+use crate::driving::{RESERVE, paced};
 use crate::water::{BOOK, LEVEL, pool};
 
 /// Command line of `dive`.
@@ -39,19 +42,17 @@ pub(crate) struct Args {
     #[arg(long, value_name = "MM", default_value_t = 1000.0, value_parser = parse_depth, allow_hyphen_values = true)]
     pub(crate) depth: f64,
 
-    /// Factor of all sensor errors.
-    #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = parse_noise, allow_hyphen_values = true)]
-    pub(crate) noise: f64,
-
     #[command(flatten)]
     pub(crate) trials: CampaignArgs,
 
     #[command(flatten)]
-    pub(crate) common: PlainArgs,
+    pub(crate) common: CommonArgs,
 }
 
-crate::common::shares_options!(Args, common: PlainArgs, unheeded: [
-    ("campaign", &["depth", "picture", "animation"]),
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
+    ("always", &["world", "robot", "start", "goal"]),
+    ("campaign", OF_ONE_RUN),
+    ("campaign", &["depth"]),
     ("!campaign", &["runs", "threads"]),
 ]);
 
@@ -60,16 +61,13 @@ fn parse_depth(text: &str) -> Result<f64, String> {
     depth.ok_or_else(|| "expected 0 to 1500 mm: the pool is 1.9 m deep".into())
 }
 
-fn parse_noise(text: &str) -> Result<f64, String> {
-    let noise = text.parse().ok().filter(|noise: &f64| (0.0..=100.0).contains(noise));
-    noise.ok_or_else(|| "expected 0 to 100".into())
-}
-
 /// Seconds in which a dive is to settle, for which it is watched after them, and for which it is at its depth
 /// when it has.
 const SETTLING: f64 = 20.0;
 const WATCHED: f64 = 60.0;
 const SETTLED: f64 = 5.0;
+/// Time limit (s).
+const LIMIT: f64 = SETTLING + WATCHED + 5.0;
 /// Seconds for which a craft of the campaign holds its depth before it steps.
 const BEFORE: f64 = 30.0;
 /// Metres from the depth that are good, and beyond it.
@@ -119,16 +117,21 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     if args.trials.campaign {
         return campaign::campaign(args);
     }
+    let common = &args.common;
+    common.check_picture()?;
     let plan = Plan {
-        noise: args.noise,
-        seed: args.common.seed,
+        noise: common.noise,
+        seed: common.seed,
         start: None,
         depth: units::from_mm(args.depth),
         mass: 1.0,
         thrust: 1.0,
         current: Vector::zeros(),
     };
-    let done = dive(&plan)?;
+    let scene = scene(&plan);
+    let limit = common.time_limit.unwrap_or(LIMIT);
+    let stage = common.stage(&scene, options(&plan, limit))?;
+    let done = dive(&plan, &scene, &stage, limit, paced(common))?;
     let outcome = match &done.ending {
         Err(_) => Outcome::failure("failed"),
         Ok(_) if done.is_good() => Outcome::verdict("held"),
@@ -147,7 +150,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         .field("overshoot_mm", millimetres(done.overshoot))
         .field("within_10mm_percent", rounded(100.0 * done.within))
         .field("heading_rms_deg", rounded(units::to_deg(done.heading_rms)));
-    Ok(args.common.draw(report, "dive.svg", || picture(&plan, &done)))
+    Ok(common.draw(report, "dive.svg", || picture(&plan, &done)))
 }
 
 /// Metres from Mako's origin to its depth sensor.
@@ -169,19 +172,35 @@ fn craft(plan: &Plan) -> RobotSpec {
     spec
 }
 
-/// Dives as planned.
-fn dive(plan: &Plan) -> Result<Dived, Failure> {
+/// The pool, and the craft in it.
+fn scene(plan: &Plan) -> Scene {
     let spec = craft(plan);
-    let (up, level) = (sensor(&spec), LEVEL);
+    let up = sensor(&spec);
     let water = Water { current: vec![(0.0, plan.current)], ..Water::default() };
     let mut scene =
         Scene::with_robot(World { water, ..pool(BOOK, |_| 0.0) }, spec, Pose::new(12.5, 25.0, 0.0));
     if let Some(depth) = plan.start {
-        scene.robots[0].elevation = level - depth - up;
+        scene.robots[0].elevation = LEVEL - depth - up;
     }
-    let options = SimOptions::with_noise(plan.noise, plan.seed);
-    let simulation = Simulation::new(&scene, options).map_err(Failure::input)?;
-    let truth = simulation.truth();
+    scene
+}
+
+/// What a dive is simulated by.
+fn options(plan: &Plan, limit: f64) -> SimOptions {
+    let before = plan.start.map_or(0.0, |_| BEFORE);
+    SimOptions { time_limit: Some(before + limit + RESERVE), ..SimOptions::with_noise(plan.noise, plan.seed) }
+}
+
+/// Dives as planned, for a time at most (s). `watch` is called with the time at each step.
+fn dive(
+    plan: &Plan,
+    scene: &Scene,
+    stage: &Stage,
+    limit: f64,
+    mut watch: impl FnMut(f64),
+) -> Result<Dived, Failure> {
+    let (up, level) = (sensor(&scene.robots[0].spec), LEVEL);
+    let mut truth = stage.truth(0)?;
     let before = plan.start.map_or(0.0, |_| BEFORE);
     let parameters = DiveParameters {
         depth: plan.start.unwrap_or(plan.depth),
@@ -189,9 +208,8 @@ fn dive(plan: &Plan) -> Result<Dived, Failure> {
         ..DiveParameters::default()
     };
     let mut behaviour = Dive::new(&CraftSpec::mako(), parameters).map_err(Failure::input)?;
-    let mut robot = simulation.robot(0).map_err(Failure::run)?;
+    let mut robot = stage.robot(0)?;
     let mut trail = Vec::new();
-    let limit = SETTLING + WATCHED + 5.0;
     let first = if before > 0.0 {
         control::run(&mut robot, &mut behaviour, before, |_, _, _| {}).map(|_| ())
     } else {
@@ -201,12 +219,14 @@ fn dive(plan: &Plan) -> Result<Dived, Failure> {
     let contacts_before = truth.robot(0).map_err(Failure::run)?.contacts;
     let ending = first.and_then(|()| behaviour.set_depth(plan.depth)).and_then(|()| {
         control::run(&mut robot, &mut behaviour, limit, |_, _, step| {
-            if let Ok(pose) = truth.pose_in_space(0) {
-                let place = pose.to_world(Point3::new(0.0, 0.0, up));
-                trail.push((step.time - before, level - place.z, pose.pose()));
+            if let Ok(seen) = truth.in_space(0) {
+                let place = seen.pose.to_world(Point3::new(0.0, 0.0, up));
+                trail.push((step.time - before, level - place.z, seen.pose.pose()));
             }
+            watch(step.time);
         })
     });
+    drop(robot);
     let ending = ending.map_err(|error| error.to_string());
     let contacts = truth.robot(0).map_err(Failure::run)?.contacts - contacts_before;
     Ok(judged(plan, trail, contacts, ending))

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::Args;
 use super::job::SECONDS;
-use super::scene::{Mode, hall};
+use super::scene::{Mode, Pattern, hall};
 use super::swarm::run;
 use crate::common::{Failure, Outcome, Progress, Report, millimetres};
 
@@ -14,6 +14,7 @@ use crate::common::{Failure, Outcome, Progress, Report, millimetres};
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Row {
     pub(crate) mode: Mode,
+    pub(crate) pattern: Pattern,
     pub(crate) followers: usize,
     pub(crate) obstacles: usize,
     pub(crate) runs: u64,
@@ -27,14 +28,20 @@ pub(crate) struct Row {
     pub(crate) amiss: Vec<u64>,
 }
 
-/// The swarms of a campaign: mode, number of followers, number of obstacles.
-const SWARMS: [(Mode, usize, usize); 6] = [
-    (Mode::Lidar, 1, 0),
-    (Mode::Lidar, 1, 4),
-    (Mode::Raised, 5, 0),
-    (Mode::Raised, 5, 3),
-    (Mode::Radio, 5, 3),
-    (Mode::Chain, 20, 0),
+/// The swarms of a campaign: mode, the leader's pattern, number of followers, number of obstacles.
+const SWARMS: [(Mode, Pattern, usize, usize); 12] = [
+    (Mode::Lidar, Pattern::Round, 1, 0),
+    (Mode::Lidar, Pattern::Round, 1, 4),
+    (Mode::Raised, Pattern::Round, 5, 0),
+    (Mode::Raised, Pattern::Round, 5, 3),
+    (Mode::Radio, Pattern::Round, 5, 3),
+    (Mode::Chain, Pattern::Round, 20, 0),
+    (Mode::Lidar, Pattern::Eight, 1, 0),
+    (Mode::Lidar, Pattern::Zigzag, 1, 0),
+    (Mode::Lidar, Pattern::StopAndGo, 1, 0),
+    (Mode::Raised, Pattern::Eight, 5, 0),
+    (Mode::Raised, Pattern::Zigzag, 5, 0),
+    (Mode::Raised, Pattern::StopAndGo, 5, 0),
 ];
 const LISTED: usize = 10;
 
@@ -64,9 +71,10 @@ pub(crate) fn rows(args: &Args) -> Result<Vec<Row>, Failure> {
     let mut progress = Progress::start();
     SWARMS
         .iter()
-        .map(|&(mode, followers, obstacles)| {
+        .map(|&(mode, pattern, followers, obstacles)| {
             let mut row = Row {
                 mode,
+                pattern,
                 followers,
                 obstacles,
                 runs: args.runs,
@@ -88,11 +96,11 @@ pub(crate) fn rows(args: &Args) -> Result<Vec<Row>, Failure> {
 }
 
 fn add_run(row: &mut Row, args: &Args, seed: u64) -> Result<(), Failure> {
-    let (scene, waypoints) = hall(row.mode, row.followers, row.obstacles, seed);
+    let (scene, waypoints) = hall((row.mode, row.pattern), row.followers, row.obstacles, seed);
     let options = SimOptions::with_noise(args.common.noise, seed);
     let seconds = args.common.time_limit.unwrap_or(SECONDS);
     let mut fleet = Fleet::new(&scene, options)?;
-    let run = run(&mut fleet, &scene, &waypoints, row.mode, seconds, |_| {})?;
+    let run = run(&mut fleet, &scene, &waypoints, (row.mode, row.pattern), seconds, |_| {})?;
     row.lost += run.lost.len() as u64;
     row.contacts += run.contacts;
     row.mean_gap += run.mean_gap;
@@ -106,13 +114,15 @@ fn add_run(row: &mut Row, args: &Args, seed: u64) -> Result<(), Failure> {
 
 /// The table, without anything that differs between machines.
 pub(crate) fn text(rows: &[Row]) -> String {
-    let mut text =
-        String::from("mode    followers  obstacles  runs  lost  contacts  mean gap mm  max gap mm  good\n");
+    let mut text = String::from(
+        "mode    leader       followers  obstacles  runs  lost  contacts  mean gap mm  max gap mm  good\n",
+    );
     for row in rows {
         writeln!(
             text,
-            "{:<6}  {:>9}  {:>9}  {:>4}  {:>4}  {:>8}  {:>11.0}  {:>10.0}  {}",
+            "{:<6}  {:<11}  {:>9}  {:>9}  {:>4}  {:>4}  {:>8}  {:>11.0}  {:>10.0}  {}",
             row.mode.name(),
+            row.pattern.name(),
             row.followers,
             row.obstacles,
             row.runs,
@@ -135,6 +145,7 @@ fn json(rows: &[Row]) -> Vec<Value> {
     let one = |row: &Row| {
         json!({
             "mode": row.mode.name(),
+            "pattern": row.pattern.name(),
             "followers": row.followers,
             "obstacles": row.obstacles,
             "runs": row.runs,

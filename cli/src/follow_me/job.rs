@@ -7,7 +7,7 @@ use roverlab::random::Stream;
 use roverlab::world::{RobotPlacement, RobotSpec, Scene};
 
 use super::campaign;
-use super::scene::{Mode, behind, hall};
+use super::scene::{Mode, Pattern, behind, hall};
 use super::swarm::{SwarmRun, run};
 use crate::common::{
     CommonArgs, Failure, FreeFloor, OF_ONE_RUN, Outcome, Report, StandIn, millimetres, rounded,
@@ -26,12 +26,14 @@ past the corners of the floor.
 
 --robios and --fault are rejected, because they apply to a single robot.
 
-With --campaign, many seeds for one follower, five, five among obstacles, five by radio, and a chain of 20.
+With --campaign, many seeds for one follower, five, five among obstacles, five by radio, and a chain of 20, and for one and
+five behind leaders that drive in other patterns.
 
 JSON fields:
   followers, mode             their number, and how they follow: lidar, raised, chain or radio
   lost                        number of those that are three times as far away as required at the end, or have not seen the
                               robot ahead for three seconds
+  pattern                     how the leader drives
   mean_gap_mm, max_gap_mm     distance to the robot ahead, after the first 10 s
   obstacles                   number of objects in the world
   time_limit_s, picture
@@ -47,6 +49,10 @@ pub(crate) struct Args {
     /// How the followers locate the leader [default: lidar for one, raised up to five, chain beyond].
     #[arg(long, value_enum)]
     pub(crate) mode: Option<Mode>,
+
+    /// How the leader of the hall drives.
+    #[arg(long, value_enum, default_value = "round")]
+    pub(crate) pattern: Pattern,
 
     /// Number of cans on the leader's way.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(..=50), allow_hyphen_values = true)]
@@ -66,7 +72,7 @@ pub(crate) struct Args {
 
 crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("campaign", OF_ONE_RUN),
-    ("campaign", &["followers", "mode", "obstacles"]),
+    ("campaign", &["followers", "mode", "obstacles", "pattern"]),
     ("!campaign", &["runs"]),
 ]);
 
@@ -87,7 +93,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let seconds = common.time_limit.unwrap_or(SECONDS);
     let options = SimOptions::with_noise(common.noise, common.seed);
     let mut fleet = common.fleet(&scene, options)?;
-    let run = run(&mut *fleet, &scene, &waypoints, mode, seconds, paced(common))?;
+    let run = run(&mut *fleet, &scene, &waypoints, (mode, args.pattern), seconds, paced(common))?;
     drop(fleet);
     let outcome = match () {
         () if run.is_leader_held() => Outcome::failure("blocked"),
@@ -105,6 +111,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     }
     .field("followers", followers)
     .field("mode", mode.name())
+    .field("pattern", args.pattern.name())
     .field("lost", run.lost.len())
     .field("mean_gap_mm", millimetres(run.mean_gap))
     .field("max_gap_mm", millimetres(run.largest_gap))
@@ -136,7 +143,7 @@ fn scene(args: &Args) -> Result<(Scene, Vec<Point>), Failure> {
     let followers = wanted.unwrap_or(1);
     let mode = args.mode.unwrap_or(Mode::for_followers(followers));
     let Some(file) = &common.world else {
-        return Ok(hall(mode, followers, usize::from(args.obstacles), common.seed));
+        return Ok(hall((mode, args.pattern), followers, usize::from(args.obstacles), common.seed));
     };
     let parsed = common.load_scene("world", file).map_err(Failure::input)?;
     for warning in &parsed.warnings {

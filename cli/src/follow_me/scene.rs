@@ -45,6 +45,59 @@ impl Mode {
     }
 }
 
+/// How the leader drives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Pattern {
+    /// Round the hall.
+    Round,
+    /// An eight.
+    Eight,
+    /// To and fro across the hall, with sharp turns.
+    Zigzag,
+    /// Round the hall, with a stop of 3 s every 8 s.
+    StopAndGo,
+}
+
+impl Pattern {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Round => "round",
+            Self::Eight => "eight",
+            Self::Zigzag => "zigzag",
+            Self::StopAndGo => "stop-and-go",
+        }
+    }
+
+    /// Whether the leader stands at a time (s).
+    pub(crate) fn stands(self, time: f64) -> bool {
+        const PAUSE: [f64; 2] = [5.0, 8.0];
+        self == Self::StopAndGo && time % PAUSE[1] >= PAUSE[0]
+    }
+
+    /// The leader's route in a hall, different for each seed.
+    fn waypoints(self, stream: &mut Stream, width: f64, depth: f64) -> Vec<Point> {
+        let (left, right, middle) = (1.3, width - 1.3, 0.5 * width);
+        let (near, far) = (1.3, depth - 1.3);
+        let places: &[(f64, f64)] = match self {
+            Self::Round | Self::StopAndGo => {
+                &[(right, near), (right, far), (middle, depth - 1.6), (left, far), (left, 1.5), (middle, 1.6)]
+            }
+            Self::Eight => &[(right, far), (right, near), (left, far), (left, near)],
+            Self::Zigzag => &[
+                (right, near),
+                (right, far),
+                (0.7 * right + 0.3 * left, near),
+                (0.4 * right + 0.6 * left, far),
+                (left, near),
+            ],
+        };
+        let mut about = |&(x, y): &(f64, f64)| {
+            Point::new(x + stream.between(-0.25, 0.25), y + stream.between(-0.25, 0.25))
+        };
+        places.iter().map(&mut about).collect()
+    }
+}
+
 /// The book's `LidarBot`: an S4 with a lidar above the other followers and four more distance sensors
 /// (programs 5.8 and 5.9).
 pub(crate) fn lidarbot() -> RobotSpec {
@@ -76,7 +129,12 @@ pub(crate) fn lidarbot() -> RobotSpec {
 
 /// A hall with a leading LabBot, followers behind it, and optional obstacles in the leader's path; also
 /// returns the leader's waypoints.
-pub(crate) fn hall(mode: Mode, followers: usize, obstacles: usize, seed: u64) -> (Scene, Vec<Point>) {
+pub(crate) fn hall(
+    (mode, pattern): (Mode, Pattern),
+    followers: usize,
+    obstacles: usize,
+    seed: u64,
+) -> (Scene, Vec<Point>) {
     let length = match mode {
         Mode::Chain => 6.0 + 0.36 * followers as f64,
         _ => 7.0 + rows_behind(followers),
@@ -84,7 +142,7 @@ pub(crate) fn hall(mode: Mode, followers: usize, obstacles: usize, seed: u64) ->
     let (width, depth) = (length.max(7.0), 5.5);
     let mut stream = Stream::new(seed).child("hall", 0);
     let mut world = World::walled(width, depth);
-    let waypoints = waypoints(&mut stream, width, depth);
+    let waypoints = pattern.waypoints(&mut stream, width, depth);
     let start =
         Pose::new(if mode == Mode::Chain { width - 3.0 } else { 2.4 + rows_behind(followers) }, 1.2, 0.0);
     add_obstacles(&mut world, &mut stream, obstacles, &waypoints, start.position());
@@ -123,20 +181,6 @@ const ROW: usize = 5;
 /// Distance of a follower's row behind the first one (m).
 fn rows_behind(follower: usize) -> f64 {
     0.9 * (follower.saturating_sub(1) / ROW) as f64
-}
-
-/// A route round the hall, different for each seed.
-fn waypoints(stream: &mut Stream, width: f64, depth: f64) -> Vec<Point> {
-    let mut about =
-        |x: f64, y: f64| Point::new(x + stream.between(-0.25, 0.25), y + stream.between(-0.25, 0.25));
-    vec![
-        about(width - 1.3, 1.3),
-        about(width - 1.3, depth - 1.3),
-        about(0.5 * width, depth - 1.6),
-        about(1.3, depth - 1.3),
-        about(1.3, 1.5),
-        about(0.5 * width, 1.6),
-    ]
 }
 
 /// Cans on the leader's way, not too near to its start.

@@ -6,14 +6,14 @@ use std::rc::Rc;
 use roverlab::drive::{
     Cruise, CruiseParameters, Follower, FollowerObservation, FollowerParameters, Formation, robots_in,
 };
-use roverlab::geometry::{Point, Pose, direction};
+use roverlab::geometry::{Point, Pose, Twist, direction};
 use roverlab::io::log::FleetIo;
 use roverlab::io::{self, LidarScan, Psd, RobotIo};
 use roverlab::world::{Footprint, Scene};
 
 use crate::driving::Trail;
 
-use super::scene::Mode;
+use super::scene::{Mode, Pattern};
 
 /// Result of a swarm.
 #[derive(Debug, Clone)]
@@ -62,6 +62,7 @@ impl Eyes {
     /// Reads a lidar that sees everything on the floor.
     fn look_round(&mut self, robot: &mut dyn RobotIo) -> io::Result<()> {
         robot.scan_into(&mut self.scan)?;
+        self.scan.validate()?;
         self.points.clear();
         self.points.extend(self.scan.points());
         Ok(())
@@ -74,6 +75,7 @@ impl Eyes {
         const LATELY: f64 = 4.0;
         const NEAR: f64 = 1.0;
         robot.scan_into(&mut self.scan)?;
+        self.scan.validate()?;
         let now = robot.now()?;
         for &(id, mount) in rays {
             let range = robot.distance(Psd(id))?;
@@ -128,13 +130,13 @@ pub(crate) fn run<'a>(
     fleet: &mut (dyn FleetIo<'a> + 'a),
     scene: &Scene,
     waypoints: &[Point],
-    mode: Mode,
+    (mode, pattern): (Mode, Pattern),
     seconds: f64,
     mut watch: impl FnMut(f64),
 ) -> io::Result<SwarmRun> {
     let robots = scene.robots.len();
     let last_seen: Vec<Rc<Cell<f64>>> = (0..robots).map(|_| Rc::default()).collect();
-    control_leader(fleet, scene, waypoints, mode)?;
+    control_leader(fleet, scene, waypoints, (mode, pattern))?;
     for (follower, last_seen) in last_seen.iter().enumerate().skip(1) {
         if mode == Mode::Radio {
             control_by_radio(fleet, scene, follower)?;
@@ -201,7 +203,7 @@ fn control_leader<'a>(
     fleet: &mut (dyn FleetIo<'a> + 'a),
     scene: &Scene,
     waypoints: &[Point],
-    mode: Mode,
+    (mode, pattern): (Mode, Pattern),
 ) -> io::Result<()> {
     let start = scene.robots[0].pose;
     let local = waypoints.iter().map(|&point| start.to_local(point)).collect();
@@ -213,7 +215,10 @@ fn control_leader<'a>(
         let pose = robot.pose()?;
         // Robots behind follow and are no obstacles.
         let ahead: Vec<Point> = eyes.points.iter().copied().filter(|point| point.x > -0.05).collect();
-        let twist = cruise.step(pose, &ahead)?;
+        let twist = match pattern {
+            Pattern::StopAndGo if pattern.stands(robot.now()?) => Twist::STOP,
+            _ => cruise.step(pose, &ahead)?,
+        };
         robot.set_speed(twist)?;
         if mode == Mode::Radio {
             let message = Formation::message(start.compose(&pose), twist.linear);

@@ -26,6 +26,8 @@ pub(crate) struct Result {
     /// Time of each query, ascending (µs).
     pub(crate) times: Vec<f64>,
     pub(crate) preprocess_ms: f64,
+    /// Whether everything is computed before the queries that the algorithm prepares.
+    pub(crate) prepared: bool,
     pub(crate) expanded: usize,
     /// Description of the first query without a path.
     pub(crate) without_way: Option<String>,
@@ -113,6 +115,7 @@ fn report(result: &Result) -> Report {
         .field("height", result.height)
         .field("queries", result.queries)
         .field("skipped", result.skipped)
+        .field("prepared", result.prepared)
         .field("solved", result.solved)
         .field("optimal", result.optimal)
         .field("mean_ratio", mean(&result.ratios))
@@ -130,19 +133,25 @@ fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
-fn planner(algorithm: Algorithm, grid: &BitGrid) -> Box<dyn GridPlanner> {
-    match algorithm {
+/// A planner, and whether all that it can prepare is prepared.
+fn planner(algorithm: Algorithm, grid: &BitGrid) -> (Box<dyn GridPlanner>, bool) {
+    let planner: Box<dyn GridPlanner> = match algorithm {
         Algorithm::Dijkstra => Box::new(GridSearch::dijkstra(grid)),
         Algorithm::Astar => Box::new(GridSearch::astar(grid)),
         Algorithm::Jps => Box::new(JumpPointSearch::new(grid)),
-        Algorithm::JpsPlus => Box::new(PreparedJumps::new(grid)),
+        Algorithm::JpsPlus => {
+            let planner = PreparedJumps::new(grid);
+            let prepared = planner.is_prepared();
+            return (Box::new(planner), prepared);
+        }
         Algorithm::AnyAngle => {
             let mut planner = AnyAngle::new(grid);
-            planner.prepare();
-            Box::new(planner)
+            let prepared = planner.prepare();
+            return (Box::new(planner), prepared);
         }
         Algorithm::Quadtree => Box::new(QuadtreePlanner::new(&Quadtree::new(grid))),
-    }
+    };
+    (planner, true)
 }
 
 fn answer(
@@ -164,6 +173,7 @@ fn answer(
         ratios: Vec::new(),
         times: Vec::new(),
         preprocess_ms: 0.0,
+        prepared: true,
         expanded: 0,
         without_way: None,
     };
@@ -176,7 +186,8 @@ fn answer(
         };
         let planner = domain.planner.get_or_insert_with(|| {
             let stopwatch = Stopwatch::start();
-            let planner = planner(args.algorithm, &domain.grid);
+            let (planner, prepared) = planner(args.algorithm, &domain.grid);
+            result.prepared &= prepared;
             result.preprocess_ms += 1e3 * stopwatch.seconds();
             planner
         });

@@ -23,6 +23,7 @@ JSON fields:
   queries                     number of queries
   skipped                     queries that start or end in a blocked cell, or lead from water to land or vice versa
   solved                      queries with a path
+  prepared                    false if the map has too many jumps (jps_plus) or sight lines (any_angle) to find all beforehand
   optimal                     queries with a path of the published length, within max(0.006, 2e-5 of the length)
   mean_ratio, worst_ratio     ratio of the length to the published one
   mean_expanded               nodes removed from the queue, per query

@@ -6,10 +6,10 @@ use roverlab::io::sim::SimOptions;
 use roverlab::random::Stream;
 use roverlab::world::formats::course;
 use roverlab::world::road::{Appearance, RoadCourse, RoadCourseOptions, generate};
-use roverlab::world::{RobotSpec, Scene};
+use roverlab::world::{Footprint, RobotSpec, Scene};
 
 use super::Args;
-use crate::common::Failure;
+use crate::common::{CommonArgs, Failure};
 
 /// A course, the light, and the state of the paint.
 #[derive(Debug, Clone)]
@@ -25,21 +25,9 @@ impl Setting {
     /// The course of a command line.
     pub(super) fn of(args: &Args) -> Result<Self, Failure> {
         let (name, seed) = (args.course.clone(), args.common.seed);
-        let course = if let Ok(seed) = name.parse::<u64>() {
-            generated(seed)?
-        } else {
-            let bytes = args.common.read("course", Path::new(&name)).map_err(Failure::input)?;
-            course::parse(&String::from_utf8_lossy(&bytes), &name).map_err(Failure::input)?
-        };
-        let setting = Self {
-            name,
-            course,
-            look: Appearance { seed, ..Appearance::default() },
-            light: args.light,
-            seed,
-        };
-        setting.check()?;
-        Ok(setting)
+        let course = course(&args.common, &name, generated)?;
+        let look = Appearance { seed, ..Appearance::default() };
+        Ok(Self { name, course, look, light: args.light, seed })
     }
 
     /// The course of a seed in a campaign, with its own light and wear.
@@ -52,21 +40,7 @@ impl Setting {
             seed,
             ..Appearance::default()
         };
-        let setting = Self { name: seed.to_string(), course: generated(seed)?, look, light, seed };
-        setting.check()?;
-        Ok(setting)
-    }
-
-    /// Fails if the car does not fit in its lane.
-    fn check(&self) -> Result<(), Failure> {
-        let outline = RobotSpec::road_car().footprint;
-        let width = match outline {
-            roverlab::world::Footprint::Rectangle(outline) => outline.size().y,
-            other => 2.0 * other.bounding_radius(),
-        };
-        self.course
-            .check_car(width)
-            .map_err(|error| Failure::input(format!("--course {}: {error}", self.name)))
+        Ok(Self { name: seed.to_string(), course: generated(seed)?, look, light, seed })
     }
 
     /// The car at the start of the course.
@@ -78,6 +52,26 @@ impl Setting {
     pub(super) fn options(&self, args: &Args) -> SimOptions {
         SimOptions { light: self.light, ..SimOptions::with_noise(args.common.noise, self.seed) }
     }
+}
+
+/// The course of a command line: a seed, or a file. Fails if the car does not fit in its lane.
+pub(crate) fn course(
+    common: &CommonArgs,
+    name: &str,
+    generated: impl Fn(u64) -> Result<RoadCourse, Failure>,
+) -> Result<RoadCourse, Failure> {
+    let course = if let Ok(seed) = name.parse::<u64>() {
+        generated(seed)?
+    } else {
+        let bytes = common.read("course", Path::new(name)).map_err(Failure::input)?;
+        course::parse(&String::from_utf8_lossy(&bytes), name).map_err(Failure::input)?
+    };
+    let width = match RobotSpec::road_car().footprint {
+        Footprint::Rectangle(outline) => outline.size().y,
+        other => 2.0 * other.bounding_radius(),
+    };
+    course.check_car(width).map_err(|error| Failure::input(format!("--course {name}: {error}")))?;
+    Ok(course)
 }
 
 fn generated(seed: u64) -> Result<RoadCourse, Failure> {

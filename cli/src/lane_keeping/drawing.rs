@@ -2,7 +2,7 @@
 
 use roverlab::geometry::Point;
 use roverlab::picture::{Figure, Mark, Picture, Style};
-use roverlab::world::road::{Centre, Line, RoadMarkKind};
+use roverlab::world::road::{Centre, Line, RoadCourse, RoadMarkKind};
 use roverlab::world::{Colour, RobotSpec, World};
 
 use super::course::Setting;
@@ -24,6 +24,17 @@ pub(super) fn picture(setting: &Setting, drive: &Drive) -> Picture {
         score.interventions,
         1000.0 * score.offset_rms()
     ));
+    road(&mut picture, course);
+    picture.speed_trace(drive.trail.iter().map(|(time, pose, speed)| (*time, pose.position(), *speed)));
+    let poses = drive.trail.iter().map(|(time, pose, _)| (*time, *pose)).collect();
+    let style = Style::new(Colour::from_hex(0x26_2d_3a)).labelled("car");
+    picture.add(Figure::Robot { poses, footprint: RobotSpec::road_car().footprint }, style);
+    picture.mark(Mark::Start, course.start().position());
+    picture
+}
+
+/// Draws the lines of a road, and the centre line of its own lane.
+pub(crate) fn road(picture: &mut Picture, course: &RoadCourse) {
     let count = (course.line.length() / STEP).ceil() as usize;
     let along = |i: usize| course.line.length() * i as f64 / count as f64;
     let edge = course.edge();
@@ -37,21 +48,15 @@ pub(super) fn picture(setting: &Setting, drive: &Drive) -> Picture {
         let mut points: Vec<Point> = Vec::new();
         for i in 0..=count {
             if is_missing(along(i)) {
-                draw(&mut picture, std::mem::take(&mut points), line == Line::Centre);
+                draw(picture, std::mem::take(&mut points), line == Line::Centre);
             } else {
                 points.push(course.line.beside(along(i), left));
             }
         }
-        draw(&mut picture, points, line == Line::Centre && course.centre_at(0.0) == Centre::Dashed);
+        draw(picture, points, line == Line::Centre && course.centre_at(0.0) == Centre::Dashed);
     }
     let middle = (0..=count).map(|i| course.pose(along(i), 0.0).position());
     picture.line(middle, Style::plan().width(0.8).opacity(0.5).labelled("middle of the lane"));
-    picture.speed_trace(drive.trail.iter().map(|(time, pose, speed)| (*time, pose.position(), *speed)));
-    let poses = drive.trail.iter().map(|(time, pose, _)| (*time, *pose)).collect();
-    let style = Style::new(Colour::from_hex(0x26_2d_3a)).labelled("car");
-    picture.add(Figure::Robot { poses, footprint: RobotSpec::road_car().footprint }, style);
-    picture.mark(Mark::Start, course.start().position());
-    picture
 }
 
 fn draw(picture: &mut Picture, points: Vec<Point>, dashed: bool) {

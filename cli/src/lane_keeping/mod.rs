@@ -9,6 +9,8 @@ use roverlab::drive::traffic::{FreeDriveRules, FreeDriveScore};
 
 use crate::common::{CommonArgs, Failure, OF_ONE_RUN, Outcome, Report, millimetres, rounded};
 use course::Setting;
+pub(crate) use course::course;
+pub(crate) use drawing::road;
 use drive::Drive;
 
 /// The command line of `lane-keeping`.

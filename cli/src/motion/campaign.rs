@@ -1,8 +1,6 @@
 use image::GrayImage;
-use roverlab::geometry::{Twist, units};
-use roverlab::io::sim::{SimOptions, Simulation};
-use roverlab::io::{self, Camera, Clock, Drive};
-use roverlab::random::Stream;
+use roverlab::geometry::units;
+use roverlab::io::{self, Camera, Clock};
 use roverlab::vision::motion::{MotionDetector, MotionParameters};
 use serde_json::json;
 
@@ -94,19 +92,8 @@ pub(crate) fn pairs(args: &Args) -> Result<Pairs, Failure> {
 
 /// The pairs of one scene in which the other robot is in view and, if required, moved.
 fn in_scene(args: &Args, seed: u64, moves: bool) -> io::Result<Vec<[f64; 2]>> {
-    let scene = scene::drawn(seed);
-    let options = SimOptions { light: args.light, ..SimOptions::with_noise(args.common.noise, seed) };
-    let simulation = Simulation::new(&scene, options)?;
+    let simulation = scene::simulated(args, seed, moves)?;
     let truth = simulation.truth();
-    let mut stream = Stream::new(seed).child("motion", 0);
-    let mut other = simulation.robot(1)?;
-    if moves {
-        let speed = stream.between(0.1, 0.3);
-        let turn = stream.between(1.0, 2.5) * if stream.chance(0.5) { 1.0 } else { -1.0 };
-        other.set_speed(Twist::new(speed, turn))?;
-    }
-    // A robot whose program has ended keeps its speed.
-    drop(other);
     let mut robot = simulation.robot(0)?;
     // The motors take time to respond.
     robot.wait(1.0)?;
@@ -138,6 +125,6 @@ fn measure(
     Ok([motion.largest(), motion.mean_difference])
 }
 
-fn wrong(error: &roverlab::vision::ImageError) -> io::Error {
+pub(super) fn wrong(error: &roverlab::vision::ImageError) -> io::Error {
     io::Error::new(io::ErrorKind::Other, error.to_string())
 }

@@ -1,5 +1,6 @@
 //! The command `motion`.
 
+mod approach;
 mod args;
 mod campaign;
 mod scene;

@@ -1,9 +1,13 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use roverlab::geometry::{Point, Pose};
+use roverlab::geometry::{Point, Pose, Twist};
+use roverlab::io::sim::{SimOptions, Simulation};
+use roverlab::io::{self, Drive};
 use roverlab::random::Stream;
 use roverlab::world::{Colour, Object, ObjectKind, RobotPlacement, RobotSpec, Scene, Wall, World};
+
+use super::Args;
 
 /// The book's scene: a watching robot, and another one between two cans (Program 11.16).
 pub(crate) fn book() -> Scene {
@@ -28,6 +32,22 @@ pub(crate) fn drawn(seed: u64) -> Scene {
     let away = stream.between(0.5, 1.3);
     let aside = stream.between(-0.3, 0.3) * away;
     with_two(world, watcher, Pose::new(0.5 + away, 1.5 + aside, stream.between(-PI, PI)))
+}
+
+/// A drawn scene in which the second robot moves in circles, if required.
+pub(crate) fn simulated(args: &Args, seed: u64, moves: bool) -> io::Result<Simulation> {
+    let options = SimOptions { light: args.light, ..SimOptions::with_noise(args.common.noise, seed) };
+    let simulation = Simulation::new(&drawn(seed), options)?;
+    let mut stream = Stream::new(seed).child("motion", 0);
+    // A robot whose program has ended keeps its speed.
+    let mut other = simulation.robot(1)?;
+    if moves {
+        let speed = stream.between(0.1, 0.3);
+        let turn = stream.between(1.0, 2.5) * if stream.chance(0.5) { 1.0 } else { -1.0 };
+        other.set_speed(Twist::new(speed, turn))?;
+    }
+    drop(other);
+    Ok(simulation)
 }
 
 fn room() -> World {

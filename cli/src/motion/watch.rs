@@ -2,25 +2,41 @@ use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
 use roverlab::geometry::{Twist, angle_difference, direction, math, units};
 use roverlab::io::{self, Display, DisplayImage, Viewport, control};
 use roverlab::picture::{Figure, Picture, SERIES, Style};
+use roverlab::vision::motion::Motion;
 use roverlab::world::{Colour, Scene};
 
-use super::{Args, campaign, scene};
+use super::{Args, approach, campaign, scene};
 use crate::common::{Failure, Outcome, Report, rounded};
 use crate::driving::{Conditions, Run, paced};
 
-/// Time of watching (s).
-const TIME_LIMIT: f64 = 10.0;
+/// Time of watching, and of an approach (s).
+const TIME_LIMITS: [f64; 2] = [10.0, 60.0];
 /// Motion of the other robot: circles with a radius of 0.25 m.
 const CIRCLE: Twist = Twist::new(0.2, 0.8);
 
 /// Result of watching.
 #[derive(Debug, Clone, Default)]
-struct Seen {
+pub(super) struct Seen {
     images: u32,
     sectors: [u32; 3],
     strongest: f64,
     /// Times and sectors of motion, with the robot's pose.
     alarms: Vec<(f64, usize)>,
+    /// Whether what moves was reached.
+    pub(super) is_reached: bool,
+}
+
+impl Seen {
+    /// Takes the result of a comparison.
+    pub(super) fn take(&mut self, time: f64, motion: Option<Motion>) {
+        let Some(motion) = motion else { return };
+        self.images += 1;
+        self.strongest = self.strongest.max(motion.largest());
+        if let Some(sector) = motion.strongest {
+            self.sectors[sector] += 1;
+            self.alarms.push((time, sector));
+        }
+    }
 }
 
 /// The command's work.
@@ -32,7 +48,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
                 "--still: found --campaign, which has both kinds of pairs; expected one of them",
             ));
         }
-        return campaign(args);
+        return if args.approach { approach::campaign(args) } else { campaign(args) };
     }
     let common = &args.common;
     common.check_picture()?;
@@ -48,40 +64,43 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let conditions = Conditions {
         light: args.light,
         others: if moves { vec![(1, CIRCLE)] } else { Vec::new() },
-        ..Conditions::new(common, TIME_LIMIT)?
+        ..Conditions::new(common, TIME_LIMITS[usize::from(args.approach)])?
     };
     let seconds = conditions.time_limit;
+    if args.approach {
+        let run = approach::run(&conditions, &scene, &camera, paced(common))?;
+        let report = report(&run, &scene, seconds, |seen| approach::outcome(seen.is_reached))
+            .field("distance_mm", approach::distance(&run, &scene).map(|metres| rounded(1e3 * metres)));
+        return Ok(common.draw(report, "motion.svg", || picture(&scene, &run)));
+    }
     let parameters = MotionWatchParameters::new(camera.field_of_view);
     let mut watch = MotionWatch::new(parameters).map_err(Failure::input)?;
     let run = conditions.run(&scene, paced(common), |robot, step| {
         let mut seen = Seen::default();
         control::run(robot, &mut watch, seconds, |robot, watch, at| {
             step();
-            show(robot, watch, &at.seen.image)?;
-            if let Some(motion) = watch.motion() {
-                seen.images += 1;
-                seen.strongest = seen.strongest.max(motion.largest());
-                if let Some(sector) = motion.strongest {
-                    seen.sectors[sector] += 1;
-                    seen.alarms.push((at.time, sector));
-                }
-            }
+            show(robot, watch.motion(), &at.seen.image)?;
+            seen.take(at.time, watch.motion());
             io::Result::Ok(())
         })?;
         Ok(seen)
     })?;
     let run = run.lasting(seconds);
+    let report = report(&run, &scene, seconds, |_| Outcome::verdict("watched"));
+    Ok(common.draw(report, "motion.svg", || picture(&scene, &run)))
+}
+
+/// Report on a run.
+fn report(run: &Run<Seen>, scene: &Scene, seconds: f64, outcome: impl Fn(&Seen) -> Outcome) -> Report {
     let turned = angle_difference(run.truth.pose.heading, scene.robots[0].pose.heading);
     let seen = run.ending.clone().unwrap_or_default();
-    let report = run
-        .report(|_| Outcome::verdict("watched"))
+    run.report(outcome)
         .field("images", seen.images)
         .field("alarms", seen.sectors.iter().sum::<u32>())
         .field("sectors", seen.sectors)
         .field("strongest", rounded(seen.strongest))
         .field("turned_deg", rounded(units::to_deg(turned)))
-        .field("time_limit_s", seconds);
-    Ok(common.draw(report, "motion.svg", || picture(&scene, &run)))
+        .field("time_limit_s", seconds)
 }
 
 /// The other robot's path, and the sector of each alarm at the robot's pose.
@@ -126,9 +145,13 @@ fn picture(scene: &Scene, run: &Run<Seen>) -> Picture {
 const REACH: f64 = 0.6;
 
 /// Shows the image on the display, with a bar below the sector in motion.
-fn show<R: Display + ?Sized>(robot: &mut R, watch: &MotionWatch, image: &image::GrayImage) -> io::Result<()> {
+pub(super) fn show<R: Display + ?Sized>(
+    robot: &mut R,
+    motion: Option<Motion>,
+    image: &image::GrayImage,
+) -> io::Result<()> {
     robot.draw_image(DisplayImage::Gray(image), Viewport::default())?;
-    let Some(sector) = watch.motion().and_then(|motion| motion.strongest) else { return Ok(()) };
+    let Some(sector) = motion.and_then(|motion| motion.strongest) else { return Ok(()) };
     let left = (sector as i32) * 320 / 3;
     let colour = roverlab::world::Colour::RED;
     robot.draw_rectangle((left, 230), (left + 105, 239), colour, io::Fill::Solid)

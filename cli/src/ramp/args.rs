@@ -1,6 +1,4 @@
-use std::num::NonZero;
-
-use crate::common::{CommonArgs, OF_ONE_RUN};
+use crate::common::{CampaignArgs, CommonArgs, OF_ONE_RUN};
 
 /// The command line of `ramp`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -28,17 +26,8 @@ Outcomes: crossed, not_crossed, no_way_up, no_way_down, stuck, tipped, fell, dro
 passed, wrong."
 )]
 pub(crate) struct Args {
-    /// Cross many levels.
-    #[arg(long)]
-    pub(crate) campaign: bool,
-
-    /// Levels of a campaign; each has the next seed.
-    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
-    pub(crate) runs: u64,
-
-    /// Number of threads in a campaign [default: one per core].
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    pub(crate) threads: Option<NonZero<usize>>,
+    #[command(flatten)]
+    pub(crate) trials: CampaignArgs,
 
     #[command(flatten)]
     pub(crate) common: CommonArgs,

@@ -4,14 +4,13 @@ use roverlab::nav::RampOutcome;
 use super::Args;
 use super::cross::{Passage, cross, levels};
 use super::job::SECONDS;
-use crate::common::{Failure, Outcome, Report, millimetres, share_out, threads};
+use crate::common::{Failure, Outcome, Report, millimetres, wrong_seeds};
 use crate::driving::{Conditions, RESERVE};
 use crate::terrain::{Ride, median};
 
 /// A crossing of generated levels.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Trial {
-    pub(crate) seed: u64,
     pub(crate) crossed: bool,
     pub(crate) outcome: Option<RampOutcome>,
     pub(crate) mishap: Option<Mishap>,
@@ -24,36 +23,43 @@ impl Trial {
     pub(crate) fn is_lost(&self) -> bool {
         self.mishap.is_some_and(|mishap| mishap != Mishap::Stuck)
     }
+
+    fn is_good(&self) -> bool {
+        self.crossed && !self.is_lost()
+    }
 }
 
+/// Levels of a campaign; each has the next seed.
+const LEVELS: u64 = 200;
 /// Smallest part of the levels that has to be crossed; no robot may fall.
 const CROSSED: f64 = 0.99;
 
 /// The campaign's work.
 pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
     let trials = trials(args)?;
-    let crossed = trials.iter().filter(|trial| trial.crossed).count();
-    let falls = trials.iter().filter(|trial| trial.is_lost()).count();
-    let wrong = || trials.iter().filter(|trial| !trial.crossed || trial.is_lost());
-    for trial in wrong() {
-        args.common.tell(format_args!("seed {}: {:?}, {:?}", trial.seed, trial.outcome, trial.mishap));
+    let runs = trials.len();
+    let crossed = trials.iter().filter(|(_, trial)| trial.crossed).count();
+    let falls = trials.iter().filter(|(_, trial)| trial.is_lost()).count();
+    for (seed, trial) in trials.iter().filter(|(_, trial)| !trial.is_good()) {
+        args.common.tell(format_args!("seed {seed}: {:?}, {:?}", trial.outcome, trial.mishap));
     }
-    let good = falls == 0 && crossed as f64 >= CROSSED * args.runs as f64;
+    let good = falls == 0 && crossed as f64 >= CROSSED * runs as f64;
     let outcome = if good { Outcome::verdict("passed") } else { Outcome::failure("wrong") };
-    let edge_distance = median(trials.iter().map(|trial| trial.edge_distance).collect());
-    Ok(Report { sim_time: Some(trials.iter().map(|trial| trial.sim_time).sum()), ..Report::new(outcome) }
-        .field("runs", args.runs)
-        .field("passed", crossed)
-        .field("falls", falls)
-        .field("median_edge_distance_mm", millimetres(edge_distance))
-        .field("wrong_seeds", wrong().map(|trial| trial.seed).collect::<Vec<_>>()))
+    let edge_distance = median(trials.iter().map(|(_, trial)| trial.edge_distance).collect());
+    Ok(Report {
+        sim_time: Some(trials.iter().map(|(_, trial)| trial.sim_time).sum()),
+        ..Report::new(outcome)
+    }
+    .field("runs", runs)
+    .field("passed", crossed)
+    .field("falls", falls)
+    .field("median_edge_distance_mm", millimetres(edge_distance))
+    .field("wrong_seeds", wrong_seeds(&trials, Trial::is_good)))
 }
 
-/// All crossings, in the order of the seeds.
-pub(crate) fn trials(args: &Args) -> Result<Vec<Trial>, Failure> {
-    share_out("levels", args.runs, threads(args.threads), |index| {
-        trial(args, args.common.seed.wrapping_add(index))
-    })
+/// All crossings, by seed.
+pub(crate) fn trials(args: &Args) -> Result<Vec<(u64, Trial)>, Failure> {
+    args.trials.trials("levels", LEVELS, args.common.seed, |seed| trial(args, seed))
 }
 
 fn trial(args: &Args, seed: u64) -> Result<Trial, Failure> {
@@ -76,7 +82,6 @@ fn trial(args: &Args, seed: u64) -> Result<Trial, Failure> {
     let mishap = Ride::of(&run).and_then(|ride| ride.end.mishap);
     let lost = mishap.is_some_and(|mishap| mishap != Mishap::Stuck);
     Ok(Trial {
-        seed,
         crossed: outcome == Some(RampOutcome::Crossed) && passage.crossed && !lost,
         outcome,
         mishap,

@@ -14,7 +14,7 @@ pub(super) const SECONDS: f64 = 400.0;
 
 /// The work of the command.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
-    if args.campaign {
+    if args.trials.campaign {
         return campaign(args);
     }
     let common = &args.common;

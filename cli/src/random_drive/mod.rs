@@ -7,14 +7,17 @@ use std::sync::Arc;
 
 use roverlab::drive::{CoverageMap, CoverageMapParameters, RandomDrive, RandomDriveParameters};
 use roverlab::geometry::{Point, Pose, units};
-use roverlab::io::RobotIo;
 use roverlab::io::control::{self, Behaviour};
-use roverlab::io::sim::SimOptions;
+use roverlab::io::sim::{Fleet, SimOptions};
+use roverlab::io::{FleetIo, RobotIo};
 use roverlab::picture::{Mark, Picture};
 use roverlab::random::Stream;
 use roverlab::world::{Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
 
-use crate::common::{CommonArgs, Failure, FreeFloor, Outcome, Report, rounded};
+use crate::common::{
+    CampaignArgs, CommonArgs, Failure, FreeFloor, OF_ONE_RUN, Outcome, Report, campaign_report, rounded,
+    wrong_seeds,
+};
 use crate::driving::{Conditions, Trail, counted, draw_contacts, paced};
 
 /// Command line of `random-drive`.
@@ -25,14 +28,17 @@ use crate::driving::{Conditions, Trail, counted, draw_contacts, paced};
 Without --world, the robots drive in a room with two crates and a can. With a .sim, all of its robots drive; if there
 are fewer than --robots, --seed places additional ones. --fault requires a single robot.
 
+With --campaign, two robots in that room, or --robots, once for each seed.
+
 JSON fields:
   robots                      number of driving robots
   turns                       total number of turns
   coverage_percent            fraction of the floor that the robots have passed over, relative to that which the first one can
                               reach 15 mm away from all obstacles
   time_limit_s, picture
+  metres                      with --campaign only: path length of the first robots
 Collisions are those of all robots; pose, odometry and path length are the first one's.
-Outcomes: driven, collided, failed."
+Outcomes: driven, collided, failed; with --campaign: passed, wrong, collided."
 )]
 pub(crate) struct Args {
     /// Number of robots [default: those of the world, or 1].
@@ -40,10 +46,16 @@ pub(crate) struct Args {
     pub(crate) robots: Option<u8>,
 
     #[command(flatten)]
+    pub(crate) trials: CampaignArgs,
+
+    #[command(flatten)]
     pub(crate) common: CommonArgs,
 }
 
-crate::common::shares_options!(Args, common: CommonArgs);
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
+    ("campaign", OF_ONE_RUN),
+    ("!campaign", &["runs", "threads"]),
+]);
 
 /// Simulated time of a run (s).
 const SECONDS: f64 = 120.0;
@@ -63,6 +75,9 @@ struct Outing {
 
 /// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    if args.trials.campaign {
+        return campaign(args);
+    }
     let common = &args.common;
     common.check_picture()?;
     let own = || scene(usize::from(args.robots.unwrap_or(1)));
@@ -74,7 +89,13 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let outing = if scene.robots.len() == 1 {
         alone(args, &scene, seconds)?
     } else {
-        together(args, &scene, seconds)?
+        if !common.fault.is_empty() {
+            return Err(Failure::input(
+                "--fault: found it for several robots; expected it for one robot alone",
+            ));
+        }
+        let mut fleet = common.fleet(&scene, SimOptions::with_noise(common.noise, common.seed))?;
+        together(&mut *fleet, &scene, (common.seed, seconds), paced(common))?
     };
     let share = covered(&scene, &outing.paths);
     let report = Report { collisions: Some(outing.contacts), ..outing.report.clone() }
@@ -163,17 +184,42 @@ fn alone(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure> {
     })
 }
 
-/// Several robots in one thread.
-fn together(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure> {
+/// Seeds of a campaign without `--runs`.
+const SEEDS: u64 = 100;
+
+/// Drives in the room with many seeds.
+fn campaign(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
-    if !common.fault.is_empty() {
-        return Err(Failure::input("--fault: found it for several robots; expected it for one robot alone"));
-    }
-    let options = SimOptions::with_noise(common.noise, common.seed);
+    let scene = scene(usize::from(args.robots.unwrap_or(2)));
+    let seconds = common.time_limit.unwrap_or(SECONDS);
+    let trials = args.trials.trials("drives", SEEDS, common.seed, |seed| {
+        let mut fleet = Fleet::new(&scene, SimOptions::with_noise(common.noise, seed))?;
+        together(&mut fleet, &scene, (seed, seconds), |_| {})
+    })?;
+    let wrong = wrong_seeds(&trials, |outing| outing.contacts == 0);
+    let contacts: u64 = trials.iter().map(|(_, outing)| outing.contacts).sum();
+    let metres: f64 = trials.iter().filter_map(|(_, outing)| outing.report.path_length).sum();
+    let robots = scene.robots.len();
+    common.tell(format_args!(
+        "{} drives of {}, {seconds:.0} s each: {metres:.0} m of the first ones, {contacts} contacts",
+        trials.len(),
+        counted(robots, "robot")
+    ));
+    Ok(campaign_report(wrong.is_empty(), contacts, &wrong)
+        .field("robots", robots)
+        .field("metres", rounded(metres)))
+}
+
+/// Several robots in one thread, with a seed and for a time (s). `pace` is called with the time.
+fn together<'a>(
+    fleet: &mut (dyn FleetIo<'a> + 'a),
+    scene: &Scene,
+    (seed, seconds): (u64, f64),
+    mut pace: impl FnMut(f64),
+) -> Result<Outing, Failure> {
     let turns: Vec<Rc<Cell<u32>>> = scene.robots.iter().map(|_| Rc::default()).collect();
-    let mut fleet = common.fleet(scene, options)?;
     for (robot, turns) in turns.iter().cloned().enumerate() {
-        let mut drive = behaviour(scene, robot, common.seed)?;
+        let mut drive = behaviour(scene, robot, seed)?;
         let (period, mut run) =
             (drive.period(), control::Run::new(&drive, f64::INFINITY).map_err(Failure::input)?);
         let step = move |robot: &mut dyn RobotIo| {
@@ -184,7 +230,6 @@ fn together(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure>
         fleet.control(robot, period, Box::new(step))?;
     }
     let mut paths: Vec<Trail> = scene.robots.iter().map(|robot| vec![(0.0, robot.pose)]).collect();
-    let mut pace = paced(common);
     while fleet.time()? + 0.5 * STEP < seconds {
         fleet.run_for(STEP)?;
         let time = fleet.time()?;

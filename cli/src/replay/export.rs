@@ -78,6 +78,12 @@ fn drawn(log: &Log) -> Result<Picture, Failure> {
     Ok(picture)
 }
 
+/// A robot's true path.
+#[cfg(feature = "native")]
+pub(crate) fn true_path(log: &Log, robot: usize) -> Vec<Point> {
+    path(log, robot, Pose::default(), true)
+}
+
 /// A robot's path: true, or by odometry from a start.
 fn path(log: &Log, robot: usize, start: Pose, truth: bool) -> Vec<Point> {
     let entries = log.entries(robot).filter(|entry| entry.truth == truth);

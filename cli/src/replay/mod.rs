@@ -13,6 +13,8 @@ use serde_json::{Value, json};
 
 use crate::common::{Failure, Printed, recording_bytes};
 pub(crate) use args::{Args, Command};
+#[cfg(feature = "native")]
+pub(crate) use export::true_path;
 
 /// Result of a command: its report, and whether it succeeded.
 struct Found {

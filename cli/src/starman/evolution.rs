@@ -1,17 +1,19 @@
 use std::ffi::OsString;
 use std::process::Command;
+use std::sync::Arc;
 
 use roverlab::evolve::{
     Evaluator, Evolution, Gait, GenerationStatistics, Genetic, Parallel, Population, Processes, StopRules,
     Trial, checkpoint,
 };
-use roverlab::io::sim::starman::{LIMBS, Starman, StarmanSpec};
+use roverlab::io::sim::starman::{Starman, StarmanSpec};
 use roverlab::io::{Clock, Odometry, Result, Servos};
 use roverlab::random::Stream;
 use roverlab::world::{Scene, World};
 
 use super::WORKER;
-use super::options::{Args, Figure, Init};
+use super::figure::Figure;
+use super::options::{Args, Init};
 use crate::common::{Failure, Progress, Stopwatch};
 
 /// Number of control points of the cycle.
@@ -23,9 +25,11 @@ const STEP: u8 = 5;
 const FLOOR: (f64, f64) = (4.0, 0.5);
 
 /// Trial of a gait.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Trials {
-    pub(crate) figure: Figure,
+    pub(crate) figure: Arc<Figure>,
+    /// Whether the body evolves too.
+    pub(crate) evolves: bool,
     pub(crate) time_step: f64,
     pub(crate) seconds: f64,
     pub(crate) leading: usize,
@@ -33,7 +37,9 @@ pub(crate) struct Trials {
 
 impl Default for Trials {
     fn default() -> Self {
-        Self { figure: Figure::Book, time_step: StarmanSpec::book().time_step, seconds: 10.0, leading: 0 }
+        let book = StarmanSpec::book();
+        let figure = Arc::new(Figure::Star(book));
+        Self { figure, evolves: false, time_step: book.time_step, seconds: 10.0, leading: 0 }
     }
 }
 
@@ -45,7 +51,7 @@ impl Trials {
 
     /// Distance walked along the floor, from the resting position on its feet (m).
     pub(crate) fn way(&self, bytes: &[u8]) -> Result<f64> {
-        self.walk(bytes, &mut Starman::new(&self.spec())?, |starman| Ok(starman.pose()?.x))
+        self.walk(bytes, &mut self.robot(bytes)?, |starman| Ok(starman.pose()?.x))
     }
 
     /// Walks a gait. Returns the distance along the floor by `place`, from the resting position (m).
@@ -55,29 +61,37 @@ impl Trials {
         robot: &mut R,
         place: impl Fn(&mut R) -> Result<f64>,
     ) -> Result<f64> {
-        let gait = Gait::from_bytes(bytes, LIMBS, self.leading)?;
+        let (gait, _) = self.parts(bytes);
+        let gait = Gait::from_bytes(gait, self.figure.servos(), self.leading)?;
         gait.settle(robot)?;
         let start = place(robot)?;
         gait.walk(robot, self.seconds - Gait::SETTLING)?;
         Ok(place(robot)? - start)
     }
 
-    /// The robot under trial.
-    pub(crate) fn spec(&self) -> StarmanSpec {
-        let spec = match self.figure {
-            Figure::Book => StarmanSpec::book(),
-            Figure::Planar => StarmanSpec::planar(),
-        };
-        StarmanSpec { time_step: self.time_step, ..spec }
+    /// The robot under trial, with the body of a genome.
+    pub(crate) fn robot(&self, bytes: &[u8]) -> Result<Starman> {
+        self.figure.robot(self.time_step, self.parts(bytes).1)
+    }
+
+    /// The bytes of a genome for the gait, and those for the body.
+    fn parts<'g>(&self, bytes: &'g [u8]) -> (&'g [u8], &'g [u8]) {
+        let genes = if self.evolves { self.figure.genes() } else { 0 };
+        bytes.split_at(bytes.len().saturating_sub(genes))
     }
 
     /// A random initial gait.
     pub(crate) fn beginning(&self, init: Init, random: &mut Stream) -> Result<Vec<u8>> {
-        let points = self.leading + CYCLE;
-        match init {
-            Init::Neutral => Gait::near_middle(LIMBS, points, STEP, random),
-            Init::Uniform => Ok((0..LIMBS * points).map(|_| random.below(256) as u8).collect()),
-        }
+        let (servos, points) = (self.figure.servos(), self.leading + CYCLE);
+        let uniform = |count: usize, random: &mut Stream| -> Vec<u8> {
+            (0..count).map(|_| random.below(256) as u8).collect()
+        };
+        let body = if self.evolves { uniform(self.figure.genes(), random) } else { Vec::new() };
+        let gait = match init {
+            Init::Neutral => Gait::near_middle(servos, points, STEP, random)?,
+            Init::Uniform => uniform(servos * points, random),
+        };
+        Ok([gait, body].concat())
     }
 }
 
@@ -97,25 +111,24 @@ pub(crate) struct Evolved {
 }
 
 /// Evolves a gait with the options of the command line.
-pub(crate) fn evolve(args: &Args) -> std::result::Result<Evolved, Failure> {
-    let (mut evaluator, threads) = evaluator(args)?;
-    run(args, args.common.seed, args.init, evaluator.as_mut(), threads)
+pub(crate) fn evolve(args: &Args, trials: &Trials) -> std::result::Result<Evolved, Failure> {
+    let (mut evaluator, threads) = evaluator(args, trials)?;
+    run(args, trials, (args.common.seed, args.init), evaluator.as_mut(), threads)
 }
 
 /// Walks a gait on a robot that can be recorded and replayed. Returns the robot's own distance along the
 /// floor (m).
-pub(crate) fn walk(args: &Args, bytes: &[u8]) -> std::result::Result<f64, Failure> {
-    let trials = args.trials();
+pub(crate) fn walk(args: &Args, trials: &Trials, bytes: &[u8]) -> std::result::Result<f64, Failure> {
     let room = Scene::new(World::empty(FLOOR.0, FLOOR.1));
-    let mut robot = args.common.staged_robot(&room, Starman::new(&trials.spec())?)?;
+    let mut robot = args.common.staged_robot(&room, trials.robot(bytes)?)?;
     Ok(trials.walk(bytes, &mut *robot, |robot| Ok(robot.pose()?.x))?)
 }
 
 /// Evaluator with threads or processes, and their number.
 type Workers = (Box<dyn Evaluator<Vec<u8>>>, usize);
 
-fn evaluator(args: &Args) -> std::result::Result<Workers, Failure> {
-    let trials = args.trials();
+fn evaluator(args: &Args, trials: &Trials) -> std::result::Result<Workers, Failure> {
+    let trials = trials.clone();
     let Some(processes) = args.processes else {
         let threads =
             Parallel::new(args.threads.into(), move |bytes: &Vec<u8>, _: Trial| trials.fitness(bytes))?;
@@ -124,8 +137,8 @@ fn evaluator(args: &Args) -> std::result::Result<Workers, Failure> {
     };
     let program =
         std::env::current_exe().map_err(|error| Failure::run(format!("this program's file: {error}")))?;
-    let numbers = [trials.seconds.to_string(), trials.leading.to_string()];
-    let figure = format!("{:?}", trials.figure);
+    let numbers = [trials.seconds.to_string(), trials.leading.to_string(), trials.evolves.to_string()];
+    let figure = args.figure.clone();
     let words = [WORKER.to_owned()].into_iter().chain(numbers).chain([figure]).map(OsString::from);
     let words: Vec<OsString> = words.collect();
     let start = || {
@@ -140,13 +153,13 @@ fn evaluator(args: &Args) -> std::result::Result<Workers, Failure> {
 /// Evolves a gait from a seed.
 pub(crate) fn run(
     args: &Args,
-    seed: u64,
-    init: Init,
+    trials: &Trials,
+    (seed, init): (u64, Init),
     evaluator: &mut dyn Evaluator<Vec<u8>>,
     threads: usize,
 ) -> std::result::Result<Evolved, Failure> {
     let settings = args.settings();
-    let beginning = first(args, seed, init)?;
+    let beginning = first(args, trials, seed, init)?;
     let population = kept(args, &settings, &beginning)?.unwrap_or(beginning);
     let before = population.history.last().map_or(0, |row| row.evaluations);
     let mut evolution = Genetic::resume(population, args.recipe())?;
@@ -195,8 +208,7 @@ fn kept(
     if form(&kept) == form(beginning) { Ok(Some(kept)) } else { Err(refused(form(&kept), form(beginning))) }
 }
 
-fn first(args: &Args, seed: u64, init: Init) -> Result<Population<Vec<u8>>> {
-    let trials = args.trials();
+fn first(args: &Args, trials: &Trials, seed: u64, init: Init) -> Result<Population<Vec<u8>>> {
     let mut random = Stream::new(seed).child("first generation", 0);
     let gaits = (0..args.population).map(|_| trials.beginning(init, &mut random));
     Population::new(gaits.collect::<Result<_>>()?, seed)

@@ -2,19 +2,19 @@
 
 mod compare;
 mod evolution;
+mod figure;
 mod options;
 mod steps;
 mod strip;
 
 use std::ffi::OsString;
 
-use clap::ValueEnum;
 use roverlab::evolve::{GenerationStatistics, chart, serve, table};
 use roverlab::geometry::units;
 
 use crate::common::{Failure, Outcome, Report, rounded};
+use figure::Figure;
 pub(crate) use options::Args;
-use options::Figure;
 
 /// Argument that makes this program evaluate gaits for another process.
 const WORKER: &str = "--evaluate-for-another";
@@ -22,10 +22,12 @@ const WORKER: &str = "--evaluate-for-another";
 /// Evaluates gaits from standard input, if requested. Returns the exit status.
 pub(crate) fn work_for_another(words: &[OsString]) -> Option<u8> {
     let words: Vec<&str> = words.iter().skip(1).map(|word| word.to_str()).collect::<Option<_>>()?;
-    let [WORKER, seconds, leading, figure] = words.as_slice() else { return None };
+    let [WORKER, seconds, leading, evolves, figure] = words.as_slice() else { return None };
     let (seconds, leading) = seconds.parse().ok().zip(leading.parse().ok())?;
-    let figure = Figure::from_str(figure, true).ok()?;
-    let trials = evolution::Trials { figure, seconds, leading, ..evolution::Trials::default() };
+    let read = || Figure::parse(&std::fs::read_to_string(figure).ok()?, figure).ok();
+    let figure = Figure::named(figure).or_else(read)?.into();
+    let evolves = *evolves == "true";
+    let trials = evolution::Trials { figure, evolves, seconds, leading, ..evolution::Trials::default() };
     let ended =
         serve(std::io::stdin().lock(), std::io::stdout().lock(), |bytes: &Vec<u8>, _| trials.fitness(bytes));
     Some(u8::from(ended.is_err()))
@@ -45,9 +47,10 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
 
 /// Evolves a gait and shows it.
 fn walk(args: &Args) -> Result<Report, Failure> {
-    let evolved = evolution::evolve(args)?;
-    let way = evolution::walk(args, &evolved.best)?;
-    let walk = strip::Walk::of(&args.trials(), &evolved.best)?;
+    let trials = args.trials()?;
+    let evolved = evolution::evolve(args, &trials)?;
+    let way = evolution::walk(args, &trials, &evolved.best)?;
+    let walk = strip::Walk::of(&trials, &evolved.best)?;
     args.common.tell(format_args!("the best gait goes {:.0} mm", units::to_mm(way)));
     let trouble = keep_statistics(args, &evolved.history).err();
     let report = Report::new(Outcome::verdict("evolved"))

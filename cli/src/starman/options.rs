@@ -3,6 +3,7 @@ use std::path::PathBuf;
 use roverlab::evolve::{Gait, OnePoint, Recipe, Selection, Uniform};
 
 use super::evolution::Trials;
+use super::figure::Figure;
 use crate::common::{CommonArgs, Failure, check_writable, parse_seconds};
 
 /// Maximum duration of a trial (s).
@@ -24,11 +25,11 @@ JSON fields:
   timing                         with --timing: evaluations_per_s by this process, real_time_factor
   best_first, best_last, ratio   highest fitness of the first and of all generations
   population_hash                hash of the final population
-  best_gait                      its bytes, five per control point
+  best_gait                      its bytes, one for each servo and control point; with --body, two for each limb follow
   way_mm                         final position of the best gait along the floor, which --record records
   threads, picture               file of the strip, if there is one
-With --compare, `rows`: seed, best_first, best_last, ratio, random (the best of as many random gaits), and the number of
-seeds with better evolution. With --steps, `rows`: time step, and of the gaits that move more than 5 mm their number and the
+With --compare, `rows`: seed, best_first, best_last, ratio, random (the best of as many random gaits), together (with --body:
+body and gait evolved with as many evaluations), and the number of seeds in which either is better. With --steps, `rows`: time step, and of the gaits that move more than 5 mm their number and the
 median change of the distance when the step is halved.
 Outcomes: evolved, compared, failed."
 )]
@@ -53,9 +54,14 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", conflicts_with = "threads", value_parser = clap::value_parser!(u16).range(1..=512))]
     pub(crate) processes: Option<u16>,
 
-    /// The robot: the book's, or the planar figure it is based on.
-    #[arg(long, value_enum, default_value = "book")]
-    pub(crate) figure: Figure,
+    /// The robot: the book's, the planar figure it is based on, or a body of limbs: biped, hexapod, star,
+    /// worm, or a file like those in cli/figures.
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = "book")]
+    pub(crate) figure: String,
+
+    /// Evolve the body with the gait: lengths and directions of the limbs of a body of limbs.
+    #[arg(long)]
+    pub(crate) body: bool,
 
     /// The first generation: near the servos' middle as in the book, or uniformly random bytes.
     #[arg(long, value_enum, default_value = "neutral")]
@@ -114,15 +120,6 @@ pub(crate) enum Init {
     Uniform,
 }
 
-/// Robot that learns to walk.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub(crate) enum Figure {
-    /// The book's robot with servos of 30 degrees per second.
-    Book,
-    /// Longer limbs that snap to their angles.
-    Planar,
-}
-
 /// Selection of parents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Choice {
@@ -145,21 +142,36 @@ pub(crate) enum Cross {
 
 crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["noise", "time_limit", "quantised", "realtime"]),
-    ("steps", &["generations", "init", "selection", "crossover", "mutations"]),
+    ("steps", &["generations", "init", "selection", "crossover", "mutations", "body"]),
 ]);
 
 impl Args {
-    pub(crate) fn trials(&self) -> Trials {
-        let (figure, seconds, leading) = (self.figure, self.seconds, self.leading.into());
-        Trials { figure, seconds, leading, ..Trials::default() }
+    /// The trials of a gait.
+    pub(crate) fn trials(&self) -> Result<Trials, Failure> {
+        let (seconds, leading) = (self.seconds, self.leading.into());
+        let figure = Figure::load(&self.common, &self.figure)?;
+        if self.body && figure.genes() == 0 {
+            return Err(Failure::input(format!(
+                "--body: found the figure {}; expected one of limbs, such as hexapod",
+                self.figure
+            )));
+        }
+        let evolves = self.body;
+        Ok(Trials { figure: figure.into(), evolves, seconds, leading, ..Trials::default() })
     }
 
     /// Settings that affect the run, for checkpoints.
     pub(crate) fn settings(&self) -> String {
         let Self { population, seconds, leading, figure, init, selection, crossover, .. } = self;
         let (mutations, seed) = (self.mutation_count(), self.common.seed);
+        let figure = match figure.as_str() {
+            "book" => "Book",
+            "planar" => "Planar",
+            other => other,
+        };
+        let body = if self.body { " with its body" } else { "" };
         format!(
-            "population {population}, {seconds} s, {figure:?} figure, {leading} leading points, {init:?} start, {selection:?} selection, \
+            "population {population}, {seconds} s, {figure} figure{body}, {leading} leading points, {init:?} start, {selection:?} selection, \
              {crossover:?} crossover, {mutations} mutations, seed {seed}"
         )
     }

@@ -3,6 +3,7 @@ use roverlab::geometry::math;
 use roverlab::random::Stream;
 use serde::Serialize;
 
+use super::evolution::Trials;
 use super::options::Args;
 use crate::common::{Failure, Outcome, Report, rounded};
 
@@ -23,8 +24,9 @@ const LEAST_WAY: f64 = 0.005;
 
 /// Prints the table.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
-    let gaits = gaits(args);
-    let ways = STEPS_MS.map(|step| ways(args, &gaits, step));
+    let trials = args.trials()?;
+    let gaits = gaits(args, trials.figure.servos());
+    let ways = STEPS_MS.map(|step| ways(args, &trials, &gaits, step));
     let mut rows = Vec::new();
     for (i, step) in STEPS_MS.into_iter().enumerate() {
         let ways_here = ways[i].as_ref().map_err(|error| Failure::run(error.to_string()))?;
@@ -47,10 +49,10 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
 }
 
 /// Waves of random phase through the limbs, which walk like evolved gaits.
-fn gaits(args: &Args) -> Vec<Vec<u8>> {
+fn gaits(args: &Args, servos: usize) -> Vec<Vec<u8>> {
     let mut random = Stream::new(args.common.seed).child("waves", 0);
     let mut wave = || {
-        let limbs: Vec<(f64, f64)> = (0..5)
+        let limbs: Vec<(f64, f64)> = (0..servos)
             .map(|_| (random.between(50.0, 100.0), random.between(0.0, std::f64::consts::TAU)))
             .collect();
         let phase = |point: usize| std::f64::consts::TAU * point as f64 / 10.0;
@@ -63,9 +65,8 @@ fn gaits(args: &Args) -> Vec<Vec<u8>> {
     (0..args.population).map(|_| wave()).collect()
 }
 
-fn ways(args: &Args, gaits: &[Vec<u8>], step_ms: f64) -> roverlab::io::Result<Vec<f64>> {
-    let mut trials = args.trials();
-    trials.time_step = step_ms / 1000.0;
+fn ways(args: &Args, trials: &Trials, gaits: &[Vec<u8>], step_ms: f64) -> roverlab::io::Result<Vec<f64>> {
+    let trials = Trials { time_step: step_ms / 1000.0, ..trials.clone() };
     let mut threads = Parallel::new(args.threads.into(), move |bytes: &Vec<u8>, _: Trial| trials.way(bytes))?;
     threads.evaluate(gaits, Round { seed: args.common.seed, generation: 0 })
 }

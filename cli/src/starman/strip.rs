@@ -15,21 +15,21 @@ pub(crate) struct Walk {
     /// Distance along the floor from the resting position (m).
     pub(crate) way: f64,
     pub(crate) postures: Vec<StarmanPosture>,
-    pub(crate) body_radius: f64,
+    /// Half the length of the body, and its radius (m).
+    pub(crate) outline: (f64, f64),
 }
 
 impl Walk {
     /// Walks a gait and records its postures.
     pub(crate) fn of(trials: &Trials, bytes: &[u8]) -> Result<Self> {
-        let spec = trials.spec();
-        let mut watched = Watched { robot: Starman::new(&spec)?, postures: Vec::new() };
+        let mut watched = Watched { robot: trials.robot(bytes)?, postures: Vec::new() };
         let way = trials.walk(bytes, &mut watched, |watched| Ok(watched.robot.pose()?.x))?;
         watched.look();
         Ok(Self {
             interval: Watched::INTERVAL,
             way,
             postures: watched.postures,
-            body_radius: spec.body_radius,
+            outline: trials.figure.outline(),
         })
     }
 }
@@ -125,12 +125,18 @@ fn draw<'a>(
     let postures: Vec<_> = postures.into_iter().collect();
     let at = |(x, y): (f64, f64)| Point::new(x, y) + origin.coords;
     let part = |colour| Style::new(Colour::from_hex(colour)).width(4.0);
-    let rim = |(x, y): (f64, f64)| {
-        (0..=16)
-            .map(|i| at((x, y)) + direction(f64::from(i) * std::f64::consts::TAU / 16.0) * walk.body_radius)
-            .collect()
+    let (half, radius) = walk.outline;
+    let rim = |posture: &StarmanPosture| {
+        let along = direction(posture.roll) * half;
+        let point = |i: i32| {
+            let angle = posture.roll + f64::from(i) * std::f64::consts::TAU / 16.0;
+            let end = if (-4..=4).contains(&i) { along } else { -along };
+            // Both ends of the body have a point at the sides.
+            at(posture.body) + end + direction(angle) * radius
+        };
+        (-4..=12).map(point).chain([point(-4)]).collect()
     };
-    let bodies = postures.iter().map(|(time, posture)| (*time, rim(posture.body)));
+    let bodies = postures.iter().map(|(time, posture)| (*time, rim(posture)));
     picture.moving_line(bodies, part(0x26_2d_3a).width(2.5).labelled("body"));
     for limb in 0..postures.first().map_or(0, |(_, posture)| posture.segments.len()) {
         let shapes = postures.iter().map(|(time, posture)| (*time, posture.segments[limb].map(at).to_vec()));

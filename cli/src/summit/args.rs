@@ -1,10 +1,8 @@
-use std::num::NonZero;
-
 use roverlab::geometry::units;
 use roverlab::nav::elevation::Climber;
 use roverlab::world::RobotSpec;
 
-use crate::common::{CommonArgs, OF_ONE_RUN};
+use crate::common::{CampaignArgs, CommonArgs, OF_ONE_RUN};
 
 /// Method of climbing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -63,17 +61,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "DEG", value_parser = parse_slope, allow_hyphen_values = true)]
     pub(crate) slope: Option<f64>,
 
-    /// Climb many hills, and print a table.
-    #[arg(long)]
-    pub(crate) campaign: bool,
-
-    /// Number of hills in a campaign, with consecutive seeds.
-    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
-    pub(crate) runs: u64,
-
-    /// Number of threads in a campaign [default: one per core].
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    pub(crate) threads: Option<NonZero<usize>>,
+    #[command(flatten)]
+    pub(crate) trials: CampaignArgs,
 
     #[command(flatten)]
     pub(crate) common: CommonArgs,

@@ -8,14 +8,13 @@ use super::Args;
 use super::args::Method;
 use super::climb::{Arrival, Summit, climb, equipped};
 use super::job::SECONDS;
-use crate::common::{Failure, Outcome, Report, rounded, share_out, threads};
+use crate::common::{Failure, Outcome, Report, rounded, wrong_seeds};
 use crate::driving::{Conditions, RESERVE};
 use crate::terrain::{Hike, Ride, median};
 
 /// A climb and what came of it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Trial {
-    pub(crate) seed: u64,
     pub(crate) method: Method,
     pub(crate) reached: bool,
     pub(crate) claims_top: bool,
@@ -33,8 +32,14 @@ impl Trial {
     pub(crate) fn is_lost(&self) -> bool {
         self.mishap.is_some_and(|mishap| mishap != Mishap::Stuck)
     }
+
+    fn is_good(&self) -> bool {
+        self.reached && !self.is_lost()
+    }
 }
 
+/// Hills of a campaign; each has the next seed.
+const HILLS: u64 = 200;
 /// The shares of climbs that are to reach the summit, and to be without a mishap; the most that the median
 /// path may be longer.
 const REACHED: f64 = 0.98;
@@ -44,7 +49,8 @@ const LONGEST: f64 = 2.5;
 /// The campaign's work.
 pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
     let trials = trials(args)?;
-    let of = |method: Method| trials.iter().filter(move |trial| trial.method == method);
+    let of =
+        |method: Method| trials.iter().map(|(_, trial)| trial).filter(move |trial| trial.method == method);
     let mut ways = Vec::new();
     for method in Method::ALL {
         let runs = of(method).count();
@@ -60,42 +66,43 @@ pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
             "median_path_ratio": rounded(ratio),
         }));
     }
-    let wrong: Vec<u64> = of(Method::Search)
-        .filter(|trial| !trial.reached || trial.is_lost())
-        .map(|trial| trial.seed)
-        .collect();
-    for trial in of(Method::Search).filter(|trial| wrong.contains(&trial.seed)) {
+    let is_good = |trial: &Trial| trial.method != Method::Search || trial.is_good();
+    for (seed, trial) in trials.iter().filter(|(_, trial)| !is_good(trial)) {
         args.common.tell(format_args!(
-            "seed {}: {:?}, claims the top: {}, {:.0} mm from it, {:.0} mm below",
-            trial.seed,
+            "seed {seed}: {:?}, claims the top: {}, {:.0} mm from it, {:.0} mm below",
             trial.mishap,
             trial.claims_top,
             1000.0 * trial.distance,
             1000.0 * trial.below
         ));
     }
-    let runs = args.runs as f64;
+    let runs = of(Method::Search).count();
     let reached = of(Method::Search).filter(|trial| trial.reached).count();
     let lost = of(Method::Search).filter(|trial| trial.is_lost()).count();
     let ratio = median(of(Method::Search).map(|trial| trial.path_ratio).collect());
-    let good = reached as f64 >= REACHED * runs && lost as f64 <= (1.0 - UNHARMED) * runs && ratio <= LONGEST;
+    let enough = reached as f64 >= REACHED * runs as f64 && lost as f64 <= (1.0 - UNHARMED) * runs as f64;
+    let good = enough && ratio <= LONGEST;
     let outcome = if good { Outcome::verdict("passed") } else { Outcome::failure("wrong") };
-    Ok(Report { sim_time: Some(trials.iter().map(|trial| trial.sim_time).sum()), ..Report::new(outcome) }
-        .field("runs", args.runs)
-        .field("reached", reached)
-        .field("mishaps", lost)
-        .field("median_path_ratio", rounded(ratio))
-        .table("ways", ways)
-        .field("wrong_seeds", wrong))
+    Ok(Report {
+        sim_time: Some(trials.iter().map(|(_, trial)| trial.sim_time).sum()),
+        ..Report::new(outcome)
+    }
+    .field("runs", runs)
+    .field("reached", reached)
+    .field("mishaps", lost)
+    .field("median_path_ratio", rounded(ratio))
+    .table("ways", ways)
+    .field("wrong_seeds", wrong_seeds(&trials, is_good)))
 }
 
-/// All climbs: each hill by each method, in the order of the seeds.
-pub(crate) fn trials(args: &Args) -> Result<Vec<Trial>, Failure> {
-    let count = args.runs * Method::ALL.len() as u64;
-    share_out("climbs", count, threads(args.threads), |index| {
-        let method = Method::ALL[index as usize % Method::ALL.len()];
-        trial(args, args.common.seed.wrapping_add(index / Method::ALL.len() as u64), method)
-    })
+/// All climbs, by seed: each hill by each method.
+pub(crate) fn trials(args: &Args) -> Result<Vec<(u64, Trial)>, Failure> {
+    let hills = args.trials.trials("hills", HILLS, args.common.seed, |seed| {
+        Method::ALL.into_iter().map(|method| trial(args, seed, method)).collect::<Result<Vec<_>, _>>()
+    })?;
+    let climbs =
+        hills.into_iter().flat_map(|(seed, climbs)| climbs.into_iter().map(move |climb| (seed, climb)));
+    Ok(climbs.collect())
 }
 
 fn trial(args: &Args, seed: u64, method: Method) -> Result<Trial, Failure> {
@@ -121,7 +128,6 @@ fn trial(args: &Args, seed: u64, method: Method) -> Result<Trial, Failure> {
     });
     let claims_top = run.ending.as_ref().is_ok_and(|ended| ended.arrival == Arrival::Top);
     Ok(Trial {
-        seed,
         method,
         reached: claims_top && ride.is_some_and(|ride| summit.is_reached(&ride.end)),
         claims_top,

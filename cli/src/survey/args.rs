@@ -1,6 +1,8 @@
 use std::path::PathBuf;
 
+use roverlab::drive::marine::SurveyParameters;
 use roverlab::geometry::units;
+use roverlab::world::World;
 
 use crate::common::{CampaignArgs, CommonArgs, OF_ONE_RUN};
 
@@ -10,8 +12,9 @@ use crate::common::{CampaignArgs, CommonArgs, OF_ONE_RUN};
     about = "Maps the floor of a pool in lanes under water, with the uncertainty of each depth",
     after_help = "\
 Without --world, Mako surveys the book's pool of 25 x 50 m, whose floor --seed draws: slopes, steps, or a bowl. A world needs
-water: a line `water_level MM`. Mako has a Doppler log, a compass and distance sensors; where the water ends at four straight
-sides, it localises by these too. It starts where the water is widest, unless the world or --start states a start.
+water: a line `water_level MM`. With --altitude, the floor is a ridge with slopes of 20 % in deeper water. Mako has a Doppler
+log, a compass and distance sensors; where the water ends at four straight sides, it localises by these too. It starts where the
+water is widest, unless the world or --start states a start.
 
 Cells are as wide as the spacing of the lanes; only those at least half a metre from the sides count. --map writes a colour
 picture, and beside it the depths as an ESRI grid (.asc) and all cells with their uncertainty as a table (.csv), in mm.
@@ -24,6 +27,7 @@ JSON fields:
   position_error_p95_mm       95th percentile of the position error
   inside_2_sigma_percent      share of the depths within two of their standard deviations
   way_ratio                   length of the path relative to area by spacing
+  altitude_rms_error_mm       with --altitude only: root mean square error of the altitude, from when it was first reached
   by_walls                    whether the sides were used for localisation
   map, picture
   rows                        with --campaign only: the table
@@ -37,6 +41,10 @@ pub(crate) struct Args {
     /// Depth of the craft's pressure sensor.
     #[arg(long, value_name = "MM", default_value = "500", value_parser = parse_depth, allow_hyphen_values = true)]
     pub(crate) depth: f64,
+
+    /// Altitude above the floor to hold, of the sensor that points down, instead of the depth, which is then the least one.
+    #[arg(long, value_name = "MM", value_parser = parse_altitude, allow_hyphen_values = true)]
+    pub(crate) altitude: Option<f64>,
 
     /// Write the map to a .png file, with .asc and .csv files beside it.
     #[arg(long, value_name = "OUT.png", value_parser = parse_map)]
@@ -56,6 +64,19 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("!campaign", &["runs", "threads"]),
 ]);
 
+impl Args {
+    /// The parameters of a survey in a world's water.
+    pub(super) fn parameters(&self, world: &World) -> SurveyParameters {
+        SurveyParameters {
+            spacing: self.spacing,
+            depth: self.depth,
+            altitude: self.altitude,
+            density: world.water.density,
+            ..SurveyParameters::default()
+        }
+    }
+}
+
 fn parse_spacing(text: &str) -> Result<f64, String> {
     let spacing = text.trim().parse().ok().filter(|spacing: &f64| (200.0..=100_000.0).contains(spacing));
     spacing.map(units::from_mm).ok_or_else(|| "expected 200 to 100000 mm".into())
@@ -64,6 +85,11 @@ fn parse_spacing(text: &str) -> Result<f64, String> {
 fn parse_depth(text: &str) -> Result<f64, String> {
     let depth = text.trim().parse().ok().filter(|depth: &f64| (300.0..=100_000.0).contains(depth));
     depth.map(units::from_mm).ok_or_else(|| "expected 300 to 100000 mm".into())
+}
+
+fn parse_altitude(text: &str) -> Result<f64, String> {
+    let altitude = text.trim().parse().ok().filter(|altitude: &f64| (200.0..=100_000.0).contains(altitude));
+    altitude.map(units::from_mm).ok_or_else(|| "expected 200 to 100000 mm".into())
 }
 
 fn parse_map(text: &str) -> Result<PathBuf, String> {

@@ -1,4 +1,4 @@
-use roverlab::drive::marine::{DepthMap, SurveyOutcome, SurveyParameters};
+use roverlab::drive::marine::{DepthMap, SurveyOutcome};
 use roverlab::geometry::{Point, Vector, units};
 use roverlab::picture::{Picture, Style, ramp};
 use roverlab::world::{Scene, World};
@@ -23,16 +23,10 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     for file in args.map.iter().flat_map(|file| map::files(file)) {
         check_writable("--map", &file)?;
     }
-    let scene = afloat(common, &surveyor(), || scene(common.seed))?;
-    let parameters = SurveyParameters {
-        spacing: args.spacing,
-        depth: args.depth,
-        density: scene.world.water.density,
-        ..SurveyParameters::default()
-    };
+    let scene = afloat(common, &surveyor(), || scene(common.seed, args.altitude))?;
     let site = Site::of(&scene.world, args.depth);
     let conditions = Conditions::new(common, limit(&site, args.spacing))?;
-    let done = tour(&scene, parameters, &conditions, paced(common))?;
+    let done = tour(&scene, args.parameters(&scene.world), &conditions, paced(common))?;
     let quality = &done.quality;
     let mut report = done
         .run
@@ -45,6 +39,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         .field("position_error_p95_mm", quality.position.map(millimetres))
         .field("inside_2_sigma_percent", percent(quality.inside))
         .field("way_ratio", rounded(quality.way))
+        .field("altitude_rms_error_mm", quality.altitude.map(millimetres))
         .field("by_walls", quality.by_walls)
         .field("map", &args.map);
     if let Some(file) = &args.map {

@@ -1,6 +1,6 @@
 use roverlab::drive::marine::{DepthMap, Survey, SurveyOutcome, SurveyParameters};
-use roverlab::geometry::{Point, Vector};
-use roverlab::io::control;
+use roverlab::geometry::{Point, Point3, Vector};
+use roverlab::io::{Psd, TruthInSpace, control};
 use roverlab::world::{Scene, World};
 
 use crate::common::Failure;
@@ -27,8 +27,14 @@ pub(super) struct Quality {
     /// Length of the way over area by spacing.
     pub(super) way: f64,
     pub(super) by_walls: bool,
+    /// Root mean square error of the altitude (m), where one is held.
+    pub(super) altitude: Option<f64>,
 }
 
+/// The sensor that points down.
+const DOWN: Psd = Psd(6);
+/// Metres from the altitude at which it counts as reached.
+const REACHED: f64 = 0.01;
 /// Metres off the sides at which cells begin.
 const OFF: f64 = 0.5;
 /// Points of a cell along each side, of which its true depth is the mean.
@@ -62,6 +68,7 @@ pub(super) fn tour(
         position: percentile(errors),
         way: run.truth.path_length * parameters.spacing / (size.x * size.y),
         by_walls: site.by_walls,
+        altitude: parameters.altitude.and_then(|wanted| altitude_error(scene, wanted, &run)),
         ..judged(&scene.world, &map, parameters.spacing)
     };
     Ok(Tour { run, map, quality })
@@ -101,7 +108,22 @@ fn judged(world: &World, map: &DepthMap, cell: f64) -> Quality {
         position: None,
         way: 0.0,
         by_walls: false,
+        altitude: None,
     }
+}
+
+/// The root mean square error of the altitude of the sensor that points down, from when it first was as wanted;
+/// `None` if it never was.
+fn altitude_error<T>(scene: &Scene, wanted: f64, run: &Run<T>) -> Option<f64> {
+    let sensor = scene.robots[0].spec.psds.iter().find(|psd| psd.id == DOWN.0)?.mount;
+    let error = |space: &TruthInSpace| {
+        let place = space.pose.to_world(Point3::new(sensor.x, sensor.y, sensor.z));
+        let floor = ground(&scene.world).map_or(Some(0.0), |ground| ground.height(place.xy()))?;
+        Some(place.z - floor - wanted)
+    };
+    let errors = run.in_space.iter().filter_map(error).skip_while(|error| error.abs() > REACHED);
+    let (sum, count) = errors.fold((0.0, 0_u32), |(sum, count), error| (sum + error * error, count + 1));
+    (count > 0).then(|| (sum / f64::from(count)).sqrt())
 }
 
 /// What 95 % of some numbers are at most.

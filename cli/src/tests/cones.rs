@@ -198,6 +198,20 @@ fn two_cars_do_not_touch() {
 }
 
 #[test]
+fn two_racers_of_different_kinds_race_for_places() {
+    for (rival, outcome) in [("gap", "won"), ("recorded", "beaten")] {
+        let (_, report, err) = race(&["--seed", "1", "--laps", "2", "--rival", rival]);
+        assert_eq!(err, "", "{report}");
+        assert!(report["outcome"] == outcome && report["touched"] == false, "{report}");
+        assert!(report["passed"] == true && report["rival_off_course"] == 0, "{report}");
+    }
+    for option in [&["--sensors", "camera"][..], &["--supervised"], &["--fault", "stuck@3"]] {
+        let (status, _, err) = race(&[&["--rival", "gap"], option].concat());
+        assert!(status == 2 && err.contains("a race for places, by lidar alone"), "{option:?}: {err}");
+    }
+}
+
+#[test]
 fn the_same_seed_gives_the_same_race() {
     let options = ["--track", "../tests/data/cones/oval.csv", "--laps", "2", "--seed", "4"];
     let [a, b] = [0, 1].map(|_| race(&options).1["lap_times_s"].clone());

@@ -181,7 +181,7 @@ fn a_blind_robot_collides_and_goes_on() {
 #[test]
 fn a_robot_that_fails_ends_the_run_with_its_error() {
     for (fault, error) in
-        [("link@2", "link"), ("lost:lidar@1.5", "lidar is gone"), ("nan:odometry@1", "odometry")]
+        [("link@2", "link"), ("lost:lidar@1.5", "lidar is gone"), ("nan:odometry@1", "observed pose")]
     {
         let ended = run(&["--fault", fault]);
         let report = ended.json();

@@ -142,6 +142,39 @@ fn what_cannot_be_done_is_refused_before_a_run() {
     assert!(refused(&["--statistics", "rows.txt"]).contains("expected the ending .csv, .svg, .png"));
     assert!(refused(&["--checkpoint", "/no/such/run.json"]).contains("found no folder /no/such"));
     assert!(refused(&["--checkpoint", "/dev/null"]).contains("/dev/null: a folder or a device; expected"));
+    assert!(refused(&["--figure", "snake"]).contains("expected book, planar, biped, hexapod, star, worm"));
+    assert!(refused(&["--figure", "no.toml"]).contains("no.toml"));
+    assert!(refused(&["--body"]).contains("found the figure book; expected one of limbs"));
+}
+
+#[test]
+fn bodies_evolve_with_their_gaits() {
+    let folder = folder("bodies");
+    for figure in ["biped", "hexapod", "worm"] {
+        let alone = evolved(&folder, &["--figure", figure]);
+        let together = evolved(&folder, &["--figure", figure, "--body"]);
+        let genes = |report: &Value| report["best_gait"].as_array().unwrap().len();
+        assert!(genes(&together) > genes(&alone), "{together}");
+    }
+    let compared = run(
+        "starman",
+        &[
+            "--compare",
+            "1",
+            "--figure",
+            "worm",
+            "--body",
+            "--population",
+            "4",
+            "--generations",
+            "2",
+            "--seconds",
+            "4",
+        ],
+    );
+    assert_eq!(compared.0, 0, "{}", compared.2);
+    assert!(compared.1["rows"][0]["together"].is_f64(), "{}", compared.1);
+    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]

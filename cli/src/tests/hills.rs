@@ -32,13 +32,15 @@ fn hill(name: &str) -> String {
 #[test]
 fn a_robot_finds_the_summit_of_a_world() {
     let world = hill("summit");
-    for options in [&["--robot", "Blizzard"][..], &["--method", "psd"], &["--method", "ascent"]] {
+    for method in ["search", "psd", "ascent"] {
         let options =
-            [&["--world", &world, "--start", "700,700,0", "--noise", "1", "--seed", "3"], options].concat();
+            ["--world", &world, "--start", "700,700,0", "--noise", "1", "--seed", "3", "--method", method];
         let (status, report, err): Ended = run("summit", &options);
         assert_eq!((status, err.as_str()), (0, ""), "{report}");
-        // On so smooth a top, a few millimetres in height are a hand's breadth aside.
-        assert!(["reached", "local_maximum"].contains(&report["outcome"].as_str().unwrap()), "{report}");
+        // Steepest ascent has no map: on so smooth a top, its sensors show a few millimetres in height no
+        // more, which are more than 100 mm aside.
+        let outcome = report["outcome"].as_str().unwrap();
+        assert!(outcome == "reached" || (method != "search" && outcome == "local_maximum"), "{report}");
         let (top, height) = (number(&report, "highest_reachable_mm"), number(&report, "height_mm"));
         assert!(top > 240.0 && (top - height).abs() < 15.0, "{report}");
         assert!(number(&report, "max_tilt_deg") < 30.0 && number(&report, "distance_mm") < 200.0, "{report}");
@@ -79,7 +81,7 @@ fn a_robot_crosses_levels() {
 fn levels_of_a_campaign_are_crossed() {
     let args = ramp::Args::try_parse_from(["ramp", "--campaign", "--runs", "2", "--noise", "1"]).unwrap();
     let trials = ramp::trials(&args).unwrap();
-    assert!(trials.iter().all(|trial| trial.crossed && !trial.is_lost()), "{trials:?}");
+    assert!(trials.iter().all(|(_, trial)| trial.crossed && !trial.is_lost()), "{trials:?}");
 }
 
 #[test]
@@ -88,7 +90,7 @@ fn a_campaign_tells_all_methods_apart() {
         summit::Args::try_parse_from(["summit", "--campaign", "--runs", "1", "--time-limit", "60"]).unwrap();
     let trials = summit::trials(&args).unwrap();
     assert_eq!(trials.len(), 3);
-    assert!(trials.iter().all(|trial| trial.sim_time <= 61.0 && !trial.is_lost()), "{trials:?}");
+    assert!(trials.iter().all(|(_, trial)| trial.sim_time <= 61.0 && !trial.is_lost()), "{trials:?}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Whole runs, by system.
 
+mod base_station;
 mod bug_compare;
 mod common_cli;
 mod cones;
@@ -7,6 +8,7 @@ mod distbug;
 mod distbug_campaign;
 mod driving;
 mod evolution;
+mod first_steps;
 mod grids;
 mod heed;
 mod hills;
@@ -15,11 +17,14 @@ mod lidar;
 mod maze_drives;
 mod mazes;
 mod navigate;
+mod parking;
 mod quadtree;
 mod recordings;
 mod safety;
 mod seeing;
+mod signs;
 mod support;
 mod swarms;
+mod traffic;
 mod wall_following;
 mod waters;

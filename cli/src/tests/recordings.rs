@@ -76,6 +76,7 @@ fn manage(words: &[&str]) -> Ended {
 /// Options for a short run of each command.
 fn short(program: &str) -> &'static [&'static str] {
     match program {
+        "base_station" => &["--cars", "2"],
         "bug_compare" => &["--bugs", "bug1,tangentbug"],
         "camera" => &["--images", "3"],
         "color_tracking" => &["--job", "home"],
@@ -86,6 +87,7 @@ fn short(program: &str) -> &'static [&'static str] {
         "lane_keeping" => &["--course", "3", "--minutes", "0.05"],
         "random_drive" => &["--robots", "3"],
         "safety" => &["--track", "../tests/data/cones/oval.csv", "--event", "radio"],
+        "traffic" => &["--course", "3"],
         "starman" => &["--population", "4", "--generations", "2", "--seconds", "4"],
         _ => &[],
     }
@@ -135,6 +137,11 @@ fn other_jobs_check() {
         ("omni", &["--seed", "9"]),
         ("cone_race", &["--track", TRACK, "--line", "../tests/data/cones/oval_line.csv", "--laps", "1"]),
         ("wall_following", &["--seed", "9"]),
+        ("first_steps", &["--task", "circle"]),
+        (
+            "starman",
+            &["--figure", "../cli/figures/worm.toml", "--body", "--population", "4", "--generations", "2"],
+        ),
     ] {
         assert_checks(name, options);
     }

@@ -39,7 +39,7 @@ const OVAL: [&str; 2] = ["--track", "../tests/data/cones/oval.csv"];
 type Drive = fn(&[&str]) -> Ended;
 
 /// The commands with a supervised robot, and times of faults in their runs (s).
-const PROGRAMS: [(&str, [f64; 2], Drive); 18] = [
+const PROGRAMS: [(&str, [f64; 2], Drive); 19] = [
     ("a_to_b", [2.0, 3.1], |options| run("a_to_b", options)),
     ("ackermann", [2.0, 3.1], |options| run("ackermann", options)),
     ("color_tracking", [2.0, 3.1], |options| run("color_tracking", options)),
@@ -47,6 +47,7 @@ const PROGRAMS: [(&str, [f64; 2], Drive); 18] = [
     ("cone_race", [2.0, 3.1], |options| run("cone_race", &[&OVAL, options].concat())),
     ("coverage", [2.0, 3.1], |options| run("coverage", options)),
     ("distbug", [2.0, 3.1], |options| run("distbug", options)),
+    ("first_steps", [2.0, 3.1], |options| run("first_steps", options)),
     // It ends before the third second.
     ("localise", [1.0, 2.0], |options| run("localise", options)),
     ("maze_explore", [2.0, 3.1], |options| run("maze_explore", options)),

@@ -216,6 +216,28 @@ fn motion_is_seen_where_it_is() {
 }
 
 #[test]
+fn a_robot_drives_to_what_moves() {
+    let ended = run("motion", &["--approach"]);
+    assert_outcome(&ended, "reached");
+    assert!(ended.1["distance_mm"].as_f64().unwrap() < 600.0, "{}", ended.1);
+    let still = run("motion", &["--approach", "--still", "--time-limit", "3"]);
+    assert_eq!(
+        (still.1["outcome"].as_str(), still.1["alarms"].as_u64()),
+        (Some("timed_out"), Some(0)),
+        "{}",
+        still.1
+    );
+}
+
+#[test]
+fn a_short_campaign_of_approaches_passes() {
+    let ended = run("motion", &["--approach", "--campaign", "--scenes", "10"]);
+    assert_outcome(&ended, "passed");
+    let (status, _, err) = run("motion", &["--scenes", "10"]);
+    assert!(status == 2 && err.contains("--scenes"), "{err}");
+}
+
+#[test]
 fn a_short_motion_campaign_passes() {
     let ended = run("motion", &["--campaign", "--pairs", "200"]);
     assert_outcome(&ended, "passed");

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use super::support::{Ended, folder, number, run, temporary};
+use super::support::{Ended, assert_outcome, folder, number, run, temporary};
 use crate::{coverage, follow_me};
 use clap::Parser;
 
@@ -24,6 +24,8 @@ fn robots_drive_at_random_without_touching_anything() {
         );
         assert_eq!(ended.1["robots"].to_string(), robots);
     }
+    let ended = run("random_drive", &["--campaign", "--runs", "4", "--time-limit", "60"]);
+    assert_outcome(&ended, "passed");
     let refused = run("random_drive", &["--robots", "3", "--fault", "link@1"]);
     assert!(refused.0 == 2 && refused.2.contains("several robots"), "{}", refused.2);
 }
@@ -56,6 +58,9 @@ fn nobody_is_lost() {
         &["--followers", "1"][..],
         &["--followers", "1", "--obstacles", "4"],
         &["--followers", "5"],
+        &["--followers", "1", "--pattern", "eight"],
+        &["--followers", "1", "--pattern", "zigzag"],
+        &["--followers", "1", "--pattern", "stop-and-go"],
         &["--followers", "5", "--mode", "radio", "--obstacles", "3"],
         &["--followers", "20", "--time-limit", "40"],
     ] {

@@ -11,6 +11,20 @@ fn mako_dives_and_holds_its_depth() {
     assert!(number(&ended.1, "settle_s") < 20.0 && number(&ended.1, "overshoot_mm") < 50.0, "{}", ended.1);
 }
 
+/// A fault stops its motors, and it comes up by itself.
+#[test]
+fn mako_comes_up_after_a_fault() {
+    let (_, report, err) = run("dive", &["--supervised", "--fault", "hang@20"]);
+    assert_eq!(
+        (&report["safety"][0]["state"], &report["collisions"]),
+        (&"SafeStop".into(), &0.into()),
+        "{report} {err}"
+    );
+    // Never at its depth after that, and never below it.
+    let (within, below) = (number(&report, "within_10mm_percent"), number(&report, "overshoot_mm"));
+    assert!(number(&report, "settle_s") < 20.0 && within == 0.0 && below < 10.0, "{report}");
+}
+
 #[test]
 fn threads_do_not_change_a_campaign() {
     let of = |threads| run("dive", &["--campaign", "--runs", "2", "--threads", threads]);
@@ -24,6 +38,21 @@ fn mako_goes_round_a_pool_without_touching_it() {
     let ended = run("pool_wall", &["--seed", "3"]);
     assert_outcome(&ended, "round");
     assert!(ended.1["collisions"] == 0 && number(&ended.1, "rms_error_mm") < 50.0, "{}", ended.1);
+}
+
+#[test]
+fn mako_comes_to_a_side_at_a_small_angle_without_touching_it() {
+    let ended = run("pool_wall", &["--seed", "96"]);
+    assert_outcome(&ended, "round");
+    assert_eq!(ended.1["collisions"], 0, "{}", ended.1);
+}
+
+#[test]
+fn a_survey_holds_its_altitude_up_and_down_a_ridge() {
+    let ended = run("survey", &["--altitude", "1000", "--spacing", "5000"]);
+    assert_outcome(&ended, "covered");
+    let error = number(&ended.1, "altitude_rms_error_mm");
+    assert!(error > 0.0 && error < 30.0 && ended.1["collisions"] == 0, "{}", ended.1);
 }
 
 /// A pool of a world's file, with a red thing.
@@ -57,6 +86,10 @@ fn something_red_is_found_in_turbid_water_and_only_there() {
     let ended = run("pool_search", &["--seed", "5", "--light", "0.5"]);
     assert_outcome(&ended, "found");
     assert!(number(&ended.1, "position_error_mm") < 150.0, "{}", ended.1);
+    // A pool whose width is no multiple of its ground's samples.
+    let ended = run("pool_search", &["--seed", "12"]);
+    assert_outcome(&ended, "found");
+    assert_eq!(ended.1["collisions"], 0, "{}", ended.1);
     let world = small_pool("searched", "water_level 1900\nturbidity 0.3\n");
     let ended = run("pool_search", &["--world", &world]);
     assert_outcome(&ended, "not_found");
@@ -86,6 +119,7 @@ fn what_is_no_water_is_refused() {
         ("boat", vec!["--world", &wet, "--course", "99000,0"], "outside"),
         ("boat", vec!["--course", "x"], "waypoints in mm"),
         ("survey", vec!["--spacing", "1"], "200 to"),
+        ("survey", vec!["--altitude", "1"], "200 to"),
         ("pool_search", vec!["--light", "-1"], "--light"),
         ("pool_search", vec!["--world", &wet, "--robot", "SolarRaft"], "camera"),
         ("dive", vec!["--depth", "9000"], "1.9 m"),

@@ -59,9 +59,8 @@ fn way(side: &Segment) -> Vector {
 fn contour(ground: &HeightField, height: f64) -> Vec<Segment> {
     let pitch = ground.pitch();
     let place = |column: usize, row: usize| {
-        let at = ground.area().min;
-        let at = Point::new(at.x + pitch.x * column as f64, at.y + pitch.y * row as f64);
-        (at, ground.height(at).unwrap_or(0.0))
+        let offset = pitch.component_mul(&Vector::new(column as f64, row as f64));
+        (ground.area().min + offset, ground.sample(column, row))
     };
     let mut sides = Vec::new();
     for row in 1..ground.rows() {
@@ -82,4 +81,24 @@ fn contour(ground: &HeightField, height: f64) -> Vec<Segment> {
         }
     }
     sides
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{LEVEL, pool};
+    use super::*;
+
+    /// Also where the last sample of the ground is, by its rounded place, just beyond it.
+    #[test]
+    fn the_shore_of_a_pool_is_its_rim_whatever_its_size() {
+        for size in 0..60 {
+            let size = [5.0 + 0.0713 * f64::from(size), 7.0 + 0.0931 * f64::from(size)];
+            let bounds = Shore::of(&pool(size, |_| 0.0), LEVEL - 0.5).bounds().unwrap();
+            let low = bounds.min.coords;
+            let high = Vector::from(size) - bounds.max.coords;
+            for rim in [low.x, low.y, high.x, high.y] {
+                assert!((0.2..0.8).contains(&rim), "{size:?}: {bounds:?}");
+            }
+        }
+    }
 }

@@ -11,13 +11,12 @@ use serde_json::Value;
 
 use super::{roverlab, said};
 
-/// Kills recording processes at random times; `ROVERLAB_KILLS` says how many. What is on disk is the
-/// beginning of the whole recording, and all of its complete chunks can be saved.
-#[test]
+/// Kills recording processes at random times. What is on disk is the beginning of the whole recording, and
+/// all of its complete chunks can be saved. A second process that wants to record to the same file is
+/// refused, and changes nothing.
 #[allow(clippy::disallowed_methods, reason = "processes are killed at times on the wall clock")]
-fn a_killed_process_loses_its_last_chunk_at_most() {
-    let kills = std::env::var("ROVERLAB_KILLS").ok().and_then(|kills| kills.parse().ok()).unwrap_or(4);
-    let log = Path::new(env!("CARGO_TARGET_TMPDIR")).join("killed.mcap");
+fn kill_recorders(kills: usize) {
+    let log = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("killed-{kills}.mcap"));
     let start = || {
         let _ = fs::remove_file(&log);
         let mut command = roverlab(&["distbug", "--json", "--seed", "2", "--record"]);
@@ -29,9 +28,18 @@ fn a_killed_process_loses_its_last_chunk_at_most() {
     let whole = fs::read(&log).unwrap();
     let mut times = Stream::new(1);
     let mut cut = 0;
-    for _ in 0..kills {
+    for kill in 0..kills {
         let mut child = start();
         thread::sleep(Duration::from_secs_f64(times.between(0.0, duration)));
+        if kill % 2 == 1 && log.exists() && child.try_wait().unwrap().is_none() {
+            let (_, said) =
+                said(roverlab(&["distbug", "--seed", "3", "--time-limit", "1", "--record"]).arg(&log));
+            let is_over = child.try_wait().unwrap().is_some();
+            assert!(is_over || said.contains("somebody who records to it"), "{said}");
+            if is_over {
+                continue;
+            }
+        }
         child.kill().unwrap();
         child.wait().unwrap();
         let Ok(part) = fs::read(&log) else { continue };
@@ -45,6 +53,20 @@ fn a_killed_process_loses_its_last_chunk_at_most() {
         }
     }
     println!("{cut} of {kills} recordings were cut off");
+}
+
+#[test]
+fn a_killed_process_loses_its_last_chunk_at_most() {
+    kill_recorders(4);
+}
+
+/// Takes minutes: `cargo nextest run -p roverlab-cli --run-ignored all -E 'test(killed::campaigns)'`.
+mod campaigns {
+    #[test]
+    #[ignore = "a campaign of minutes, by the command above"]
+    fn a_thousand_killed_processes_lose_their_last_chunk_at_most() {
+        super::kill_recorders(1000);
+    }
 }
 
 /// An evolution that keeps what it has come to in a folder.

@@ -1,8 +1,12 @@
 //! The program `roverlab` as a process: its warnings, robots behind the library of RoBIOS, runs that are killed, and
 //! the page.
 
+#[cfg(feature = "native")]
+mod grade;
 mod killed;
 mod robios;
+#[cfg(feature = "native")]
+mod tasks;
 #[cfg(feature = "view")]
 mod view;
 

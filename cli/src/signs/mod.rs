@@ -1,0 +1,162 @@
+//! The command `signs`.
+
+mod drawing;
+mod evaluation;
+mod faces;
+mod folder;
+mod frames;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use roverlab::vision::RgbView;
+use roverlab::vision::signs::{Area, SignFinder, SignModel, SignTrainer};
+
+use crate::common::{Failure, Outcome, PlainArgs, Report, Stopwatch};
+use evaluation::Evaluation;
+
+/// Command line of `signs`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    about = "Learns to find traffic signs and to tell their classes, from pictures with known boxes, and tries it on others",
+    after_help = "\
+A folder has a file boxes.csv and the pictures that it names. Its first line names the columns: `file`, `class`, and either
+`left`, `top`, `width`, `height` or `x1`, `y1`, `x2`, `y2`, in pixels. Where the pictures show little else than a sign, in the mean
+at least a quarter of the picture, only its class is learned and told, and its box is given; otherwise signs are searched for, and
+one is right if it has the class and at least half of what box and find cover together is in both. If boxes do not fit into
+their pictures, all pictures have been scaled since; boxes are then taken to have equal margins left and right, above and below.
+
+Without a folder it learns from, and is tried on, pictures that it draws: six faces at 0.4 to 1.5 m, turned by up to 35 degrees, in
+30 to 150 % of the light, blurred by motion. Signs of less than 20 pixels may be found, but need not be.
+
+JSON fields:
+  pictures                    number of pictures that it was tried on, or that it learned from
+  finds                       whether signs are searched for
+  classes                     rows: class, right, false, missed, precision, recall, f1
+  mean_precision, mean_recall, mean_f1
+  accuracy                    share of the signs whose class is right
+  weights, weights_hash       file that was written, and its hash
+  picture                     precision and recall of each class
+  timing                      with --timing: median_ms of a picture, or seconds of learning
+Outcomes: learned, evaluated."
+)]
+pub(crate) struct Args {
+    /// Folder to learn from.
+    #[arg(long, value_name = "FOLDER", conflicts_with = "evaluate", requires = "out")]
+    pub(crate) train: Option<PathBuf>,
+
+    /// File for what has been learned.
+    #[arg(long, value_name = "FILE.safetensors", requires = "train")]
+    pub(crate) out: Option<PathBuf>,
+
+    /// Folder to be tried on.
+    #[arg(long, value_name = "FOLDER", requires = "weights")]
+    pub(crate) evaluate: Option<PathBuf>,
+
+    /// File that --train wrote.
+    #[arg(long, value_name = "FILE.safetensors", requires = "evaluate")]
+    pub(crate) weights: Option<PathBuf>,
+
+    /// Pictures that are drawn to learn from.
+    #[arg(long, value_name = "N", default_value_t = 84, value_parser = clap::value_parser!(u32).range(7..=10_000), allow_hyphen_values = true)]
+    pub(crate) learn: u32,
+
+    /// Pictures that are drawn to be tried on.
+    #[arg(long, value_name = "N", default_value_t = 28, value_parser = clap::value_parser!(u32).range(1..=100_000), allow_hyphen_values = true)]
+    pub(crate) frames: u32,
+
+    #[command(flatten)]
+    pub(crate) plain: PlainArgs,
+}
+
+crate::common::shares_options!(Args, plain: PlainArgs, unheeded: [
+    ("always", &["animation"]),
+    ("train", &["frames", "learn", "picture"]),
+    ("evaluate", &["frames", "learn", "seed"]),
+]);
+
+/// A picture and its signs: their classes, by index, and boxes.
+#[derive(Debug, Clone)]
+struct Marked {
+    /// Where it comes from.
+    name: String,
+    pixels: Vec<u8>,
+    size: (usize, usize),
+    signs: Vec<(usize, Area)>,
+}
+
+impl Marked {
+    fn view(&self) -> RgbView<'_> {
+        RgbView::new(&self.pixels, self.size.0, self.size.1).expect("the pixels of its size")
+    }
+}
+
+/// The command's work.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    args.plain.check_picture()?;
+    let seed = args.plain.seed;
+    match (&args.train, &args.out, &args.evaluate, &args.weights) {
+        (Some(from), Some(out), ..) => train(from, out, seed),
+        (.., Some(folder), Some(weights)) => {
+            let evaluation = evaluate(folder, weights)?;
+            Ok(args.plain.draw(evaluation.report(), "signs.svg", || drawing::picture(&evaluation)))
+        }
+        _ => {
+            let names: Vec<String> = faces::NAMES.map(String::from).to_vec();
+            let model = learned(&names, &frames::drawn(args.learn, seed, "learned"), true, seed)?;
+            let pictures = frames::drawn(args.frames, seed, "tried");
+            let evaluation = Evaluation::by_search(&mut SignFinder::new(model), &pictures, frames::LEAST)?;
+            Ok(args.plain.draw(evaluation.report(), "signs.svg", || drawing::picture(&evaluation)))
+        }
+    }
+}
+
+fn train(from: &Path, out: &Path, seed: u64) -> Result<Report, Failure> {
+    let watch = Stopwatch::start();
+    let folder = folder::read(from, None)?;
+    let model = learned(&folder.names, &folder.pictures, folder.finds(), seed)?;
+    let bytes = model.to_safetensors().map_err(Failure::run)?;
+    fs::write(out, &bytes).map_err(|error| Failure::run(format!("--out {}: {error}", out.display())))?;
+    Ok(Report::new(Outcome::verdict("learned"))
+        .field("pictures", folder.pictures.len())
+        .field("finds", model.finds())
+        .field("weights_hash", format!("{:016x}", hash(&bytes)))
+        .field("weights", out.display().to_string())
+        .timing("seconds", watch.seconds()))
+}
+
+/// FNV-1a of 64 bits.
+fn hash(bytes: &[u8]) -> u64 {
+    bytes
+        .iter()
+        .fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
+fn learned(names: &[String], pictures: &[Marked], finds: bool, seed: u64) -> Result<SignModel, Failure> {
+    let mut trainer = SignTrainer::new(names.iter().map(String::as_str))?;
+    for picture in pictures {
+        trainer
+            .add(picture.view(), &picture.signs)
+            .map_err(|error| Failure::input(format!("{}: {error}", picture.name)))?;
+    }
+    let model = if finds { trainer.finder(seed) } else { trainer.classifier(seed) };
+    model.map_err(Failure::input)
+}
+
+fn evaluate(folder: &Path, weights: &Path) -> Result<Evaluation, Failure> {
+    let fail = |error: String| Failure::input(format!("--weights {}: {error}", weights.display()));
+    let bytes = fs::read(weights).map_err(|error| fail(error.to_string()))?;
+    let model = SignModel::from_safetensors(&bytes).map_err(|error| fail(error.to_string()))?;
+    let folder = folder::read(folder, Some(model.names()))?;
+    if folder.finds() && !model.finds() {
+        return Err(fail(
+            "they tell classes of signs whose places are known; expected ones that find signs".into(),
+        ));
+    }
+    let mut finder = SignFinder::new(model);
+    if folder.finds() {
+        Evaluation::by_search(&mut finder, &folder.pictures, 0.0)
+    } else {
+        Evaluation::by_boxes(&mut finder, &folder.pictures)
+    }
+}

@@ -1,0 +1,65 @@
+//! The command `traffic` as a whole.
+
+use std::fs;
+
+use serde_json::Value;
+
+use super::support::{assert_outcome, number, run, temporary, text};
+
+/// Row of an element in a report.
+fn row<'r>(report: &'r Value, element: &str) -> &'r Value {
+    let rows = report["elements"].as_array().unwrap();
+    rows.iter().find(|row| row["element"] == element).unwrap()
+}
+
+/// A lap of an oval with a stop line, a crosswalk and boxes.
+#[test]
+fn a_car_masters_what_is_on_a_course_of_a_file() {
+    let file = temporary("traffic.course");
+    let road = "straight 4000\nstop-line\nstraight 4000\narc 1600 180\nstraight 2000\nzebra\nstraight 6000\narc 1600 180\n";
+    fs::write(&file, format!("course 1\nlane 420\nstart-line\n{road}")).unwrap();
+    let ended = run("traffic", &["--course", text(&file), "--laps", "1", "--noise", "1"]);
+    assert_outcome(&ended, "finished");
+    let report = &ended.1;
+    assert_eq!(row(report, "stop line")["right"], 1, "{report}");
+    assert_eq!(row(report, "crosswalk with pedestrian")["right"], 1, "{report}");
+    assert_eq!(report["collisions"], 0, "{report}");
+    assert!(number(report, "points") >= 0.7 * number(report, "points_possible"), "{report}");
+}
+
+/// The same lap takes longer where a painted number limits the speed.
+#[test]
+fn a_car_slows_down_in_a_speed_zone() {
+    let zone = include_str!("../../../tests/data/courses/speed-zone.course");
+    let is_open = |line: &&str| !line.starts_with("speed");
+    let open = zone.lines().filter(is_open).collect::<Vec<_>>().join("\n");
+    let [limited, free] = [zone, &open].map(|course| {
+        let file = temporary("speed-zone.course");
+        fs::write(&file, course).unwrap();
+        let ended = run("traffic", &["--course", text(&file), "--laps", "1", "--noise", "1"]);
+        assert_outcome(&ended, "finished");
+        number(&ended.1, "sim_time_s")
+    });
+    assert!(limited > free + 5.0, "{limited} {free}");
+}
+
+/// On its crosswalk, the two lines of the road's middle and a stripe are as wide as a pedestrian.
+#[test]
+fn a_car_leaves_a_crosswalk_when_the_pedestrian_is_gone() {
+    let ended = run("traffic", &["--course", "5", "--laps", "1", "--noise", "1"]);
+    assert_outcome(&ended, "finished");
+    assert_eq!(row(&ended.1, "crosswalk with pedestrian")["right"], 1, "{}", ended.1);
+}
+
+#[test]
+fn what_is_no_scene_for_traffic_is_refused_by_name() {
+    let file = temporary("small.course");
+    fs::write(&file, "course 1\nscale 0.5\nstraight 6000\narc 1500 180\nstraight 6000\narc 1500 180\n")
+        .unwrap();
+    let (status, _, err) = run("traffic", &["--course", text(&file)]);
+    assert!(status == 2 && err.contains("found a scale of 0.5; expected 1"), "{err}");
+    let (status, _, err) = run("traffic", &["--laps", "0"]);
+    assert!(status == 2 && err.contains("--laps"), "{err}");
+    let (status, _, err) = run("traffic", &["--campaign", "--course", "3"]);
+    assert!(status == 2 && err.contains("--course"), "{err}");
+}
