@@ -2,6 +2,7 @@
 //! by itself (member `web`), or is beside a run: the module `serve`, with the feature of that name, serves it
 //! from a running program.
 
+mod face;
 mod frame;
 mod message;
 mod overlay;
@@ -11,6 +12,7 @@ mod scene;
 #[cfg(feature = "serve")]
 pub mod serve;
 
+pub use face::{Face, Look};
 pub use frame::{Displayed, Frames, IMAGE_INTERVAL, Shown};
 pub use message::Message;
 pub use overlay::overlay_json;

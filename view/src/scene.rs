@@ -86,6 +86,7 @@ fn robot(robot: &RobotPlacement) -> Value {
         DriveSpec::Omni { wheel_diameter, track, wheelbase, .. } => {
             ("omni", wheel_diameter, track, wheelbase)
         }
+        DriveSpec::Craft(_) => ("craft", 0.0, 0.0, 0.0),
         _ => ("other", 0.0, 0.0, 0.0),
     };
     let psds = spec.psds.iter().map(|psd| {

@@ -23,7 +23,7 @@ export class View {
 
   readColours() {
     const style = getComputedStyle(document.documentElement);
-    for (const name of ["page", "floor", "grid", "wall", "ink", "soft", "lidar", "psd", "belief", "goal", "bad", "accent", "panel"]) {
+    for (const name of ["page", "floor", "grid", "wall", "ink", "soft", "lidar", "psd", "belief", "goal", "bad", "accent", "panel", "water"]) {
       this.colours[name] = style.getPropertyValue(`--${name}`).trim();
     }
     this.colours.robots = ["robot", "robot-2", "robot-3", "robot-4", "robot-5", "robot-6"]
@@ -118,7 +118,7 @@ export class View {
 
   floor(scene) {
     const { context, colours } = this, [left, bottom, right, top] = scene.floor;
-    context.fillStyle = colours.floor;
+    context.fillStyle = scene.robots.some(({ drive }) => drive === "craft") ? colours.water : colours.floor;
     context.fillRect(left, bottom, right - left, top - bottom);
     if (scene.relief) this.relief(scene.relief);
     const step = [0.1, 0.5, 1, 5, 10, 50, 100].find((step) => step * this.scale >= 24);

@@ -4,6 +4,8 @@ import { Live } from "./live.js";
 import { Recording } from "./recording.js";
 import { View } from "./draw.js";
 import { attach } from "./pointer.js";
+import { Desk } from "./desk.js";
+import { PROGRAM, optionsIn } from "./programs.js";
 import { CHAPTERS, RANK, nameOf, optionFor } from "./systems.js";
 import { fill, optionsOf, wordsOf } from "./options.js";
 import { fromHash, toHash } from "./link.js";
@@ -39,11 +41,17 @@ function start(from = 0) {
   $("drawing").hidden = true;
   $("picture").replaceChildren();
   history.replaceState(null, "", toHash(run));
-  const command = commandOf(run.command);
-  const job = { words: wordsOf(command, run.values), wishes: run.wishes, walls: run.walls, from };
-  $("command").textContent = `roverlab ${job.words.join(" ")}`;
+  const words = wordsOf(commandOf(run.command), run.values), receive = (bytes, entries) => entries.forEach((entry) => hear(bytes, entry, from));
+  const job = { words, wishes: run.wishes, walls: run.walls, from };
   showHands();
-  runner.start(JSON.stringify(job), files, (bytes, entries) => entries.forEach((entry) => hear(bytes, entry, from)), over);
+  if (run.command === PROGRAM.name) {
+    runner.stop();
+    $("command").textContent = desk.start(job, files, receive, over);
+  } else {
+    desk.stop();
+    $("command").textContent = `roverlab ${words.join(" ")}`;
+    runner.start(JSON.stringify(job), files, receive, over);
+  }
   playing = true;
   update();
 }
@@ -311,7 +319,16 @@ function devices(frame) {
 
 function pressKey(key) {
   if (live) return live.press(selected ?? 0, key);
+  if (run.command === PROGRAM.name) return keyInProgram(key);
   byHand({ time: round(time), key, of: selected ?? 0 });
+}
+
+// What has pressed the keys of a program by itself so far does so no more, so that the run begins again.
+function keyInProgram(key) {
+  const from = desk.press(key, round(time)) && time > FRAME ? time : 0;
+  showOptions();
+  start(from);
+  if (from) time = from;
 }
 
 // ---- hands
@@ -347,6 +364,8 @@ function set(values) {
   }
   showOptions();
 }
+
+const desk = new Desk({ run, area: $("code"), menu: $("which"), begin: () => ACTIONS.go(), again: openProgram });
 
 attach($("stage"), {
   view, moment, drawing: () => drawing, mayMove: () => live === null, redraw: () => { dirty = true; },
@@ -392,7 +411,8 @@ function showSystems() {
 
 function showOptions() {
   const command = commandOf(run.command);
-  fill($("options"), command, run.values, files, (name, value, given = value !== undefined) => {
+  const known = run.command === PROGRAM.name ? new Map([...desk.worlds, ...files]) : files;
+  fill($("options"), command, run.values, known, (name, value, given = value !== undefined) => {
     // The form stays as it is: it has the focus.
     if (given) run.values[name] = value;
     else delete run.values[name];
@@ -412,12 +432,42 @@ function open(found) {
     if (current) link.scrollIntoView({ block: "nearest" });
   }
   closeMenu();
+  $("program").hidden = run.command !== PROGRAM.name;
+  if (run.command === PROGRAM.name) return openProgram();
   showOptions();
   start();
 }
 
+async function openProgram() {
+  runner.stop();
+  ended = null;
+  if (!desk.isLoaded) notice("Python is being loaded", true);
+  try {
+    await desk.open();
+  } catch (error) {
+    return notice(error.message);
+  }
+  if (run.command !== PROGRAM.name) return;
+  showOptions();
+  start();
+}
+
+function halt() {
+  if (!desk.busy) return;
+  desk.stop();
+  ended = { status: 1, output: `${run.values.program}: stopped`, errors: "", seconds: (performance.now() - started) / 1000 };
+  // Shown at once, however short ago something else was.
+  updated = 0;
+  update();
+}
+
 async function take(list) {
   if (live) return;
+  const source = list.find((file) => file.name.endsWith(".py"));
+  if (source && commandOf(PROGRAM.name) === PROGRAM) {
+    const text = await source.text();
+    return open({ command: PROGRAM.name, values: { program: source.name, text, ...optionsIn(text) }, wishes: [], walls: [] });
+  }
   const added = [];
   for (const file of list) {
     files.set(file.name, await file.arrayBuffer());
@@ -489,11 +539,17 @@ const ACTIONS = {
   step: () => { play(false); seek(time + FRAME); },
   "zoom-in": () => { view.zoom(1.3); dirty = true; },
   "zoom-out": () => { view.zoom(1 / 1.3); dirty = true; },
-  fit, theme, share,
+  fit, theme, share, halt,
+  go: () => { desk.take(); start(); },
   follow: () => toggle("follow"),
   draw: () => toggle("draw"),
   open: () => $("file").click(),
-  reset: () => { Object.assign(run, { values: {}, wishes: [], walls: [] }); showOptions(); start(); },
+  reset: () => {
+    if (run.command === PROGRAM.name) return desk.reset();
+    Object.assign(run, { values: {}, wishes: [], walls: [] });
+    showOptions();
+    start();
+  },
   layers: () => {
     $("layer-box").hidden = !$("layer-box").hidden;
     $("layers").setAttribute("aria-expanded", String(!$("layer-box").hidden));
@@ -520,7 +576,7 @@ function listen() {
   addEventListener("hashchange", () => { if (!live) open(fromHash(location.hash)); });
   addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const { target } = event, typed = target.closest?.("input, select, textarea");
+    const { target } = event, typed = target.closest?.("input, select, textarea, .CodeMirror");
     if (event.key !== "Escape" && (typed || (target.closest?.("button, a, summary") && [" ", "Enter"].includes(event.key)))) return;
     const act = SHORT[event.key];
     if (!act) return;
@@ -546,7 +602,7 @@ const page = {
   get state() {
     return {
       command: run.command, values: run.values, wishes: run.wishes, walls: run.walls, time, playing, end: recording?.end ?? 0,
-      frames: recording?.frames.length ?? 0, ended, first: first === null ? null : first - started, selected, busy: runner?.busy ?? true,
+      frames: recording?.frames.length ?? 0, ended, first: first === null ? null : first - started, selected, busy: (runner?.busy ?? true) || desk.busy,
     };
   },
   get view() { return view; },
@@ -579,6 +635,7 @@ async function main() {
     }
   }, (failed) => {
     if (failed) return notice(failed);
+    if (document.body.dataset.programs !== undefined) commands.push(PROGRAM);
     showSystems();
     open(fromHash(location.hash || "#distbug"));
   });

@@ -6,7 +6,12 @@ export const MESSAGE = { scene: 1, frame: 2, told: 3, ended: 4, panicked: 5, pic
 async function loaded(id, file) {
   const element = document.getElementById(id);
   if (!element) return new Uint8Array(await (await fetch(file)).arrayBuffer());
-  const packed = Uint8Array.from(atob(element.textContent.trim()), (letter) => letter.charCodeAt(0));
+  return unpacked(element.textContent);
+}
+
+// Bytes of their deflated form in Base64.
+export async function unpacked(text) {
+  const packed = Uint8Array.from(atob(text.trim()), (letter) => letter.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }

@@ -1,25 +1,31 @@
 // The systems of the page: what they are called here, and the options that a page has another way of giving, or none.
 
 export const CHAPTERS = [
-  ["Driving", ["a-to-b", "random-drive", "coverage"]],
+  ["Driving", ["first-steps", "ping", "a-to-b", "random-drive", "coverage"]],
   ["Lidar", ["lidar-scan", "localise"]],
   ["Swarms", ["follow-me"]],
   ["Walls", ["wall-following"]],
   ["Other drives", ["ackermann", "omni"]],
-  ["Hills", ["summit"]],
+  ["Hills", ["summit", "ramp"]],
+  ["Water", ["pool-wall", "dive", "survey", "pool-search", "boat"]],
   ["Mazes", ["maze-left", "maze-lidar", "maze-explore", "micromouse"]],
   ["Navigation", ["distbug", "bug-compare", "navigate"]],
   ["Robot vision", ["camera", "edges", "color-tracking", "motion"]],
   ["Evolution", ["genetic"]],
-  ["Driverless cars", ["lane-keeping"]],
+  ["Driverless cars", ["lane-keeping", "traffic", "parking", "base-station"]],
   ["Formula SAE", ["cone-race", "cone-drive", "safety"]],
+  ["Programs", ["program"]],
 ];
 
 const NAMES = {
   "a-to-b": "From A to B", "color-tracking": "Colour tracking", ackermann: "A car", omni: "Mecanum wheels", distbug: "DistBug",
   "bug-compare": "Eleven bugs", motion: "Motion detection", genetic: "Evolved wall follower", "cone-race": "Cone race",
-  summit: "To the summit", "maze-left": "Left hand", "maze-lidar": "Left wall by lidar", "maze-explore": "Exploring a maze", safety: "Safety system",
-  "lidar-scan": "Lidar scan", "follow-me": "Follow me", edges: "Edges in images",
+  summit: "To the summit", ramp: "A ramp over the lane", "pool-wall": "Along a pool's sides", survey: "A map of a pool",
+  boat: "A raft on its course", "maze-left": "Left hand", "maze-lidar": "Left wall by lidar", "maze-explore": "Exploring a maze",
+  safety: "Safety system", "lidar-scan": "Lidar scan", "first-steps": "To a wall and back", ping: "Ping by radio",
+  "follow-me": "Follow me", edges: "Edges in images", program: "Programs in Python", dive: "To a depth",
+  traffic: "Obstacles and halts", parking: "Parking a car",
+  "base-station": "Cars and a base station", "base-station": "Cars under a base station",
 };
 
 export function nameOf(command) {
@@ -34,7 +40,7 @@ export const FILES = ["world", "robot", "track", "maze", "line", "input"];
 const HIDDEN = new Set([
   "record", "force", "fsync", "replay", "picture", "robios", "json", "timing", "realtime", "threads", "processes", "checkpoint", "campaign", "worlds",
   "levels", "save", "runs", "animation", "output", "lcd", "plan", "compare", "steps", "mms", "mms-run", "mms-limit", "rooms",
-  "starts", "scenes", "pairs", "courses", "second", "families", "explore", "repeat",
+  "map", "starts", "scenes", "pairs", "courses", "second", "families", "explore", "repeat",
 ]);
 
 export function isShown(option) {
@@ -54,6 +60,8 @@ export const OVERRIDES = {
   },
   genetic: { options: { task: { default: "wall", always: true }, generations: { default: "5", always: true } } },
   camera: { options: { images: { default: "40", always: true } } },
+  traffic: { options: { laps: { default: "1", always: true } } },
+  "base-station": { options: { cars: { default: "2", always: true } } },
 };
 
 // Which option a dropped file is for, by the end of its name; companions of a world's file have none.

@@ -56,6 +56,13 @@ impl Job {
     }
 }
 
+/// A file of the page. Files are opened without their folders, so the last part of a name must suffice.
+pub(crate) fn file_of<'a>(files: &'a BTreeMap<String, Vec<u8>>, name: &str) -> Option<&'a Vec<u8>> {
+    let last = |name: &str| name.rsplit(['/', '\\']).next().unwrap_or_default().to_lowercase();
+    let found = files.get(name);
+    found.or_else(|| files.iter().find(|(other, _)| last(other) == last(name)).map(|(_, file)| file))
+}
+
 fn list<'a>(job: &'a Value, name: &str) -> &'a [Value] {
     job[name].as_array().map_or(&[], Vec::as_slice)
 }

@@ -2,7 +2,7 @@
 // Needs `npm ci --prefix web/tests`, and Chromium: `chromium`, or what CHROMIUM names.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdirSync, readFileSync } from "node:fs";
+import { existsSync, mkdirSync, readFileSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath, pathToFileURL } from "node:url";
@@ -20,6 +20,11 @@ const DESKTOP = { width: 1280, height: 800 }, PHONE = { width: 390, height: 844 
 // Runs are made of a line each: the words of a command line, and the digest of what the page shows of it.
 const RUNS = readFileSync(join(here, "digests.txt"), "utf8").split("\n").filter((line) => line && !line.startsWith("#"))
   .map((line) => ({ words: line.split(" ").slice(0, -1), digest: line.split(" ").at(-1) }));
+// What the runner says of programs: their names, and its JSON.
+const PROGRAMS = readFileSync(join(here, "programs.txt"), "utf8").trim().split("\n")
+  .map((line) => ({ name: line.split(" ", 1)[0], report: JSON.parse(line.slice(line.indexOf(" "))) }));
+// Programs need the second file, which is built where Pyodide is.
+const WITHOUT_PYTHON = existsSync(join(dirname(fileURLToPath(PAGE)), "roverlab-programs.js")) ? false : "there is no roverlab-programs.js";
 
 // Chromium, by its path or by its name.
 function executable() {
@@ -122,7 +127,7 @@ test("every system of the command line that drives a robot is listed", async () 
   await over(page);
   const listed = await page.evaluate(() => [...document.querySelectorAll("#systems a")].map((link) => link.dataset.command));
   const tested = RUNS.map(({ words }) => words[0]);
-  assert.deepEqual([...listed].sort(), [...new Set(tested)].sort());
+  assert.deepEqual(listed.filter((name) => name !== "program").sort(), [...new Set(tested)].sort());
   await close(page);
 });
 
@@ -233,6 +238,7 @@ test("a world is opened from a file, and dropped", async () => {
   const maze = "o---o---o\n|     G |\no   o---o\n| S |   |\no---o---o\n";
   await over(page);
   await page.setInputFiles("#file", { name: "small.maz", mimeType: "text/plain", buffer: Buffer.from(maze) });
+  await until(page, () => window.roverlab.state.values.world === "small.maz");
   await over(page);
   let { values, ended } = await state(page);
   assert.equal(values.world, "small.maz");
@@ -316,14 +322,87 @@ test("it hurries, and draws smoothly", async (context) => {
       const begin = performance.now();
       let frames = 0;
       for (; performance.now() - begin < 1000; frames++) window.roverlab.drawAt((state.end * (frames % 97)) / 97);
-      return { first: state.first, hurry: state.end / state.ended.seconds, frames, scale: view.scale, seek: typeof seek };
+      // The pictures that come while it plays, of at most as many as the screen has.
+      window.roverlab.pause();
+      window.roverlab.seek(0);
+      document.getElementById("play").click();
+      const before = window.roverlab.drawn, start = performance.now();
+      while (performance.now() - start < 2000) await new Promise(requestAnimationFrame);
+      const played = (1000 * (window.roverlab.drawn - before)) / (performance.now() - start);
+      return { played, first: state.first, hurry: state.end / state.ended.seconds, frames, scale: view.scale, seek: typeof seek };
     });
     await close(page);
     return found;
   };
   for (const hash of ["#distbug", "#follow-me?followers=99"]) {
-    const { first, hurry, frames } = await measure(hash);
-    context.diagnostic(`${hash}: first picture ${first.toFixed(0)} ms, ${hurry.toFixed(0)} times real time, ${frames} pictures a second`);
+    const { first, hurry, frames, played } = await measure(hash);
+    context.diagnostic(`${hash}: first picture ${first.toFixed(0)} ms, ${hurry.toFixed(0)} times real time, `
+      + `${frames} pictures a second, ${played.toFixed(0)} while it plays`);
     assert.ok(frames >= 60, `${hash}: ${frames} pictures a second`);
   }
+});
+
+// Runs a program: what its address says of it.
+async function runProgram(page, options) {
+  await page.evaluate((query) => { location.hash = `program?${query}`; }, new URLSearchParams(options).toString());
+  await page.waitForFunction((program) => {
+    const { values, ended, busy } = window.roverlab.state;
+    return values.program === program && ended && !busy;
+  }, options.program, { timeout: 300_000, polling: 50 });
+  return (await state(page)).ended;
+}
+
+test("programs in Python end as under the runner", { skip: WITHOUT_PYTHON }, async (context) => {
+  const page = await open("#distbug");
+  await over(page);
+  for (const { name, report } of PROGRAMS) {
+    const { report: found, seconds } = await runProgram(page, { program: name });
+    assert.deepEqual(found, report, name);
+    context.diagnostic(`${name}: ${report.sim_time_s} s in ${seconds.toFixed(2)} s`);
+  }
+  await pause(page, 5);
+  assert.ok(await colours(page, "stage") > 20, "something is drawn");
+  await keep(page, "program-light");
+  await page.emulateMedia({ colorScheme: "dark" });
+  await keep(page, "program-dark");
+  await page.setViewportSize(PHONE);
+  await page.waitForTimeout(150);
+  const [wide, seen] = await page.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
+  assert.ok(wide <= seen, `nothing sticks out of a phone: ${wide} in ${seen} pixels`);
+  await keep(page, "program-phone");
+  await close(page);
+});
+
+test("a program that loops for ever is stopped within a second", { skip: WITHOUT_PYTHON }, async () => {
+  const page = await open("#program?program=a.py&text=from+eye+import+*%0AVWSetSpeed(100,0)%0AOSWait(500)%0Awhile+True:+pass");
+  await until(page, () => window.roverlab?.recording);
+  const [taken, busy] = await page.evaluate(() => {
+    const begin = performance.now();
+    document.getElementById("halt").click();
+    return [performance.now() - begin, window.roverlab.state.busy];
+  });
+  assert.ok(taken < 1000 && !busy, `${taken} ms`);
+  assert.match(await page.locator("#status").textContent(), /stopped/i);
+  // The time limit ends what goes on calling, whatever it catches.
+  const text = "from eye import *\nwhile True:\n    try:\n        OSWait(100)\n    except:\n        pass\n";
+  const { report } = await runProgram(page, { program: "b.py", text, "time-limit": "5" });
+  assert.deepEqual([report.outcome, report.sim_time_s], ["timed_out", 5]);
+  await close(page);
+});
+
+test("a program is written, its errors are told, and its keys are pressed", { skip: WITHOUT_PYTHON }, async () => {
+  const page = await open("#program");
+  await over(page);
+  const failed = await runProgram(page, { program: "c.py", text: "from eye import *\nLCDPrintf('%d', 1 / 0)\n" });
+  assert.deepEqual([failed.report.outcome, failed.report.exit, failed.report.error], ["failed", 1, "ZeroDivisionError: division by zero"]);
+  const waits = "from eye import *\nLCDMenu('A', 'B', '', '')\nLCDPrintf('%d', KEYGet())\nOSWait(3000)\n";
+  assert.equal((await runProgram(page, { program: "d.py", text: waits })).report.lcd_text, "1");
+  await page.evaluate(() => { window.roverlab.pause(); window.roverlab.seek(0.5); });
+  await page.click("#keys button:nth-child(2)");
+  await over(page);
+  assert.equal((await state(page)).ended.report.lcd_text, "2");
+  await page.selectOption("#which", "book/keys.py");
+  await page.waitForFunction(() => window.roverlab.state.values.program === "book/keys.py" && window.roverlab.state.ended && !window.roverlab.state.busy);
+  assert.equal((await state(page)).values.text, undefined);
+  await close(page);
 });

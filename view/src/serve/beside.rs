@@ -4,7 +4,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use image::RgbImage;
-use roverlab::geometry::{Point, Pose};
 use roverlab::io::log::{RobotMessages, RobotTopic, Topic, scene_message};
 use roverlab::io::sim::{Onlooking, Watcher};
 use roverlab::io::{Key, LidarScan, Psd};
@@ -14,7 +13,7 @@ use serde_json::json;
 
 use super::hub::{Channel, Hub, Keep};
 use super::server::{Opening, Server};
-use crate::{Displayed, Frames, IMAGE_INTERVAL, Message, Shown, overlay_json, scene_json};
+use crate::{Face, Frames, IMAGE_INTERVAL, Look, Message, Shown, overlay_json, scene_json};
 
 /// The page beside a run, and other viewers. On drop, viewers receive the rest, and their connections end.
 pub struct Beside {
@@ -37,17 +36,6 @@ pub trait Devices: fmt::Debug + Send {
 
     /// Presses a soft key of a robot.
     fn press(&self, robot: usize, key: Key);
-}
-
-/// A display outside of the world.
-#[derive(Debug, Clone)]
-pub struct Face {
-    /// Number of changes so far, from 1.
-    pub drawings: u64,
-    /// Its pixels.
-    pub image: Arc<RgbImage>,
-    /// The labels of the soft keys, with line feeds between.
-    pub menu: String,
 }
 
 /// Number of a run's last lines that a later page receives.
@@ -217,7 +205,7 @@ impl Camera {
         if let Some(devices) = &self.devices {
             self.faces = (0..self.robots.len()).map(|robot| devices.face(robot)).collect();
         }
-        let world = &Look { world, faces: self.devices.is_some().then_some(&self.faces) };
+        let world = &Look { world, faces: self.devices.is_some().then_some(self.faces.as_slice()) };
         if self.page.is_wanted() {
             let pages = self.hub.pages();
             if pages != self.pages {
@@ -246,44 +234,6 @@ impl Camera {
             let time = f64::from_bits(self.time.load(Ordering::Relaxed));
             self.hub.publish(channel, nanoseconds(time), &message(messages, time), Keep::No);
         }
-    }
-}
-
-/// A world with displays of its own, or those of devices.
-struct Look<'a, 'e> {
-    world: &'a Onlooking<'e>,
-    faces: Option<&'a Vec<Option<Face>>>,
-}
-
-impl Shown for Look<'_, '_> {
-    fn time(&self) -> f64 {
-        self.world.time()
-    }
-
-    fn pose(&self, robot: usize) -> Option<Pose> {
-        self.world.pose(robot)
-    }
-
-    fn odometry(&self, robot: usize) -> Option<Pose> {
-        self.world.odometry(robot)
-    }
-
-    fn contacts(&self, robot: usize) -> Option<(u32, &[Point])> {
-        self.world.contacts(robot)
-    }
-
-    fn display(&self, robot: usize) -> Option<Displayed<'_>> {
-        let Some(faces) = self.faces else { return Shown::display(self.world, robot) };
-        let Face { drawings, image, menu } = faces.get(robot)?.as_ref()?;
-        Some(Displayed { drawings: *drawings, image, menu: menu.clone() })
-    }
-
-    fn object(&self, object: usize) -> Option<Pose> {
-        self.world.object(object)
-    }
-
-    fn has_fallen(&self, object: usize) -> bool {
-        self.world.has_fallen(object)
     }
 }
 

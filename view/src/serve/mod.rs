@@ -13,6 +13,6 @@ mod protocol;
 mod request;
 mod server;
 
-pub use beside::{Beside, Devices, Face};
+pub use beside::{Beside, Devices};
 pub use player::Player;
 pub use server::Opening;

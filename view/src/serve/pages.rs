@@ -10,12 +10,14 @@ macro_rules! scripts {
 }
 
 const SCRIPTS: &[File] = scripts![
+    "desk.js",
     "draw.js",
     "link.js",
     "live.js",
     "main.js",
     "options.js",
     "pointer.js",
+    "programs.js",
     "recording.js",
     "relief.js",
     "runner.js",
