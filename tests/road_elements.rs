@@ -12,13 +12,14 @@ use roverlab::vision::lane_markings::{RoadCamera, RoadModel};
 use roverlab::vision::road_elements::{RoadElement, RoadElementFinder, RoadElementKind};
 use roverlab::vision::{GrayView, GrayViewMut, GrayWeights, RgbView, gray_into};
 use roverlab::world::road::{
-    Appearance, Crossing, RightOfWay, RoadCourse, RoadCourseOptions, RoadMarkKind, RoadSide, generate,
+    Appearance, Crossing, RightOfWay, RoadCourse, RoadCourseOptions, RoadMark, RoadMarkKind, RoadSide,
+    generate,
 };
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Shape};
 
 /// Kinds that are counted, each with the distances ahead of the camera where it has to be found, and the
 /// distance within which it has to be there (m).
-const KINDS: [(&str, (f64, f64), f64); 8] = [
+const KINDS: [(&str, (f64, f64), f64); 10] = [
     ("stop line", (0.25, 0.95), 0.08),
     ("give-way line", (0.25, 0.95), 0.08),
     ("start line", (0.25, 0.95), 0.08),
@@ -27,6 +28,8 @@ const KINDS: [(&str, (f64, f64), f64); 8] = [
     ("obstacle", (0.30, 0.95), 0.10),
     ("parking", (0.20, 0.70), 0.15),
     ("barred area", (0.30, 0.80), 0.15),
+    ("speed limit", (0.20, 0.70), 0.05),
+    ("end of a limit", (0.15, 0.65), 0.05),
 ];
 
 /// Row of a kind in the table.
@@ -40,8 +43,15 @@ fn row(kind: RoadElementKind) -> usize {
         RoadElementKind::Obstacle { .. } => 5,
         RoadElementKind::Parking { .. } => 6,
         RoadElementKind::Barred { .. } => 7,
+        RoadElementKind::SpeedLimit(_) => 8,
+        RoadElementKind::SpeedLimitEnd => 9,
         other => panic!("a kind without a row: {other:?}"),
     }
+}
+
+/// Whether one is what the other is: numbers have to be the same.
+fn is_same(one: RoadElementKind, other: RoadElementKind) -> bool {
+    row(one) == row(other) && (!matches!(one, RoadElementKind::SpeedLimit(_)) || one == other)
 }
 
 /// A box on the road: where its near side is, to the left of the own lane's middle (m), and its size.
@@ -56,8 +66,8 @@ struct Block {
 struct Setting {
     course: RoadCourse,
     blocks: Vec<Block>,
-    /// Row of the table and place along the line (m).
-    truths: Vec<(usize, f64)>,
+    /// What is where along the line (m).
+    truths: Vec<(RoadElementKind, f64)>,
     camera: RoadCamera,
 }
 
@@ -65,10 +75,11 @@ impl Setting {
     fn drawn(seed: u64) -> Self {
         let options =
             RoadCourseOptions { crossings: 0.9, zebras: 0.8, parking: 0.6, ..RoadCourseOptions::default() };
-        let course = generate(seed, &options).unwrap();
+        let mut course = generate(seed, &options).unwrap();
         let mut truths = truths(&course);
         let blocks = blocks(&course, &truths, &mut Stream::new(seed).child("blocks", 0));
-        truths.extend(blocks.iter().map(|block| (5, block.along)));
+        truths.extend(blocks.iter().map(|block| (OBSTACLE, block.along)));
+        add_numbers(&mut course, &mut truths, seed);
         let camera = RobotSpec::road_car().camera.as_ref().unwrap().into();
         Self { course, blocks, truths, camera }
     }
@@ -105,7 +116,7 @@ impl Setting {
     }
 
     /// Whether the camera of a car sees the front of a box at a place along the road; other things are seen.
-    fn is_in_view(&self, car: &Pose, kind: usize, along: f64) -> bool {
+    fn is_in_view(&self, car: &Pose, kind: RoadElementKind, along: f64) -> bool {
         let front = |block: &Block| {
             [-0.5, 0.5].into_iter().all(|side| {
                 let corner = self.course.pose(along, block.left + side * block.size[1]).position();
@@ -113,7 +124,7 @@ impl Setting {
                 at.is_some_and(|(x, y)| (2.0..318.0).contains(&x) && y < 238.0)
             })
         };
-        kind != 5 || self.blocks.iter().filter(|block| block.along == along).all(front)
+        kind != OBSTACLE || self.blocks.iter().filter(|block| block.along == along).all(front)
     }
 
     /// Distance ahead along the road.
@@ -124,15 +135,22 @@ impl Setting {
     }
 }
 
+/// A box whose sides do not matter.
+const OBSTACLE: RoadElementKind = RoadElementKind::Obstacle { right: 0.0, left: 0.0 };
+
 /// Markings of the table along a course.
-fn truths(course: &RoadCourse) -> Vec<(usize, f64)> {
+fn truths(course: &RoadCourse) -> Vec<(RoadElementKind, f64)> {
     let mut truths = Vec::new();
     for mark in &course.marks {
         match mark.kind {
-            RoadMarkKind::Start => truths.push((2, mark.at)),
-            RoadMarkKind::Zebra => truths.push((3, mark.at)),
-            RoadMarkKind::Parking(RoadSide::Right | RoadSide::Left, _) => truths.push((6, mark.at)),
-            RoadMarkKind::Barred(RoadSide::Right, ..) => truths.push((7, mark.at)),
+            RoadMarkKind::Start => truths.push((RoadElementKind::StartLine, mark.at)),
+            RoadMarkKind::Zebra => truths.push((RoadElementKind::Zebra, mark.at)),
+            RoadMarkKind::Parking(side, _) => {
+                truths.push((RoadElementKind::Parking { left: side == RoadSide::Left }, mark.at));
+            }
+            RoadMarkKind::Barred(RoadSide::Right, ..) => {
+                truths.push((RoadElementKind::Barred { right: 0.0, left: 0.0, length: 0.0 }, mark.at));
+            }
             RoadMarkKind::Crossing(crossing) => truths.extend(of_crossing(course, mark.at, &crossing)),
             _ => {}
         }
@@ -140,18 +158,21 @@ fn truths(course: &RoadCourse) -> Vec<(usize, f64)> {
     truths
 }
 
-fn of_crossing(course: &RoadCourse, at: f64, crossing: &Crossing) -> Vec<(usize, f64)> {
+fn of_crossing(course: &RoadCourse, at: f64, crossing: &Crossing) -> Vec<(RoadElementKind, f64)> {
     let line = at - course.crossing_reach(crossing) - 0.038;
     let line = match crossing.right_of_way {
         RightOfWay::Priority => None,
-        RightOfWay::Stop => Some((0, line)),
-        RightOfWay::GiveWay | RightOfWay::FromTheRight => Some((1, line)),
+        RightOfWay::Stop => Some((RoadElementKind::StopLine, line)),
+        RightOfWay::GiveWay | RightOfWay::FromTheRight => Some((RoadElementKind::GiveWayLine, line)),
     };
-    [Some((4, at)), line].into_iter().flatten().collect()
+    [Some((RoadElementKind::Crossing { left: false, right: false }, at)), line]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// Boxes in either lane, away from other things.
-fn blocks(course: &RoadCourse, truths: &[(usize, f64)], random: &mut Stream) -> Vec<Block> {
+fn blocks(course: &RoadCourse, truths: &[(RoadElementKind, f64)], random: &mut Stream) -> Vec<Block> {
     let mut blocks: Vec<Block> = Vec::new();
     let mut along = 1.5;
     while along < course.line.length() - 1.5 {
@@ -169,6 +190,27 @@ fn blocks(course: &RoadCourse, truths: &[(usize, f64)], random: &mut Stream) -> 
         along += 0.5;
     }
     blocks
+}
+
+/// Draws numbers where nothing else is, every second one struck out.
+fn add_numbers(course: &mut RoadCourse, truths: &mut Vec<(RoadElementKind, f64)>, seed: u64) {
+    let mut random = Stream::new(seed).child("numbers", 0);
+    let (mut along, mut is_end) = (1.0, false);
+    while along < course.line.length() - 1.0 {
+        if truths.iter().all(|(_, other)| !(along - 1.0..along + 0.9).contains(other)) {
+            let value = 10 * (1 + random.below(9) as u8);
+            course.marks.push(RoadMark { at: along, kind: RoadMarkKind::Speed(value, is_end) });
+            // The line that strikes a number out begins before it.
+            let truth = if is_end {
+                (RoadElementKind::SpeedLimitEnd, along - 0.05)
+            } else {
+                (RoadElementKind::SpeedLimit(value), along)
+            };
+            truths.push(truth);
+            is_end = !is_end;
+        }
+        along += 0.3;
+    }
 }
 
 /// Right, too much, and missed, for each kind.
@@ -233,20 +275,29 @@ impl Table {
         let camera = setting.camera.ahead;
         for (kind, &(name, (from, to), near)) in KINDS.iter().enumerate() {
             let own = elements.iter().filter(|element| row(element.kind) == kind);
-            let seen: Vec<f64> = own.map(|element| element.ahead - camera).collect();
-            let of_kind = setting.truths.iter().filter(|(other, _)| *other == kind);
-            let there: Vec<(f64, bool)> = of_kind
-                .map(|(_, at)| (setting.ahead(along, *at) - camera, setting.is_in_view(car, kind, *at)))
+            let seen: Vec<(RoadElementKind, f64)> =
+                own.map(|element| (element.kind, element.ahead - camera)).collect();
+            let of_kind = setting.truths.iter().filter(|(other, _)| row(*other) == kind);
+            let there: Vec<(RoadElementKind, f64, bool)> = of_kind
+                .map(|&(kind, at)| {
+                    (kind, setting.ahead(along, at) - camera, setting.is_in_view(car, kind, at))
+                })
                 .collect();
-            for (place, _) in there.iter().filter(|(place, seen)| *seen && (from..to).contains(place)) {
-                let is_found = seen.iter().any(|other| (place - other).abs() < near);
+            for (truth, place, _) in
+                there.iter().filter(|(_, place, seen)| *seen && (from..to).contains(place))
+            {
+                let is_found =
+                    seen.iter().any(|(other, at)| (place - at).abs() < near && is_same(*truth, *other));
                 self.rows[kind][if is_found { 0 } else { 2 }] += 1;
                 if !is_found && std::env::var_os("ROAD_TRACE").is_some() {
                     println!("{seed} {along:.2}: no {name} at {place:.2}, but {seen:.2?}");
                 }
             }
-            for place in seen.iter().filter(|place| (from..to).contains(*place)) {
-                if there.iter().all(|(other, _)| (place - other).abs() >= near) {
+            for (found, place) in seen.iter().filter(|(_, place)| (from..to).contains(place)) {
+                let is_there = |(truth, at, _): &(RoadElementKind, f64, bool)| {
+                    (place - at).abs() < near && is_same(*truth, *found)
+                };
+                if !there.iter().any(is_there) {
                     self.rows[kind][1] += 1;
                     if std::env::var_os("ROAD_TRACE").is_some() {
                         println!("{seed} {along:.2}: {name} at {place:.2}, but {there:.2?}");

@@ -47,8 +47,7 @@ pub enum TrafficState {
 /// # Limits
 ///
 /// The start box, signs, turns at crossings and oncoming traffic are not handled. Give-way lines of which less
-/// than a third is left are not seen. The number of a speed zone is read only when the car's front is at
-/// it, so that the car enters slow zones too fast. `roverlab traffic --campaign` counts what goes wrong.
+/// than a third is left are not seen. `roverlab traffic --campaign` counts what goes wrong.
 ///
 /// ```
 /// use roverlab::drive::traffic::{TrafficDriver, TrafficParameters, TrafficState};

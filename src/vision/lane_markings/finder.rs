@@ -143,6 +143,22 @@ const BLIND: f64 = 1.6;
 const TRACKED: f64 = 0.05;
 const SOUGHT: f64 = 0.08;
 
+/// Largest distance between neighbours of one drawing on the road, such as the strokes of a number, and width from
+/// which it is no pair of lines (m). Lines of lanes and numbers are further apart.
+const DRAWING: (f64, f64) = (0.085, 0.055);
+
+/// Removes points of what is painted within a lane: lines of a road are single, or in pairs.
+fn drop_other_paint(points: &mut Vec<MarkingPoint>) {
+    let (near, wide) = DRAWING;
+    let is_joined =
+        |a: &MarkingPoint, b: &MarkingPoint| a.place.x == b.place.x && (a.place.y - b.place.y).abs() < near;
+    let is_line = |drawing: &[MarkingPoint]| match drawing {
+        [first, .., last] => (last.place.y - first.place.y).abs() < wide,
+        _ => true,
+    };
+    *points = points.chunk_by(is_joined).filter(|drawing| is_line(drawing)).flatten().copied().collect();
+}
+
 impl LaneMarkingFinder {
     /// Creates a finder for a camera. Fails for a camera or road out of range.
     pub fn new(camera: RoadCamera, road_model: RoadModel) -> Result<Self, ParameterError> {
@@ -178,6 +194,7 @@ impl LaneMarkingFinder {
             point.place /= size;
             point.pixel /= size;
         }
+        drop_other_paint(&mut self.points);
         let metres = metres / size;
         let lost = self.blind > BLIND;
         let tracked = self.road.take().filter(|_| !lost).map(|mut road| {

@@ -1,7 +1,8 @@
 use super::across::Tones;
 use super::element::{Detection, RoadElement, RoadElementKind};
+use super::number::Numbers;
 use super::view::RoadView;
-use super::{across, barred, beside, centre, crossing, number, obstacle};
+use super::{across, barred, beside, centre, crossing, obstacle};
 use crate::ParameterError;
 use crate::vision::GrayView;
 use crate::vision::lane_markings::{LaneEstimate, RoadCamera, RoadModel};
@@ -59,6 +60,7 @@ struct Track {
 pub struct RoadElementFinder {
     size: f64,
     tones: Tones,
+    numbers: Numbers,
     view: RoadView,
     /// Distance from the road's centre line to the left to the own lane's centre in the last image (m).
     middle: f64,
@@ -100,6 +102,7 @@ impl RoadElementFinder {
         Ok(Self {
             size,
             tones: Tones::new(),
+            numbers: Numbers::new(),
             view: RoadView::new(own),
             middle: 0.0,
             edge: 0.0,
@@ -191,7 +194,7 @@ impl RoadElementFinder {
         }
         beside::parking(view, &road, found);
         barred::barred(view, &road, found);
-        number::number(view, &road, found);
+        found.extend(self.numbers.find(view, &road));
         let near = found.iter().filter(|it| matches!(it.kind, RoadElementKind::Obstacle { .. }));
         let hidden = near.map(|it| it.ahead).fold(f64::INFINITY, f64::min);
         // The stripes of a crosswalk look like solid lines.
@@ -204,6 +207,10 @@ impl RoadElementFinder {
 
     /// Updates the track of a detection, or begins one.
     fn associate(&mut self, detection: &Detection, seconds: f64) {
+        // One number stands in one place: who reads another one there doubts the first.
+        for track in self.tracks.iter_mut().filter(|track| track.is_other_number(detection)) {
+            track.evidence -= HIT;
+        }
         let near = |track: &&mut Track| track.is_near(detection);
         let by_distance = |a: &&mut Track, b: &&mut Track| a.off(detection).total_cmp(&b.off(detection));
         if let Some(track) = self.tracks.iter_mut().filter(near).min_by(by_distance) {
@@ -253,6 +260,14 @@ impl Track {
 
     fn off(&self, detection: &Detection) -> f64 {
         (self.ahead - detection.ahead).abs()
+    }
+
+    /// Whether a detection is of another number in the same place.
+    fn is_other_number(&self, detection: &Detection) -> bool {
+        use RoadElementKind::{SpeedLimit, SpeedLimitEnd};
+        let are_numbers =
+            [self.kind, detection.kind].map(|kind| matches!(kind, SpeedLimit(_) | SpeedLimitEnd));
+        are_numbers == [true; 2] && self.kind != detection.kind && self.off(detection) < 0.2
     }
 
     /// Whether a detection can be of this thing.

@@ -2,111 +2,262 @@
 
 use super::element::{Detection, RoadElementKind};
 use super::view::{CELL, COLUMNS, ROWS, RoadView, column};
+use crate::geometry::Vector;
 use crate::vision::lane_markings::RoadAhead;
 
-/// Height of a digit, distance from its middle to the middles of the strokes at its sides, and distance of a
-/// digit's middle from that of the number, by the rules' drawing (cells).
-const HIGH: usize = 40;
-const HALF: i32 = 3;
+/// A digit by the rules' drawing: its height, half its width, the distance of its middle from that of the number,
+/// and the width of its strokes (cells).
+const HIGH: f64 = 40.0;
+const HALF: f64 = 3.0;
 const ASIDE: f64 = 4.5;
+const WIDE: f64 = 1.5;
 /// Strokes of the digits: top, upper right, lower right, bottom, lower left, upper left, middle, from the lowest
 /// bit upwards.
 const DIGITS: [u8; 10] = [0x3f, 0x06, 0x5b, 0x4f, 0x66, 0x6d, 0x7d, 0x07, 0x7f, 0x6f];
-/// The line that strikes a number out, by the rules' drawing: how far it begins before the digits, its length
-/// along the road, and its distance from the lane's middle at both ends (cells).
-const STRIKE: (usize, usize, f64) = (5, 50, 10.0);
-/// Share of that line that has to be bright, and the brightness of a stroke, between floor and paint.
-const STRUCK: f64 = 0.85;
-const BRIGHT: f64 = 0.5;
-/// Least difference of every stroke's brightness from that.
-const CLEAR: f64 = 0.08;
-/// Half the width of a strip that is free before a number, and the length of what is free there (cells).
+/// The line that strikes a number out, by the rules' drawing: how far it begins before the digits, its distance
+/// from the lane's middle at both ends, and its width (cells).
+const STRIKE: (usize, f64, f64) = (5, 10.0, 2.0);
+/// Rows of a pattern, from where the line that strikes it out begins to where that ends, and columns to each side
+/// of its middle.
+const LONG: usize = 50;
+const SIDE: usize = 12;
+const ACROSS: usize = 2 * SIDE + 1;
+/// Half the width of a strip that is free before a number, the length of what is free there (cells), and the
+/// brightness, between floor and paint, of what is not.
 const STRIP: usize = 8;
 const FREE: usize = 6;
-/// Most cells that a pixel covers along the road at the far end of a number that is read.
-const SHARP: usize = 3;
+const BRIGHT: f64 = 0.5;
+/// Error of the lane's middle and of a number's begin that is searched (cells).
+const SEARCH: usize = 4;
+/// Errors of distances along the road that are searched: the camera pitches.
+const STRETCHES: [f64; 3] = [0.95, 1.0, 1.05];
+/// Least correlation of a number with its pattern, and least lead over each other one, of at most a half.
+const LIKE: f32 = 0.75;
+const CLEAR: f32 = 0.12;
 
-/// Finds the nearest number on the own lane.
-pub(super) fn number(view: &RoadView, road: &RoadAhead, found: &mut Vec<Detection>) {
-    let middle = column(road.middle);
-    if middle < 2 * STRIP || middle + 2 * STRIP >= COLUMNS {
-        return;
+/// The patterns of all numbers.
+#[derive(Debug, Clone)]
+pub(super) struct Numbers {
+    patterns: Vec<Pattern>,
+}
+
+/// The share of each cell that is painted, row by row away from the camera.
+#[derive(Debug, Clone)]
+struct Pattern {
+    kind: RoadElementKind,
+    cells: Vec<f32>,
+}
+
+impl Numbers {
+    /// The numbers of the rules, in steps of ten, with and without the line that strikes them out.
+    pub(super) fn new() -> Self {
+        let plain = (1..10).map(|tens| Pattern::drawn(RoadElementKind::SpeedLimit(10 * tens), tens, false));
+        let struck = (1..10).map(|tens| Pattern::drawn(RoadElementKind::SpeedLimitEnd, tens, true));
+        Self { patterns: plain.chain(struck).collect() }
     }
+
+    /// Finds the nearest number on the own lane.
+    pub(super) fn find(&self, view: &RoadView, road: &RoadAhead) -> Option<Detection> {
+        let middle = column(road.middle);
+        if middle < STRIP || middle + STRIP >= COLUMNS {
+            return None;
+        }
+        let begin = begin(view, middle)?;
+        let patches = STRETCHES.map(|stretch| Patch::cut(view, road, begin, stretch));
+        let (kind, row) = self.read(patches.iter().flatten(), view.depth(begin))?;
+        // The line that strikes a number out begins before it.
+        let struck = if kind == RoadElementKind::SpeedLimitEnd { STRIKE.0 } else { 0 };
+        Some(Detection::new(kind, view.ahead(begin + row) - CELL * (SEARCH + struck) as f64))
+    }
+
+    /// The number in one of some patches that are blurred along the road, and the row where its pattern begins.
+    fn read<'a>(
+        &self,
+        patches: impl Iterator<Item = &'a Patch>,
+        blur: f64,
+    ) -> Option<(RoadElementKind, usize)> {
+        let seen: Vec<Seen> = self.patterns.iter().map(|pattern| pattern.seen(blur)).collect();
+        // With all strokes, eighty is somewhat like each number.
+        let eighty = seen.get(7)?;
+        let likes = patches.map(|patch| (patch.like(eighty, Place::all()), patch));
+        let ((_, about), patch) = likes.max_by(|a, b| a.0.0.total_cmp(&b.0.0))?;
+        let likes = seen.iter().map(|pattern| (patch.like(pattern, about.near()), pattern));
+        let ((like, place), best) = likes.max_by(|a, b| a.0.0.total_cmp(&b.0.0))?;
+        let mut others = seen.iter().filter(|other| other.kind != best.kind);
+        let is_clear = like > LIKE && others.all(|other| patch.lead(best, other, place) > CLEAR);
+        is_clear.then_some((best.kind, place.row))
+    }
+}
+
+/// First row of what stands on the lane, if the lane is free before it.
+fn begin(view: &RoadView, middle: usize) -> Option<usize> {
     let strip = middle - STRIP..=middle + STRIP;
     let is_seen = |row: usize| strip.clone().all(|column| view.sees(row, column));
     let is_free = |row: usize| strip.clone().all(|column| view.brightness(row, column) < BRIGHT);
-    let Some(begin) = (0..ROWS).find(|&row| is_seen(row) && !is_free(row)) else { return };
-    let is_sharp = begin + HIGH + 2 < ROWS && view.blur(begin + HIGH) <= SHARP && begin >= FREE;
-    if !is_sharp || !(begin - FREE..begin).all(|row| is_seen(row) && is_free(row)) {
-        return;
+    let begin = (0..ROWS).find(|&row| is_seen(row) && !is_free(row))?;
+    (begin >= FREE && (begin - FREE..begin).all(|row| is_seen(row) && is_free(row))).then_some(begin)
+}
+
+impl Pattern {
+    fn drawn(kind: RoadElementKind, tens: u8, struck: bool) -> Self {
+        let mut strokes = [(tens, ASIDE), (0, -ASIDE)].into_iter().flat_map(|(digit, middle)| {
+            let (left, right) = (middle + HALF, middle - HALF);
+            let ends = [
+                [(HIGH, left), (HIGH, right)],
+                [(HIGH, right), (0.5 * HIGH, right)],
+                [(0.5 * HIGH, right), (0.0, right)],
+                [(0.0, left), (0.0, right)],
+                [(0.5 * HIGH, left), (0.0, left)],
+                [(HIGH, left), (0.5 * HIGH, left)],
+                [(0.5 * HIGH, left), (0.5 * HIGH, right)],
+            ];
+            let lit = DIGITS[usize::from(digit)];
+            ends.into_iter()
+                .enumerate()
+                .filter(move |(bit, _)| lit >> bit & 1 == 1)
+                .map(|(_, ends)| (ends, WIDE))
+        });
+        let mut strokes: Vec<([(f64, f64); 2], f64)> = strokes.by_ref().collect();
+        if struck {
+            let (before, aside, wide) = STRIKE;
+            let from = -(before as f64);
+            strokes.push(([(from, aside), (from + LONG as f64, -aside)], wide));
+        }
+        let cells = (0..LONG * ACROSS).map(|at| painted(&strokes, at / ACROSS, at % ACROSS)).collect();
+        Self { kind, cells }
     }
+
+    /// The pattern as seen by pixels that cover some cells along the road.
+    fn seen(&self, blur: f64) -> Seen {
+        let half = (0.5 * (blur - 1.0)).round().max(0.0) as usize;
+        let long = vec![1.0; 2 * half.min(LONG / 4) + 1];
+        // Between the middles of pixels, and between those of cells, brightness is interpolated.
+        let between = [0.5, 1.0, 0.5];
+        let along = smoothed(&smoothed(&self.cells, ACROSS, &long), ACROSS, &between);
+        let mut cells = smoothed(&along, 1, &between);
+        let mean = cells.iter().sum::<f32>() / cells.len() as f32;
+        cells.iter_mut().for_each(|cell| *cell -= mean);
+        let square = cells.iter().map(|cell| cell * cell).sum();
+        Seen { kind: self.kind, cells, square }
+    }
+}
+
+/// A pattern as it is seen, with mean 0, and the sum of its squares.
+struct Seen {
+    kind: RoadElementKind,
+    cells: Vec<f32>,
+    square: f32,
+}
+
+/// Sums of cells that are some places apart, by weights.
+fn smoothed(cells: &[f32], apart: usize, weights: &[f32]) -> Vec<f32> {
+    let mut sums = vec![0.0; cells.len()];
+    let half = weights.len() / 2;
+    for (k, weight) in weights.iter().enumerate() {
+        let (to, from) = ((half.saturating_sub(k)) * apart, (k.saturating_sub(half)) * apart);
+        sums[to..].iter_mut().zip(&cells[from..]).for_each(|(sum, cell)| *sum += weight * cell);
+    }
+    sums
+}
+
+/// Share of a cell of a pattern that strokes cover, by sixteen points.
+fn painted(strokes: &[([(f64, f64); 2], f64)], row: usize, column: usize) -> f32 {
     let (before, ..) = STRIKE;
-    if is_struck(view, middle, begin) {
-        found.push(Detection::new(RoadElementKind::SpeedLimitEnd, view.ahead(begin) - CELL * before as f64));
-    } else if let Some(value) = value(view, middle, begin) {
-        found.push(Detection::new(RoadElementKind::SpeedLimit(value), view.ahead(begin)));
+    let points = (0..16).map(|i| {
+        let inside = |k: usize| (k as f64 + 0.5) / 4.0 - 0.5;
+        let along = row as f64 - before as f64 + inside(i / 4);
+        (along, column as f64 - SIDE as f64 + inside(i % 4))
+    });
+    let is_painted = |point: &(f64, f64)| strokes.iter().any(|(ends, wide)| is_on(*point, *ends, *wide));
+    points.filter(is_painted).count() as f32 / 16.0
+}
+
+/// Whether a point lies on a stroke between two places.
+fn is_on((x, y): (f64, f64), [a, b]: [(f64, f64); 2], wide: f64) -> bool {
+    let (dx, dy) = (b.0 - a.0, b.1 - a.1);
+    let length = (dx * dx + dy * dy).sqrt();
+    let along = ((x - a.0) * dx + (y - a.1) * dy) / length;
+    let across = ((x - a.0) * dy - (y - a.1) * dx) / length;
+    (0.0..=length).contains(&along) && across.abs() <= 0.5 * wide
+}
+
+/// Where a pattern begins in a patch.
+#[derive(Debug, Clone, Copy, Default)]
+struct Place {
+    row: usize,
+    column: usize,
+}
+
+impl Place {
+    fn all() -> impl Iterator<Item = Self> {
+        Self { row: SEARCH, column: SEARCH }.within(SEARCH)
+    }
+
+    fn near(self) -> impl Iterator<Item = Self> {
+        self.within(1)
+    }
+
+    fn within(self, most: usize) -> impl Iterator<Item = Self> {
+        let range = move |middle: usize| middle.saturating_sub(most)..=(middle + most).min(2 * SEARCH);
+        range(self.row).flat_map(move |row| range(self.column).map(move |column| Self { row, column }))
     }
 }
 
-/// Brightness of the brightest of some cells.
-fn brightest(cells: impl Iterator<Item = (usize, usize)>, view: &RoadView) -> f64 {
-    cells.map(|(row, column)| view.brightness(row, column)).fold(0.0, f64::max)
+/// The part of the road in which a number may be, as flat as it is painted: not bent with the road.
+struct Patch {
+    cells: Vec<f32>,
 }
 
-fn is_struck(view: &RoadView, middle: usize, begin: usize) -> bool {
-    let (before, long, aside) = STRIKE;
-    let is_bright = |step: &usize| {
-        let left = aside * (1.0 - 2.0 * *step as f64 / long as f64);
-        let at = (middle as f64 + left).round() as usize;
-        let row = begin + step - before;
-        row < ROWS && brightest((at - 1..=at + 1).map(|column| (row, column)), view) > BRIGHT
-    };
-    let count = (before..long).filter(is_bright).count();
-    count as f64 > STRUCK * (long - before) as f64
-}
+impl Patch {
+    const ROWS: usize = LONG + 2 * SEARCH;
+    const COLUMNS: usize = ACROSS + 2 * SEARCH;
 
-/// The number that begins about a row, in steps of ten by the rules. The lane's middle and the row are known to
-/// within two cells.
-fn value(view: &RoadView, middle: usize, begin: usize) -> Option<u8> {
-    let places = (-2..=2).flat_map(|aside: i32| (0..=2).map(move |row| (aside, begin + row)));
-    let readings = places.filter_map(|(aside, row)| {
-        let at = |side: f64| (middle as f64 + f64::from(aside) + side * ASIDE).round() as i32;
-        let (tens, clear) = digit(view, at(1.0), row)?;
-        let (ones, also_clear) = digit(view, at(-1.0), row)?;
-        Some((clear.min(also_clear), 10 * tens + ones))
-    });
-    let (_, value) = readings.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    (value % 10 == 0 && value > 0).then_some(value)
-}
+    /// Cuts out the patch about a number that begins at a row; `None` where the view ends before it.
+    fn cut(view: &RoadView, road: &RoadAhead, begin: usize, stretch: f64) -> Option<Self> {
+        let (centre, aside) = road.at(view.ahead(begin));
+        let (base, along) = (centre + aside * road.middle, Vector::new(aside.y, -aside.x));
+        let cell = |row: usize, column: usize| {
+            let way = stretch * CELL * (row as f64 - (STRIKE.0 + SEARCH) as f64);
+            let left = CELL * (column as f64 - (SIDE + SEARCH) as f64);
+            let ahead = view.ahead(begin) + way;
+            view.brightness_at(road, base + along * way + aside * left, ahead).map(|it| it as f32)
+        };
+        let line = |row: usize| (0..Self::COLUMNS).map(move |column| cell(row, column));
+        let cells: Option<Vec<f32>> = (0..Self::ROWS).flat_map(line).collect();
+        cells.map(|cells| Self { cells })
+    }
 
-/// The digit about a column that begins at a row, and the least difference of a stroke's brightness from the
-/// threshold.
-fn digit(view: &RoadView, middle: i32, begin: usize) -> Option<(u8, f64)> {
-    let cell = |row: usize, aside: i32| (row, (middle + aside) as usize);
-    let upright = |side: i32, from: usize| {
-        let rows = from + 4..from + HIGH / 2 - 3;
-        let count = rows.len() as f64;
-        let row = |row: usize| brightest((-1..=1).map(|aside| cell(row, side * HALF + aside)), view);
-        rows.map(|at| row(begin + at)).sum::<f64>() / count
-    };
-    let across = |at: usize| {
-        let row = begin + at;
-        let column =
-            |aside: i32| brightest((row.saturating_sub(2)..=row + 2).map(|row| cell(row, aside)), view);
-        (-1..=1).map(column).sum::<f64>() / 3.0
-    };
-    let half = HIGH / 2;
-    let strokes = [
-        across(HIGH),
-        upright(-1, half),
-        upright(-1, 0),
-        across(0),
-        upright(1, 0),
-        upright(1, half),
-        across(half),
-    ];
-    let code = strokes.iter().enumerate().fold(0, |code, (bit, it)| code | u8::from(*it > BRIGHT) << bit);
-    let clear = strokes.iter().map(|it| (it - BRIGHT).abs()).fold(f64::INFINITY, f64::min);
-    let value = DIGITS.iter().position(|digit| *digit == code)?;
-    (clear > CLEAR).then_some((value as u8, clear))
+    /// Largest correlation with a pattern at some places, and the place.
+    fn like(&self, pattern: &Seen, places: impl Iterator<Item = Place>) -> (f32, Place) {
+        let likes = places.map(|place| (self.correlation(pattern, place), place));
+        likes.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default()
+    }
+
+    fn correlation(&self, pattern: &Seen, place: Place) -> f32 {
+        let cells = || self.lines(place).flatten();
+        let (sum, squares) =
+            cells().fold((0.0, 0.0), |(sum, squares), cell| (sum + cell, squares + cell * cell));
+        let spread = squares - sum * sum / (LONG * ACROSS) as f32;
+        self.product(pattern, place) / (spread * pattern.square).max(1e-6).sqrt()
+    }
+
+    /// How much more what is seen is like one pattern than like another: a half if it is the one, minus a half if
+    /// it is the other. Only the strokes in which they differ count.
+    fn lead(&self, one: &Seen, other: &Seen, place: Place) -> f32 {
+        let products = [one, other].map(|pattern| self.product(pattern, place));
+        let gain = products[0] / one.square;
+        let apart = one.cells.iter().zip(&other.cells).map(|(a, b)| (a - b) * (a - b)).sum::<f32>();
+        ((products[0] - products[1]) / gain - 0.5 * (one.square - other.square)) / apart
+    }
+
+    fn product(&self, pattern: &Seen, place: Place) -> f32 {
+        let products = self.lines(place).zip(pattern.cells.chunks_exact(ACROSS));
+        products.map(|(line, painted)| line.iter().zip(painted).map(|(a, b)| a * b).sum::<f32>()).sum()
+    }
+
+    /// The lines of what a pattern at a place covers.
+    fn lines(&self, Place { row, column }: Place) -> impl Iterator<Item = &[f32]> {
+        let lines = self.cells.chunks_exact(Self::COLUMNS).skip(row).take(LONG);
+        lines.map(move |line| &line[column..][..ACROSS])
+    }
 }

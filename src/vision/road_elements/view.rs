@@ -1,5 +1,6 @@
 use std::ops::Range;
 
+use crate::geometry::{Point, Vector};
 use crate::vision::GrayView;
 use crate::vision::lane_markings::{RoadAhead, RoadCamera};
 
@@ -34,9 +35,9 @@ pub(super) struct RoadView {
     depth: Vec<f64>,
     /// The same in cells, rounded up.
     blur: Vec<usize>,
-    /// Brightness of the floor and of paint.
     /// Distance of the camera to the left of the road's centre line (m).
     left: f64,
+    /// Brightness of the floor and of paint.
     floor: f32,
     paint: f32,
 }
@@ -164,6 +165,11 @@ impl RoadView {
         self.blur[row]
     }
 
+    /// Cells that a pixel covers along the road at a row.
+    pub(super) fn depth(&self, row: usize) -> f64 {
+        self.depth[row] / CELL
+    }
+
     /// Whether a cell is in view.
     pub(super) fn sees(&self, row: usize, column: usize) -> bool {
         self.seen[column].contains(&row)
@@ -178,6 +184,29 @@ impl RoadView {
     /// Brightness of a cell between floor and paint, 0 to 1.
     pub(super) fn brightness(&self, row: usize, column: usize) -> f64 {
         self.contrast(self.gray[row * COLUMNS + column], self.floor)
+    }
+
+    /// Brightness between floor and paint of a place on the ground, the distance of which along the road is about
+    /// known; `None` outside the view.
+    pub(super) fn brightness_at(&self, road: &RoadAhead, place: Point, ahead: f64) -> Option<f64> {
+        // The place is brought into the frame of the road by Newton's method.
+        let foot = |ahead: f64| {
+            let (centre, aside) = road.at(ahead);
+            let arm = place - centre;
+            (arm.dot(&Vector::new(aside.y, -aside.x)), arm.dot(&aside))
+        };
+        let ahead = (0..2).fold(ahead, |ahead, _| ahead + foot(ahead).0);
+        let (_, left) = foot(ahead);
+        let row = (ahead - self.ahead(0)) / CELL;
+        let column = SIDE as f64 + left / CELL;
+        let (i, j) = (row.floor(), column.floor());
+        if !(i >= 0.0 && j >= 0.0 && i + 1.0 < ROWS as f64 && j + 1.0 < COLUMNS as f64) {
+            return None;
+        }
+        let (u, v) = (column - j, row - i);
+        let (i, j) = (i as usize, j as usize);
+        let across = |row: usize| (1.0 - u) * self.brightness(row, j) + u * self.brightness(row, j + 1);
+        Some((1.0 - v) * across(i) + v * across(i + 1))
     }
 
     /// Mean brightness of rows of a column, between floor and paint.
