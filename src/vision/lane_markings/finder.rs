@@ -143,8 +143,8 @@ const BLIND: f64 = 1.6;
 const TRACKED: f64 = 0.05;
 const SOUGHT: f64 = 0.08;
 
-/// Largest distance between neighbours of one drawing on the road, such as the strokes of a number, and width from
-/// which it is no pair of lines (m). Lines of lanes and numbers are further apart.
+/// Largest distance between neighbours of one drawing on the road, such as the strokes of a number, and width
+/// from which it is no pair of lines (m). Lines of lanes and numbers are further apart.
 const DRAWING: (f64, f64) = (0.085, 0.055);
 
 /// Removes points of what is painted within a lane: lines of a road are single, or in pairs.

@@ -143,7 +143,8 @@ impl RoadElementFinder {
         self.dashed >= 0.0
     }
 
-    /// Discards boxes between two distances ahead of the robot's origin (m), for whoever knows that they are gone.
+    /// Discards boxes between two distances ahead of the robot's origin (m), for whoever knows that they are
+    /// gone.
     pub fn forget_boxes(&mut self, (from, to): (f64, f64)) {
         let gone = from / self.size..to / self.size;
         let is_gone = |track: &Track| {

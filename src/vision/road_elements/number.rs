@@ -5,20 +5,20 @@ use super::view::{CELL, COLUMNS, ROWS, RoadView, column};
 use crate::geometry::Vector;
 use crate::vision::lane_markings::RoadAhead;
 
-/// A digit by the rules' drawing: its height, half its width, the distance of its middle from that of the number,
-/// and the width of its strokes (cells).
+/// A digit by the rules' drawing: its height, half its width, the distance of its middle from that of the
+/// number, and the width of its strokes (cells).
 const HIGH: f64 = 40.0;
 const HALF: f64 = 3.0;
 const ASIDE: f64 = 4.5;
 const WIDE: f64 = 1.5;
-/// Strokes of the digits: top, upper right, lower right, bottom, lower left, upper left, middle, from the lowest
-/// bit upwards.
+/// Strokes of the digits: top, upper right, lower right, bottom, lower left, upper left, middle, from the
+/// lowest bit upwards.
 const DIGITS: [u8; 10] = [0x3f, 0x06, 0x5b, 0x4f, 0x66, 0x6d, 0x7d, 0x07, 0x7f, 0x6f];
-/// The line that strikes a number out, by the rules' drawing: how far it begins before the digits, its distance
-/// from the lane's middle at both ends, and its width (cells).
+/// The line that strikes a number out, by the rules' drawing: how far it begins before the digits, its
+/// distance from the lane's middle at both ends, and its width (cells).
 const STRIKE: (usize, f64, f64) = (5, 10.0, 2.0);
-/// Rows of a pattern, from where the line that strikes it out begins to where that ends, and columns to each side
-/// of its middle.
+/// Rows of a pattern, from where the line that strikes it out begins to where that ends, and columns to each
+/// side of its middle.
 const LONG: usize = 50;
 const SIDE: usize = 12;
 const ACROSS: usize = 2 * SIDE + 1;
@@ -70,7 +70,8 @@ impl Numbers {
         Some(Detection::new(kind, view.ahead(begin + row) - CELL * (SEARCH + struck) as f64))
     }
 
-    /// The number in one of some patches that are blurred along the road, and the row where its pattern begins.
+    /// The number in one of some patches that are blurred along the road, and the row where its pattern
+    /// begins.
     fn read<'a>(
         &self,
         patches: impl Iterator<Item = &'a Patch>,
@@ -100,28 +101,12 @@ fn begin(view: &RoadView, middle: usize) -> Option<usize> {
 
 impl Pattern {
     fn drawn(kind: RoadElementKind, tens: u8, struck: bool) -> Self {
-        let mut strokes = [(tens, ASIDE), (0, -ASIDE)].into_iter().flat_map(|(digit, middle)| {
-            let (left, right) = (middle + HALF, middle - HALF);
-            let ends = [
-                [(HIGH, left), (HIGH, right)],
-                [(HIGH, right), (0.5 * HIGH, right)],
-                [(0.5 * HIGH, right), (0.0, right)],
-                [(0.0, left), (0.0, right)],
-                [(0.5 * HIGH, left), (0.0, left)],
-                [(HIGH, left), (0.5 * HIGH, left)],
-                [(0.5 * HIGH, left), (0.5 * HIGH, right)],
-            ];
-            let lit = DIGITS[usize::from(digit)];
-            ends.into_iter()
-                .enumerate()
-                .filter(move |(bit, _)| lit >> bit & 1 == 1)
-                .map(|(_, ends)| (ends, WIDE))
-        });
-        let mut strokes: Vec<([(f64, f64); 2], f64)> = strokes.by_ref().collect();
+        let mut strokes = digit(tens, ASIDE);
+        strokes.extend(digit(0, -ASIDE));
         if struck {
             let (before, aside, wide) = STRIKE;
             let from = -(before as f64);
-            strokes.push(([(from, aside), (from + LONG as f64, -aside)], wide));
+            strokes.push(Stroke { from: (from, aside), to: (from + LONG as f64, -aside), wide });
         }
         let cells = (0..LONG * ACROSS).map(|at| painted(&strokes, at / ACROSS, at % ACROSS)).collect();
         Self { kind, cells }
@@ -136,7 +121,9 @@ impl Pattern {
         let along = smoothed(&smoothed(&self.cells, ACROSS, &long), ACROSS, &between);
         let mut cells = smoothed(&along, 1, &between);
         let mean = cells.iter().sum::<f32>() / cells.len() as f32;
-        cells.iter_mut().for_each(|cell| *cell -= mean);
+        for cell in &mut cells {
+            *cell -= mean;
+        }
         let square = cells.iter().map(|cell| cell * cell).sum();
         Seen { kind: self.kind, cells, square }
     }
@@ -160,25 +147,50 @@ fn smoothed(cells: &[f32], apart: usize, weights: &[f32]) -> Vec<f32> {
     sums
 }
 
+/// A straight stroke of paint: its ends, along the road from the begin of the digits and to the left of their
+/// middle, and its width (cells).
+struct Stroke {
+    from: (f64, f64),
+    to: (f64, f64),
+    wide: f64,
+}
+
+/// The strokes of a digit about a place to the left of the number's middle.
+fn digit(digit: u8, middle: f64) -> Vec<Stroke> {
+    let (left, right) = (middle + HALF, middle - HALF);
+    let ends = [
+        [(HIGH, left), (HIGH, right)],
+        [(HIGH, right), (0.5 * HIGH, right)],
+        [(0.5 * HIGH, right), (0.0, right)],
+        [(0.0, left), (0.0, right)],
+        [(0.5 * HIGH, left), (0.0, left)],
+        [(HIGH, left), (0.5 * HIGH, left)],
+        [(0.5 * HIGH, left), (0.5 * HIGH, right)],
+    ];
+    let lit = ends.into_iter().enumerate().filter(|(bit, _)| DIGITS[usize::from(digit)] >> bit & 1 == 1);
+    lit.map(|(_, [from, to])| Stroke { from, to, wide: WIDE }).collect()
+}
+
 /// Share of a cell of a pattern that strokes cover, by sixteen points.
-fn painted(strokes: &[([(f64, f64); 2], f64)], row: usize, column: usize) -> f32 {
+fn painted(strokes: &[Stroke], row: usize, column: usize) -> f32 {
     let (before, ..) = STRIKE;
     let points = (0..16).map(|i| {
         let inside = |k: usize| (k as f64 + 0.5) / 4.0 - 0.5;
         let along = row as f64 - before as f64 + inside(i / 4);
         (along, column as f64 - SIDE as f64 + inside(i % 4))
     });
-    let is_painted = |point: &(f64, f64)| strokes.iter().any(|(ends, wide)| is_on(*point, *ends, *wide));
+    let is_painted = |point: &(f64, f64)| strokes.iter().any(|stroke| stroke.covers(*point));
     points.filter(is_painted).count() as f32 / 16.0
 }
 
-/// Whether a point lies on a stroke between two places.
-fn is_on((x, y): (f64, f64), [a, b]: [(f64, f64); 2], wide: f64) -> bool {
-    let (dx, dy) = (b.0 - a.0, b.1 - a.1);
-    let length = (dx * dx + dy * dy).sqrt();
-    let along = ((x - a.0) * dx + (y - a.1) * dy) / length;
-    let across = ((x - a.0) * dy - (y - a.1) * dx) / length;
-    (0.0..=length).contains(&along) && across.abs() <= 0.5 * wide
+impl Stroke {
+    fn covers(&self, (x, y): (f64, f64)) -> bool {
+        let (dx, dy) = (self.to.0 - self.from.0, self.to.1 - self.from.1);
+        let (x, y) = (x - self.from.0, y - self.from.1);
+        let length = (dx * dx + dy * dy).sqrt();
+        let (along, across) = ((x * dx + y * dy) / length, (x * dy - y * dx) / length);
+        (0.0..=length).contains(&along) && across.abs() <= 0.5 * self.wide
+    }
 }
 
 /// Where a pattern begins in a patch.
@@ -212,7 +224,8 @@ impl Patch {
     const ROWS: usize = LONG + 2 * SEARCH;
     const COLUMNS: usize = ACROSS + 2 * SEARCH;
 
-    /// Cuts out the patch about a number that begins at a row; `None` where the view ends before it.
+    /// Cuts out the patch about a number that begins at a row, with distances along the road that are
+    /// stretched by a factor; `None` where the view ends before it.
     fn cut(view: &RoadView, road: &RoadAhead, begin: usize, stretch: f64) -> Option<Self> {
         let (centre, aside) = road.at(view.ahead(begin));
         let (base, along) = (centre + aside * road.middle, Vector::new(aside.y, -aside.x));
@@ -241,8 +254,8 @@ impl Patch {
         self.product(pattern, place) / (spread * pattern.square).max(1e-6).sqrt()
     }
 
-    /// How much more what is seen is like one pattern than like another: a half if it is the one, minus a half if
-    /// it is the other. Only the strokes in which they differ count.
+    /// How much more what is seen is like one pattern than like another: a half if it is the one, minus a
+    /// half if it is the other. Only the strokes in which they differ count.
     fn lead(&self, one: &Seen, other: &Seen, place: Place) -> f32 {
         let products = [one, other].map(|pattern| self.product(pattern, place));
         let gain = products[0] / one.square;

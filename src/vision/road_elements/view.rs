@@ -186,8 +186,8 @@ impl RoadView {
         self.contrast(self.gray[row * COLUMNS + column], self.floor)
     }
 
-    /// Brightness between floor and paint of a place on the ground, the distance of which along the road is about
-    /// known; `None` outside the view.
+    /// Brightness between floor and paint of a place on the ground, the distance of which along the road is
+    /// about known; `None` outside the view.
     pub(super) fn brightness_at(&self, road: &RoadAhead, place: Point, ahead: f64) -> Option<f64> {
         // The place is brought into the frame of the road by Newton's method.
         let foot = |ahead: f64| {
