@@ -80,7 +80,8 @@ def environment() -> float:
 
 
 def importing() -> float:
-    command = [sys.executable, "-c", "import numpy, time; t = time.perf_counter(); import roverlab; print(time.perf_counter() - t)"]
+    program = "import numpy, time; t = time.perf_counter(); import roverlab; print(time.perf_counter() - t)"
+    command = [sys.executable, "-c", program]
     times = [float(subprocess.run(command, capture_output=True, check=True).stdout) for _ in range(9)]
     return 1e3 * statistics.median(times)
 
@@ -92,7 +93,9 @@ robot:
     shape: {{name: circle, radius: 0.06}}
     state: [2, 2, 0]
     vel_max: [1, 3]
-    sensors: [{{type: lidar2d, range_min: 0, range_max: 9.999, angle_range: 6.2831853, number: {BEAMS}, noise: True, std: 0.01}}]
+    sensors:
+      - {{type: lidar2d, range_min: 0, range_max: 9.999, angle_range: 6.2831853, number: {BEAMS},
+         noise: True, std: 0.01}}
 obstacle:
   - shape: {{name: linestring, vertices: [[0, 0], [{ROOM}, 0], [{ROOM}, {ROOM}], [0, {ROOM}], [0, 0]]}}
     state: [0, 0, 0]

@@ -69,7 +69,8 @@ def test_a_world_begins_again() -> None:
 def test_commands_of_any_strides() -> None:
     batches = [Batch(crowd(), seed=1) for _ in range(3)]
     commands = np.arange(8.0).reshape(4, 2) / 20
-    for batch, given in zip(batches, (commands, np.asfortranarray(commands), np.repeat(commands, 2, axis=1)[:, ::2])):
+    arrangements = (commands, np.asfortranarray(commands), np.repeat(commands, 2, axis=1)[:, ::2])
+    for batch, given in zip(batches, arrangements, strict=True):
         batch.step(given, 0.3)
         assert np.array_equal(batch.true_poses, batches[0].true_poses)
 
@@ -89,7 +90,7 @@ def test_wrong_arguments_are_named() -> None:
     batch: Any = Batch(crowd())
     with pytest.raises(ValueError, match=r"commands is an array of shape \(3, 2\); expected shape \(4, 2\)"):
         batch.step(np.zeros((3, 2)), 0.1)
-    with pytest.raises(TypeError, match=r"commands is an array of int64 of shape \(4, 2\); expected an array of float64"):
+    with pytest.raises(TypeError, match=r"commands is an array of int64 of shape \(4, 2\); expected"):
         batch.step(np.zeros((4, 2), np.int64), 0.1)
     with pytest.raises(ValueError, match="linear speed is NaN"):
         batch.step(np.full((4, 2), np.nan), 0.1)

@@ -56,9 +56,9 @@ def test_wrong_arguments_are_named(tmp_path: Path) -> None:
         Maze.parse("nothing\x00", "small")
     with pytest.raises(FileNotFoundError, match="none.txt"):
         Maze.load(tmp_path / "none.txt")
-    with pytest.raises(ValueError, match="preference is \"luck\"; expected steps, turns or both"):
+    with pytest.raises(ValueError, match='preference is "luck"; expected steps, turns or both'):
         maze.shortest_route("luck")  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match="format is \"pdf\"; expected text, maze"):
+    with pytest.raises(ValueError, match='format is "pdf"; expected text, maze'):
         maze.to_text("pdf")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="part is 2; expected 0 to 1"):
         Maze.braided(4, 4, 2.0, 1)

@@ -115,9 +115,9 @@ def test_wrong_arguments_are_named() -> None:
         Planner(np.full((3, 4), 0.5))
     with pytest.raises(ValueError, match="cost of a cell is NaN"):
         Planner(np.full((3, 4), np.nan))
-    with pytest.raises(ValueError, match="method is \"jps\"; expected dijkstra or astar"):
+    with pytest.raises(ValueError, match='method is "jps"; expected dijkstra or astar'):
         Planner(np.ones((3, 4)), "jps")
-    with pytest.raises(ValueError, match="method is \"luck\"; expected dijkstra, astar"):
+    with pytest.raises(ValueError, match='method is "luck"; expected dijkstra, astar'):
         Planner(free, "luck")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match=r"goal is \(3, 0\); expected a cell of the grid of 3 rows and 4 columns"):
         Planner(free).plan((0, 0), (3, 0))
@@ -150,7 +150,7 @@ def test_bugs_reach_goals(kind: str) -> None:
 
 
 def test_bugs_refuse_nonsense() -> None:
-    with pytest.raises(ValueError, match="kind is \"Bugs Bunny\"; expected one of Bug1"):
+    with pytest.raises(ValueError, match='kind is "Bugs Bunny"; expected one of Bug1'):
         Bug((1.0, 0.0), "Bugs Bunny")
     with pytest.raises(ValueError, match="robot radius is -1; expected"):
         Bug((1.0, 0.0), radius=-1.0)

@@ -3,6 +3,7 @@
 import inspect
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -17,7 +18,9 @@ EXAMPLES = sorted((PROJECT / "examples").glob("*.py"))
 
 
 def run(*command: str) -> str:
-    done = subprocess.run([sys.executable, *command], capture_output=True, text=True, timeout=300)
+    """Output of a program in Python. It runs elsewhere, as the package's source has no native part."""
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([sys.executable, *command], cwd=folder, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
@@ -79,7 +82,7 @@ def test_a_wall_is_followed() -> None:
     assert follower.run(simulation.robot(), 30.0) is None and follower.outcome is None
     assert simulation.truth.contacts() == 0 and simulation.truth.path_length() > 3.0
     assert simulation.robot().time == pytest.approx(30.0, abs=0.05) and follower.period == 0.02
-    with pytest.raises(ValueError, match="side is \"up\"; expected left or right"):
+    with pytest.raises(ValueError, match='side is "up"; expected left or right'):
         WallFollower("up")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="speed is 0; expected a positive"):
         WallFollower(speed=0.0)

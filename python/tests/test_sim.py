@@ -160,7 +160,7 @@ WRONG: list[tuple[type[Exception], str, Callable[[Scene, Simulation], object]]] 
     (ValueError, "duration is .*; expected", lambda _, w: w.run(math.inf)),
     (ValueError, "duration is .*; expected", lambda _, w: w.run(1e7)),
     (ValueError, "speed is 0; expected", lambda _, w: w.robot().straight(1.0, 0.0)),
-    (ValueError, "sensor is \"up\"; expected front", lambda _, w: w.robot().distance("up")),
+    (ValueError, 'sensor is "up"; expected front', lambda _, w: w.robot().distance("up")),
     (ValueError, "robot is 1; expected an index below 1", lambda _, w: w.robot(1)),
     (ValueError, "robot is -1; expected a whole number", lambda _, w: w.robot(-1)),
     (ValueError, "robot", lambda _, w: w.truth.pose(1)),
@@ -171,15 +171,15 @@ WRONG: list[tuple[type[Exception], str, Callable[[Scene, Simulation], object]]] 
     (ValueError, "noise is -1; expected", lambda s, _: Simulation(s, noise=-1.0)),
     (ValueError, "seed is -1; expected", lambda s, _: Simulation(s, seed=-1)),
     (ValueError, "trail interval is 0; expected", lambda s, _: Simulation(s, trail_interval=0.0)),
-    (ValueError, "name is \"cat\"; expected one of S4", lambda s, _: s.add_robot("cat")),
+    (ValueError, 'name is "cat"; expected one of S4', lambda s, _: s.add_robot("cat")),
     (ValueError, "pose is None; expected x, y and heading", lambda s, _: s.add_robot("S4")),
     (ValueError, "pose is .*NaN.*; expected finite", lambda s, _: s.add_robot("S4", (0.0, math.nan, 0.0))),
-    (ValueError, "name is \"cat\"; expected one of can", lambda s, _: s.add_object("cat", (0.0, 0.0, 0.0))),
+    (ValueError, 'name is "cat"; expected one of can', lambda s, _: s.add_object("cat", (0.0, 0.0, 0.0))),
     (ValueError, "width is 0; expected", lambda *_: Scene.empty(0.0, 1.0)),
     (ValueError, "distance is 7; expected 0.05 to 1", lambda *_: Scene.room(1, 7.0)),
     (ValueError, "share of unreachable goals is 2", lambda *_: Scene.course(1, unreachable=2.0)),
     (ValueError, "resolution is 0; expected", lambda s, _: s.free_cells(0.0, 0.1)),
-    (ValueError, "name is \"Mars\"; expected one of", lambda *_: Scene.built_in("Mars")),
+    (ValueError, 'name is "Mars"; expected one of', lambda *_: Scene.built_in("Mars")),
     (ValueError, "lidar points is 0; expected", lambda *_: RobotSpec("S4").with_lidar(0)),
     (ValueError, r"path is an array of shape \(2, 3\)", lambda _, w: w.to_svg(path=np.zeros((2, 3)))),
 ]
@@ -187,7 +187,11 @@ WRONG: list[tuple[type[Exception], str, Callable[[Scene, Simulation], object]]] 
 
 @pytest.mark.parametrize(("kind", "message", "call"), WRONG, ids=[message[:30] for _, message, _ in WRONG])
 def test_wrong_values_are_named(
-    kind: type[Exception], message: str, call: Callable[[Scene, Simulation], object], square: Scene, simulation: Simulation
+    kind: type[Exception],
+    message: str,
+    call: Callable[[Scene, Simulation], object],
+    square: Scene,
+    simulation: Simulation,
 ) -> None:
     with pytest.raises(kind, match=message):
         call(square, simulation)

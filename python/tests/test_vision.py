@@ -165,7 +165,7 @@ def test_wrong_images_are_named() -> None:
         (vision.hue, colours, {"scale": "x"}),
     ):
         unchecked: Any = kernel
-        with pytest.raises(ValueError, match=f"{next(iter(option))} is \".*\"; expected .* or .*"):
+        with pytest.raises(ValueError, match=f'{next(iter(option))} is ".*"; expected .* or .*'):
             unchecked(argument, **option)
 
 

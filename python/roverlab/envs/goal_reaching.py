@@ -45,9 +45,9 @@ class GoalReaching(RobotEnvironment):
 
     def __init__(self, render_mode: str | None = None, noise: float = 1.0, period: float = 0.1) -> None:
         super().__init__(render_mode, noise, period)
-        low = np.array([0.0, -math.pi, -2.0, -20.0, *[0.0] * self.SECTORS], np.float32)
-        high = np.array([100.0, math.pi, 2.0, 20.0, *[FARTHEST] * self.SECTORS], np.float32)
-        self.observation_space = gymnasium.spaces.Box(low, high)
+        self._low = np.array([0.0, -math.pi, -2.0, -20.0, *[0.0] * self.SECTORS], np.float32)
+        self._high = np.array([100.0, math.pi, 2.0, 20.0, *[FARTHEST] * self.SECTORS], np.float32)
+        self.observation_space = gymnasium.spaces.Box(self._low, self._high)
         self._scan = np.empty(360)
 
     def baseline(self) -> BugPolicy:
@@ -78,7 +78,7 @@ class GoalReaching(RobotEnvironment):
         bearing = math.remainder(math.atan2(dy, dx) - heading, math.tau)
         sectors = self.robot.scan(self._scan).reshape(self.SECTORS, -1).min(axis=1)
         seen = np.array([math.hypot(dx, dy), bearing, *self.robot.speed(), *sectors], np.float32)
-        return np.clip(seen, self.observation_space.low, self.observation_space.high)  # type: ignore[attr-defined]
+        return np.clip(seen, self._low, self._high)
 
     def _judge(self) -> tuple[float, bool]:
         if self.simulation.truth.contacts():

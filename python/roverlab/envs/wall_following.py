@@ -43,9 +43,9 @@ class WallFollowing(RobotEnvironment):
 
     def __init__(self, render_mode: str | None = None, noise: float = 1.0, period: float = 0.05) -> None:
         super().__init__(render_mode, noise, period)
-        low = np.array([0.0, 0.0, 0.0, -2.0, -20.0], np.float32)
-        high = np.array([FARTHEST, FARTHEST, FARTHEST, 2.0, 20.0], np.float32)
-        self.observation_space = gymnasium.spaces.Box(low, high)
+        self._low = np.array([0.0, 0.0, 0.0, -2.0, -20.0], np.float32)
+        self._high = np.array([FARTHEST, FARTHEST, FARTHEST, 2.0, 20.0], np.float32)
+        self.observation_space = gymnasium.spaces.Box(self._low, self._high)
 
     def baseline(self) -> WallPolicy:
         """The library's PID controller on the left distance sensor."""
@@ -62,7 +62,7 @@ class WallFollowing(RobotEnvironment):
         robot = self.robot
         ranges = [robot.distance(name) for name in ("front", "left", "right")]
         seen = np.array([*np.minimum(ranges, FARTHEST), *robot.speed()], np.float32)
-        return np.clip(seen, self.observation_space.low, self.observation_space.high)  # type: ignore[attr-defined]
+        return np.clip(seen, self._low, self._high)
 
     def _judge(self) -> tuple[float, bool]:
         if self.simulation.truth.contacts():
