@@ -26,7 +26,9 @@ fn main() -> Result<()> {
             robot.scan_into(&mut scan)?;
             let ranges = [Psd::FRONT, Psd::LEFT, Psd::RIGHT, Psd::BACK].map(|psd| robot.distance(psd));
             let pose = robot.pose()?;
-            assert!(ranges.iter().all(|range| range.is_ok()) && pose.is_finite() && scan.ranges.len() == 180);
+            assert!(
+                ranges.iter().all(std::result::Result::is_ok) && pose.is_finite() && scan.ranges.len() == 180
+            );
             robot.set_speed(Twist::new(0.2, 0.5))?;
             Ok(ControlFlow::Continue(()))
         })?;

@@ -3,15 +3,13 @@ use std::sync::{Mutex, PoisonError};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
-use roverlab::geometry::Twist;
-use roverlab::io::sim::Stepped;
-use roverlab::io::{DistanceSensors, Drive, Lidar, LidarScan, Odometry, Psd, StallDetector};
+use roverlab::io::sim::TICK;
 use roverlab::world;
 
 use crate::arrays::{self, Natural, state};
 use crate::errors::{Failure, Outcome};
 use crate::scene::Scene;
-use crate::simulation::options;
+use crate::worlds::{Cell, Part, Rows, Shape, sensors, step_all};
 
 /// Many robots that are stepped in one call, with their state in arrays of one row per robot.
 ///
@@ -50,22 +48,6 @@ pub(crate) struct Batch {
     arrays: Arrays,
 }
 
-/// A world of a batch.
-#[derive(Debug)]
-struct Cell {
-    world: Stepped,
-    scan: LidarScan,
-    sensors: Vec<Psd>,
-}
-
-/// Numbers of robots, of beams of each, and of distance sensors of each.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Shape {
-    robots: usize,
-    beams: usize,
-    sensors: usize,
-}
-
 /// What is known of all robots, a row for each.
 #[derive(Debug)]
 struct Arrays {
@@ -76,89 +58,6 @@ struct Arrays {
     stalled: Py<PyArray1<bool>>,
     true_poses: Py<PyArray2<f64>>,
     contacts: Py<PyArray1<u32>>,
-}
-
-/// The rows of some robots.
-struct Rows<'a> {
-    ranges: &'a mut [f64],
-    distances: &'a mut [f64],
-    poses: &'a mut [f64],
-    speeds: &'a mut [f64],
-    stalled: &'a mut [bool],
-    true_poses: &'a mut [f64],
-    contacts: &'a mut [u32],
-}
-
-impl Rows<'_> {
-    /// The rows of the first robots, and the others.
-    fn split(self, robots: usize, shape: Shape) -> (Self, Self) {
-        let (ranges, more_ranges) = self.ranges.split_at_mut(robots * shape.beams);
-        let (distances, more_distances) = self.distances.split_at_mut(robots * shape.sensors);
-        let (poses, more_poses) = self.poses.split_at_mut(3 * robots);
-        let (speeds, more_speeds) = self.speeds.split_at_mut(2 * robots);
-        let (stalled, more_stalled) = self.stalled.split_at_mut(robots);
-        let (true_poses, more_true_poses) = self.true_poses.split_at_mut(3 * robots);
-        let (contacts, more_contacts) = self.contacts.split_at_mut(robots);
-        let first = Rows { ranges, distances, poses, speeds, stalled, true_poses, contacts };
-        let others = Rows {
-            ranges: more_ranges,
-            distances: more_distances,
-            poses: more_poses,
-            speeds: more_speeds,
-            stalled: more_stalled,
-            true_poses: more_true_poses,
-            contacts: more_contacts,
-        };
-        (first, others)
-    }
-}
-
-impl Cell {
-    fn new(scene: &world::Scene, seed: u64, noise: f64) -> Outcome<Self> {
-        let sensors = scene.robots.first().map_or(Vec::new(), |robot| sensors(&robot.spec));
-        let world = Stepped::new(scene, options(seed, noise, false, None)?)?;
-        Ok(Self { world, scan: LidarScan::default(), sensors })
-    }
-
-    /// Commands all robots, lets time pass, and reads all sensors.
-    fn step(
-        &mut self,
-        commands: &[f64],
-        seconds: f64,
-        rows: &mut Rows<'_>,
-        shape: Shape,
-    ) -> roverlab::io::Result<()> {
-        for (robot, command) in commands.chunks_exact(2).enumerate() {
-            self.world.robot(robot)?.set_speed(Twist::new(command[0], command[1]))?;
-        }
-        self.world.run_for(seconds)?;
-        self.read(rows, shape)
-    }
-
-    fn read(&mut self, rows: &mut Rows<'_>, shape: Shape) -> roverlab::io::Result<()> {
-        for index in 0..self.world.robots() {
-            let mut robot = self.world.robot(index)?;
-            if shape.beams > 0 {
-                robot.scan_into(&mut self.scan)?;
-                rows.ranges[index * shape.beams..][..shape.beams].copy_from_slice(&self.scan.ranges);
-            }
-            for (range, sensor) in rows.distances[index * shape.sensors..].iter_mut().zip(&self.sensors) {
-                *range = robot.distance(*sensor)?;
-            }
-            let (pose, speed) = (robot.pose()?, robot.speed()?);
-            rows.poses[3 * index..][..3].copy_from_slice(&[pose.x, pose.y, pose.heading]);
-            rows.speeds[2 * index..][..2].copy_from_slice(&[speed.linear, speed.angular]);
-            rows.stalled[index] = robot.is_stalled()?;
-            let truth = self.world.pose(index)?;
-            rows.true_poses[3 * index..][..3].copy_from_slice(&[truth.x, truth.y, truth.heading]);
-            rows.contacts[index] = self.world.contacts(index)?;
-        }
-        Ok(())
-    }
-}
-
-fn sensors(spec: &world::RobotSpec) -> Vec<Psd> {
-    spec.psds.iter().map(|psd| Psd(psd.id)).collect()
 }
 
 /// The shape of the arrays; fails if robots differ.
@@ -221,53 +120,6 @@ impl Arrays {
             contacts: slice!(contacts),
         })
     }
-}
-
-/// Steps worlds, in threads if there are several parts.
-fn step_all(
-    worlds: &mut [Cell],
-    commands: &[f64],
-    seconds: f64,
-    rows: Rows<'_>,
-    (shape, threads): (Shape, usize),
-) -> roverlab::io::Result<()> {
-    let part = worlds.len().div_ceil(threads);
-    if part >= worlds.len() {
-        return step_part(worlds, commands, seconds, rows, shape);
-    }
-    std::thread::scope(|scope| {
-        let (mut rest, mut commands) = (rows, commands);
-        let mut running = Vec::new();
-        for worlds in worlds.chunks_mut(part) {
-            let robots = worlds.iter().map(|cell| cell.world.robots()).sum::<usize>();
-            let (rows, others) = rest.split(robots, shape);
-            let (own, more) = commands.split_at(2 * robots);
-            (rest, commands) = (others, more);
-            running.push(scope.spawn(move || step_part(worlds, own, seconds, rows, shape)));
-        }
-        let ended = running.into_iter().map(|thread| match thread.join() {
-            Ok(result) => result,
-            Err(panic) => std::panic::resume_unwind(panic),
-        });
-        ended.collect::<Vec<_>>().into_iter().collect()
-    })
-}
-
-fn step_part(
-    worlds: &mut [Cell],
-    mut commands: &[f64],
-    seconds: f64,
-    mut rows: Rows<'_>,
-    shape: Shape,
-) -> roverlab::io::Result<()> {
-    for cell in worlds {
-        let robots = cell.world.robots();
-        let (mut own, others) = rows.split(robots, shape);
-        let (told, more) = commands.split_at(2 * robots);
-        cell.step(told, seconds, &mut own, shape)?;
-        (rows, commands) = (others, more);
-    }
-    Ok(())
 }
 
 impl Batch {
@@ -346,12 +198,24 @@ impl Batch {
             ordered = commands.as_array().iter().copied().collect();
             &ordered
         };
+        check_commands(commands)?;
         let mut worlds = self.worlds.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
-        let how = (self.shape, self.threads);
-        self.arrays.with_rows(py, |rows| {
-            let worlds = &mut *worlds;
-            Ok(py.detach(|| step_all(worlds, commands, seconds, rows, how))?)
-        })
+        let ticks = ticks_of(seconds)?;
+        let most = (PART / self.shape.robots as u64).max(1);
+        let mut done = 0;
+        loop {
+            let now = most.min(ticks - done);
+            let part = Part { ticks: now, begins: done == 0, ends: done + now == ticks };
+            self.arrays.with_rows(py, |rows| {
+                let (worlds, how) = (&mut *worlds, (self.shape, self.threads));
+                Ok(py.detach(|| step_all(worlds, commands, rows, part, how))?)
+            })?;
+            done += now;
+            if part.ends {
+                return Ok(());
+            }
+            py.check_signals()?;
+        }
     }
 
     /// Begins a world again, and reads its robots' sensors.
@@ -452,6 +316,26 @@ impl Batch {
     fn __repr__(&self) -> String {
         format!("<Batch: {} robots in {} worlds>", self.shape.robots, self.worlds())
     }
+}
+
+/// Robot ticks between two looks for Ctrl-C: about a tenth of a second.
+const PART: u64 = 1_000_000;
+
+/// Ticks of a step.
+fn ticks_of(seconds: f64) -> Outcome<u64> {
+    if !(seconds.is_finite() && seconds <= 1e6) {
+        return Err(Failure::value("seconds", seconds, "a finite number of at most 1000000"));
+    }
+    Ok((seconds.max(0.0) / TICK).round() as u64)
+}
+
+/// Checks all commands before any robot is told.
+fn check_commands(commands: &[f64]) -> Outcome<()> {
+    let wrong = commands.iter().position(|speed| speed.is_nan() || speed.abs() > 1e6);
+    wrong.map_or(Ok(()), |at| {
+        let name = format!("commands[{}, {}]", at / 2, at % 2);
+        Err(Failure::value(&name, commands[at], "a finite number of at most 1e6 either way"))
+    })
 }
 
 fn at_least_one(name: &str, count: Natural) -> Outcome<usize> {

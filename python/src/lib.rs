@@ -22,6 +22,7 @@ mod simulation;
 mod truth;
 mod vision;
 mod wall_follower;
+mod worlds;
 
 /// Native part of the package; import `roverlab.sim`, `drive`, `nav`, `maze` or `vision` instead.
 #[pymodule]

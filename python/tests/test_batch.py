@@ -75,6 +75,17 @@ def test_commands_of_any_strides() -> None:
         assert np.array_equal(batch.true_poses, batches[0].true_poses)
 
 
+def test_long_steps_are_the_same_as_short_ones() -> None:
+    whole, parts = Batch(crowd(), copies=250, scan=False), Batch(crowd(), copies=250, scan=False, threads=3)
+    commands = np.tile([0.1, 0.2], (1000, 1))
+    whole.step(commands, 20.0)
+    for _ in range(2):
+        parts.step(commands, 10.0)
+    whole.step(commands, 0.0)
+    assert whole.times == parts.times
+    assert np.array_equal(whole.true_poses, parts.true_poses) and np.array_equal(whole.contacts, parts.contacts)
+
+
 def test_without_scans_there_are_no_ranges() -> None:
     scene = Scene.walled(2.0, 2.0)
     scene.add_robot(RobotSpec("S4").with_lidar(10), (0.5, 0.5, 0.0))
@@ -92,8 +103,11 @@ def test_wrong_arguments_are_named() -> None:
         batch.step(np.zeros((3, 2)), 0.1)
     with pytest.raises(TypeError, match=r"commands is an array of int64 of shape \(4, 2\); expected"):
         batch.step(np.zeros((4, 2), np.int64), 0.1)
-    with pytest.raises(ValueError, match="linear speed is NaN"):
-        batch.step(np.full((4, 2), np.nan), 0.1)
+    with pytest.raises(ValueError, match=r"commands\[2, 1\] is NaN; expected a finite"):
+        batch.step(np.array([[0.1, 0.1], [0.1, 0.1], [0.1, np.nan], [0.1, 0.1]]), 0.1)
+    with pytest.raises(ValueError, match="seconds is inf; expected a finite"):
+        batch.step(np.zeros((4, 2)), np.inf)
+    assert batch.times == [0.0] and not batch.poses.any()
     with pytest.raises(ValueError, match="world is 1; expected an index below 1"):
         batch.reset(1, 1)
     with pytest.raises(ValueError, match="scene is 1 robots of 360 beams; expected 4 robots"):
@@ -106,7 +120,7 @@ def test_wrong_arguments_are_named() -> None:
         Batch(Scene.walled(1.0, 1.0))
     with pytest.raises(TypeError, match="scenes is <class 'int'>; expected Scene or a sequence"):
         Batch([1])  # type: ignore[list-item]
-    with pytest.raises(ValueError, match="commands|in use|memory"):
+    with pytest.raises(ValueError, match="speeds is in use"):
         batch.step(batch.speeds, 0.1)
     batch.ranges.flags.writeable = False
     with pytest.raises(ValueError, match="ranges is read-only"):

@@ -264,12 +264,13 @@ def test_threads_may_share_a_simulation(square: Scene) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
-@pytest.mark.parametrize("call", ["run(1e6)", "robot().wait(1e6)"])
+@pytest.mark.parametrize("call", ["simulation.run(1e6)", "simulation.robot().wait(1e6)", "batch.step(still, 1e6)"])
 def test_ctrl_c_ends_a_long_call(call: str) -> None:
     program = (
-        "from roverlab.sim import *\nscene = Scene.walled(2, 2)\n"
+        "import numpy\nfrom roverlab.sim import *\nscene = Scene.walled(2, 2)\n"
         "[scene.add_robot('S4', (0.2 + 0.02 * i, 1, 0)) for i in range(80)]\n"
-        f"simulation = Simulation(scene)\nprint('go', flush=True)\nsimulation.{call}\n"
+        "simulation, batch, still = Simulation(scene), Batch(scene), numpy.zeros((80, 2))\n"
+        f"print('go', flush=True)\n{call}\n"
     )
     process = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     assert process.stdout is not None
