@@ -143,7 +143,8 @@ impl Batch {
     #[new]
     #[pyo3(
         signature = (
-            scenes, *, copies = Natural::ONE, seed = Natural::ONE, noise = 1.0, threads = Natural::ONE, scan = true
+            scenes, *, copies = Natural::ONE, seed = Natural::ONE, noise = 1.0, threads = Natural::ONE,
+            scan = true
         ),
         text_signature = "(scenes, *, copies=1, seed=1, noise=1.0, threads=1, scan=True)"
     )]

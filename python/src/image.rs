@@ -83,10 +83,11 @@ impl<'py, const C: usize> Input<'py, C> {
             (None, Some(stride)) => {
                 let length = self.image.span(stride);
                 #[allow(unsafe_code, reason = "numpy has slices of contiguous arrays only")]
-                // SAFETY: `stride` has checked that the array's elements are rows of `width * C` bytes, `stride`
-                // bytes apart and ascending, so the first and the last byte of this range are elements of the
-                // array, and with it lie in one allocation. The array is alive and borrowed as long as `self`. As
-                // its innermost stride is 1, the borrow checker refuses to write to any array in this range.
+                // SAFETY: `stride` has checked that the array's elements are rows of `width * C` bytes,
+                // `stride` bytes apart and ascending, so the first and the last byte of this range are
+                // elements of the array, and with it lie in one allocation. The array is alive and borrowed
+                // as long as `self`. As its innermost stride is 1, the borrow checker refuses to write to any
+                // array in this range.
                 let bytes = unsafe { std::slice::from_raw_parts(array.data().cast_const(), length) };
                 View::with_stride(bytes, *width, *height, stride)
             }
@@ -130,8 +131,8 @@ impl<'py, const C: usize> Output<'py, C> {
             (None, Some(stride)) => {
                 let length = self.image.span(stride);
                 #[allow(unsafe_code, reason = "numpy has slices of contiguous arrays only")]
-                // SAFETY: as in `Input::view`; the array is writable, the borrow checker keeps every other array
-                // off this range, and `self` is borrowed as long as the slice.
+                // SAFETY: as in `Input::view`; the array is writable, the borrow checker keeps every other
+                // array off this range, and `self` is borrowed as long as the slice.
                 let bytes = unsafe { std::slice::from_raw_parts_mut(array.data(), length) };
                 ViewMut::with_stride(bytes, *width, *height, stride)
             }

@@ -1,5 +1,5 @@
-//! Runs whose every bit `test_trajectories.py` repeats in Python. Their digests are in `trajectories.txt`, which
-//! `REGENERATE=1 cargo test -p roverlab-python` writes anew.
+//! Runs whose every bit `test_trajectories.py` repeats in Python. Their digests are in `trajectories.txt`,
+//! which `REGENERATE=1 cargo test -p roverlab-python` writes anew.
 
 use std::fmt::Write as _;
 use std::path::Path;
