@@ -50,8 +50,8 @@ struct Member<'a> {
     due: u64,
 }
 
-/// A robot of a [`Fleet`], as its behaviour sees it: a full robot that cannot wait, because the fleet
-/// schedules the calls.
+/// A robot of a [`Fleet`], as its behaviour sees it, or of a [`Stepped`](super::Stepped) world: a full robot
+/// that cannot wait, because the fleet schedules the calls.
 #[derive(Debug)]
 pub struct FleetRobot<'e> {
     engine: &'e mut Engine,
@@ -132,7 +132,7 @@ impl<'a> Fleet<'a> {
                 continue;
             }
             member.due = tick.saturating_add(member.period);
-            let mut robot = FleetRobot { engine: &mut self.engine, index };
+            let mut robot = FleetRobot::new(&mut self.engine, index);
             if (member.behaviour)(&mut robot)?.is_break() {
                 *slot = None;
             }
@@ -161,7 +161,11 @@ impl<'a> Fleet<'a> {
     }
 }
 
-impl FleetRobot<'_> {
+impl<'e> FleetRobot<'e> {
+    pub(super) fn new(engine: &'e mut Engine, index: usize) -> Self {
+        Self { engine, index }
+    }
+
     pub(super) fn call<T>(&mut self, ask: impl FnOnce(&mut Engine, usize) -> Result<T>) -> Result<T> {
         if self.engine.options.time_limit.is_some_and(|limit| self.engine.time() >= limit) {
             return Err(time_is_over());

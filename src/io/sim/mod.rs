@@ -1,9 +1,9 @@
 //! Robots in a simulated world, in virtual time.
 //!
 //! A [`Simulation`] provides robots for ordinary blocking programs; several robots need one thread each. A
-//! [`Fleet`] steps any number of behaviours in one thread. Both use the same engine, with motor lag, encoders
-//! with whole ticks, slip, collisions, and ray-cast sensors with noise. The world advances in ticks of 10 ms
-//! without real waiting. The same seed gives the same run on every platform and with every thread scheduling.
+//! [`Fleet`] steps any number of behaviours in one thread; a [`Stepped`] world leaves the loop to its caller.
+//! All use the same engine, with motor lag, encoders with whole ticks, slip, collisions, and ray-cast sensors
+//! with noise. The world advances in ticks of 10 ms without real waiting. The same seed gives the same run on every platform and with every thread scheduling.
 //!
 //! ```
 //! use roverlab::geometry::Pose;
@@ -50,6 +50,7 @@ mod simulation;
 mod sliding;
 #[cfg(feature = "physics")]
 pub mod starman;
+mod stepped;
 mod terrain;
 mod truth;
 mod watch;
@@ -61,6 +62,7 @@ pub use noise::NoiseModel;
 pub use options::SimOptions;
 pub use robot::SimRobot;
 pub use simulation::Simulation;
+pub use stepped::Stepped;
 pub use truth::Truth;
 pub use watch::{Onlooking, Watcher};
 

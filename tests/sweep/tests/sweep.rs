@@ -47,6 +47,7 @@ const EXCEPTIONS: &[(&str, &str)] = &[
     ("io::sim::Fleet", ROBOT),
     ("io::sim::Onlooking", "exists during a tick only"),
     ("io::sim::Simulation::watch", CLOSURE),
+    ("io::sim::Stepped::watch", CLOSURE),
     ("io::wrappers::", ROBOT),
     ("maze::MazeRunner", ROBOT),
     ("safety::CliffGuard", ROBOT),

@@ -1,0 +1,364 @@
+use std::sync::{Mutex, PoisonError};
+
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use pyo3::sync::MutexExt;
+use roverlab::io::sim::TICK;
+use roverlab::world;
+
+use crate::arrays::{self, Natural, state};
+use crate::errors::{Failure, Outcome};
+use crate::scene::Scene;
+use crate::worlds::{Cell, Part, Rows, Shape, sensors, step_all};
+
+/// Many robots that are stepped in one call, with their state in arrays of one row per robot.
+///
+/// Each scene is a world of its own, with all its robots; the rows are the robots of the first world, then
+/// those of the second, and so on. `step` writes into the same arrays each time, so a view of them stays
+/// current. Results do not depend on `threads`.
+///
+/// Parameters
+/// ----------
+/// scenes : Scene or sequence of Scene
+///     One scene for each world. One scene alone is taken `copies` times.
+/// copies : int
+///     Number of worlds that are made of each scene.
+/// seed : int
+///     Seed of the first world; the next ones have the numbers that follow.
+/// noise : float
+///     Errors of drives and sensors as a multiple of those of the real robot; 0 for none.
+/// threads : int
+///     Number of threads among which the worlds are divided.
+/// scan : bool
+///     Whether each step takes a scan of each robot.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If there is no robot, or the robots differ in their numbers of beams or distance sensors.
+#[pyclass(frozen, module = "roverlab.sim")]
+#[derive(Debug)]
+pub(crate) struct Batch {
+    worlds: Mutex<Vec<Cell>>,
+    scenes: Vec<world::Scene>,
+    copies: usize,
+    noise: f64,
+    threads: usize,
+    shape: Shape,
+    arrays: Arrays,
+}
+
+/// What is known of all robots, a row for each.
+#[derive(Debug)]
+struct Arrays {
+    ranges: Py<PyArray2<f64>>,
+    distances: Py<PyArray2<f64>>,
+    poses: Py<PyArray2<f64>>,
+    speeds: Py<PyArray2<f64>>,
+    stalled: Py<PyArray1<bool>>,
+    true_poses: Py<PyArray2<f64>>,
+    contacts: Py<PyArray1<u32>>,
+}
+
+/// The shape of the arrays; fails if robots differ.
+fn shape_of(scenes: &[world::Scene], copies: usize, scan: bool) -> Outcome<Shape> {
+    let mut specs = scenes.iter().flat_map(|scene| &scene.robots).map(|robot| &robot.spec);
+    let Some(first) = specs.next() else {
+        return Err(Failure::value("number of robots", 0, "at least one"));
+    };
+    let beams = |spec: &world::RobotSpec| spec.lidar.map_or(0, |lidar| lidar.points);
+    for spec in specs {
+        if beams(spec) != beams(first) && scan {
+            let expected = format!("{}, as the first robot has", beams(first));
+            return Err(Failure::value("number of beams of a robot", beams(spec), &expected));
+        }
+        if sensors(spec) != sensors(first) {
+            let found = format!("{:?}", sensors(spec).iter().map(|psd| psd.0).collect::<Vec<_>>());
+            return Err(Failure::value("distance sensors of a robot", found, "those of the first robot"));
+        }
+    }
+    let robots = copies * scenes.iter().map(|scene| scene.robots.len()).sum::<usize>();
+    Ok(Shape { robots, beams: if scan { beams(first) } else { 0 }, sensors: first.psds.len() })
+}
+
+impl Arrays {
+    fn new(py: Python<'_>, shape: Shape) -> Self {
+        let matrix = |columns| PyArray2::zeros(py, [shape.robots, columns], false).unbind();
+        Self {
+            ranges: matrix(shape.beams),
+            distances: matrix(shape.sensors),
+            poses: matrix(3),
+            speeds: matrix(2),
+            stalled: PyArray1::zeros(py, shape.robots, false).unbind(),
+            true_poses: matrix(3),
+            contacts: PyArray1::zeros(py, shape.robots, false).unbind(),
+        }
+    }
+
+    /// Calls a function with all rows, which nothing else of the package uses meanwhile.
+    fn with_rows<T>(&self, py: Python<'_>, work: impl FnOnce(Rows<'_>) -> Outcome<T>) -> Outcome<T> {
+        macro_rules! borrowed {
+            ($($array:ident),+) => {$(
+                let mut $array = self.$array.bind(py).try_readwrite().map_err(|error| {
+                    Failure::value(stringify!($array), state(&error), "an array that nothing else uses")
+                })?;
+            )+};
+        }
+        borrowed!(ranges, distances, poses, speeds, stalled, true_poses, contacts);
+        macro_rules! slice {
+            ($array:ident) => {
+                $array.as_slice_mut().map_err(PyErr::from)?
+            };
+        }
+        work(Rows {
+            ranges: slice!(ranges),
+            distances: slice!(distances),
+            poses: slice!(poses),
+            speeds: slice!(speeds),
+            stalled: slice!(stalled),
+            true_poses: slice!(true_poses),
+            contacts: slice!(contacts),
+        })
+    }
+}
+
+impl Batch {
+    /// Scene of a world.
+    fn scene(&self, world: usize) -> &world::Scene {
+        &self.scenes[world / self.copies]
+    }
+
+    /// Reads the sensors of a world that has just begun.
+    fn read_world(&self, py: Python<'_>, worlds: &mut [Cell], world: usize) -> Outcome<()> {
+        let before = worlds[..world].iter().map(|cell| cell.world.robots()).sum();
+        self.arrays.with_rows(py, |rows| {
+            let (_, mut rows) = rows.split(before, self.shape);
+            Ok(worlds[world].read(&mut rows, self.shape)?)
+        })
+    }
+}
+
+#[pymethods]
+impl Batch {
+    #[new]
+    #[pyo3(
+        signature = (
+            scenes, *, copies = Natural::ONE, seed = Natural::ONE, noise = 1.0, threads = Natural::ONE,
+            scan = true
+        ),
+        text_signature = "(scenes, *, copies=1, seed=1, noise=1.0, threads=1, scan=True)"
+    )]
+    fn new(
+        py: Python<'_>,
+        scenes: &Bound<'_, PyAny>,
+        copies: Natural,
+        seed: Natural,
+        noise: f64,
+        threads: Natural,
+        scan: bool,
+    ) -> Outcome<Self> {
+        let seed = seed.named("seed")?;
+        let (copies, threads) = (at_least_one("copies", copies)?, at_least_one("threads", threads)?);
+        let scenes = scenes_of(scenes)?;
+        let shape = shape_of(&scenes, copies, scan)?;
+        let starts = (0..copies * scenes.len())
+            .map(|world| (&scenes[world / copies], seed.wrapping_add(world as u64)));
+        let worlds =
+            starts.map(|(scene, seed)| Cell::new(scene, seed, noise)).collect::<Outcome<Vec<_>>>()?;
+        let arrays = Arrays::new(py, shape);
+        let batch = Self { worlds: Mutex::new(worlds), scenes, copies, noise, threads, shape, arrays };
+        let mut worlds = batch.worlds.lock().unwrap_or_else(PoisonError::into_inner);
+        (0..worlds.len()).try_for_each(|world| batch.read_world(py, &mut worlds, world))?;
+        drop(worlds);
+        Ok(batch)
+    }
+
+    /// Commands all robots, lets time pass in all worlds, and reads all sensors into the arrays.
+    ///
+    /// Parameters
+    /// ----------
+    /// commands : ndarray of float64, shape (robots, 2)
+    ///     Linear (m/s) and angular speed (rad/s) of each robot.
+    /// seconds : float
+    ///     Duration (s), rounded to ticks of 10 ms.
+    fn step(&self, py: Python<'_>, commands: &Bound<'_, PyAny>, seconds: f64) -> Outcome<()> {
+        let expected = "an array of float64 of shape (robots, 2)";
+        let commands = arrays::readable::<f64, numpy::Ix2>("commands", commands, expected)?;
+        if commands.shape() != [self.shape.robots, 2] {
+            return Err(arrays::wrong_shape(
+                "commands",
+                commands.shape(),
+                &arrays::shown(&[self.shape.robots, 2]),
+            ));
+        }
+        let ordered: Vec<f64>;
+        // Contiguous by columns is contiguous as well, but in another order.
+        let commands = if commands.is_c_contiguous() {
+            commands.as_slice().map_err(PyErr::from)?
+        } else {
+            ordered = commands.as_array().iter().copied().collect();
+            &ordered
+        };
+        check_commands(commands)?;
+        let mut worlds = self.worlds.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
+        let ticks = ticks_of(seconds)?;
+        let most = (PART / self.shape.robots as u64).max(1);
+        let mut done = 0;
+        loop {
+            let now = most.min(ticks - done);
+            let part = Part { ticks: now, begins: done == 0, ends: done + now == ticks };
+            self.arrays.with_rows(py, |rows| {
+                let (worlds, how) = (&mut *worlds, (self.shape, self.threads));
+                Ok(py.detach(|| step_all(worlds, commands, rows, part, how))?)
+            })?;
+            done += now;
+            if part.ends {
+                return Ok(());
+            }
+            py.check_signals()?;
+        }
+    }
+
+    /// Begins a world again, and reads its robots' sensors.
+    ///
+    /// Parameters
+    /// ----------
+    /// world : int
+    ///     Index of the world.
+    /// seed : int
+    ///     Its seed from now on.
+    /// scene : Scene, optional
+    ///     Another scene with as many robots; otherwise the one that it had at first.
+    #[pyo3(signature = (world, seed, scene = None))]
+    fn reset(
+        &self,
+        py: Python<'_>,
+        world: Natural,
+        seed: Natural,
+        scene: Option<PyRef<'_, Scene>>,
+    ) -> Outcome<()> {
+        let (world, seed) = (world.index("world")?, seed.named("seed")?);
+        let mut worlds = self.worlds.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
+        if world >= worlds.len() {
+            let expected = format!("an index below {}, the number of worlds", worlds.len());
+            return Err(Failure::value("world", world, &expected));
+        }
+        let scene = scene.as_ref().map_or_else(|| self.scene(world), |scene| &scene.content);
+        let shape = shape_of(std::slice::from_ref(scene), 1, self.shape.beams > 0)?;
+        if shape != (Shape { robots: worlds[world].world.robots(), ..self.shape }) {
+            let found = format!("{} robots of {} beams", shape.robots, shape.beams);
+            let expected = format!("{} robots of {} beams", worlds[world].world.robots(), self.shape.beams);
+            return Err(Failure::value("scene", found, &expected));
+        }
+        worlds[world] = Cell::new(scene, seed, self.noise)?;
+        self.read_world(py, &mut worlds, world)
+    }
+
+    /// Ranges of the lidars (m), of shape (robots, beams); inf without a return. No columns without scans.
+    #[getter]
+    fn ranges(&self, py: Python<'_>) -> Py<PyArray2<f64>> {
+        self.arrays.ranges.clone_ref(py)
+    }
+
+    /// Distances that the sensors measure (m), of shape (robots, sensors), in the order of
+    /// `RobotSpec.distance_sensors`.
+    #[getter]
+    fn distances(&self, py: Python<'_>) -> Py<PyArray2<f64>> {
+        self.arrays.distances.clone_ref(py)
+    }
+
+    /// Poses by odometry, of shape (robots, 3): x, y and heading (m, m, rad).
+    #[getter]
+    fn poses(&self, py: Python<'_>) -> Py<PyArray2<f64>> {
+        self.arrays.poses.clone_ref(py)
+    }
+
+    /// Velocities by the wheels, of shape (robots, 2): linear (m/s) and angular (rad/s).
+    #[getter]
+    fn speeds(&self, py: Python<'_>) -> Py<PyArray2<f64>> {
+        self.arrays.speeds.clone_ref(py)
+    }
+
+    /// Whether something holds each robot, of shape (robots,).
+    #[getter]
+    fn stalled(&self, py: Python<'_>) -> Py<PyArray1<bool>> {
+        self.arrays.stalled.clone_ref(py)
+    }
+
+    /// Ground truth: poses in the world, of shape (robots, 3).
+    #[getter]
+    fn true_poses(&self, py: Python<'_>) -> Py<PyArray2<f64>> {
+        self.arrays.true_poses.clone_ref(py)
+    }
+
+    /// Ground truth: number of contacts so far, of shape (robots,).
+    #[getter]
+    fn contacts(&self, py: Python<'_>) -> Py<PyArray1<u32>> {
+        self.arrays.contacts.clone_ref(py)
+    }
+
+    /// Number of worlds.
+    #[getter]
+    fn worlds(&self) -> usize {
+        self.copies * self.scenes.len()
+    }
+
+    /// Times of the worlds since their start (s).
+    #[getter]
+    fn times(&self, py: Python<'_>) -> Vec<f64> {
+        let worlds = self.worlds.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
+        worlds.iter().map(|cell| cell.world.time()).collect()
+    }
+
+    fn __len__(&self) -> usize {
+        self.shape.robots
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Batch: {} robots in {} worlds>", self.shape.robots, self.worlds())
+    }
+}
+
+/// Robot ticks between two looks for Ctrl-C: about a tenth of a second.
+const PART: u64 = 1_000_000;
+
+/// Ticks of a step.
+fn ticks_of(seconds: f64) -> Outcome<u64> {
+    if !(seconds.is_finite() && seconds <= 1e6) {
+        return Err(Failure::value("seconds", seconds, "a finite number of at most 1000000"));
+    }
+    Ok((seconds.max(0.0) / TICK).round() as u64)
+}
+
+/// Checks all commands before any robot is told.
+fn check_commands(commands: &[f64]) -> Outcome<()> {
+    let wrong = commands.iter().position(|speed| speed.is_nan() || speed.abs() > 1e6);
+    wrong.map_or(Ok(()), |at| {
+        let name = format!("commands[{}, {}]", at / 2, at % 2);
+        Err(Failure::value(&name, commands[at], "a finite number of at most 1e6 either way"))
+    })
+}
+
+fn at_least_one(name: &str, count: Natural) -> Outcome<usize> {
+    match count.index(name)? {
+        0 => Err(Failure::value(name, 0, "at least 1")),
+        count => Ok(count),
+    }
+}
+
+/// One scene, or each of a sequence.
+fn scenes_of(scenes: &Bound<'_, PyAny>) -> Outcome<Vec<world::Scene>> {
+    let taken = |object: &Bound<'_, PyAny>| {
+        let scene = object.cast::<Scene>();
+        let scene =
+            scene.map_err(|_| Failure::kind("scenes", object.get_type(), "Scene or a sequence of them"))?;
+        Ok(scene.try_borrow().map_err(PyErr::from)?.content.clone())
+    };
+    if scenes.is_instance_of::<Scene>() {
+        return Ok(vec![taken(scenes)?]);
+    }
+    let scenes = scenes
+        .try_iter()
+        .map_err(|_| Failure::kind("scenes", scenes.get_type(), "Scene or a sequence of them"))?;
+    scenes.map(|scene| taken(&scene?)).collect()
+}

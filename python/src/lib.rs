@@ -1,0 +1,58 @@
+//! The native part of the Python package `roverlab`: the library's worlds, robots, planners, mazes and image
+//! kernels on numpy arrays. Documentation of classes and functions is what Python's `help` shows, so it is in
+//! numpy's style.
+
+#![allow(clippy::doc_markdown, reason = "documentation that Python shows names exceptions without backticks")]
+#![allow(clippy::needless_pass_by_value, reason = "arguments from Python arrive by value")]
+
+use pyo3::prelude::*;
+
+mod arrays;
+mod batch;
+mod behaviour;
+mod bug;
+mod errors;
+mod image;
+mod maze;
+mod planner;
+mod robot;
+mod robot_spec;
+mod scene;
+mod simulation;
+mod truth;
+mod vision;
+mod wall_follower;
+mod worlds;
+
+/// Native part of the package; import `roverlab.sim`, `drive`, `nav`, `maze` or `vision` instead.
+#[pymodule]
+mod _native {
+    /// Version of the package.
+    #[pymodule_export]
+    #[allow(non_upper_case_globals, reason = "Python's name for it")]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
+    #[pymodule_export]
+    use crate::batch::Batch;
+    #[pymodule_export]
+    use crate::bug::Bug;
+    #[pymodule_export]
+    use crate::errors::{FileFormatError, NoPathError, RobotError, UnsupportedError};
+    #[pymodule_export]
+    use crate::maze::{Maze, Route};
+    #[pymodule_export]
+    use crate::planner::{DStarLite, Path, Planner, distance_field, inflate};
+    #[pymodule_export]
+    use crate::robot::Robot;
+    #[pymodule_export]
+    use crate::robot_spec::RobotSpec;
+    #[pymodule_export]
+    use crate::scene::Scene;
+    #[pymodule_export]
+    use crate::simulation::Simulation;
+    #[pymodule_export]
+    use crate::truth::Truth;
+    #[pymodule_export]
+    use crate::vision::{absolute_difference, canny, gaussian, gray, hue, laplace, sobel, threshold};
+    #[pymodule_export]
+    use crate::wall_follower::WallFollower;
+}

@@ -1,0 +1,187 @@
+//! The worlds of a batch, and the rows of its arrays.
+
+use std::sync::{Mutex, PoisonError};
+
+use roverlab::geometry::Twist;
+use roverlab::io::sim::{Stepped, TICK};
+use roverlab::io::{DistanceSensors, Drive, Lidar, LidarScan, Odometry, Psd, Result, StallDetector};
+use roverlab::world;
+
+use crate::errors::Outcome;
+use crate::simulation::options;
+
+/// A world of a batch.
+#[derive(Debug)]
+pub(crate) struct Cell {
+    pub(crate) world: Stepped,
+    scan: LidarScan,
+    sensors: Vec<Psd>,
+}
+
+/// Numbers of robots, of beams of each, and of distance sensors of each.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Shape {
+    pub(crate) robots: usize,
+    pub(crate) beams: usize,
+    pub(crate) sensors: usize,
+}
+
+/// The rows of some robots.
+pub(crate) struct Rows<'a> {
+    pub(crate) ranges: &'a mut [f64],
+    pub(crate) distances: &'a mut [f64],
+    pub(crate) poses: &'a mut [f64],
+    pub(crate) speeds: &'a mut [f64],
+    pub(crate) stalled: &'a mut [bool],
+    pub(crate) true_poses: &'a mut [f64],
+    pub(crate) contacts: &'a mut [u32],
+}
+
+impl Rows<'_> {
+    /// The rows of the first robots, and the others.
+    pub(crate) fn split(self, robots: usize, shape: Shape) -> (Self, Self) {
+        let (ranges, more_ranges) = self.ranges.split_at_mut(robots * shape.beams);
+        let (distances, more_distances) = self.distances.split_at_mut(robots * shape.sensors);
+        let (poses, more_poses) = self.poses.split_at_mut(3 * robots);
+        let (speeds, more_speeds) = self.speeds.split_at_mut(2 * robots);
+        let (stalled, more_stalled) = self.stalled.split_at_mut(robots);
+        let (true_poses, more_true_poses) = self.true_poses.split_at_mut(3 * robots);
+        let (contacts, more_contacts) = self.contacts.split_at_mut(robots);
+        let first = Rows { ranges, distances, poses, speeds, stalled, true_poses, contacts };
+        let others = Rows {
+            ranges: more_ranges,
+            distances: more_distances,
+            poses: more_poses,
+            speeds: more_speeds,
+            stalled: more_stalled,
+            true_poses: more_true_poses,
+            contacts: more_contacts,
+        };
+        (first, others)
+    }
+}
+
+impl Cell {
+    pub(crate) fn new(scene: &world::Scene, seed: u64, noise: f64) -> Outcome<Self> {
+        let sensors = scene.robots.first().map_or(Vec::new(), |robot| sensors(&robot.spec));
+        let world = Stepped::new(scene, options(seed, noise, false, None)?)?;
+        Ok(Self { world, scan: LidarScan::default(), sensors })
+    }
+
+    /// Commands all robots at the beginning of a step, lets time pass, and reads all sensors at its end.
+    fn step(&mut self, commands: &[f64], part: Part, rows: &mut Rows<'_>, shape: Shape) -> Result<()> {
+        if part.begins {
+            for (robot, command) in commands.chunks_exact(2).enumerate() {
+                self.world.robot(robot)?.set_speed(Twist::new(command[0], command[1]))?;
+            }
+        }
+        self.world.run_for(part.ticks as f64 * TICK)?;
+        if part.ends { self.read(rows, shape) } else { Ok(()) }
+    }
+
+    pub(crate) fn read(&mut self, rows: &mut Rows<'_>, shape: Shape) -> Result<()> {
+        for index in 0..self.world.robots() {
+            let mut robot = self.world.robot(index)?;
+            if shape.beams > 0 {
+                robot.scan_into(&mut self.scan)?;
+                rows.ranges[index * shape.beams..][..shape.beams].copy_from_slice(&self.scan.ranges);
+            }
+            for (range, sensor) in rows.distances[index * shape.sensors..].iter_mut().zip(&self.sensors) {
+                *range = robot.distance(*sensor)?;
+            }
+            let (pose, speed) = (robot.pose()?, robot.speed()?);
+            rows.poses[3 * index..][..3].copy_from_slice(&[pose.x, pose.y, pose.heading]);
+            rows.speeds[2 * index..][..2].copy_from_slice(&[speed.linear, speed.angular]);
+            rows.stalled[index] = robot.is_stalled()?;
+            let truth = self.world.pose(index)?;
+            rows.true_poses[3 * index..][..3].copy_from_slice(&[truth.x, truth.y, truth.heading]);
+            rows.contacts[index] = self.world.contacts(index)?;
+        }
+        Ok(())
+    }
+}
+
+/// The distance sensors of a robot.
+pub(crate) fn sensors(spec: &world::RobotSpec) -> Vec<Psd> {
+    spec.psds.iter().map(|psd| Psd(psd.id)).collect()
+}
+
+/// A part of a step in time.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Part {
+    pub(crate) ticks: u64,
+    pub(crate) begins: bool,
+    pub(crate) ends: bool,
+}
+
+/// Some worlds, the commands to their robots, and their rows.
+struct Share<'a> {
+    worlds: &'a mut [Cell],
+    commands: &'a [f64],
+    rows: Rows<'a>,
+}
+
+/// Shares per thread: so many that no thread waits long for the slowest one.
+const SHARES: usize = 8;
+
+impl<'a> Share<'a> {
+    /// Splits off the first worlds.
+    fn split(self, worlds: usize, shape: Shape) -> (Self, Self) {
+        let (first, others) = self.worlds.split_at_mut(worlds);
+        let robots = first.iter().map(|cell| cell.world.robots()).sum::<usize>();
+        let (rows, other_rows) = self.rows.split(robots, shape);
+        let (commands, other_commands) = self.commands.split_at(2 * robots);
+        let rest = Share { worlds: others, commands: other_commands, rows: other_rows };
+        (Share { worlds: first, commands, rows }, rest)
+    }
+
+    /// Shares of at most so many worlds.
+    fn divide(self, worlds: usize, shape: Shape) -> Vec<Share<'a>> {
+        let (mut rest, mut shares) = (self, Vec::new());
+        while rest.worlds.len() > worlds {
+            let (share, others) = rest.split(worlds, shape);
+            shares.push(share);
+            rest = others;
+        }
+        shares.push(rest);
+        shares
+    }
+
+    fn step(self, part: Part, shape: Shape) -> Result<()> {
+        let mut rest = self;
+        while !rest.worlds.is_empty() {
+            let (mut one, others) = rest.split(1, shape);
+            one.worlds[0].step(one.commands, part, &mut one.rows, shape)?;
+            rest = others;
+        }
+        Ok(())
+    }
+}
+
+/// Steps worlds, in some threads, of which the caller's is one.
+pub(crate) fn step_all(
+    worlds: &mut [Cell],
+    commands: &[f64],
+    rows: Rows<'_>,
+    part: Part,
+    (shape, threads): (Shape, usize),
+) -> Result<()> {
+    let threads = threads.min(worlds.len());
+    let all = Share { worlds, commands, rows };
+    if threads == 1 {
+        return all.step(part, shape);
+    }
+    let most = all.worlds.len().div_ceil(SHARES * threads);
+    let shares = Mutex::new(all.divide(most, shape).into_iter());
+    let next = || shares.lock().unwrap_or_else(PoisonError::into_inner).next();
+    let work = || std::iter::from_fn(next).try_for_each(|share| share.step(part, shape));
+    std::thread::scope(|scope| {
+        let others: Vec<_> = (1..threads).map(|_| scope.spawn(work)).collect();
+        let own = work();
+        let ended = others.into_iter().map(|thread| match thread.join() {
+            Ok(result) => result,
+            Err(panic) => std::panic::resume_unwind(panic),
+        });
+        ended.collect::<Vec<_>>().into_iter().chain([own]).collect()
+    })
+}
