@@ -3,7 +3,8 @@
 //! A [`Simulation`] provides robots for ordinary blocking programs; several robots need one thread each. A
 //! [`Fleet`] steps any number of behaviours in one thread; a [`Stepped`] world leaves the loop to its caller.
 //! All use the same engine, with motor lag, encoders with whole ticks, slip, collisions, and ray-cast sensors
-//! with noise. The world advances in ticks of 10 ms without real waiting. The same seed gives the same run on every platform and with every thread scheduling.
+//! with noise. The world advances in ticks of 10 ms without real waiting. The same seed gives the same run on
+//! every platform and with every thread scheduling.
 //!
 //! ```
 //! use roverlab::geometry::Pose;
