@@ -2,7 +2,7 @@
 
 use roverlab::geometry::Point;
 use roverlab::picture::{Figure, Mark, Picture, Style};
-use roverlab::world::road::{Centre, Line, RoadCourse, RoadMarkKind};
+use roverlab::world::road::{Centre, Line, RightOfWay, RoadCourse, RoadMarkKind, RoadSide};
 use roverlab::world::{Colour, RobotSpec, World};
 
 use super::course::Setting;
@@ -10,6 +10,9 @@ use super::drive::Drive;
 
 /// Distance between points of a line (m).
 const STEP: f64 = 0.1;
+/// Length of a crosswalk along the road, and depth of parking areas on the right and on the left, by the rules (m).
+const CROSSWALK: f64 = 0.4;
+const PARKING: [f64; 2] = [0.3, 0.5];
 
 /// The road's lines, the lane's centre line, and the path of the car, coloured by speed.
 pub(super) fn picture(setting: &Setting, drive: &Drive) -> Picture {
@@ -57,6 +60,69 @@ pub(crate) fn road(picture: &mut Picture, course: &RoadCourse) {
     }
     let middle = (0..=count).map(|i| course.pose(along(i), 0.0).position());
     picture.line(middle, Style::plan().width(0.8).opacity(0.5).labelled("middle of the lane"));
+    markings(picture, course);
+}
+
+/// Draws what markings ask of drivers.
+fn markings(picture: &mut Picture, course: &RoadCourse) {
+    let edge = course.edge();
+    for mark in &course.marks {
+        let at = mark.at;
+        match mark.kind {
+            RoadMarkKind::StopLine => across(picture, course, at, false),
+            RoadMarkKind::GiveWayLine => across(picture, course, at, true),
+            RoadMarkKind::Crossing(crossing) if crossing.right_of_way != RightOfWay::Priority => {
+                let gives_way = crossing.right_of_way != RightOfWay::Stop;
+                across(picture, course, at - course.crossing_reach(&crossing), gives_way);
+            }
+            RoadMarkKind::Zebra => {
+                let to = at + CROSSWALK * course.size;
+                area(picture, course, (at, to), (-edge, edge), "crosswalk");
+            }
+            RoadMarkKind::Parking(side, long) => {
+                area(picture, course, (at, at + long), parking_sides(course, side), "parking area");
+            }
+            RoadMarkKind::Barred(side, long, wide) => {
+                let sign = if side == RoadSide::Left { 1.0 } else { -1.0 };
+                area(picture, course, (at, at + long), (sign * edge, sign * (edge - wide)), "barred area");
+            }
+            RoadMarkKind::Speed(number, is_end) => {
+                let words = if is_end { format!("end of {number}") } else { number.to_string() };
+                picture.text(course.pose(at, 0.0).position(), words);
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Where a parking area lies, to the left of the road's centre line (m).
+pub(crate) fn parking_sides(course: &RoadCourse, side: RoadSide) -> (f64, f64) {
+    let (sign, depth) = if side == RoadSide::Left { (1.0, PARKING[1]) } else { (-1.0, PARKING[0]) };
+    (sign * course.edge(), sign * (course.edge() + depth * course.size))
+}
+
+/// A line across the own lane at which cars stop or give way.
+fn across(picture: &mut Picture, course: &RoadCourse, at: f64, gives_way: bool) {
+    let ends = [0.0, course.lane_middle().signum() * course.edge()];
+    let style = Style::aid().width(2.4);
+    let style =
+        if gives_way { style.dashed().labelled("give-way line") } else { style.labelled("stop line") };
+    picture.line(ends.map(|left| course.line.beside(at, left)), style);
+}
+
+/// An area along the road, between two distances to the left of its centre line (m).
+pub(crate) fn area(
+    picture: &mut Picture,
+    course: &RoadCourse,
+    (from, to): (f64, f64),
+    (one, other): (f64, f64),
+    label: &str,
+) {
+    let count = ((to - from) / STEP).ceil() as usize;
+    let along = |i: usize| from + (to - from) * i as f64 / count as f64;
+    let there = (0..=count).map(|i| course.line.beside(along(i), one));
+    let back = (0..=count).rev().map(|i| course.line.beside(along(i), other));
+    picture.polygon(there.chain(back), Style::aid().width(0.8).filled(0.15).labelled(label));
 }
 
 fn draw(picture: &mut Picture, points: Vec<Point>, dashed: bool) {

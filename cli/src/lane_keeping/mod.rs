@@ -10,7 +10,7 @@ use roverlab::drive::traffic::{FreeDriveRules, FreeDriveScore};
 use crate::common::{CommonArgs, Failure, OF_ONE_RUN, Outcome, Report, millimetres, rounded};
 use course::Setting;
 pub(crate) use course::course;
-pub(crate) use drawing::road;
+pub(crate) use drawing::{area, parking_sides, road};
 use drive::Drive;
 
 /// The command line of `lane-keeping`.
