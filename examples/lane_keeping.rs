@@ -30,7 +30,7 @@ where
     let options = SimOptions { light: 0.7, ..SimOptions::with_noise(1.0, 1) };
     let simulation = Simulation::new(&scene, options)?;
     let (mut car, truth) = (simulation.robot(0)?, simulation.truth());
-    let mut referee = FreeDrive::new(course.clone(), &spec, FreeDriveRules::default());
+    let mut referee = FreeDrive::new(course.clone(), &spec, FreeDriveRules::default())?;
     let mut way = Vec::new();
     run(&mut car, keeper, 30.0, |_, _, _| {
         let pose = truth.pose(0)?;

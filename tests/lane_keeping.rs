@@ -109,7 +109,7 @@ fn drive(seed: u64, seconds: f64) -> FreeDriveScore {
     let (mut car, truth) = (simulation.robot(0).unwrap(), simulation.truth());
     let mut keeper =
         LaneKeeper::new(camera(), RoadModel::default(), LaneKeeperParameters::default()).unwrap();
-    let mut referee = FreeDrive::new(course, &RobotSpec::road_car(), FreeDriveRules::default());
+    let mut referee = FreeDrive::new(course, &RobotSpec::road_car(), FreeDriveRules::default()).unwrap();
     run(&mut car, &mut keeper, seconds, |_, _, _| until(referee.see(truth.time(), &truth.pose(0).unwrap())))
         .unwrap();
     *referee.score()
@@ -122,7 +122,7 @@ fn a_gap_of_a_metre_and_a_blackout_are_driven_through_by_odometry() {
     let (mut car, truth) = (simulation.robot(0).unwrap(), simulation.truth());
     let mut keeper =
         LaneKeeper::new(camera(), RoadModel::default(), LaneKeeperParameters::default()).unwrap();
-    let mut referee = FreeDrive::new(course, &RobotSpec::road_car(), FreeDriveRules::default());
+    let mut referee = FreeDrive::new(course, &RobotSpec::road_car(), FreeDriveRules::default()).unwrap();
     let dark = |robot: &mut roverlab::io::sim::SimRobot, time: f64, seen: &mut LaneObservation| {
         use roverlab::io::Odometry;
         robot.set_resolution(Resolution::Qvga)?;
@@ -227,7 +227,7 @@ mod campaigns {
         };
         let mut keeper = LaneKeeper::new(camera, road, parameters).unwrap();
         let laps = 20.0 * course.line.length();
-        let mut referee = FreeDrive::new(course, &spec, FreeDriveRules::default());
+        let mut referee = FreeDrive::new(course, &spec, FreeDriveRules::default()).unwrap();
         run(&mut robot, &mut keeper, 1200.0, |_, _, _| {
             let astray = referee.see(truth.time(), &truth.pose(0).unwrap());
             until(astray || referee.score().distance >= laps)

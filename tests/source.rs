@@ -39,6 +39,48 @@ fn every_property_draws_the_same_cases_for_everybody() {
     assert!(properties > 100, "{properties} were found");
 }
 
+/// A doc that two constants share leaves the unit and the origin of one of them to guesses.
+#[test]
+fn every_constant_with_a_figure_has_a_doc_of_its_own() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    rust_files(&root, &mut files);
+    let (mut constants, mut bare) = (0, Vec::new());
+    for file in files {
+        // Left out: the docs of these two are of groups of figures.
+        let left_out = ["vision/road_elements", "io/sim/marine"];
+        if left_out.iter().any(|folder| file.starts_with(root.join(folder))) {
+            continue;
+        }
+        let text = fs::read_to_string(&file).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        for (at, line) in lines.iter().enumerate() {
+            let Some((before, rest)) = line.split_once("const ") else { continue };
+            let kind = rest.split_once(": ").and_then(|(_, kind)| kind.split('=').next()).unwrap_or("");
+            let words = || kind.split(|c: char| !c.is_alphanumeric());
+            let figure = words().any(|word| ["f64", "f32", "usize", "Duration"].contains(&word));
+            if !(figure && (before.is_empty() || before.starts_with("pub")) && !rest.starts_with("fn ")) {
+                continue;
+            }
+            constants += 1;
+            let above = lines[..at].iter().rev().find(|line| !line.starts_with("#["));
+            if !above.is_some_and(|line| line.starts_with("///")) {
+                bare.push(format!("{}:{}: {line}", file.display(), at + 1));
+            }
+        }
+    }
+    assert!(bare.is_empty(), "without a doc of its own:\n{}", bare.join("\n"));
+    assert!(constants > 700, "{constants} were found");
+}
+
+/// Longer, and nobody reads to its end.
+#[test]
+fn the_front_page_stays_short() {
+    let page = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md")).unwrap();
+    let lines = page.lines().count();
+    assert!(lines <= 120, "README.md has {lines} lines; expected at most 120");
+}
+
 /// Pages in Markdown below a folder.
 fn pages(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {

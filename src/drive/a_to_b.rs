@@ -7,7 +7,7 @@ use super::{Path, PathFollower, PathFollowerParameters, Waypoint};
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, angle_difference};
 use crate::io::control::Manoeuvre;
-use crate::io::reading::check_pose;
+use crate::io::reading::{check_pose, point_in_words};
 use crate::io::{Error, Result};
 use crate::parameter::{require_positive, require_up_to};
 
@@ -56,7 +56,12 @@ impl Goal {
         if self.pose_from(Point::origin()).is_finite() {
             return Ok(());
         }
-        Err(Error::invalid_input("goal", format!("{self:?}"), "finite numbers"))
+        let place = point_in_words(self.position);
+        let found = match self.heading {
+            Some(heading) => format!("{place} with a heading of {heading} rad"),
+            None => place,
+        };
+        Err(Error::invalid_input("goal", found, "finite numbers"))
     }
 }
 
@@ -189,6 +194,10 @@ const HOMING_TIME: f64 = 0.5;
 
 impl AToB {
     /// Creates a drive to a goal in the frame of the observed poses.
+    ///
+    /// # Errors
+    ///
+    /// If the goal is not finite, or a parameter is out of range.
     pub fn new(method: Method, goal: Goal, parameters: AToBParameters) -> Result<Self> {
         parameters.validate()?;
         goal.check()?;
@@ -208,11 +217,17 @@ impl AToB {
     /// method.
     pub fn via(self, points: Vec<Point>) -> Result<Self> {
         if self.method != Method::Spline && !points.is_empty() {
-            let found = format!("{:?} by way of {} points", self.method, points.len());
+            let method = match self.method {
+                Method::Turn => "a turn and a straight line",
+                Method::Arc => "an arc",
+                Method::Dog => "a dog curve",
+                Method::Spline => "a spline",
+            };
+            let found = format!("{method} by way of {} points", points.len());
             return Err(Error::invalid_input("method", found, "a spline, which alone has waypoints"));
         }
         if let Some(point) = points.iter().find(|point| !(point.x.is_finite() && point.y.is_finite())) {
-            return Err(Error::invalid_input("waypoint", format!("{point:?}"), "finite numbers"));
+            return Err(Error::invalid_input("waypoint", point_in_words(*point), "finite numbers"));
         }
         Ok(Self { via: points, ..self })
     }

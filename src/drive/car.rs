@@ -193,6 +193,10 @@ const LARGEST_SCALE: f64 = 4.0;
 
 impl CarToB {
     /// Creates a car's drive to a goal in the frame of the observed poses.
+    ///
+    /// # Errors
+    ///
+    /// If the goal is not finite, or a parameter is out of range.
     pub fn new(method: Method, goal: Goal, driver: CarDriver, parameters: CarToBParameters) -> Result<Self> {
         goal.check()?;
         parameters.follower.validate()?;

@@ -5,6 +5,7 @@ use super::a_to_b::dog_twist;
 use super::{Hermite, Method, PathFollowerParameters};
 use crate::geometry::{Pose, Twist};
 use crate::io::control::{Behaviour, Decision, SensedBy, Senses, halts};
+use crate::io::reading::pose_in_words;
 use crate::io::{Error, Odometry, Result, StallDetector};
 use crate::parameter::{require_positive, require_up_to};
 
@@ -94,7 +95,7 @@ impl Chase {
     /// goal's heading. Fails if the goal is not finite.
     pub fn step(&mut self, goal: Pose) -> Result<Option<Twist>> {
         if !goal.is_finite() {
-            return Err(Error::invalid_input("goal", format!("{goal:?}"), "finite numbers"));
+            return Err(Error::invalid_input("goal", pose_in_words(&goal), "finite numbers"));
         }
         let robot = Pose::default();
         let distance = robot.distance_to(goal.position());

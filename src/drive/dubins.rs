@@ -25,6 +25,11 @@ impl Path {
     /// The shortest path of a car that only drives forward, with a turning circle of `radius` metres (L. E.
     /// Dubins, "On curves of minimal length with a constraint on average curvature", 1957). One always
     /// exists.
+    ///
+    /// # Errors
+    ///
+    /// If a pose is not finite, the poses are the same, the path is longer than 10 km, or the radius is not
+    /// positive and finite.
     pub fn dubins(start: Pose, goal: Pose, radius: f64) -> Result<Self> {
         require_positive("turning radius", radius)?;
         let (word, parts, _) = shortest(start, goal, radius);
@@ -38,6 +43,10 @@ impl Path {
     }
 
     /// The shortest such path to a point, over goal headings in steps of 5 degrees.
+    ///
+    /// # Errors
+    ///
+    /// As [`dubins`](Self::dubins).
     pub fn dubins_to_point(start: Pose, goal: crate::geometry::Point, radius: f64) -> Result<Self> {
         require_positive("turning radius", radius)?;
         let headings = (0..HEADINGS).map(|i| TAU * f64::from(i) / f64::from(HEADINGS));

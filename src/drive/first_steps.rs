@@ -6,7 +6,8 @@ use super::{Path, PathFollower, PathFollowerParameters};
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, angle_difference};
 use crate::io::control::{Behaviour, Decision, LidarObservation, Senses, halts};
-use crate::io::{Error, Lidar, Odometry, Result};
+use crate::io::reading::check_pose;
+use crate::io::{Lidar, Odometry, Result};
 use crate::parameter::{require_not_negative, require_positive};
 use crate::scan::ScanMatcher;
 
@@ -212,10 +213,7 @@ impl Behaviour for FirstSteps {
     }
 
     fn step(&mut self, _time: f64, seen: &LidarObservation) -> Decision<Self> {
-        if !seen.odometry.is_finite() {
-            let found = format!("{:?}", seen.odometry);
-            return Err(Error::invalid_input("observed pose", found, "finite numbers"));
-        }
+        check_pose(&seen.odometry)?;
         let points: Vec<Point> = seen.scan.points().collect();
         let pose = self.locate(seen.odometry, &points);
         let mut legs = match self.legs.take() {

@@ -114,6 +114,10 @@ const OF_PLACE: f64 = 0.5;
 
 impl Follower {
     /// Creates a follower without a target.
+    ///
+    /// # Errors
+    ///
+    /// If a parameter is out of range.
     pub fn new(parameters: FollowerParameters) -> Result<Self> {
         parameters.validate()?;
         Ok(Self { parameters, target: None, looking: None })

@@ -1,6 +1,7 @@
 use super::spline::{Hermite, catmull_rom};
 use crate::geometry::units::NEGLIGIBLE;
 use crate::geometry::{Point, Pose, angle_difference, math, normalize_angle};
+use crate::io::reading::pose_in_words;
 use crate::io::{Error, Result};
 use crate::kinematics::{Displacement, advance};
 
@@ -277,7 +278,7 @@ fn check_pose(name: &str, pose: Pose) -> Result<()> {
     if pose.is_finite() {
         return Ok(());
     }
-    Err(Error::invalid_input(name, format!("{pose:?}"), "finite numbers"))
+    Err(Error::invalid_input(name, pose_in_words(&pose), "finite numbers"))
 }
 
 fn check_apart(a: Point, b: Point) -> Result<()> {

@@ -34,9 +34,9 @@ struct Worker {
 
 /// Default time limit of an individual (s).
 const PATIENCE: f64 = 600.0;
-/// Maximum length of an answer, whose longest part is an error message, and of a question, which holds a
-/// genome (bytes).
+/// Maximum length of an answer, whose longest part is an error message (bytes).
 const LONGEST_ANSWER: usize = 1 << 12;
+/// Maximum length of a question, which holds a genome (bytes).
 const LONGEST_QUESTION: usize = 1 << 24;
 
 impl Processes {

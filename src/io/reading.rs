@@ -3,28 +3,44 @@
 use image::{GrayImage, RgbImage};
 
 use super::{Attitude, Error, LidarScan, Result};
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Point, Pose, Twist};
 
 /// Fails with the name of a reading that is none.
 fn require(name: &str, good: bool, found: impl std::fmt::Display, expected: &str) -> Result<()> {
     if good { Ok(()) } else { Err(Error::invalid_input(name, found, expected)) }
 }
 
+/// A point as messages print it.
+pub(crate) fn point_in_words(point: Point) -> String {
+    format!("({}, {}) m", point.x, point.y)
+}
+
+/// A pose as messages print it.
+pub(crate) fn pose_in_words(pose: &Pose) -> String {
+    format!("{} with a heading of {} rad", point_in_words(pose.position()), pose.heading)
+}
+
 /// Fails for a pose that is not finite.
 pub(crate) fn check_pose(pose: &Pose) -> Result<()> {
-    require("observed pose", pose.is_finite(), format_args!("{pose:?}"), "finite numbers")
+    // Every step of a behaviour comes here; words are only made of a pose that is wrong.
+    if pose.is_finite() {
+        return Ok(());
+    }
+    Err(Error::invalid_input("observed pose", pose_in_words(pose), "finite numbers"))
 }
 
 /// Fails for a velocity that is not finite.
 pub(crate) fn check_speed(speed: &Twist) -> Result<()> {
-    require("observed speed", speed.is_finite(), format_args!("{speed:?}"), "finite numbers")
+    let found = format_args!("{} m/s and {} rad/s", speed.linear, speed.angular);
+    require("observed speed", speed.is_finite(), found, "finite numbers")
 }
 
 /// Fails for an attitude that is not finite.
 pub(crate) fn check_attitude(attitude: &Attitude) -> Result<()> {
     let Attitude { roll, pitch, yaw } = *attitude;
     let good = [roll, pitch, yaw].iter().all(|angle| angle.is_finite());
-    require("observed attitude", good, format_args!("{attitude:?}"), "finite numbers")
+    let found = format_args!("roll {roll}, pitch {pitch}, yaw {yaw} rad");
+    require("observed attitude", good, found, "finite numbers")
 }
 
 /// Fails for the first of some distances that is NaN or negative. Infinity is that of nothing in range.

@@ -14,8 +14,9 @@ pub struct Tracked {
     pub width: f64,
 }
 
-/// Sample points of the contact area, as fractions of the belt's length and width from its centre.
+/// Sample points of the contact area, as fractions of the belt's length from its centre.
 const ALONG: [f64; 4] = [-0.5, -1.0 / 6.0, 1.0 / 6.0, 0.5];
+/// The same across the belt, as fractions of its width.
 const ACROSS: [f64; 2] = [-0.5, 0.5];
 
 impl Tracked {

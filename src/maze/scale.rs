@@ -2,14 +2,14 @@ use super::{Cell, Direction, Maze, WallState};
 use crate::geometry::{Point, Pose, Segment};
 use crate::world::{self, World};
 
-/// Dimensions of a physical maze (m).
+/// Dimensions of a physical maze.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
-    /// Cell size.
+    /// Cell size (m).
     pub cell: f64,
-    /// Thickness of the walls, and width of the posts.
+    /// Thickness of the walls, and width of the posts (m).
     pub wall: f64,
-    /// Height of the walls.
+    /// Height of the walls (m).
     pub height: f64,
 }
 

@@ -18,8 +18,9 @@ pub(super) struct Film {
     playing: f64,
 }
 
-/// Maximum duration of a film, and of its still end (s).
+/// Maximum duration of a film (s).
 const LONGEST: f64 = 14.0;
+/// Maximum duration of a film's still end (s).
 const HOLD: f64 = 2.0;
 /// Nothing, in a film or in a path that stands still, is farther off its place than this many pixels.
 pub(super) const TOLERANCE: f64 = 0.35;

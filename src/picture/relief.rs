@@ -12,8 +12,9 @@ use crate::world::{Colour, HeightField};
 
 /// Number of patches along the longer side.
 const PATCHES: f64 = 120.0;
-/// Number of shades between light and shadow, and of tints between low and high.
+/// Number of shades between light and shadow.
 const SHADES: f64 = 10.0;
+/// Number of tints between low and high.
 const TINTS: f64 = 5.0;
 /// Maximum number of contour lines.
 const LINES: f64 = 12.0;

@@ -11,9 +11,10 @@ use crate::geometry::{Point, Pose, Segment, cross, math};
 /// Metres beside a corridor within which a cone is one of its edge, and from its middle at which a lap may
 /// have been driven.
 pub(super) const BESIDE: f64 = 1.0;
-/// Minimum fractions of coloured cones that stand at the corridor, and of these on their own side: where a
-/// track passes close to itself, some are nearer to its other part.
+/// Minimum fraction of coloured cones that stand at the corridor.
 const PASSED: f64 = 0.97;
+/// Minimum fraction of these that stand on their own side: where a track passes close to itself, some are
+/// nearer to its other part.
 const ON_THEIR_SIDE: f64 = 0.85;
 /// Length of a gap relative to the usual distance between cones, and turn of a bend over it (rad).
 const GAP_IN_BEND: (f64, f64) = (2.5, 0.6);

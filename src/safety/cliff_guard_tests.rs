@@ -110,8 +110,9 @@ fn sensors_look_as_far_ahead_as_the_robot_stops() {
     assert!((slow.near() - (0.0578 * 0.44 + 0.0578 * 0.0578 / 4.0)).abs() < 1e-9, "{}", slow.near());
 }
 
-/// A plateau whose ground drops by 0.2 m at x = 2 m, or ends with the world at x = 3 m.
+/// Place along x where a plateau's ground drops by 0.2 m (m).
 const EDGE: f64 = 2.0;
+/// Place along x where the world ends (m).
 const BORDER: f64 = 3.0;
 
 fn plateau(edge: f64) -> World {

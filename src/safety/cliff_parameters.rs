@@ -23,8 +23,9 @@ pub struct CliffGuardParameters {
 
 /// Drop that counts as an edge (m): five standard deviations of a vertical reading at noise 1 (10 mm).
 const DROP: f64 = 0.05;
-/// Speeds (m/s): that of the book's programs, and one from which the robot stops within 20 mm.
+/// Speed of the book's programs (m/s).
 const SPEED: f64 = 0.3;
+/// Speed from which the robot stops within 20 mm (m/s).
 const CREEP: f64 = 0.05;
 /// Time from one look to the next (s): two ticks of the simulator.
 const PERIOD: f64 = 0.02;

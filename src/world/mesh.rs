@@ -39,7 +39,7 @@ pub struct Face {
 }
 
 impl Mesh {
-    /// Radius of the enclosing ball about the foot.
+    /// Radius of the enclosing ball about the foot (m).
     pub fn reach(&self) -> f64 {
         let corners = self.faces.iter().flat_map(|face| face.corners);
         corners.map(|c| c.iter().map(|x| x * x).sum::<f64>()).fold(0.0, f64::max).sqrt()

@@ -51,7 +51,7 @@ impl Shape {
         }
     }
 
-    /// Radius of the smallest enclosing circle about the object's axis.
+    /// Radius of the smallest enclosing circle about the object's axis (m).
     pub fn bounding_radius(&self) -> f64 {
         match *self {
             Shape::Cylinder { radius, .. } | Shape::Sphere { radius } => radius,

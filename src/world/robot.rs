@@ -216,7 +216,7 @@ pub enum Footprint {
 }
 
 impl Footprint {
-    /// Radius of the smallest enclosing circle about the robot's origin.
+    /// Radius of the smallest enclosing circle about the robot's origin (m).
     pub fn bounding_radius(&self) -> f64 {
         match self {
             Footprint::Disc { radius } => *radius,

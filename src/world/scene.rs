@@ -34,6 +34,8 @@ pub struct World {
 
 impl World {
     /// An empty floor from (0, 0) with `width` metres along x and `height` metres along y, without walls.
+    /// Negative sizes extend it to the other side of (0, 0). A floor without an area is accepted: it shows in
+    /// no picture, and robots drive beyond a floor's edges anyway.
     pub fn empty(width: f64, height: f64) -> Self {
         Self {
             floor: Aabb::new(Point::origin(), Point::new(width, height)),
@@ -51,7 +53,8 @@ impl World {
         }
     }
 
-    /// A floor from (0, 0) with walls on its four edges.
+    /// A floor from (0, 0) with walls on its four edges. Sizes are as for [`World::empty`]; with one of 0,
+    /// the walls enclose nothing.
     ///
     /// ```
     /// let world = roverlab::world::World::walled(2.0, 1.0);
@@ -100,7 +103,7 @@ pub struct Place {
     pub letter: char,
     /// Centre of its cell.
     pub position: Point,
-    /// Heading of the letter, if it has one.
+    /// Heading of the letter (rad), if it has one.
     pub heading: Option<f64>,
 }
 

@@ -1,8 +1,9 @@
 use super::{Object, World};
 use crate::geometry::{Aabb, Point, Vector};
 
-/// Width (m), and width relative to the extent of one side, of a gap that separates the contents of a world.
+/// Width of a gap that separates the contents of a world (m).
 const GAP: f64 = 100.0;
+/// The same, relative to the extent of one side.
 const GAP_IN_SIZES: f64 = 10.0;
 /// Distance to the farthest wall within which a floor ends there (m).
 const NEAR: f64 = 1.0;

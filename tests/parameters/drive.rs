@@ -10,7 +10,8 @@ use roverlab::drive::motion_watch::{
 use roverlab::drive::parking::{ParkingDriver, ParkingKind, ParkingParameters};
 use roverlab::drive::terrain::{Ascent, AscentParameters, SlopeSensor};
 use roverlab::drive::traffic::{
-    RoadSharing, RoadSharingParameters, RoadStation, RoadStationParameters, TrafficDriver, TrafficParameters,
+    FreeDrive, FreeDriveRules, RoadSharing, RoadSharingParameters, RoadStation, RoadStationParameters,
+    TrafficDriver, TrafficParameters,
 };
 use roverlab::drive::{
     AToB, AToBParameters, AlongWall, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters,
@@ -28,6 +29,7 @@ use roverlab::random::Stream;
 use roverlab::vision::lane_markings::{RoadCamera, RoadModel};
 use roverlab::vision::motion::{FlowDetector, FlowParameters, MotionParameters};
 use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod};
+use roverlab::world::road::{RoadCourseOptions, generate};
 use roverlab::world::{RobotSpec, World};
 
 use crate::check::{check, check_variant, ends};
@@ -203,6 +205,17 @@ fn lanes() {
         { Bounded: size, line_width; } but left_hand);
     check!(RoadCamera = camera(), |p| LaneKeeper::new(p, RoadModel::default(), LaneKeeperParameters::default())?,
         { Bounded: field_of_view; AroundZero: tilt; Positive: height; Finite: ahead; } but fisheye);
+}
+
+#[test]
+fn roads() {
+    check!(RoadCourseOptions = RoadCourseOptions::default(), |p| generate(1, &p)?,
+        { Bounded: size, lane_width; NotNegative: longest_gap;
+          BoundedFromZero: gaps, crossings, zebras, parking, artefacts; } but traffic);
+    let course = generate(1, &RoadCourseOptions::default()).unwrap();
+    check!(FreeDriveRules = FreeDriveRules::default(),
+        |p| FreeDrive::new(course.clone(), &RobotSpec::road_car(), p)?,
+        { NotNegative: penalty, intervention; Above: astray, standing; } but subtract_outside);
 }
 
 #[test]

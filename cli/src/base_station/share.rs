@@ -72,9 +72,10 @@ pub(super) fn drive<'a>(
         referees: (0..setting.cars)
             .map(|car| {
                 let referee = FreeDrive::new(setting.course.clone(), &RobotSpec::road_car(), rules);
-                referee.starting_at(setting.starts[car])
+                referee.map(|referee| referee.starting_at(setting.starts[car]))
             })
-            .collect(),
+            .collect::<Result<_, _>>()
+            .map_err(Failure::input)?,
         trails: (0..setting.cars).map(|car| vec![(0.0, setting.scene.robots[car].pose)]).collect(),
         shared: Shared { least_gap: f64::INFINITY, ..Shared::default() },
         moved: vec![false; setting.cars],

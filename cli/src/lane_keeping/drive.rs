@@ -38,7 +38,7 @@ pub(super) fn drive(args: &Args, setting: &Setting, stage: &Stage) -> Result<Dri
     let mut car = stage.robot(0)?;
     let mut watch = Watch {
         truth: stage.truth(0)?,
-        referee: FreeDrive::new(setting.course.clone(), &spec, rules()),
+        referee: FreeDrive::new(setting.course.clone(), &spec, rules()).map_err(Failure::input)?,
         trail: Vec::new(),
         pace: Box::new(paced(&args.common)),
     };

@@ -3,7 +3,7 @@ use std::ops::ControlFlow;
 use super::super::way::{ALIGNED, TURN_GAIN};
 use crate::geometry::{Point, Pose, Twist, angle_difference, math};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
-use crate::io::reading::check_pose;
+use crate::io::reading::{check_pose, point_in_words};
 use crate::io::{Error, Odometry, Result};
 use crate::parameter::require_positive;
 
@@ -70,7 +70,7 @@ impl Tour {
         let mut corners: Vec<Point> = Vec::with_capacity(points.len());
         for &point in points {
             if !(point.x.is_finite() && point.y.is_finite()) {
-                return Err(Error::invalid_input("corner", format!("{point:?}"), "finite numbers"));
+                return Err(Error::invalid_input("corner", point_in_words(point), "finite numbers"));
             }
             corners.push(point);
         }

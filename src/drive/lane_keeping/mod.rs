@@ -22,7 +22,7 @@
 //! let scene = Scene::with_robot(world, spec.clone(), course.start());
 //! let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
 //! let (mut car, truth) = (simulation.robot(0)?, simulation.truth());
-//! let mut referee = FreeDrive::new(course, &spec, FreeDriveRules::default());
+//! let mut referee = FreeDrive::new(course, &spec, FreeDriveRules::default())?;
 //!
 //! let camera = spec.camera.as_ref().expect("the car has one").into();
 //! let mut keeper = LaneKeeper::new(camera, RoadModel::default(), LaneKeeperParameters::default())?;

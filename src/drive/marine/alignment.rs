@@ -14,11 +14,13 @@ pub(super) struct Alignment {
     covariance: Matrix3<f64>,
 }
 
-/// Standard deviations: of the compass's constant error and of a reading (rad: half a degree), of the turn rate's
-/// constant error (rad/s), its walk (rad/s in √s: as much in a minute), and of an angle by turn rates (rad/√s).
+/// Standard deviation of the compass's constant error, and of a reading (rad): half a degree.
 const COMPASS: f64 = 0.0087;
+/// Standard deviation of the turn rate's constant error (rad/s): 0.05 degrees per second.
 const BIAS: f64 = 0.000_87;
+/// Walk of the turn rate's error (rad/s per √s): as much as `BIAS` in a minute.
 const WALK: f64 = 0.000_11;
+/// Standard deviation of an angle that was integrated from turn rates (rad/√s).
 const TURN: f64 = 0.000_28;
 
 impl Alignment {

@@ -103,11 +103,13 @@ pub struct Boat {
     since: f64,
 }
 
-/// How fast the boat comes back to its station (1/s), at most (m/s), how fast it learns what drives it off
-/// (1/s²), and the most of that (m/s).
+/// Speed back to the station per distance from it (1/s).
 const RETURN: f64 = 0.25;
+/// Largest speed back to the station (m/s).
 const MOST_RETURN: f64 = 0.3;
+/// Change of the learned drift per distance from the station and time (1/s²).
 const LEARNT: f64 = 0.03;
+/// Largest drift that is learned (m/s).
 const MOST_DRIFT: f64 = 0.4;
 
 impl Boat {

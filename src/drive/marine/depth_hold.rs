@@ -85,8 +85,8 @@ impl DepthHold {
         })
     }
 
-    /// The downward force (N) that brings a craft whose sensor reads `depth` to `goal` and keeps it there,
-    /// `seconds` after the last step.
+    /// The downward force (N) that brings a craft whose sensor reads `depth` (m) to the depth `goal` (m) and
+    /// keeps it there, `seconds` after the last step.
     pub fn step(&mut self, depth: f64, goal: f64, seconds: f64) -> f64 {
         self.follow(depth, [goal, 0.0, 0.0], seconds)
     }

@@ -18,13 +18,17 @@ pub(super) struct Fix {
     velocity: Vector,
 }
 
-/// Standard deviations: of the place at the start (m), the compass's error (rad) and its drift (rad/√s: half a
-/// degree in a minute), the log's scale and its walk (m/√s), and a distance (m).
+/// Standard deviation of the position at the start (m).
 const START: f64 = 0.05;
+/// Standard deviation of the compass's error at the start (rad).
 const COMPASS: f64 = 0.01;
+/// Drift of the compass's error (rad/√s): half a degree in a minute.
 const DRIFT: f64 = 0.0011;
+/// Standard deviation of the log's scale error, relative to the distance.
 const SCALE: f64 = 0.005;
+/// Walk of the position by the log (m/√s).
 const WALK: f64 = 0.004;
+/// Standard deviation of a measured distance (m).
 const RANGE: f64 = 0.1;
 /// The most standard deviations that a distance may be off: what is nearer is no side.
 const GATE: f64 = 4.0;

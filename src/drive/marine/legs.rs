@@ -15,8 +15,9 @@ pub(super) struct Legs {
     reached: f64,
 }
 
-/// The share of the speed at which a waypoint is passed, and the seconds in which it is slowed to.
+/// Fraction of the speed at which a waypoint is passed.
 const PASSING: f64 = 0.3;
+/// Distance to a waypoint per speed above that of passing it (s).
 const SLOWING: f64 = 2.5;
 /// How fast the cross-track error is integrated, per second.
 const INTEGRAL: f64 = 0.15;
@@ -88,8 +89,9 @@ pub(super) struct Steered {
     pub(super) speed: f64,
 }
 
-/// Turn rate for an angle (1/s), and the fastest (rad/s).
+/// Turn rate per angle off the course (1/s).
 const GAIN: f64 = 1.2;
+/// Largest turn rate (rad/s).
 const FASTEST: f64 = 0.6;
 /// The share of the missing velocity by which a craft points beyond the wanted one: without a keel, only its
 /// thrust takes out a drift aside.

@@ -102,8 +102,9 @@ struct Find {
 const LEAST: u32 = 5;
 /// Metres around a thing's place within which it is the same one.
 const SAME: f64 = 0.4;
-/// The servo that tilts the camera, and the tilt (rad) up to which "straight down" may be missed.
+/// Servo that tilts the camera.
 const TILT: u8 = 2;
+/// Largest tilt away from straight down that counts as straight down (rad).
 const NEARLY: f64 = 0.02;
 
 impl PoolSearch {

@@ -141,12 +141,14 @@ impl Aim {
 
 /// Radians per second: the fastest turn.
 const FASTEST: f64 = 0.5;
-/// The speed (m/s) below which there is no slip to speak of, and its largest angle (rad).
+/// Least forward speed in the computation of the slip angle (m/s).
 const CREEP: f64 = 0.15;
+/// Largest slip angle that is steered against (rad).
 const SLIP: f64 = 0.6;
-/// Turn rate for an angle to the place that is steered for (1/s), and the share of the momentary slip in that
-/// angle: of what a turn does to the way, the larger part comes later, so all of the slip would make it swing.
+/// Turn rate per angle to the place that is steered for (1/s).
 const GAIN: f64 = 1.0;
+/// Weight of the momentary slip in that angle; the rest is the slip that a turn ends with, because the
+/// momentary slip alone would make the craft swing.
 const MOMENTARY: f64 = 0.45;
 /// Metres between the walls nearest here and there within which the way leads round a corner.
 const PIVOT: f64 = 0.2;
@@ -154,13 +156,15 @@ const PIVOT: f64 = 0.2;
 const STEP: f64 = 0.1;
 /// Halvings of a step.
 const HALVINGS: usize = 6;
-/// Metres before the nose that stay free, and seconds in which the rest is driven.
+/// Distance before the nose that stays free (m).
 const FREE: f64 = 0.2;
+/// Time in which the rest of the distance ahead is driven (s); it limits the speed.
 const BRAKING: f64 = 2.0;
 /// Metres from the depth, and from the distance, at which the drive and its first lap begin.
 const BEGIN: f64 = 0.1;
-/// Radians that may be missing from a full turn when a lap ends, and metres from its start.
+/// Angle that may be missing from a full turn when a lap ends (rad).
 const NEARLY: f64 = 0.6;
+/// Largest distance from a lap's start at which it ends (m).
 const CLOSE: f64 = 2.5;
 
 impl PoolWall {

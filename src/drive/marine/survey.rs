@@ -127,11 +127,13 @@ pub struct Survey {
     ready: bool,
 }
 
-/// The sensors that look around, and the one that looks down.
+/// Sensors that look around.
 const AROUND: [Psd; 4] = [Psd::FRONT, Psd::LEFT, Psd::RIGHT, Psd::BACK];
+/// Sensor that looks down.
 const DOWN: Psd = Psd(6);
-/// Metres from the depth at which lanes begin, and from a waypoint at which it is reached.
+/// Deviation from the depth at which lanes begin (m).
 const BEGIN: f64 = 0.1;
+/// Distance from a waypoint at which it is reached (m).
 const REACHED: f64 = 0.2;
 /// The most lanes.
 const MOST_LANES: f64 = 1e4;

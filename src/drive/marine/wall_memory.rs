@@ -20,8 +20,9 @@ pub(super) struct WallMemory {
     bend: f64,
 }
 
-/// Points that are kept of each sensor, and how far away.
+/// Number of points that are kept of each sensor.
 const KEPT: usize = 120;
+/// Distance within which points are kept (m).
 const NEAR: f64 = 4.0;
 /// Metres between two hits that are on different walls.
 const GAP: f64 = 0.3;
@@ -29,11 +30,13 @@ const GAP: f64 = 0.3;
 const WINDOWS: [f64; 5] = [1.8, 1.2, 0.8, 0.5, 0.3];
 /// The root mean square of what a wall's points are off (m): sensors' errors are less.
 const FITS: f64 = 0.03;
-/// The newest points of a wall, and the most (m) that these may be off in the mean: it begins to bend.
+/// Number of newest points that show whether a wall begins to bend.
 const LAST: usize = 4;
+/// Largest mean deviation of these from the wall (m).
 const DRIFT: f64 = 0.008;
-/// Metres by which a wall is continued, and between its points.
+/// Length by which a wall is continued (m).
 const ONWARD: f64 = 1.3;
+/// Distance between the points of a continuation (m).
 const SPACING: f64 = 0.1;
 
 impl WallMemory {

@@ -13,9 +13,9 @@ pub(super) struct Zero {
 
 /// Seconds afloat.
 const SECONDS: f64 = 3.0;
-/// Standard deviations (m): of a sensor's zero before (the resolution of a Bar30), and of where a craft floats,
-/// whose mass is known to 50 g.
+/// Standard deviation of a sensor's zero before any reading (m): the resolution of a Bar30.
 const BEFORE: f64 = 0.002;
+/// Standard deviation of the depth at which a craft floats (m): its mass is known to 50 g.
 const FLOATS: f64 = 0.0004;
 /// The most standard deviations that it may be off: a craft that does not float says nothing of the zero.
 const GATE: f64 = 4.0;

@@ -122,9 +122,9 @@ enum Phase {
     Drive(Follower),
 }
 
-/// Length of a parallel gap, in the car's; that of a perpendicular one, which is wider than a spot of 350 mm
-/// (m).
+/// Least length of a parallel gap (lengths of the car).
 const LEAST: f64 = 1.3;
+/// Least width of a perpendicular gap (m): more than one spot of 350 mm.
 const SPOT: f64 = 0.355;
 /// Longest distance behind a box in which the next one is waited for (m).
 const OPEN: f64 = 1.2;

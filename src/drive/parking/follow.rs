@@ -17,11 +17,13 @@ pub(super) struct Follower {
 const SETTLING: f64 = 0.15;
 /// Largest curvature of a command (1/m).
 const LOCK: f64 = 2.04;
-/// Distance before a change of gear from which the car slows down, and in which it rolls out (m).
+/// Distance before a change of gear from which the car slows down (m).
 const SLOWS: f64 = 0.10;
+/// Distance in which the car rolls out (m).
 const ROLLS_OUT: f64 = 0.006;
-/// Length on which the wheels turn to a new curvature, and speed there (m, m/s).
+/// Length on which the wheels turn to a new curvature (m).
 const TURNS: f64 = 0.01;
+/// Speed while the wheels turn (m/s).
 const CREEP: f64 = 0.06;
 
 impl Follower {

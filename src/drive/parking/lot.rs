@@ -40,11 +40,13 @@ pub struct ParkingLot {
     pub boxes: Vec<(Pose, f64, f64)>,
 }
 
-/// Length of the road car (m), and least length of a gap, in lengths of the car.
+/// Length of the road car (m).
 const CAR: f64 = 0.43;
+/// Least length of a gap (lengths of the car).
 const GAP: f64 = 1.4;
-/// Depth of parallel and of perpendicular spots, and width of the latter, by the rules (m).
+/// Depths of parallel and of perpendicular spots, by the rules (m).
 pub(super) const DEPTHS: [f64; 2] = [0.30, 0.50];
+/// Width of a perpendicular spot, by the rules (m).
 pub(super) const SPOT: f64 = 0.35;
 /// Number of perpendicular spots.
 const SPOTS: usize = 5;

@@ -36,9 +36,11 @@ pub(super) struct Stretch {
     pub(super) curvature: f64,
 }
 
-/// Length of a step of the search (m), size of a cell (m), and number of directions.
+/// Length of a step of the search (m).
 const STEP: f64 = 0.04;
+/// Size of a cell of the search (m).
 const CELL: f64 = 0.025;
+/// Number of directions of the search in a full turn.
 const DIRECTIONS: usize = 96;
 /// Cost of a change between forward and reverse, in metres: gears and brakes take time.
 const CHANGE: f64 = 0.25;

@@ -2,8 +2,9 @@ use super::scene::{BoxMotion, CLEAR, PERSON, RoadBox, TrafficScene, WAITS, ZEBRA
 use crate::geometry::Pose;
 use crate::world::road::RoadCourse;
 
-/// Speed of moving boxes, by the rules, and of pedestrians, which the rules leave open (m/s).
+/// Speed of moving boxes, by the rules (m/s).
 const SPEED: f64 = 0.6;
+/// Speed of pedestrians, which the rules leave open (m/s).
 const WALK: f64 = 0.3;
 /// Time from a car's halt to the first movement of those who wait for it (s).
 const HESITATION: f64 = 0.5;

@@ -110,26 +110,29 @@ enum Halt {
 const NOTICE: f64 = 0.95;
 /// Free length of the other lane beyond an obstacle that it takes to return (m).
 const FREE_LANE: f64 = 1.0;
-/// Length of a crosswalk with what pedestrians hide behind it, and of a crossing between its line and the far
-/// edge (m).
+/// Length of a crosswalk with the part behind it that pedestrians hide (m).
 const CROSSWALK: f64 = 0.75;
+/// Length of a crossing between its line and the far edge (m).
 const CROSSING: f64 = 1.2;
 /// Distance beyond the right edge line at which traffic from the right has priority, by the rules (m).
 const PRIORITY: f64 = 0.25;
 /// Width of a line across the lane (m).
 const LINE: f64 = 0.04;
-/// Speed below which the car stands, and at which it rolls to a line (m/s).
+/// Speed below which the car stands (m/s).
 const STANDS: f64 = 0.02;
+/// Speed at which the car rolls to a line (m/s).
 const ROLLS: f64 = 0.05;
 /// Longest time for which an obstacle beside the car is not seen (s).
 const MEMORY: f64 = 3.0;
 /// Time for which the road has to be free (s).
 const FREE: f64 = 0.7;
-/// Number of a speed limit of 1 m/s, by the rules, and the share of a limit that is driven: the speed varies.
+/// Number of a speed limit of 1 m/s, by the rules.
 const NUMBER: f64 = 36.0;
+/// Fraction of a limit that is driven, because the speed varies.
 const WITHIN: f64 = 0.93;
-/// Distance before a speed zone at which the car has slowed down, and behind it at which it speeds up (m).
+/// Distance before a speed zone at which the car has slowed down (m).
 const SLOWED: f64 = 0.10;
+/// Distance behind a speed zone at which the car speeds up (m).
 const ENDED: f64 = 0.15;
 /// Time in which a car that is too near falls back (s).
 const FALL_BACK: f64 = 0.5;

@@ -65,8 +65,9 @@ type Verdict = Option<(bool, bool)>;
 const BEFORE: f64 = 0.150;
 /// The same before an empty crosswalk, where a halt counts against the car (m).
 const NEAR: f64 = 0.6;
-/// Halts at stop lines and crosswalks, and at give-way lines, by the rules (s).
+/// Halt at stop lines and crosswalks, by the rules (s).
 const LONG_HALT: f64 = 3.0;
+/// Halt at give-way lines, by the rules (s).
 const SHORT_HALT: f64 = 1.0;
 /// Distance behind an obstacle within which the car has to be back in its lane, by the rules (m).
 const BACK: f64 = 2.0;

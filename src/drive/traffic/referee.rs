@@ -1,4 +1,5 @@
 use crate::geometry::{Point, Pose};
+use crate::parameter::{ParameterError, require, require_not_negative};
 use crate::world::road::{LanePose, RoadCourse};
 use crate::world::{DriveSpec, RobotSpec};
 
@@ -23,6 +24,15 @@ impl Default for FreeDriveRules {
     /// The rules of 2025.
     fn default() -> Self {
         Self { subtract_outside: true, penalty: 5.0, intervention: 6.0, astray: 1.0, standing: 5.0 }
+    }
+}
+
+impl FreeDriveRules {
+    fn validate(&self) -> Result<(), ParameterError> {
+        require_not_negative("penalty", self.penalty)?;
+        require_not_negative("penalty for an intervention", self.intervention)?;
+        require("astray offset", self.astray, self.astray > 0.0, "more than 0 lane widths")?;
+        require("standing time", self.standing, self.standing > 0.0, "more than 0 s")
     }
 }
 
@@ -79,7 +89,7 @@ impl FreeDriveScore {
 /// use roverlab::world::RobotSpec;
 /// use roverlab::world::formats::course;
 /// let oval = course::parse("course 1\nstraight 6000\narc 1500 180\nstraight 6000\narc 1500 180\n", "oval")?;
-/// let mut referee = FreeDrive::new(oval.clone(), &RobotSpec::road_car(), FreeDriveRules::default());
+/// let mut referee = FreeDrive::new(oval.clone(), &RobotSpec::road_car(), FreeDriveRules::default())?;
 /// // Three metres at 1 m/s, first in the middle of the lane, then 30 cm beside it.
 /// for step in 0..300 {
 ///     let along = 0.01 * f64::from(step);
@@ -88,7 +98,7 @@ impl FreeDriveScore {
 /// let score = referee.score();
 /// assert_eq!(score.departures, 1);
 /// assert!((score.survival - 2.0).abs() < 0.1, "seconds to the first departure");
-/// # Ok::<(), roverlab::world::formats::FormatError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct FreeDrive {
@@ -111,7 +121,12 @@ const STANDS: f64 = 0.02;
 
 impl FreeDrive {
     /// Creates the referee of a car that starts at the beginning of a course.
-    pub fn new(course: RoadCourse, car: &RobotSpec, rules: FreeDriveRules) -> Self {
+    ///
+    /// # Errors
+    ///
+    /// If a penalty is negative, or `astray` or `standing` is not above 0; infinity stands for never.
+    pub fn new(course: RoadCourse, car: &RobotSpec, rules: FreeDriveRules) -> Result<Self, ParameterError> {
+        rules.validate()?;
         let (length, track) = match car.drive {
             DriveSpec::Ackermann { wheelbase, track, .. } | DriveSpec::Omni { wheelbase, track, .. } => {
                 (wheelbase, track)
@@ -123,7 +138,7 @@ impl FreeDrive {
         let half = 0.5 * track;
         let wheels = [(0.0, half), (0.0, -half), (length, half), (length, -half)];
         let lane = course.locate(&course.start(), Some(0.0));
-        Self {
+        Ok(Self {
             course,
             rules,
             wheels: wheels.map(|(x, y)| Point::new(x, y)),
@@ -133,7 +148,7 @@ impl FreeDrive {
             is_outside: false,
             stands_since: None,
             is_remote: false,
-        }
+        })
     }
 
     /// The same for a car that starts at a position along the course's line (m).
@@ -226,7 +241,7 @@ mod tests {
     fn referee() -> FreeDrive {
         let text = "course 1\nlane 400\nstraight 6000\narc 1500 180\nstraight 6000\narc 1500 180\n";
         let course = course::parse(text, "oval").unwrap();
-        FreeDrive::new(course, &RobotSpec::road_car(), FreeDriveRules::default())
+        FreeDrive::new(course, &RobotSpec::road_car(), FreeDriveRules::default()).unwrap()
     }
 
     /// Drives along a lane at 1 m/s with given offsets.

@@ -53,12 +53,13 @@ const LINE: f64 = 0.038;
 const APART: [f64; 2] = [1.6, 2.6];
 /// Free road that a box needs that moves and is passed (m).
 const STRETCH: f64 = 7.0;
-/// Shortest no-passing zone in which a box drives, and its distance from the zone's beginning, so that cars
-/// see the zone before they could pass (m).
+/// Length of the shortest no-passing zone in which a box drives (m).
 const ZONE: f64 = 2.2;
+/// Distance of that box from the zone's beginning (m): cars see the zone before they could pass.
 const INTO_ZONE: f64 = 1.0;
-/// Shortest speed zone (m), by the rules' least distance between elements, and number of a limit of 1 m/s.
+/// Length of the shortest speed zone (m), by the rules' least distance between elements.
 const ZONE_LENGTH: f64 = 1.5;
+/// Number of a speed limit of 1 m/s, by the rules.
 const NUMBER: f64 = 36.0;
 /// How far a line that strikes a number out begins before it (m).
 const STRIKE: f64 = 0.05;

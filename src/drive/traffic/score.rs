@@ -105,11 +105,13 @@ pub struct EvasionScore {
     pub is_taken_over: bool,
 }
 
-/// Points lost by leaving the lane, the most of these that count, those lost by speeding, and those by remote
-/// control.
+/// Points lost each time the car leaves the lane.
 const DEPARTURE: f64 = 2.0;
+/// Largest number of departures that count.
 const MOST_DEPARTURES: u32 = 10;
+/// Points lost each time that the car is too fast in a speed zone.
 const SPEEDING: f64 = 5.0;
+/// Points lost if the car is taken over by remote control.
 const TAKEN_OVER: f64 = 5.0;
 
 impl EvasionScore {

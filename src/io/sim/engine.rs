@@ -13,6 +13,7 @@ use super::terrain::Hills;
 use super::watch::{Onlooking, Watcher};
 use super::{LONGEST, SimOptions, TICKS_PER_SECOND, TrailPoint};
 use crate::geometry::{Pose, Pose3, Twist, Vector3, units};
+use crate::io::reading::{point_in_words, pose_in_words};
 use crate::io::{Attitude, Error, ErrorKind, Key, LidarScan, LidarSettings, Psd, Resolution, Result};
 use crate::kinematics::{Displacement, PlanarMotion};
 use crate::parameter::{require_finite, require_positive};
@@ -359,7 +360,7 @@ impl Engine {
 
     pub(super) fn set_odometry(&mut self, index: usize, pose: Pose) -> Result<()> {
         if !pose.is_finite() {
-            return Err(Error::invalid_input("pose", format!("{pose:?}"), "finite numbers"));
+            return Err(Error::invalid_input("pose", pose_in_words(&pose), "finite numbers"));
         }
         self.bodies[index].drive.get_mut().set_odometry(pose);
         Ok(())
@@ -440,11 +441,9 @@ fn check_world(world: &World) -> Result<()> {
         let numbers =
             [wall.line.a.x, wall.line.a.y, wall.line.b.x, wall.line.b.y, wall.thickness, wall.height];
         if !numbers.into_iter().all(f64::is_finite) {
-            return Err(Error::invalid_input(
-                &format!("wall {index}"),
-                format!("{wall:?}"),
-                "finite numbers",
-            ));
+            let (from, to) = (point_in_words(wall.line.a), point_in_words(wall.line.b));
+            let found = format!("from {from} to {to}, {} m thick, {} m high", wall.thickness, wall.height);
+            return Err(Error::invalid_input(&format!("wall {index}"), found, "finite numbers"));
         }
     }
     for (index, object) in world.objects.iter().enumerate() {
@@ -452,7 +451,11 @@ fn check_world(world: &World) -> Result<()> {
         let numbers = [object.elevation, shape.bounding_radius(), shape.height()];
         if !(object.pose.is_finite() && numbers.into_iter().all(f64::is_finite)) {
             let name = format!("object {index}, {},", object.kind.name);
-            let found = format!("at {:?}, {shape:?}", object.pose);
+            let [elevation, radius, height] = numbers;
+            let found = format!(
+                "at {}, {elevation} m above the floor, {radius} m in radius, {height} m high",
+                pose_in_words(&object.pose)
+            );
             return Err(Error::invalid_input(&name, found, "finite numbers"));
         }
     }
@@ -465,7 +468,7 @@ fn check_placement(placement: &RobotPlacement) -> Result<()> {
     if placement.pose.is_finite() && placement.elevation.is_finite() {
         return Ok(());
     }
-    let found = format!("{:?} at an elevation of {}", placement.pose, placement.elevation);
+    let found = format!("{}, {} m above the floor", pose_in_words(&placement.pose), placement.elevation);
     Err(Error::invalid_input("robot pose", found, "finite numbers"))
 }
 

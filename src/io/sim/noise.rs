@@ -119,23 +119,27 @@ impl NoiseModel {
 
     /// Fails with the name of an error out of range.
     pub(super) fn validate(&self) -> std::result::Result<(), ParameterError> {
-        for (name, value, limit) in [
-            ("wheel scale error", self.wheel_scale, 1.0),
-            ("wheel mismatch", self.wheel_mismatch, 1.0),
-            ("track error", self.track, 1.0),
-            ("slip", self.slip, 1.0),
-            ("range error", self.range, 1000.0),
-            ("command error", self.command, 1.0),
-            ("shot noise", self.shot, 255.0),
-            ("exposure error", self.exposure, 1.0),
-            ("blur", self.blur, 10.0),
-            ("depth error", self.depth, 1000.0),
-            ("Doppler log's error", self.doppler, 1.0),
-            ("attitude error", self.attitude, 10.0),
-            ("turn rate error", self.turn_rate, 1000.0),
-            ("acceleration error", self.acceleration, 1000.0),
+        let real = Self::real();
+        for (name, value, real, limit) in [
+            ("wheel scale error", self.wheel_scale, real.wheel_scale, 1.0),
+            ("wheel mismatch", self.wheel_mismatch, real.wheel_mismatch, 1.0),
+            ("track error", self.track, real.track, 1.0),
+            ("slip", self.slip, real.slip, 1.0),
+            ("range error", self.range, real.range, 1000.0),
+            ("command error", self.command, real.command, 1.0),
+            ("shot noise", self.shot, real.shot, 255.0),
+            ("exposure error", self.exposure, real.exposure, 1.0),
+            ("blur", self.blur, real.blur, 10.0),
+            ("depth error", self.depth, real.depth, 1000.0),
+            ("Doppler log's error", self.doppler, real.doppler, 1.0),
+            ("attitude error", self.attitude, real.attitude, 10.0),
+            ("turn rate error", self.turn_rate, real.turn_rate, 1000.0),
+            ("acceleration error", self.acceleration, real.acceleration, 1000.0),
         ] {
-            require(name, value, (0.0..=limit).contains(&value), format!("0 to {limit}"))?;
+            // Most models are the real robot's times a level, which is what a caller knows.
+            let levels = format!(", as of a noise level of 0 to {:.0}", limit / real);
+            let levels = if real > 0.0 { &levels } else { "" };
+            require(name, value, (0.0..=limit).contains(&value), format!("0 to {limit}{levels}"))?;
         }
         Ok(())
     }

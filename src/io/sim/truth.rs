@@ -3,6 +3,7 @@ use std::sync::Arc;
 use super::engine::{Engine, Thing};
 use super::lockstep::Lockstep;
 use crate::geometry::{Pose, Pose3};
+use crate::io::reading::pose_in_words;
 use crate::io::{Error, GroundTruth, Mishap, Result, RobotTruth, TruthInSpace};
 use crate::parameter::require_finite;
 
@@ -23,16 +24,28 @@ impl Truth {
     }
 
     /// A robot's pose in the world.
+    ///
+    /// # Errors
+    ///
+    /// If there is no robot of that number.
     pub fn pose(&self, robot: usize) -> Result<Pose> {
         Ok(self.shared.lock().world.body(robot)?.pose())
     }
 
     /// A robot's pose in space: on hills with elevation, roll and pitch, otherwise level.
+    ///
+    /// # Errors
+    ///
+    /// If there is no robot of that number.
     pub fn pose_in_space(&self, robot: usize) -> Result<Pose3> {
         self.shared.lock().world.pose_in_space(robot)
     }
 
     /// Why a robot on hills no longer drives, or drives without effect.
+    ///
+    /// # Errors
+    ///
+    /// If there is no robot of that number.
     pub fn mishap(&self, robot: usize) -> Result<Option<Mishap>> {
         let state = self.shared.lock();
         state.world.body(robot)?;
@@ -40,11 +53,19 @@ impl Truth {
     }
 
     /// Complete ground truth of a robot.
+    ///
+    /// # Errors
+    ///
+    /// If there is no robot of that number.
     pub fn robot(&self, robot: usize) -> Result<RobotTruth> {
         robot_truth(&self.shared.lock().world, robot)
     }
 
     /// An object's pose in the world, by its index in the scene; robots may have pushed it.
+    ///
+    /// # Errors
+    ///
+    /// If there is no object of that number.
     pub fn object(&self, object: usize) -> Result<Pose> {
         let state = self.shared.lock();
         let engine = &state.world;
@@ -58,6 +79,10 @@ impl Truth {
 
     /// Height of an object's foot above the floor, by its index in the scene (m); on hills, its foot is on
     /// the ground.
+    ///
+    /// # Errors
+    ///
+    /// If there is no object of that number.
     pub fn object_elevation(&self, object: usize) -> Result<f64> {
         self.object(object)?;
         let state = self.shared.lock();
@@ -66,6 +91,10 @@ impl Truth {
     }
 
     /// Whether an object has been knocked over, by its index in the scene.
+    ///
+    /// # Errors
+    ///
+    /// If there is no object of that number.
     pub fn has_fallen(&self, object: usize) -> Result<bool> {
         self.object(object)?;
         let state = self.shared.lock();
@@ -78,6 +107,10 @@ impl Truth {
     ///
     /// The effect of programs in lockstep depends on ticks only, never on their speed: within one tick,
     /// requests are executed in the order of the robots' indices.
+    ///
+    /// # Errors
+    ///
+    /// If there is no robot of the number `robot`, or the pose is not finite.
     pub fn move_robot(&self, by: usize, robot: usize, pose: Pose) -> Result<()> {
         let mut state = self.shared.lock();
         state.world.body(robot)?;
@@ -88,6 +121,10 @@ impl Truth {
 
     /// Like [`move_robot`](Truth::move_robot), to `z` metres above the floor, from where the robot drops on
     /// hills. Where the ground is higher, and on a level floor, `z` has no effect.
+    ///
+    /// # Errors
+    ///
+    /// If there is no robot of the number `robot`, or the pose or `z` is not finite.
     pub fn drop_robot(&self, by: usize, robot: usize, pose: Pose, z: f64) -> Result<()> {
         let mut state = self.shared.lock();
         state.world.body(robot)?;
@@ -98,6 +135,10 @@ impl Truth {
     }
 
     /// Like [`move_robot`](Truth::move_robot), for an object.
+    ///
+    /// # Errors
+    ///
+    /// If there is no object of that number, or the pose is not finite.
     pub fn move_object(&self, by: usize, object: usize, pose: Pose) -> Result<()> {
         self.object(object)?;
         require_finite_pose(pose)?;
@@ -106,6 +147,10 @@ impl Truth {
     }
 
     /// Places a robot at a pose, as if by hand, without a change of its odometry.
+    ///
+    /// # Errors
+    ///
+    /// If there is no robot of that number, or the pose is not finite.
     pub fn set_pose(&self, robot: usize, pose: Pose) -> Result<()> {
         let mut state = self.shared.lock();
         state.world.body(robot)?;
@@ -115,6 +160,10 @@ impl Truth {
     }
 
     /// Places an object at a pose, as if by hand, by its index in the scene.
+    ///
+    /// # Errors
+    ///
+    /// If there is no object of that number, or the pose is not finite.
     pub fn set_object(&self, object: usize, pose: Pose) -> Result<()> {
         self.object(object)?;
         require_finite_pose(pose)?;
@@ -127,7 +176,7 @@ pub(super) fn require_finite_pose(pose: Pose) -> Result<()> {
     if pose.is_finite() {
         return Ok(());
     }
-    Err(Error::invalid_input("pose", format!("{pose:?}"), "finite numbers"))
+    Err(Error::invalid_input("pose", pose_in_words(&pose), "finite numbers"))
 }
 
 pub(super) fn robot_truth(engine: &Engine, robot: usize) -> Result<RobotTruth> {

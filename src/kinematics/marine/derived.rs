@@ -5,9 +5,9 @@ use crate::geometry::{Point3, Vector3, math};
 
 /// The density of fresh water, in kg/m³.
 const FRESH: f64 = 1000.0;
-/// The drag coefficient of a body no longer along the flow than across it; a slender one has the second, and
-/// more by the ratio of its width to its length.
+/// Drag coefficient of a body that is no longer along the flow than across it.
 const BLUNT: f64 = 1.1;
+/// Drag coefficient of a slender body; the ratio of width to length leads from this one to `BLUNT`.
 const SLENDER: f64 = 0.3;
 /// The speed, in m/s or rad/s, at which linear damping is as large as quadratic damping.
 const CREEP: f64 = 0.1;

@@ -89,8 +89,9 @@ impl Thruster {
     }
 }
 
-/// The strongest thruster, in newtons, and the heaviest craft, in kg.
+/// Force of the strongest thruster (N).
 const MOST_FORCE: f64 = 1e6;
+/// Mass of the heaviest craft (kg).
 const MOST_MASS: f64 = 1e6;
 
 impl CraftSpec {

@@ -2,6 +2,7 @@ use super::*;
 use crate::random::Stream;
 use proptest::prelude::*;
 
+/// Distance between the wheels (m).
 const TRACK: f64 = 0.09;
 const ERRORS: OdometryErrors =
     OdometryErrors { wheel_scale: 0.01, wheel_mismatch: 0.0003, track: 0.003, slip: 0.0005 };

@@ -5,6 +5,10 @@ use crate::random::Stream;
 /// A perfect maze: exactly one path joins any two cells. A depth-first walk removes walls on its way to new
 /// cells.
 ///
+/// # Errors
+///
+/// If a side is not 1 to 256 cells.
+///
 /// ```
 /// use roverlab::maze::generate::perfect;
 /// use roverlab::maze::{Unknown, distances_from_start};
@@ -23,6 +27,10 @@ pub fn perfect(width: usize, height: usize, seed: u64) -> Result<Maze, Parameter
 
 /// A perfect maze with a random `part` (0 to 1, clamped) of its inner walls removed, so that many paths lead
 /// to most cells.
+///
+/// # Errors
+///
+/// If a side is not 1 to 256 cells.
 ///
 /// ```
 /// use roverlab::maze::generate::{braided, perfect};

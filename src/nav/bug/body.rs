@@ -3,7 +3,7 @@ use super::report::{BugEvent, BugOutcome, BugPhase};
 use super::wall_ends::{WallEnds, overhangs};
 use crate::geometry::{Point, Pose, Twist, Vector, WallSide, angle_difference, direction, math};
 use crate::io::control::LidarObservation;
-use crate::io::reading::{check_pose, check_scan};
+use crate::io::reading::{check_pose, check_scan, point_in_words};
 use crate::io::{Error, Result};
 use crate::nav::boundary::nearer_side;
 use crate::nav::surroundings::Surroundings;
@@ -55,15 +55,17 @@ pub(super) struct GoalView {
 const REACH: f64 = 2.4;
 /// Radius within which the ends of walls are remembered, relative to that.
 const ENDS_REACH: f64 = 1.7;
-/// Maximum distance between two observations of one point without noise (m), and per metre of noise.
+/// Maximum distance between two observations of one point without noise (m).
 const EXACT: f64 = 0.003;
+/// Part of that distance by noise, relative to the range noise.
 const ENDS_SLACK: f64 = 5.0;
 /// Fraction of the goal's tolerance that is used where the robot cannot come nearer.
 const USED_TOLERANCE: f64 = 0.9;
 /// Distance within which a goal is near, relative to the distance kept from obstacles.
 const NEAR: f64 = 1.5;
-/// Maximum error of a point, relative to the range noise, and without noise (m).
+/// Maximum error of a point, relative to the range noise.
 const NOISE_SLACK: f64 = 2.0;
+/// Maximum error of a point without noise (m).
 const POINT_ERROR: f64 = 0.002;
 /// Points tried around the goal: number of rings, and points per ring.
 const RINGS: u32 = 4;
@@ -87,7 +89,7 @@ impl Body {
     pub(super) fn new(goal: Point, parameters: BugParameters, slow_to_pass: bool) -> Result<Self> {
         parameters.validate()?;
         if !(goal.x.is_finite() && goal.y.is_finite()) {
-            return Err(Error::invalid_input("goal", goal, "finite numbers"));
+            return Err(Error::invalid_input("goal", point_in_words(goal), "finite numbers"));
         }
         Ok(Self {
             parameters,

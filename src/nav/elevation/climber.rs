@@ -29,9 +29,9 @@ pub struct Climber {
 const TRUSTED: f64 = 0.7;
 /// The share of a wheel's radius that it climbs as a step.
 const CLIMBED: f64 = 0.6;
-/// The height of the middle of the mass as a share of the robot's, and the share of the way from the axle to
-/// the castor, as the simulator assumes them.
+/// Height of the centre of mass as a fraction of the robot's, as in the simulator.
 const MIDDLE: f64 = 0.4;
+/// Place of the centre of mass as a fraction of the way from axle to castor, as in the simulator.
 const BETWEEN: f64 = 0.3;
 
 fn wheel_diameter(spec: &RobotSpec) -> f64 {

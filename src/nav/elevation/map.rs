@@ -49,6 +49,7 @@ struct Footing {
     step: [i64; 2],
 }
 
+/// Micrometres per metre.
 const MICROMETRES: f64 = 1e6;
 
 impl ElevationMap {

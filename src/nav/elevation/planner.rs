@@ -68,6 +68,10 @@ impl<'m> ElevationPlanner<'m> {
     }
 
     /// The cheapest path from sample to sample between those nearest to two positions.
+    ///
+    /// # Errors
+    ///
+    /// If an end is off the map or on closed ground, or no path joins them.
     pub fn plan(&mut self, start: Point, goal: Point) -> Result<ElevationPath, PlanError> {
         let path = self.search(start, goal)?;
         let points = cells(&path).map(|cell| self.map.point(cell)).collect();
@@ -75,6 +79,10 @@ impl<'m> ElevationPlanner<'m> {
     }
 
     /// An any-angle path, which costs at most as much as the one from sample to sample.
+    ///
+    /// # Errors
+    ///
+    /// As [`plan`](Self::plan).
     pub fn plan_any_angle(&mut self, start: Point, goal: Point) -> Result<ElevationPath, PlanError> {
         let path = self.search(start, goal)?;
         let cells: Vec<GridCell> = cells(&path).collect();

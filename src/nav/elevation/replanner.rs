@@ -68,6 +68,10 @@ impl ElevationReplanner {
     }
 
     /// The cheapest path from the robot to the goal over the known ground, from sample to sample.
+    ///
+    /// # Errors
+    ///
+    /// If the robot or the goal is on closed ground, or no path joins them.
     pub fn plan(&mut self) -> std::result::Result<ElevationPath, PlanError> {
         let path = self.planner.plan()?;
         let costs = self.planner.costs();

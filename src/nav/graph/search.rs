@@ -84,6 +84,11 @@ impl<N: std::fmt::Debug> std::fmt::Debug for GraphError<N> {
 /// E. W. Dijkstra 1959; P. E. Hart, N. J. Nilsson, B. Raphael 1968, as cited in the book. Time O((n + m) log
 /// m) for n nodes and m edges with a consistent estimate; space O(n + m).
 ///
+/// # Errors
+///
+/// If an end or a neighbour is not in the graph, a cost is NaN or negative, an estimate is NaN, or no path
+/// exists.
+///
 /// ```
 /// use roverlab::nav::graph::shortest_path;
 /// //  0 --1-- 1 --1-- 2      the direct edge from 0 to 2 costs 3

@@ -8,7 +8,7 @@ use super::route::Route;
 use super::steering::Steering;
 use crate::geometry::{Point, Pose, Twist, angle_difference};
 use crate::io::control::{Behaviour, Decision, Halt, LidarObservation, Senses};
-use crate::io::reading::{check_pose, check_scan};
+use crate::io::reading::{check_pose, check_scan, point_in_words, pose_in_words};
 use crate::io::{Error, Lidar, Odometry, Result};
 use crate::kinematics::OUTLIER;
 use crate::nav::surroundings::Surroundings;
@@ -119,10 +119,10 @@ impl Navigator {
     pub fn new(world: &World, start: Pose, goal: Point, parameters: NavigatorParameters) -> Result<Self> {
         parameters.validate()?;
         if !start.is_finite() {
-            return Err(Error::invalid_input("start", format!("{start:?}"), "finite numbers"));
+            return Err(Error::invalid_input("start", pose_in_words(&start), "finite numbers"));
         }
         if !(goal.x.is_finite() && goal.y.is_finite()) {
-            return Err(Error::invalid_input("goal", goal, "finite numbers"));
+            return Err(Error::invalid_input("goal", point_in_words(goal), "finite numbers"));
         }
         let mut this = Self {
             chart: Chart::new(world, &parameters)?,

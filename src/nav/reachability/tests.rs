@@ -5,6 +5,7 @@ use proptest::prelude::*;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+/// Radius of the robot (m).
 const RADIUS: f64 = 0.06;
 
 fn point() -> impl Strategy<Value = Point> {

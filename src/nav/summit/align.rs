@@ -17,6 +17,7 @@ pub(super) struct Shift {
 /// look finds its place from afar.
 const OUTLIERS: [f64; 14] =
     [0.15, 0.15, 0.1, 0.1, 0.06, 0.06, 0.04, 0.04, OUTLIER, OUTLIER, OUTLIER, OUTLIER, OUTLIER, OUTLIER];
+/// Distance at which a point counts half in the last rounds, which find the exact place (m).
 const OUTLIER: f64 = 0.02;
 /// The fewest points that count.
 const ENOUGH: usize = 100;

@@ -100,14 +100,15 @@ const ALIGNED: f64 = 0.1;
 const BACK: f64 = 0.15;
 /// Distance within which a look is compared with the map (m).
 const NEAR: f64 = 4.0;
-/// Error of the inertial unit before and after its calibration (rad).
+/// Error of the inertial unit before its calibration (rad).
 const UNCALIBRATED: f64 = 0.03;
+/// Error of the inertial unit after its calibration (rad).
 const CALIBRATED: f64 = 0.002;
 /// Distance to ground from which the robot can drive on, if it stands beside it (m).
 const NEXT: f64 = 0.7;
-/// Gap between beams above each other that is ground (m). On levels it may be a drop instead; there it is that
-/// of beams which are a degree apart, 1.2 m away.
+/// Gap between beams above each other that is ground (m).
 const WIDE_GAP: f64 = 0.35;
+/// The same on levels, where a wider one may be a drop (m): that of beams a degree apart, 1.2 m away.
 const NARROW_GAP: f64 = 0.15;
 /// Maximum number of looks.
 const MOST_LOOKS: u32 = 400;

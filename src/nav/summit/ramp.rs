@@ -120,6 +120,10 @@ const NARROW: f64 = 8.0;
 
 impl RampCrossing {
     /// A crossing from where the robot stands.
+    ///
+    /// # Errors
+    ///
+    /// If a parameter is out of range.
     pub fn new(parameters: SummitParameters) -> Result<Self> {
         Ok(Self { explorer: Explorer::on_levels(parameters)?, leg: RampLeg::Up, rides: false, came_by: None })
     }

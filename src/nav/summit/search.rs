@@ -88,6 +88,10 @@ const MOST_APPROACHES: u32 = 16;
 
 impl SummitSearch {
     /// A search that begins where the robot stands.
+    ///
+    /// # Errors
+    ///
+    /// If a parameter is out of range.
     pub fn new(parameters: SummitParameters) -> Result<Self> {
         let explorer = Explorer::new(parameters)?;
         Ok(Self { explorer, approaches: 0, target: None, unknown: 0, highest: 0.0 })

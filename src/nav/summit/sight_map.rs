@@ -52,14 +52,15 @@ struct Filled {
     away: Vec<u16>,
 }
 
-/// Radians and metres by which slopes and steps of the map may be wrong.
+/// Largest error of a slope of the map (rad).
 const MEASURED: f64 = 0.06;
+/// Largest error of a step of the map (m).
 const NOISE: f64 = 0.01;
 /// Square metres of a patch that is worth a look.
 const PATCH: f64 = 0.02;
-/// Metres below what a slope could lead to that are a drop, and metres that the robot keeps from one beside
-/// its own size.
+/// Depth below what a slope could lead to from which ground is a drop (m).
 const DROP: f64 = 0.04;
+/// Distance that the robot keeps from a drop, beside its own size (m).
 const CAUTION: f64 = 0.05;
 
 impl SightMap {

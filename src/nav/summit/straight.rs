@@ -15,8 +15,9 @@ pub(super) struct Straight {
     tilted: bool,
 }
 
-/// Tilt of a robot that stands on a level, and of one on a ramp (rad).
+/// Largest tilt of a robot that stands on a level (rad).
 const FLAT: f64 = 0.06;
+/// Least tilt of a robot on a ramp (rad).
 const TILTED: f64 = 0.1;
 /// Distance ahead on the line to which the robot steers (m): 1.5 times its length.
 const AHEAD: f64 = 0.4;

@@ -2,6 +2,7 @@ use super::*;
 use crate::geometry::math;
 use proptest::prelude::*;
 
+/// Acceleration by the motors (m/s²).
 const DRIVE: f64 = 8.0;
 
 fn balance() -> GripLimit {

@@ -4,6 +4,7 @@ use super::*;
 use crate::geometry::{Pose, direction};
 use crate::race::{CarLimits, RacerParameters};
 
+/// Radius of the circular way (m).
 const RADIUS: f64 = 60.0;
 
 fn at(way: f64) -> Pose {

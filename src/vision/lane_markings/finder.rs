@@ -139,8 +139,9 @@ const REACH: f64 = 2.2;
 const ENOUGH: f64 = 7.0;
 /// Distance without lines after which the road is lost (m): a gap of 1 m and a crossing.
 const BLIND: f64 = 1.6;
-/// Distance from a line within which points count, while the road is tracked and while it is searched (m).
+/// Distance from a line within which points count while the road is tracked (m).
 const TRACKED: f64 = 0.05;
+/// The same while the road is searched (m).
 const SOUGHT: f64 = 0.08;
 
 /// Largest distance between neighbours of one drawing on the road, such as the strokes of a number, and width

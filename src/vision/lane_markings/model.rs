@@ -7,13 +7,17 @@ use super::curve::{Bends, Curve, Foot, KNOTS, SPACING, bend_at};
 use super::{MarkingPoint, RoadCamera};
 use crate::geometry::{Point, Vector, math};
 
-/// Offset to the left of the road's centre line (m), heading to the left of it (rad), curvatures (1/m),
-/// distance from the centre line to an edge line (m), pitch of the camera (rad).
+/// Number of states of a road.
 pub(super) const STATES: usize = KNOTS + 4;
+/// Index of the offset to the left of the road's centre line (m).
 const OFFSET: usize = 0;
+/// Index of the heading to the left of it (rad).
 const HEADING: usize = 1;
+/// Index of the first curvature (1/m).
 const BENDS: usize = 2;
+/// Index of the distance from the centre line to an edge line (m).
 const EDGE: usize = BENDS + KNOTS;
+/// Index of the pitch of the camera (rad).
 const PITCH: usize = EDGE + 1;
 
 pub(super) type State = SVector<f64, STATES>;
@@ -42,8 +46,9 @@ const EDGE_AT_FIRST: f64 = 0.42;
 const DRIFT: [f64; 5] = [0.010, 0.020, 0.25, 0.003, 0.0005];
 /// Curvature of a road that is not yet in view: its deviation (1/m), and the distance in which it decays (m).
 const UNSEEN: (f64, f64) = (0.6, 1.5);
-/// Soft limits: largest curvature of a road (1/m) and range of its edge (m), each with its deviation.
+/// Soft limit of a road's curvature, with its deviation (1/m).
 const TIGHTEST: (f64, f64) = (1.0, 0.1);
+/// Soft range of a road's edge, with its deviation (m).
 const EDGES: ([f64; 2], f64) = ([0.36, 0.48], 0.01);
 /// Uncertainty of a line's centre: constant (m), and as a fraction of a pixel.
 const BLUR: (f64, f64) = (0.006, 0.6);

@@ -1,11 +1,13 @@
 use super::area::{Area, resample_into};
 use crate::vision::{GrayView, GrayViewMut, GrayWeights, Hog, HogParameters, ImageError, RgbView, gray_into};
 
-/// Side of the patch that a sign is scaled to, and of the squares whose colours are described (pixels).
+/// Side of the patch that a sign is scaled to (pixels).
 const SIDE: usize = 40;
+/// Side of the squares whose colours are described (pixels).
 const SQUARE: usize = 8;
-/// Cells (pixels a side) and directions of the histograms.
+/// Side of a cell of the histograms (pixels).
 const CELL: usize = 5;
+/// Number of directions of the histograms.
 const BINS: usize = 9;
 /// Ratio of the patch to the sign in it.
 const AROUND: f64 = 1.05;

@@ -3,8 +3,9 @@ use super::linear::{LinearClassifier, dot};
 use crate::ParameterError;
 use crate::vision::{GrayView, GrayViewMut, GrayWeights, Hog, HogParameters, ImageError, RgbView, gray_into};
 
-/// Cells a side of the window, and pixels a side of a cell.
+/// Number of cells on a side of the window.
 const CELLS: usize = 6;
+/// Side of a cell (pixels).
 const CELL: usize = 4;
 /// Ratio of the window to the sign in it.
 pub(super) const AROUND: f64 = 1.25;
@@ -104,9 +105,9 @@ impl Detector {
     }
 }
 
-/// Score as any sign from which a window is compared with each class, and score as one of them from which it is looked
-/// at in detail.
+/// Score as any sign from which a window is compared with each class.
 const POSSIBLE: f32 = -0.8;
+/// Score as one class from which a window is looked at in detail.
 const LIKELY: f32 = -0.4;
 
 /// Classifiers of windows: as any sign, and as one of each class.

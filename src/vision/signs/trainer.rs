@@ -40,15 +40,17 @@ struct Picture {
     signs: Vec<(usize, Area)>,
 }
 
-/// Samples of signs that are learned, as many of each class; and most copies of a sign for that.
+/// Number of samples of signs that are learned, as many of each class.
 const SAMPLES: usize = 20_000;
+/// Largest number of copies of a sign for that.
 const COPIES: usize = 64;
-/// How far copies are from the true place, as windows are: up to half a cell aside, and half a step of the pyramid larger
-/// or smaller, relative to the sign.
+/// Largest offset of a copy, relative to the sign: half a cell, as of windows.
 const ASIDE: f64 = 0.08;
+/// Largest change of a copy's size, relative to the sign: half a step of the pyramid, as of windows.
 const LARGER: f64 = 0.09;
-/// Windows of each picture that are learned as none, before the first round; and most that are wrong, in each round.
+/// Number of windows of each picture that are learned as none before the first round.
 const OTHERS: usize = 12;
+/// Largest number of wrong windows of a picture that are learned in each round.
 const WRONG: usize = 8;
 /// Rounds in which windows are added that were taken for signs.
 const ROUNDS: usize = 3;

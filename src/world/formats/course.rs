@@ -140,11 +140,16 @@ const CENTRES: [(&str, Centre); 4] = [
     ("solid-left", Centre::SolidLeft),
     ("solid-right", Centre::SolidRight),
 ];
+/// Words for the lines of a road.
 const LINES: [(&str, Line); 3] = [("left", Line::Left), ("centre", Line::Centre), ("right", Line::Right)];
+/// Words for the sides of a road.
 const SIDES: [(&str, RoadSide); 2] = [("left", RoadSide::Left), ("right", RoadSide::Right)];
+/// Words for the sides on which cars drive.
 const TRAFFIC: [(&str, Traffic); 2] = [("right", Traffic::Right), ("left", Traffic::Left)];
+/// Words for the arms of a crossing, with the lengths of the left and the right one (shares).
 const ARMS: [(&str, [f64; 2]); 4] =
     [("both", [1.0, 1.0]), ("left", [1.0, 0.0]), ("right", [0.0, 1.0]), ("none", [0.0, 0.0])];
+/// Words for the rights of way at a crossing.
 const RIGHTS: [(&str, RightOfWay); 4] = [
     ("priority", RightOfWay::Priority),
     ("stop", RightOfWay::Stop),

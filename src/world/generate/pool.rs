@@ -75,9 +75,11 @@ pub fn pool(stream: &mut Stream, kind: PoolKind) -> Result<Pool, ParameterError>
     Ok(Pool { world, start: Pose::new(start.x, start.y, heading) })
 }
 
-/// Width of the rim around a pool, its height above the water, and distance between samples (m).
+/// Width of the rim around a pool (m).
 const RIM: f64 = 0.5;
+/// Height of the rim above the water (m).
 const ABOVE: f64 = 0.1;
+/// Distance between samples of the ground (m).
 const PITCH: f64 = 0.1;
 /// Water depths: minimum, and range of the deepest place (m).
 const DEPTHS: [f64; 3] = [1.5, 1.7, 2.4];

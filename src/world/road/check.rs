@@ -6,8 +6,8 @@ use crate::geometry::{math, units};
 
 /// Shortest and longest course (m at the scale of the rules).
 const LENGTHS: [f64; 2] = [6.0, 500.0];
-/// Width of a lane (m).
-const LANES: [f64; 2] = [0.35, 0.45];
+/// Smallest and largest width of a lane (m at the scale of the rules).
+pub(super) const LANES: [f64; 2] = [0.35, 0.45];
 /// Accepted width of a line (m); 18 to 20 mm by the rules.
 const LINES: [f64; 2] = [0.015, 0.025];
 /// Smallest radius of the centre line (m).

@@ -1,6 +1,6 @@
 use super::alignment::Alignment;
 use crate::geometry::{Aabb, Point, Pose, Vector, angle_difference, direction, math};
-use crate::parameter::debug_as_sentence;
+use crate::parameter::{ParameterError, debug_as_sentence};
 
 /// A closed two-lane road, one lane per direction, with its markings. Cars drive in the direction of its
 /// line.
@@ -253,6 +253,9 @@ pub enum CourseError {
         /// Expected range.
         expected: String,
     },
+    /// An option of [`generate`](super::generate()) is out of range.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
     /// A picture of the course would be too large.
     #[error("a floor of {width:.1} m x {height:.1} m in pixels of {pixel} m; expected at most {most} pixels")]
     TooLarge {

@@ -1,8 +1,10 @@
 use super::alignment::{Alignment, Element};
+use super::check::LANES;
 use super::course::{
     Centre, CourseError, Crossing, Line, RightOfWay, RoadCourse, RoadMark, RoadMarkKind, RoadSide, Traffic,
 };
 use crate::geometry::{Point, Pose, Vector, angle_difference, cross, direction, math};
+use crate::parameter::{ParameterError, require, require_not_negative};
 use crate::random::Stream;
 
 /// Options of a generated course. Lengths are those of the rules, before scaling.
@@ -47,17 +49,32 @@ impl Default for RoadCourseOptions {
     }
 }
 
+impl RoadCourseOptions {
+    fn validate(&self) -> Result<(), ParameterError> {
+        let within = |name, value, [least, most]: [f64; 2]| {
+            require(name, value, (least..=most).contains(&value), format!("{least} to {most}"))
+        };
+        within("size", self.size, SIZES)?;
+        let [narrow, wide] = self.lane_width;
+        within("smallest lane width", narrow, LANES)?;
+        within("largest lane width", wide, [narrow, LANES[1]])?;
+        within("gaps per metre", self.gaps, [0.0, MOST_MARKS])?;
+        require_not_negative("longest gap", self.longest_gap)?;
+        within("probability of crossings", self.crossings, [0.0, 1.0])?;
+        within("probability of zebras", self.zebras, [0.0, 1.0])?;
+        within("probability of parking", self.parking, [0.0, 1.0])?;
+        within("artefacts per metre", self.artefacts, [0.0, MOST_MARKS])
+    }
+}
+
 /// A random course by the rules: straights with bends of clothoids and arcs, and random markings. Equal seeds
 /// and options give bit-identical courses. One in three is a figure of eight.
 ///
-/// Fails if there are more than 100 gaps or artefacts per metre, or the options are contradictory, so that no course is found.
+/// # Errors
+///
+/// If an option is out of range, or no course is found by the options.
 pub fn generate(seed: u64, options: &RoadCourseOptions) -> Result<RoadCourse, CourseError> {
-    for (name, value) in [("gaps per metre", options.gaps), ("artefacts per metre", options.artefacts)] {
-        if !(0.0..=MOST_MARKS).contains(&value) {
-            let expected = format!("0 to {MOST_MARKS}");
-            return Err(CourseError::RoadMark { name, value, expected });
-        }
-    }
+    options.validate()?;
     let mut last = None;
     for attempt in 0..ATTEMPTS {
         let mut random = Stream::new(seed).child("course", attempt);
@@ -72,6 +89,8 @@ pub fn generate(seed: u64, options: &RoadCourseOptions) -> Result<RoadCourse, Co
 
 /// Gaps and artefacts per metre at most.
 const MOST_MARKS: f64 = 100.0;
+/// Smallest and largest size: a lane of 4 mm and one of 40 m.
+const SIZES: [f64; 2] = [0.01, 100.0];
 /// Number of attempted outlines; about one in twenty has room for all bends.
 const ATTEMPTS: u64 = 2000;
 /// Shortest straight (m).

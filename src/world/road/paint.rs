@@ -7,19 +7,29 @@ use super::course::{
 use crate::geometry::cross;
 use crate::geometry::{Point, Pose, Vector, math};
 
-/// Lengths by the rules (m).
+/// Length of a dash of the centre line and of the gap behind it, by the rules (m).
 const DASH: f64 = 0.20;
+/// Length of a dash of the edge line where a side road joins, and of the gap behind it, by the rules (m).
 const SIDE_DASH: (f64, f64) = (0.10, 0.05);
+/// Gap between the lines of a double centre line, by the rules (m).
 const DOUBLE_GAP: f64 = 0.02;
-/// Width of stop lines, give-way lines and stripes, and dashes and gaps of give-way lines.
+/// Width of stop lines, give-way lines and stripes, by the rules (m).
 const BROAD: f64 = 0.038;
+/// Length of the dashes of give-way lines, and of the gaps between them, by the rules (m).
 const GIVE_WAY: (f64, f64) = (0.08, 0.06);
+/// Length of the stripes of a crosswalk, and gap between them, by the rules (m).
 const ZEBRA: (f64, f64) = (0.40, 0.04);
+/// Length of the chequered start line along the road (m): two rows of squares.
 const START: f64 = 0.05;
+/// Distance between the stripes of a barred area (m), and their angle to the road (rad).
 const BARRED: (f64, f64) = (0.15, 0.471);
+/// Length and width of an arrow, by the rules (m).
 const ARROW: (f64, f64) = (0.50, 0.07);
+/// Height and width of a number, by the rules (m).
 const NUMBER: (f64, f64) = (0.40, 0.06);
+/// Depths of parallel and of perpendicular parking spots, by the rules (m).
 const PARKING: (f64, f64) = (0.30, 0.50);
+/// Width of a perpendicular parking spot, by the rules (m).
 const SPOT: f64 = 0.35;
 /// Length of a straight piece of a curved line (m).
 const PIECE: f64 = 0.03;

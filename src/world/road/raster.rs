@@ -28,9 +28,11 @@ impl Default for Appearance {
 
 /// Largest number of pixels of a picture.
 const MOST_PIXELS: usize = 200_000_000;
-/// Brightness of the floor, of its grain, and of paint.
+/// Brightness of the floor, 0 to 255.
 const FLOOR: f64 = 44.0;
+/// Number of shades of the floor's grain, brighter than the floor.
 const GRAIN: u32 = 10;
+/// Brightness of paint, 0 to 255.
 const PAINT: f64 = 236.0;
 /// Size of a spot of worn paint (m).
 const SPOT: f64 = 0.024;

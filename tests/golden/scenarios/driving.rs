@@ -329,7 +329,7 @@ fn lane_keeping() -> Result<String> {
     let camera = scene.robots[0].spec.camera.as_ref().expect("the car has a camera").into();
     let parameters = LaneKeeperParameters::default();
     let mut keeper = LaneKeeper::new(camera, RoadModel::default(), parameters)?;
-    let mut referee = FreeDrive::new(course.clone(), &scene.robots[0].spec, FreeDriveRules::default());
+    let mut referee = FreeDrive::new(course.clone(), &scene.robots[0].spec, FreeDriveRules::default())?;
     let mut seen = String::new();
     let mut log = ride(&scene, noise(1.0, 28), |robot| {
         run(robot, &mut keeper, 3.0, |_, keeper, step| {

@@ -62,8 +62,9 @@ pub struct RoadSharing {
     is_stopped: bool,
 }
 
-/// Distance ahead of a car's origin in which its lane is known (m), and step of the places along it (m).
+/// Distance ahead of a car's origin in which its lane is known (m).
 const SIGHT: f64 = 2.2;
+/// Distance between the places along that lane (m).
 const STEP: f64 = 0.05;
 /// Angle between paths from which they cross rather than join (rad).
 const CROSSES: f64 = 0.6;

@@ -66,8 +66,9 @@ pub struct RoadStation {
     order: Option<RoadMessage>,
 }
 
-/// Distance between drawn places (m), and the most of them.
+/// Distance between drawn places (m).
 const CELL: f64 = 0.15;
+/// Largest number of drawn places.
 const PLACES: usize = 2000;
 /// Height of a line of text above the course: a car each (pixels).
 const LINE: i32 = 14;

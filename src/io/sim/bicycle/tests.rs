@@ -3,6 +3,7 @@ use crate::geometry::Pose;
 use crate::kinematics::advance_planar;
 use crate::world::{DriveSpec, RobotSpec};
 
+/// Time step (s).
 const DT: f64 = 0.002;
 
 fn bicycle() -> Bicycle {

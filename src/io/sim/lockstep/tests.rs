@@ -25,7 +25,9 @@ impl Ticking for Ledger {
 /// What a program does: it waits some milliseconds, tells a number and reads the history.
 type Script = Vec<(u16, u64)>;
 
+/// Duration of a tick (s).
 const TICK: f64 = 0.010;
+/// Duration of a call (s).
 const CALL: f64 = 0.0003;
 
 /// What each program reads, each in a thread of its own that `delays` hold up, started in some order.

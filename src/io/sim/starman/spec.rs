@@ -11,15 +11,15 @@ pub(super) const MOST_STEP: f64 = 0.02;
 /// could be built.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StarmanSpec {
-    /// Radius of the body; the limbs' hinges are on its rim, a fifth of a turn apart.
+    /// Radius of the body (m); the limbs' hinges are on its rim, a fifth of a turn apart.
     pub body_radius: f64,
-    /// Mass of the body.
+    /// Mass of the body (kg).
     pub body_mass: f64,
-    /// Distance from a limb's hinge to its tip.
+    /// Distance from a limb's hinge to its tip (m).
     pub limb_length: f64,
-    /// Half the width of a limb, whose ends are round.
+    /// Half the width of a limb, whose ends are round (m).
     pub limb_radius: f64,
-    /// Mass of a limb.
+    /// Mass of a limb (kg).
     pub limb_mass: f64,
     /// Coefficient of friction between limbs and floor.
     pub friction: f64,

@@ -23,9 +23,9 @@ pub(super) struct Watch {
 
 /// Cosine of the angle to the vertical beyond which a robot lies: 70 degrees.
 const LYING: f64 = 0.342;
-/// Ticks of an observation for stuck robots, and the smallest fraction of its way that a robot makes if it is
-/// not stuck.
+/// Ticks of an observation for stuck robots.
 const LOOK: u32 = 200;
+/// Smallest fraction of its way that a robot makes if it is not stuck.
 const PROGRESS: f64 = 0.1;
 /// Smallest motion of the wheels of a stuck robot (m, or rad times a radius).
 const LEAST_WISH: f64 = 0.02;

@@ -294,9 +294,9 @@ impl RigidBody {
     }
 }
 
-/// Largest number of ticks in which a placed body comes to rest, and the fraction of its speed that remains
-/// after each.
+/// Largest number of ticks in which a placed body comes to rest.
 const MOST_SETTLING: u32 = 400;
+/// Fraction of its speed that remains after each of these ticks.
 const CALMING: f64 = 0.8;
 
 /// Speed along the normal below which the ground presses a foot at a height above it (m/s).

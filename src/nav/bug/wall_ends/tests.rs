@@ -2,7 +2,9 @@ use super::*;
 use crate::geometry::direction;
 use crate::geometry::units::from_deg;
 
+/// Radius within which ends are remembered (m).
 const REACH: f64 = 0.3;
+/// Maximum distance between two observations of one point (m).
 const ERROR: f64 = 0.003;
 
 /// A thin wall ahead, across the robot's way and half a metre long to the left, and another one far

@@ -67,9 +67,10 @@ struct Seen {
     y: i32,
 }
 
-/// Number of visible corners, 12 bytes each, at which preparation ends, and at which all are forgotten: on a
-/// large lattice they would take gigabytes.
+/// Number of visible corners, 12 bytes each, at which preparation ends: on a large lattice they would take
+/// gigabytes.
 const MOST_PREPARED: usize = 8_000_000;
+/// Number of visible corners at which all are forgotten.
 const MOST_SEEN: usize = 2 * MOST_PREPARED;
 /// Number of cones of sight at which preparation ends.
 const MOST_CONES: u64 = 16_000_000;

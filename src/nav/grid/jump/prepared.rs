@@ -38,8 +38,9 @@ pub struct PreparedJumps {
     search: Search,
 }
 
-/// Maximum number of stored jumps, about 100 MB, and of scans to find them, about a second.
+/// Maximum number of stored jumps: about 100 MB.
 const MOST_JUMPS: usize = 8_000_000;
+/// Maximum number of scans to find them: about a second.
 const MOST_SCANS: usize = 100_000_000;
 
 #[derive(Debug, Clone, Default)]

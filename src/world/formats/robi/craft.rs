@@ -22,13 +22,13 @@ pub(super) struct CraftLines {
     inertia: Option<[f64; 6]>,
 }
 
-/// Buoyancy of an underwater craft relative to its weight, and minimum of that of a boat, for a file without
-/// a hull.
+/// Buoyancy of an underwater craft relative to its weight, for a file without a hull.
 const RESERVE: f64 = 1.05;
+/// Least buoyancy of a boat relative to its weight, for a file without a hull.
 const FREEBOARD: f64 = 2.0;
-/// Default force of a thruster per mass (N/kg), and default position of vertical ones as a fraction of half
-/// the length: Mako's.
+/// Default force of a thruster per mass (N/kg): Mako's.
 const STRENGTH: f64 = 0.7;
+/// Default position of vertical thrusters as a fraction of half the length: Mako's.
 const NEAR_THE_ENDS: f64 = 0.75;
 /// Density of fresh water (kg/m³).
 const FRESH: f64 = 1000.0;

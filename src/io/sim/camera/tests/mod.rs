@@ -15,8 +15,9 @@ use crate::world::{
     Billboard, Colour, Marker, Object, ObjectKind, RobotPlacement, RobotSpec, Scene, Shape, Wall, World,
 };
 
-/// Height of the S4's camera above the floor, and its distance ahead of the robot's middle.
+/// Height of the S4's camera above the floor (m).
 const HEIGHT: f64 = 0.060;
+/// Distance of the S4's camera ahead of the robot's middle (m).
 const AHEAD: f64 = 0.062;
 
 fn object(shape: Shape, colour: Colour, x: f64, y: f64) -> Object {

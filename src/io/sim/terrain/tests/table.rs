@@ -4,8 +4,9 @@ use super::super::undercarriage::{Foot, Grip};
 use super::*;
 use crate::geometry::Vector3;
 
-/// Half the length and half the width of a body's support, and the height of its centre of mass (m).
+/// Half the length and half the width of a body's support (m).
 const SUPPORT: [f64; 2] = [0.13, 0.09];
+/// Height of a body's centre of mass (m).
 const HEIGHT: f64 = 0.16;
 
 /// A body on four feet, braked.
