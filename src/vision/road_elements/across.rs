@@ -9,9 +9,9 @@ use crate::vision::lane_markings::RoadAhead;
 
 /// Width of stop and give-way lines, by the rules (m).
 const BROAD: f64 = 0.038;
-/// Period across the road of the dashes of give-way lines, and of the stripes of crosswalks, by the rules
-/// (m).
+/// Period across the road of the dashes of give-way lines, by the rules (m).
 const GIVE_WAY: f64 = 0.140;
+/// Period across the road of the stripes of crosswalks, by the rules (m).
 const STRIPES: f64 = 0.078;
 /// The same of the chequers of a start line, which is about 50 mm long (m).
 const CHEQUERS: f64 = 0.050;
@@ -21,15 +21,17 @@ const ZEBRA: f64 = 0.40;
 const MARGIN: f64 = 0.035;
 /// Share of a lane that has to be in view.
 const VISIBLE: f64 = 0.7;
-/// Least mean contrast: of a stop line, half of which may be worn or blurred; of a give-way line, of which
-/// four sevenths are painted; and of a line across the other lane.
+/// Least mean contrast of a stop line, half of which may be worn or blurred.
 const SOLID: f64 = 0.55;
+/// Least mean contrast of a give-way line, of which four sevenths are painted.
 const DASHED: f64 = 0.22;
+/// Least mean contrast of a line across the other lane.
 const OTHER: f64 = 0.20;
 /// Least amplitude at the period of dashes as a share of the mean. That of dashes is 1.08.
 const PERIODIC: f64 = 0.55;
-/// Least amplitude of a row of a crosswalk, and of a row of chequers. That of fresh paint is 0.32.
+/// Least amplitude of a row of a crosswalk. That of fresh paint is 0.32.
 const STRIPED: f64 = 0.13;
+/// Least amplitude of a row of chequers. That of fresh paint is 0.32.
 const CHEQUERED: f64 = 0.12;
 
 /// A wave across the road, sampled at each column.

@@ -8,11 +8,13 @@ use crate::vision::lane_markings::RoadAhead;
 const STRIP: (f64, f64) = (0.035, 0.125);
 /// Length of a window: about a period of the stripes, 150 mm along the edge by the rules (cells).
 const WINDOW: usize = 15;
-/// Least brightness of paint, and largest of the floor, between floor and paint.
+/// Least brightness of paint, between floor and paint.
 const BRIGHT: f64 = 0.45;
+/// Largest brightness of the floor, between floor and paint.
 const DARK: f64 = 0.25;
-/// Shares of bright and of dark cells in a window: stripes cover 56 % of it.
+/// Least share of bright cells in a window: stripes cover 56 % of it.
 const STRIPED: f64 = 0.25;
+/// Least share of dark cells in a window, between stripes.
 const BETWEEN: f64 = 0.12;
 /// Largest share of bright cells in the other lane: crosswalks have stripes there as well.
 const OTHER: f64 = 0.10;
@@ -21,9 +23,9 @@ const LONG: usize = 25;
 /// Longest run of bright cells along the road in the strip: a stripe is 84 mm long there, and blurred. Boxes
 /// and patches of light are longer.
 const STRIPE: usize = 14;
-/// Share of bright cells along the road below which a column is no part of an area, and the number of
-/// columns.
+/// Share of bright cells along the road below which a column is no part of an area.
 const EMPTY: f64 = 0.12;
+/// Number of such columns that end an area.
 const EMPTY_COLUMNS: usize = 3;
 
 /// Bright and dark cells of a row in a strip, and all that are in view.

@@ -7,9 +7,11 @@ use crate::vision::lane_markings::RoadAhead;
 /// Distance from the edge line to the outer line of parallel spots on the right, and of perpendicular ones on
 /// the left, by the rules (m).
 const DEPTHS: [(f64, f64); 2] = [(-1.0, 0.30), (1.0, 0.50)];
-/// Least contrast of the line, least length (cells), and longest gap in it (cells).
+/// Least contrast of the line.
 const LINE: f64 = 0.35;
+/// Least length of the line (cells).
 const LONG: usize = 30;
+/// Longest gap in the line (cells).
 const GAP: usize = 4;
 
 /// Finds parking areas: where their outer lines begin.

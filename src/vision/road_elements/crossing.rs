@@ -12,11 +12,13 @@ const LINE: f64 = 0.02;
 /// Strip beside the road where the line of an arm is looked for: least distance from the edge line, and width
 /// (m).
 const STRIP: (f64, f64) = (0.04, 0.15);
-/// Cotangents of the angle between road and arm, 70 to 110 degrees by the rules.
+/// Number of angles between road and arm that are tried to each side of the right angle.
 const SLOPES: i32 = 7;
+/// Difference of their cotangents: together they reach from 70 to 110 degrees, by the rules.
 const SLOPE: f64 = 0.058;
-/// Least mean contrast of an arm's line, and of an edge line.
+/// Least mean contrast of an arm's line.
 const LEAVES: f64 = 0.33;
+/// Least mean contrast of an edge line.
 const EDGE: f64 = 0.35;
 /// Centre of a bright line beside that of an edge line (cells): halfway to that of a stop line, 29 mm.
 const OUTER: f64 = 1.5;

@@ -72,10 +72,13 @@ pub struct RoadElementFinder {
     dashed: f64,
 }
 
-/// Evidence of a detection, and of none where there should be one; that of something present; and the most.
+/// Evidence of a detection.
 const HIT: f64 = 1.0;
+/// Evidence of no detection where there should be one.
 const MISS: f64 = -0.6;
+/// Evidence from which something is present.
 const PRESENT: f64 = 2.0;
+/// Most evidence: what is gone is forgotten after a few images.
 const MOST: f64 = 5.0;
 /// Most images for and against a dashed centre line.
 const DASHED: f64 = 3.0;
@@ -88,8 +91,9 @@ const BEHIND: f64 = -1.0;
 const WAITING: std::ops::Range<f64> = -0.10..0.52;
 /// Length of a crosswalk, by the rules (m).
 const ZEBRA: f64 = 0.40;
-/// Share of a detection's place in the running estimate, and the same for an obstacle's speed.
+/// Share of a detection's place in the running estimate.
 const SHARE: f64 = 0.4;
+/// Share of a detection's speed in the running estimate of an obstacle's.
 const SPEED_SHARE: f64 = 0.2;
 
 impl RoadElementFinder {

@@ -5,11 +5,13 @@ use super::view::{CELL, COLUMNS, ROWS, RoadView, column};
 use crate::geometry::Vector;
 use crate::vision::lane_markings::RoadAhead;
 
-/// A digit by the rules' drawing: its height, half its width, the distance of its middle from that of the
-/// number, and the width of its strokes (cells).
+/// Height of a digit, by the rules' drawing (cells).
 const HIGH: f64 = 40.0;
+/// Half the width of a digit, by the rules' drawing (cells).
 const HALF: f64 = 3.0;
+/// Distance of a digit's middle from that of the number, by the rules' drawing (cells).
 const ASIDE: f64 = 4.5;
+/// Width of a digit's strokes (cells).
 const WIDE: f64 = 1.5;
 /// Strokes of the digits: top, upper right, lower right, bottom, lower left, upper left, middle, from the
 /// lowest bit upwards.
@@ -17,22 +19,25 @@ const DIGITS: [u8; 10] = [0x3f, 0x06, 0x5b, 0x4f, 0x66, 0x6d, 0x7d, 0x07, 0x7f, 
 /// The line that strikes a number out, by the rules' drawing: how far it begins before the digits, its
 /// distance from the lane's middle at both ends, and its width (cells).
 const STRIKE: (usize, f64, f64) = (5, 10.0, 2.0);
-/// Rows of a pattern, from where the line that strikes it out begins to where that ends, and columns to each
-/// side of its middle.
+/// Rows of a pattern, from where the line that strikes it out begins to where that ends.
 const LONG: usize = 50;
+/// Columns of a pattern to each side of its middle.
 const SIDE: usize = 12;
+/// Columns of a pattern.
 const ACROSS: usize = 2 * SIDE + 1;
-/// Half the width of a strip that is free before a number, the length of what is free there (cells), and the
-/// brightness, between floor and paint, of what is not.
+/// Half the width of a strip that is free before a number (cells).
 const STRIP: usize = 8;
+/// Length of what is free there (cells).
 const FREE: usize = 6;
+/// Brightness, between floor and paint, of what is not free.
 const BRIGHT: f64 = 0.5;
 /// Error of the lane's middle and of a number's begin that is searched (cells).
 const SEARCH: usize = 4;
 /// Errors of distances along the road that are searched: the camera pitches.
 const STRETCHES: [f64; 3] = [0.95, 1.0, 1.05];
-/// Least correlation of a number with its pattern, and least lead over each other one, of at most a half.
+/// Least correlation of a number with its pattern; the right one has 0.9 and more.
 const LIKE: f32 = 0.75;
+/// Least lead of a number over each other one, of at most a half.
 const CLEAR: f32 = 0.12;
 
 /// The patterns of all numbers.

@@ -8,9 +8,11 @@ use crate::vision::lane_markings::{RoadAhead, RoadCamera};
 pub(super) const CELL: f64 = 0.01;
 /// Distance from the camera to the first row along the road (m).
 const NEAR: f64 = 0.10;
-/// Number of rows, and of columns to each side of the centre line.
+/// Number of rows.
 pub(super) const ROWS: usize = 150;
+/// Number of columns to each side of the centre line.
 const SIDE: usize = 95;
+/// Number of columns.
 pub(super) const COLUMNS: usize = 2 * SIDE + 1;
 /// Share of the road that is less bright than paint: a single solid edge line covers 2 %.
 const UNPAINTED: f64 = 0.985;

@@ -59,8 +59,9 @@ struct Manoeuvre {
     speed: f64,
 }
 
-/// Time in which a difference in speed, and the distance to the end of a manoeuvre, are reduced (s).
+/// Time in which a difference in speed is reduced (s).
 const CLOSING: f64 = 0.5;
+/// Time in which the distance to the end of a manoeuvre is reduced (s).
 const APPROACH: f64 = 1.5;
 /// Time in which a lasting difference is estimated (s).
 const LEARNING: f64 = 2.0;

@@ -27,8 +27,9 @@ struct Wave {
 const PARTS: u32 = 24;
 /// Range of their frequencies, relative to the frequency of the most energy.
 const BAND: [f64; 2] = [0.5, 2.5];
-/// JONSWAP's peak: height relative to a fully developed sea, and its widths below and above.
+/// Height of JONSWAP's peak, relative to a fully developed sea.
 const PEAK: f64 = 3.3;
+/// Widths of that peak below and above it.
 const WIDTH: [f64; 2] = [0.07, 0.09];
 
 impl Waters {
