@@ -178,8 +178,8 @@ fn hills(name: &str, (width, length): (f64, f64), pitch: f64, height: impl FnMut
     World { terrain: surface.map(|surface| Terrain::new(name, surface)), ..World::empty(width, length) }
 }
 
-/// The swimming pool of chapter 8, 25 m by 50 m, inside a rim. It is 1.5 m deep at its near end, and 1.9 m from the
-/// middle on.
+/// The swimming pool of chapter 8, 25 m by 50 m, inside a rim. It is 1.5 m deep at its near end, and 1.9 m from
+/// the middle on.
 fn pool() -> World {
     let (width, length, water) = (25.0, 50.0, 1.9);
     let height = |at: Point| {
@@ -189,7 +189,8 @@ fn pool() -> World {
     World { water_level: Some(water), ..hills("pool.png", (width, length), 0.25, height) }
 }
 
-/// A ring around a lake (section 7.3). The land around it is above the water, and its outer flank the gentler one.
+/// A ring around a lake (section 7.3). The land around it is above the water, and its outer flank the gentler
+/// one.
 fn crater() -> World {
     let height = |at: Point| {
         let off = math::hypot(at.x - 2.5, at.y - 2.5) - 1.3;

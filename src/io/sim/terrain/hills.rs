@@ -42,8 +42,8 @@ const STILL: f64 = 1e-11;
 const STANDING: f64 = 2e-3;
 
 impl Hills {
-    /// The hills of a world, if it has any. A level floor counts as well for craft, under water, where other robots
-    /// drown, and below robots that drop onto it.
+    /// The hills of a world, if it has any. A level floor counts as well for craft, under water, where other
+    /// robots drown, and below robots that drop onto it.
     pub(in crate::io::sim) fn of(
         world: &World,
         robots: &[RobotPlacement],
