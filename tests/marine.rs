@@ -122,6 +122,22 @@ fn speeds_and_ways_are_held_in_closed_loop() {
     assert_eq!(simulation.truth().robot(0).unwrap().contacts, 0);
 }
 
+/// A turn is over at its angle, however far the craft coasts meanwhile, and a way at its length after a turn.
+#[test]
+fn manoeuvres_of_a_moving_craft_end() {
+    let (_, mut mako) = mako_in(pool());
+    mako.set_speed(Twist::new(0.2, 0.0)).unwrap();
+    mako.wait(4.0).unwrap();
+    mako.turn(1.0, 0.5).unwrap();
+    mako.wait(20.0).unwrap();
+    assert!(mako.is_done().unwrap());
+    mako.set_speed(Twist::new(0.0, 0.5)).unwrap();
+    mako.wait(4.0).unwrap();
+    mako.straight(0.5, 0.2).unwrap();
+    mako.wait(20.0).unwrap();
+    assert!(mako.is_done().unwrap());
+}
+
 #[test]
 fn walls_and_the_floor_stop_it_and_count() {
     let (simulation, mut mako) = mako_in(pool());

@@ -325,6 +325,26 @@ fn water_drowns_and_a_drop_lands() {
     assert!((landed.position.z - 0.3).abs() < 1e-3 && landed.tilt() < 0.01, "{landed:?}");
 }
 
+#[test]
+fn a_level_floor_drowns_and_catches_as_hills_do() {
+    let wet = World { water_level: Some(0.9), ..World::walled(6.0, 6.0) };
+    let wet = simulation(wet, RobotSpec::labbot(), Pose::new(1.0, 3.0, 0.0));
+    let mut robot = wet.robot(0).unwrap();
+    robot.straight(1.0, 0.3).unwrap();
+    let _ = robot.wait(4.0);
+    let truth = wet.truth();
+    assert_eq!(truth.mishap(0).unwrap(), Some(Mishap::Drowned));
+    assert!(truth.pose(0).unwrap().x < 1.1);
+
+    let mut placed = RobotPlacement::new(RobotSpec::s4().into(), Pose::new(2.0, 2.0, 0.0));
+    placed.elevation = 0.05;
+    let scene = Scene { robots: vec![placed], ..Scene::new(World::walled(4.0, 4.0)) };
+    let dry = Simulation::new(&scene, SimOptions::ideal()).unwrap();
+    dry.robot(0).unwrap().wait(2.0).unwrap();
+    let landed = dry.truth().pose_in_space(0).unwrap();
+    assert!(landed.position.z.abs() < 1e-3 && landed.tilt() < 0.01, "{landed:?}");
+}
+
 proptest! {
     #![proptest_config(cases::cases(24))]
     /// Hills without a hill are a floor.

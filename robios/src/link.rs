@@ -9,7 +9,7 @@ use roverlab::io::sim::Simulation;
 use crate::ask::{Reply, Request};
 use crate::plan::Plan;
 use crate::report::Stance;
-use crate::seat::{Seat, Terms};
+use crate::seat::{Seat, Terms, Walked};
 
 /// Answers requests.
 pub trait Link: fmt::Debug + Send {
@@ -53,11 +53,15 @@ impl Link for Seat {
 
     fn truth(&mut self) -> Option<Truth> {
         let robot = Seat::truth(self).robot(self.index()).ok()?;
-        let (odometry, path_length) = self.walked().unwrap_or((robot.odometry, robot.path_length));
+        let Walked { odometry, path_length, stance } = self.walked().unwrap_or_else(|| Walked {
+            odometry: robot.odometry,
+            path_length: robot.path_length,
+            stance: Stance::of(Seat::truth(self), self.index()),
+        });
         Some(Truth {
             time: Seat::truth(self).time(),
             pose: robot.pose,
-            stance: Stance::of(Seat::truth(self), self.index()),
+            stance,
             odometry,
             path_length,
             contacts: robot.contacts,

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use roverlab::geometry::{Pose, units};
 use roverlab::io::sim::SimOptions;
 use roverlab::world::formats::{self, DiskFiles, FileSource};
-use roverlab::world::{RobotPlacement, RobotSpec, Scene, World};
+use roverlab::world::{DriveSpec, RobotPlacement, RobotSpec, Scene, World};
 
 use crate::costs::{Costs, Frames};
 use crate::walker::is_walker;
@@ -220,6 +220,7 @@ impl Plan {
             let (x, y, number) = (units::to_mm(x), units::to_mm(y), robot + 1);
             format!("robot {number} starts at {x:.0}, {y:.0} mm, {place}; expected free floor")
         }));
+        warnings.extend(without_water(&scene));
         Ok(scene)
     }
 
@@ -302,6 +303,16 @@ fn only_world(folder: &Path, warnings: &mut Vec<String>) -> Option<PathBuf> {
     None
 }
 
+/// Warns of craft on dry ground, where no thruster moves them.
+fn without_water(scene: &Scene) -> Option<String> {
+    let is_craft = |robot: &RobotPlacement| matches!(robot.spec.drive, DriveSpec::Craft(_));
+    let first = scene.robots.iter().position(is_craft).filter(|_| scene.world.water_level.is_none())?;
+    let (number, name) = (first + 1, &scene.robots[first].spec.name);
+    Some(format!(
+        "robot {number}, {name}, lies on the floor of a world without water; expected a line `water_level MM`"
+    ))
+}
+
 /// Default start of a robot: the world's start place, or its middle.
 fn start_in(world: &World) -> Pose {
     let letter = world.places.iter().find(|place| place.heading.is_some());
@@ -334,6 +345,15 @@ mod tests {
         assert_eq!(
             warnings(9.0),
             ["robot 1 starts at 9000, 2000 mm, outside the world; expected free floor"]
+        );
+    }
+
+    #[test]
+    fn a_craft_in_a_dry_world_is_warned_of_once() {
+        let plan = Plan { robot: Some("Mako".into()), ..Plan::default() };
+        assert_eq!(
+            plan.scene().unwrap().1,
+            ["robot 1, Mako, lies on the floor of a world without water; expected a line `water_level MM`"]
         );
     }
 

@@ -44,8 +44,14 @@ pub struct Stance {
 }
 
 /// All mishaps by their number in the report; an unknown number reads as none.
-const MISHAPS: [Option<Mishap>; 5] =
-    [None, Some(Mishap::Tipped), Some(Mishap::Fell), Some(Mishap::Stuck), Some(Mishap::Drowned)];
+const MISHAPS: [Option<Mishap>; 6] = [
+    None,
+    Some(Mishap::Tipped),
+    Some(Mishap::Fell),
+    Some(Mishap::Stuck),
+    Some(Mishap::Drowned),
+    Some(Mishap::Broken),
+];
 
 impl Stance {
     /// Stance of a robot in a world.

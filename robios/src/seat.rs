@@ -9,6 +9,7 @@ use roverlab::world::{InertialSpec, Misplacement, Scene};
 
 use crate::ask::{MOST_READINGS, Reply, Request};
 use crate::identity::{Identity, speeds, turns};
+use crate::report::Stance;
 use crate::walker::Walker;
 
 /// Interval at which a walker's body follows it (s).
@@ -31,6 +32,17 @@ impl Terms {
         let exact = options.noise.range == 0.0;
         Self { call_duration: options.call_duration, time_limit: options.time_limit, exact }
     }
+}
+
+/// How a walker has walked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Walked {
+    /// Pose by odometry.
+    pub odometry: Pose,
+    /// Distance walked (m).
+    pub path_length: f64,
+    /// Height of its body's centre; it is always level.
+    pub stance: Stance,
 }
 
 /// Drives one robot of a simulation on behalf of a program.
@@ -120,10 +132,14 @@ impl Seat {
         self.index
     }
 
-    /// A walker's pose by odometry and the distance walked; `None` for robots on wheels, which the world
-    /// knows.
-    pub fn walked(&self) -> Option<(Pose, f64)> {
-        self.walker.as_ref().map(|walker| (walker.odometry(), walker.walked()))
+    /// What a walker knows better than the world, which knows all of robots on wheels; `None` for those.
+    pub fn walked(&self) -> Option<Walked> {
+        let walked = |walker: &Walker| Walked {
+            odometry: walker.odometry(),
+            path_length: walker.walked(),
+            stance: Stance { elevation: walker.height(), ..Stance::default() },
+        };
+        self.walker.as_ref().map(walked)
     }
 
     /// Time by the robot's clock (s).
@@ -367,11 +383,28 @@ fn index_of(what: &str, id: u32, numbers: &[u32]) -> Result<usize> {
     let placed = numbers.iter().position(|&number| number == id);
     let counted = || (id as usize).checked_sub(1).filter(|&index| index < numbers.len());
     placed.or_else(counted).ok_or_else(|| {
-        Error::invalid_input(what, id, &format!("one of {numbers:?}, or at most {}", numbers.len()))
+        let expected = if numbers.is_empty() {
+            format!("none, as the world has no {what}")
+        } else {
+            format!("one of {numbers:?}, or at most {}", numbers.len())
+        };
+        Error::invalid_input(what, id, &expected)
     })
 }
 
 fn resolution(number: u8) -> Result<Resolution> {
     let found = Resolution::ALL.get(usize::from(number)).copied();
     found.ok_or_else(|| Error::new(ErrorKind::InvalidInput, format!("resolution {number}; expected 0 to 5")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_things_none_is_expected() {
+        let error = index_of("object", 2, &[]).unwrap_err().to_string();
+        assert!(error.contains("expected none, as the world has no object"), "{error}");
+        assert_eq!(index_of("object", 5, &[5]).unwrap(), 0);
+    }
 }

@@ -102,9 +102,11 @@ impl Verdict {
         format!("robot {}, {}", self.robot + 1, self.program)
     }
 
-    /// Warnings about the program.
+    /// Warnings about the program, and the mishap of its robot.
     pub fn warnings(&self) -> impl Iterator<Item = String> {
-        self.notes.iter().map(|note| format!("{}: {note}", self.name()))
+        let name = self.name();
+        let mishap = self.truth.stance.mishap.map(|mishap| format!("mishap: {mishap}"));
+        self.notes.iter().cloned().chain(mishap).map(move |said| format!("{name}: {said}"))
     }
 
     /// Whether a limit ended it while it waited for a radio message.
@@ -247,7 +249,7 @@ impl Summary {
             let heading = units::to_deg(normalize_angle(truth.pose.heading));
             lines.push(format!("  pose               {x}, {y} mm, {heading:.1} deg"));
             if truth.stance != Stance::default() {
-                lines.push(format!("  on hills           {}", stance(&truth.stance)));
+                lines.push(format!("  in space           {}", stance(&truth.stance)));
             }
             lines.push(format!("  path length        {:.0} mm", units::to_mm(truth.path_length)));
             lines.push(format!("  collisions         {}", truth.contacts));

@@ -250,6 +250,9 @@ fn judged(
             Some(_) => {}
         }
     }
+    // A run that ends sooner has not shown that it stays.
+    let last = trail.last().map_or(0.0, |point| point.0);
+    let settle = settle.filter(|since| last - since >= SETTLED);
     let watched = || trail.iter().filter(|point| point.0 >= SETTLING);
     let count = watched().count().max(1) as f64;
     let squares: f64 = watched().map(|point| point.2.heading * point.2.heading).sum();
@@ -270,10 +273,13 @@ fn picture(plan: &Plan, done: &Dived) -> Picture {
     above.title("From above: 6 m of the pool");
     let origin = Vector::new(12.5 - 2.0, 25.0 - 1.5);
     let place = |pose: &Pose| Point::new(pose.x - origin.x, pose.y - origin.y);
-    above.true_path(done.trail.iter().map(|(_, _, pose)| place(pose)));
-    if let Some((_, _, pose)) = done.trail.last() {
-        let at = place(pose);
-        above.robot(Pose::new(at.x, at.y, pose.heading), &RobotSpec::mako().footprint);
+    let moved = |&(time, _, pose): &(f64, f64, Pose)| {
+        let at = place(&pose);
+        (time, Pose::new(at.x, at.y, pose.heading))
+    };
+    let trail: Vec<_> = done.trail.iter().map(moved).collect();
+    if !trail.is_empty() {
+        above.drive(&trail, &RobotSpec::mako().footprint);
     }
     above.mark(Mark::Start, Point::new(2.0, 1.5));
     let mut side = Picture::new(&World::empty(6.0, 3.0));
@@ -283,7 +289,7 @@ fn picture(plan: &Plan, done: &Dived) -> Picture {
     side.line([at(0.0, 0.0), at(80.0, 0.0)], Style::new(Colour::from_hex(0x70_c0_d8)).labelled("surface"));
     side.line([at(0.0, LEVEL), at(80.0, LEVEL)], Style::new(Colour::from_hex(0x60_50_40)).labelled("floor"));
     side.line([at(0.0, plan.depth), at(80.0, plan.depth)], Style::plan());
-    side.true_path(done.trail.iter().map(|(time, depth, _)| at(*time, *depth)));
+    side.trace(done.trail.iter().map(|(time, depth, _)| (*time, at(*time, *depth))), Style::true_path());
     let mut both = Picture::panels(&[above, side], 1);
     both.without_scale();
     both.title(format!("Dive to {:.0} mm", units::to_mm(plan.depth)));

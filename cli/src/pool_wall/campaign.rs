@@ -4,7 +4,7 @@ use roverlab::world::generate::PoolKind;
 use serde_json::json;
 
 use super::Args;
-use super::job::{LAP, generated, kind};
+use super::job::{generated, kind, limit};
 use super::round::{Errors, round};
 use crate::common::{Failure, Report, campaign_report, millimetres, wrong_seeds};
 use crate::driving::{Conditions, RESERVE};
@@ -65,10 +65,10 @@ pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
 
 fn trial(args: &Args, seed: u64) -> Result<Trial, Failure> {
     let scene = generated(seed)?;
-    let limit = args.common.time_limit.unwrap_or(LAP * f64::from(LAPS));
+    let parameters = PoolWallParameters { laps: LAPS, ..PoolWallParameters::default() };
+    let limit = args.common.time_limit.unwrap_or_else(|| limit(&scene, &parameters));
     let conditions =
         Conditions { seed, common: None, reserve: RESERVE, ..Conditions::new(&args.common, limit)? };
-    let parameters = PoolWallParameters { laps: LAPS, ..PoolWallParameters::default() };
     let done = round(&scene, parameters, &conditions, |_| {})?;
     let laps = match done.run.ending {
         Ok((PoolWallOutcome::Round | PoolWallOutcome::TimedOut, laps)) => laps,

@@ -10,10 +10,18 @@ use super::campaign::campaign;
 use super::round::{Round, round};
 use crate::common::{Failure, Outcome, Report, millimetres};
 use crate::driving::{Conditions, paced};
-use crate::water::afloat;
+use crate::water::{Shore, afloat};
 
-/// Seconds of a lap, with the way to the wall.
-pub(super) const LAP: f64 = 400.0;
+/// Seconds for a metre of the sides, and besides for the way to the wall.
+const PACE: f64 = 5.0;
+const BESIDES: f64 = 100.0;
+
+/// Seconds for laps round a scene's pool.
+pub(super) fn limit(scene: &Scene, parameters: &PoolWallParameters) -> f64 {
+    let level = scene.world.water_level.unwrap_or_default();
+    let around = Shore::of(&scene.world, level - parameters.depth).length();
+    f64::from(parameters.laps) * PACE * around + BESIDES
+}
 
 /// The pool of a seed.
 pub(super) fn generated(seed: u64) -> Result<Scene, Failure> {
@@ -36,7 +44,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let scene = afloat(common, &RobotSpec::mako(), || own)?;
     let parameters =
         PoolWallParameters { laps: args.laps, depth: args.depth, ..PoolWallParameters::default() };
-    let conditions = Conditions::new(common, LAP * f64::from(args.laps))?;
+    let conditions = Conditions::new(common, limit(&scene, &parameters))?;
     let done = round(&scene, parameters, &conditions, paced(common))?;
     let Round { run, errors } = &done;
     let laps = run.ending.as_ref().ok().map(|ended| ended.1);
@@ -66,4 +74,21 @@ fn picture(scene: &Scene, done: &Round) -> Picture {
     picture.caption(format!("{:.1} m in {:.0} s, {rms}", run.truth.path_length, run.sim_time));
     run.draw(&mut picture, &scene.robots[0].spec);
     picture
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::water::{BOOK, pool};
+
+    #[test]
+    fn the_time_limit_follows_the_sides() {
+        let limit = |size, laps| {
+            let scene = Scene::new(pool(size, |_| 0.0));
+            limit(&scene, &PoolWallParameters { laps, ..PoolWallParameters::default() })
+        };
+        // At 0.3 m/s, a lap of the book's pool takes 475 s.
+        assert!((600.0..1000.0).contains(&limit(BOOK, 1)), "{}", limit(BOOK, 1));
+        assert!(limit([6.0, 8.0], 1) < 300.0 && limit(BOOK, 3) > 3.0 * 475.0);
+    }
 }

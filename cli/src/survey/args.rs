@@ -31,7 +31,7 @@ JSON fields:
   by_walls                    whether the sides were used for localisation
   map, picture
   rows                        with --campaign only: the table
-Outcomes: covered, timed_out, failed; with --campaign: passed, wrong."
+Outcomes: covered, not_covered (less than 99 % of the cells), timed_out, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
     /// Distance between lanes.

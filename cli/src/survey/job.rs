@@ -7,7 +7,7 @@ use super::Args;
 use super::campaign::campaign;
 use super::floor::scene;
 use super::map;
-use super::tour::{Tour, tour, true_depth};
+use super::tour::{COVERED, Tour, tour, true_depth};
 use crate::common::{Failure, Outcome, Report, check_writable, millimetres, rounded};
 use crate::driving::{Conditions, paced};
 use crate::terrain::percent;
@@ -31,7 +31,8 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let mut report = done
         .run
         .report(|outcome| match outcome {
-            SurveyOutcome::Covered => Outcome::verdict("covered"),
+            SurveyOutcome::Covered if quality.coverage >= COVERED => Outcome::verdict("covered"),
+            SurveyOutcome::Covered => Outcome::failure("not_covered"),
             _ => Outcome::failure("timed_out"),
         })
         .field("coverage_percent", percent(quality.coverage))

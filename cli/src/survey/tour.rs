@@ -31,6 +31,8 @@ pub(super) struct Quality {
     pub(super) altitude: Option<f64>,
 }
 
+/// The least share of cells with a depth of a floor that is covered.
+pub(super) const COVERED: f64 = 0.99;
 /// The sensor that points down.
 const DOWN: Psd = Psd(6);
 /// Metres from the altitude at which it counts as reached.

@@ -11,6 +11,15 @@ fn mako_dives_and_holds_its_depth() {
     assert!(number(&ended.1, "settle_s") < 20.0 && number(&ended.1, "overshoot_mm") < 50.0, "{}", ended.1);
 }
 
+/// Mako floats so deep that it cannot settle at 150 mm; that it was there last says nothing.
+#[test]
+fn a_depth_that_is_never_held_has_no_time_and_a_film() {
+    let film = temporary("shallow.svg");
+    let (_, report, err) = run("dive", &["--depth", "150", "--animation", film.to_str().unwrap()]);
+    assert!(report["outcome"] == "not_held" && report["settle_s"].is_null(), "{report} {err}");
+    assert!(fs::read_to_string(film).unwrap().contains("<animateTransform"));
+}
+
 /// A fault stops its motors, and it comes up by itself.
 #[test]
 fn mako_comes_up_after_a_fault() {
@@ -53,6 +62,12 @@ fn a_survey_holds_its_altitude_up_and_down_a_ridge() {
     assert_outcome(&ended, "covered");
     let error = number(&ended.1, "altitude_rms_error_mm");
     assert!(error > 0.0 && error < 30.0 && ended.1["collisions"] == 0, "{}", ended.1);
+}
+
+#[test]
+fn a_survey_in_lanes_too_far_apart_covers_nothing() {
+    let (status, report, err) = run("survey", &["--spacing", "100000"]);
+    assert_eq!((status, &report["outcome"]), (1, &"not_covered".into()), "{report} {err}");
 }
 
 /// A pool of a world's file, with a red thing.

@@ -28,6 +28,11 @@ impl Shore {
         Aabb::around(self.points())
     }
 
+    /// The length of all its sides (m).
+    pub(crate) fn length(&self) -> f64 {
+        self.sides.iter().map(|side| (side.b - side.a).norm()).sum()
+    }
+
     /// The ends of its sides.
     pub(crate) fn points(&self) -> impl Iterator<Item = Point> {
         self.sides.iter().flat_map(|side| [side.a, side.b])

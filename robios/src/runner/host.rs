@@ -9,7 +9,7 @@ use eyesim::memory::{Asked, Memory};
 use eyesim::plan::{Plan, names};
 use eyesim::process;
 use eyesim::report::{Report, Stance};
-use eyesim::seat::{Seat, Terms};
+use eyesim::seat::{Seat, Terms, Walked};
 use eyesim::verdict::{Ending, Truth, Verdict};
 use eyesim::wire::{Answer, LONGEST_REQUEST, Question};
 use roverlab::geometry::Pose;
@@ -34,8 +34,8 @@ struct Served {
     time: f64,
     /// Number of its robot's contacts until then.
     contacts: u64,
-    /// Pose by odometry and distance walked, for a walker.
-    walked: Option<(Pose, f64)>,
+    /// What is known of a walker.
+    walked: Option<Walked>,
     /// How the program ended, and its report.
     ending: Ending,
     report: Report,
@@ -118,8 +118,8 @@ pub(crate) fn run_together(
         if options.trail.is_none() {
             truth.trail.clear();
         }
-        if let Some((odometry, path_length)) = served.walked {
-            truth = Truth { odometry, path_length, ..truth };
+        if let Some(Walked { odometry, path_length, stance }) = served.walked {
+            truth = Truth { odometry, path_length, stance, ..truth };
         }
         Verdict::new(&program.name, program.robot, served.ending, &served.report, truth)
     });

@@ -142,6 +142,39 @@ fn things_put_where_they_cannot_stand_are_said() {
 }
 
 #[test]
+fn a_robot_that_drowns_on_a_level_floor_is_said() {
+    if !compiler() {
+        return;
+    }
+    let folder = Folder::new("said-drowned");
+    folder.write("wet.wld", "floor 4000 4000\nwater_level 900\n");
+    let drive = "int main() { VWStraight(1000, 200); VWWait(); return 0; }\n";
+    folder.write("drive.c", &format!("#include \"eyebot.h\"\n{drive}"));
+    let script = folder.write("wet.sim", "world wet.wld\nS4 500 2000 0 drive.x\n");
+    let report = report(&["--time-limit", "10", script.to_str().unwrap()]);
+    assert_eq!(report["mishap"], "drowned", "{report}");
+    assert!(warnings(&report).contains(&"robot 1, drive.x: mishap: drowned"), "{report}");
+}
+
+/// A walker stands on the floor wherever a script puts it, and is as high as it says.
+#[test]
+fn a_walkers_height_is_its_own() {
+    if !compiler() {
+        return;
+    }
+    let folder = Folder::new("said-walker");
+    folder.write("stand.c", "#include \"eyebot.h\"\nint main() { OSWait(500); return 0; }\n");
+    folder.write("flat.wld", "floor 4000 4000\n");
+    let script =
+        folder.write("flat.sim", "world flat.wld\nrobot starman.robi\nStarman 1000 300 1000 90 stand.x\n");
+    for options in [&[][..], &["--trail", "0.1"]] {
+        let report = report(&[options, &[script.to_str().unwrap()]].concat());
+        let up = report["pose"]["z_mm"].as_f64().unwrap();
+        assert!((120.0..140.0).contains(&up), "{report}");
+    }
+}
+
+#[test]
 fn a_world_taken_from_the_folder_is_said() {
     if !compiler() {
         return;

@@ -1,9 +1,9 @@
 use image::{Rgba, RgbaImage};
 
 use super::road::Road;
-use crate::geometry::{Point, Segment, math};
+use crate::geometry::{Aabb, Point, Segment, math};
 use crate::world::formats::maz;
-use crate::world::{Colour, Texture, Wall, World};
+use crate::world::{Colour, HeightField, Terrain, Texture, Wall, World};
 
 /// Colour of the lines of a playing field.
 const WHITE: Colour = Colour::from_hex(0xf0_f0_f0);
@@ -25,8 +25,8 @@ const BOTS4X4: &str = " _ _ _ _\n|a b c d|\n|b c d a|\n|c d a b|\n|D A B C|\n500
 
 impl World {
     /// Worlds that every script knows by their EyeSim file names: Soccer1998, Field, Field2, Chess, Carolo,
-    /// obstacles, rectangle, small, bots16, bots4x4.
-    pub const PREDEFINED: [&'static str; 10] = [
+    /// obstacles, rectangle, small, bots16, bots4x4, pool, crater, levels-steel.
+    pub const PREDEFINED: [&'static str; 13] = [
         "Soccer1998",
         "Field",
         "Field2",
@@ -37,6 +37,9 @@ impl World {
         "small",
         "bots16",
         "bots4x4",
+        "pool",
+        "crater",
+        "levels-steel",
     ];
 
     /// A world of [`PREDEFINED`](Self::PREDEFINED), case-insensitive.
@@ -52,7 +55,10 @@ impl World {
             "rectangle" => maze(RECTANGLE),
             "small" => maze(SMALL),
             "bots16" => maze(BOTS16),
-            _ => maze(BOTS4X4),
+            "bots4x4" => maze(BOTS4X4),
+            "pool" => pool(),
+            "crater" => crater(),
+            _ => levels(),
         })
     }
 }
@@ -164,6 +170,53 @@ fn obstacles() -> World {
     world
 }
 
+/// Hills from the height at each point, with samples every `pitch` metres.
+fn hills(name: &str, (width, length): (f64, f64), pitch: f64, height: impl FnMut(Point) -> f64) -> World {
+    let samples = |side: f64| (side / pitch).round() as usize + 1;
+    let area = Aabb::new(Point::origin(), Point::new(width, length));
+    let surface = HeightField::from_fn(samples(width), samples(length), area, height).ok();
+    World { terrain: surface.map(|surface| Terrain::new(name, surface)), ..World::empty(width, length) }
+}
+
+/// The swimming pool of chapter 8, 25 m by 50 m, inside a rim. It is 1.5 m deep at its near end, and 1.9 m from
+/// the middle on.
+fn pool() -> World {
+    let (width, length, water) = (25.0, 50.0, 1.9);
+    let height = |at: Point| {
+        let inside = at.x.min(width - at.x).min(at.y).min(length - at.y);
+        if inside > 0.5 { 0.4 * (1.0 - 2.0 * at.y / length).max(0.0) } else { water + 0.1 }
+    };
+    World { water_level: Some(water), ..hills("pool.png", (width, length), 0.25, height) }
+}
+
+/// A ring around a lake (section 7.3). The land around it is above the water, and its outer flank the gentler
+/// one.
+fn crater() -> World {
+    let height = |at: Point| {
+        let off = math::hypot(at.x - 2.5, at.y - 2.5) - 1.3;
+        let (land, width) = if off > 0.0 { (0.15, 0.7) } else { (0.0, 0.55) };
+        land + (0.5 - land) * math::exp(-0.5 * (off / width) * (off / width))
+    };
+    World { water_level: Some(0.14), ..hills("crater.png", (5.0, 5.0), 0.02, height) }
+}
+
+/// A ramp up, a bank and a ramp back down beside it, inside a rim (section 7.3).
+fn levels() -> World {
+    let (side, top) = (4.0, 0.2);
+    let height = |at: Point| {
+        let inside = at.x.min(side - at.x).min(at.y).min(side - at.y);
+        let on_ramp = (0.7..=1.3).contains(&at.y) || (2.0..=2.6).contains(&at.y);
+        if inside < 0.12 || ((2.4..=3.1).contains(&at.x) && (0.7..=2.6).contains(&at.y)) {
+            top
+        } else if on_ramp && (1.6..2.4).contains(&at.x) {
+            top * (at.x - 1.6) / 0.8
+        } else {
+            0.0
+        }
+    };
+    hills("levels-steel.png", (side, side), 0.02, height)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -177,6 +230,24 @@ mod tests {
             assert!(world.floor_texture.is_none_or(|texture| texture.image.is_some()), "{name}");
         }
         assert_eq!(World::predefined("Atlantis"), None);
+    }
+
+    #[test]
+    fn worlds_with_hills_are_as_the_books_scripts_need_them() {
+        let ground = |world: &World, x, y| {
+            let surface = world.terrain.as_ref().and_then(|terrain| terrain.surface.clone());
+            surface.unwrap().height(Point::new(x, y)).unwrap()
+        };
+        let pool = World::predefined("pool").unwrap();
+        let depth = |x, y| pool.water_level.unwrap() - ground(&pool, x, y);
+        assert!((depth(12.5, 40.0) - 1.9).abs() < 1e-6 && (1.4..1.6).contains(&depth(12.5, 2.0)));
+        assert!(depth(0.1, 25.0) < 0.0, "its rim is above the water");
+        let crater = World::predefined("crater").unwrap();
+        let above = |x, y| ground(&crater, x, y) - crater.water_level.unwrap();
+        assert!(above(2.5, 2.5) < -0.05 && above(2.5, 3.8) > 0.3);
+        assert!(above(0.4, 0.4) > 0.0 && above(5.0, 0.0) > 0.0, "only the hollow is under water");
+        let levels = World::predefined("levels-steel").unwrap();
+        assert!(ground(&levels, 1.0, 1.0) < 1e-6 && (ground(&levels, 2.7, 1.0) - 0.2).abs() < 1e-6);
     }
 
     #[test]

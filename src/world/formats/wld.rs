@@ -8,7 +8,7 @@
 //! | `push X Y PHI` … `pop` | moves the walls between them by (X, Y), then turns them **clockwise** by PHI |
 //! | `position X Y PHI` | the start pose, PHI counter-clockwise |
 //! | `terrain W H TOP FILE` | hills, which carry robots and stop rays; sets the floor's size too |
-//! | `water_level Z` | the surface of water, which carries craft, and in which other robots on hills drown |
+//! | `water_level Z` | the surface of water, which carries craft, and in which other robots drown |
 //! | `water_density KG` | of a cubic metre; 1000 without it; a line of our own, as are those below |
 //! | `current VX VY [DEPTH]` | a current in mm/s; one that changes with depth has a line for each depth, from above |
 //! | `waves HEIGHT PERIOD PHI [jonswap]` | waves: mm from trough to crest, seconds, and where they run; with a spectrum |

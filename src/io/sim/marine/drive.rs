@@ -165,13 +165,19 @@ impl Doppler {
 }
 
 impl Manoeuvre {
+    /// Whether it turns on the spot, where the way of a craft that coasts is no part of it.
+    fn is_turn(&self) -> bool {
+        self.whole.length == 0.0
+    }
+
     fn is_over(&self) -> bool {
-        self.rest.length.abs() < NEAR.length && self.rest.angle.abs() < NEAR.angle
+        let is_there = self.is_turn() || self.rest.length.abs() < NEAR.length;
+        is_there && self.rest.angle.abs() < NEAR.angle
     }
 
     /// The speed at which it is to move: both parts arrive together, and slow down before their end.
     fn twist(&self) -> Twist {
-        let turns = self.whole.length == 0.0;
+        let turns = self.is_turn();
         let (whole, angle) = (self.whole.length.abs(), self.whole.angle.abs());
         let seconds = if turns { angle } else { whole } / self.speed;
         let part = |rest: f64, whole: f64| (rest / APPROACH).clamp(-whole / seconds, whole / seconds);
@@ -238,13 +244,8 @@ impl Mechanics for CraftDrive {
 
     fn remaining(&self) -> f64 {
         match self.mode {
-            Mode::Manoeuvre(Manoeuvre { rest, whole, .. }) => {
-                if whole.length == 0.0 {
-                    rest.angle.abs()
-                } else {
-                    rest.length.abs()
-                }
-            }
+            Mode::Manoeuvre(way) if way.is_turn() => way.rest.angle.abs(),
+            Mode::Manoeuvre(way) => way.rest.length.abs(),
             Mode::Thrusters(_) | Mode::Speed(_) => 0.0,
         }
     }

@@ -42,7 +42,8 @@ const STILL: f64 = 1e-11;
 const STANDING: f64 = 2e-3;
 
 impl Hills {
-    /// The hills of a world, if it has any. Craft need none: for them, a level floor counts as well.
+    /// The hills of a world, if it has any. A level floor counts as well for craft, under water, where other
+    /// robots drown, and below robots that drop onto it.
     pub(in crate::io::sim) fn of(
         world: &World,
         robots: &[RobotPlacement],
@@ -52,9 +53,11 @@ impl Hills {
         world.water.validate()?;
         let surface = world.terrain.as_ref().and_then(|terrain| terrain.surface.clone());
         let craft = bodies.iter_mut().any(|body| body.drive.craft_mut().is_some());
+        let is_wet = world.water_level.is_some_and(|level| level > 0.0);
+        let drops = robots.iter().any(|robot| robot.elevation > 0.0);
         let ground = match surface {
             Some(surface) => surface,
-            None if craft => Arc::new(level_floor(world)?),
+            None if craft || is_wet || drops => Arc::new(level_floor(world)?),
             None => return Ok(None),
         };
         let waters = Waters::of(world, seed);

@@ -133,8 +133,8 @@ impl Definitions {
         let first = self.missing.iter().position(|missing| best.is_some() && fitness(missing) == best);
         let Some(index) = first else { return };
         let Missing { reference, is_robot, .. } = self.missing.remove(index);
-        let (file, what) = (stem(&reference), if is_robot { "robot" } else { "object" });
-        notes.warn(at, format!("a {what} takes the place of {}, from {}", shown(name), shown(&reference)));
+        let (file, what) = (stem(&reference), if is_robot { "a robot" } else { "an object" });
+        notes.warn(at, format!("{what} takes the place of {}, from {}", shown(name), shown(&reference)));
         if is_robot {
             let like = RobotSpec::predefined(&file).unwrap_or_else(|| robot_like(&reference));
             let value = Arc::new(RobotSpec { name: name.into(), ..like });

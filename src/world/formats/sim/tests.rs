@@ -211,6 +211,8 @@ fn a_stand_in_has_the_name_that_the_script_gives_it() {
     let parsed = parse_tolerantly(text, "test.sim", &mut files()).unwrap();
     let objects: Vec<_> = parsed.value.world.objects.iter().map(|object| object.kind.name.as_str()).collect();
     assert_eq!(objects, ["Oak-Tree", "Oak-Tree", "Lamp"]);
+    let said = |text: &str| parsed.warnings.iter().any(|warning| warning.to_string().contains(text));
+    assert!(said(": an object takes the place of `Lamp`") && said(": a robot takes the place of `Racer`"));
     assert_eq!((parsed.value.robots.len(), parsed.value.robots[0].spec.name.as_str()), (1, "Racer"));
     assert!(matches!(parsed.value.robots[0].spec.drive, crate::world::DriveSpec::Ackermann { .. }));
     let last = parsed.warnings.last().unwrap().to_string();
