@@ -66,7 +66,7 @@ fn sights() -> Result<String> {
         }
         let mut spec = RobotSpec::s4();
         if let Some(camera) = &mut spec.camera {
-            (camera.fisheye, camera.field_of_view) = (i % 2 == 1, 1.0 + 0.2 * i as f64);
+            (camera.fisheye, camera.field_of_view) = (i % 2 == 1, 1.0 + 0.2 * (i % 10) as f64);
         }
         let mut scene = Scene::with_robot(world, spec, Pose::new(middle.x, middle.y, 0.0));
         let other = Pose::new(middle.x, middle.y - 0.4, 2.0);
