@@ -377,6 +377,10 @@ impl AToB {
     }
 
     /// The path from a pose; `None` at the goal and for a dog curve, which has no plan.
+    ///
+    /// # Errors
+    ///
+    /// If the pose is not finite, or no path of the method leads to the goal.
     pub fn plan(&self, pose: Pose) -> Result<Option<Path>> {
         if self.is_at_goal(pose) {
             return Ok(None);

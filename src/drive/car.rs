@@ -215,6 +215,10 @@ impl CarToB {
     }
 
     /// The path from a pose; `None` at the goal and for a dog curve, which has no plan.
+    ///
+    /// # Errors
+    ///
+    /// If a pose is not finite, or the goal is more than 10 km away.
     pub fn plan(&self, pose: Pose) -> Result<Option<Path>> {
         if pose.distance_to(self.goal.position) <= ARRIVED || self.method == Method::Dog {
             return Ok(None);

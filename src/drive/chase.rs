@@ -82,6 +82,10 @@ pub struct Chase {
 
 impl Chase {
     /// A chase by a method.
+    ///
+    /// # Errors
+    ///
+    /// If a parameter is out of range; the error names it.
     pub fn new(method: Method, parameters: ChaseParameters) -> Result<Self> {
         parameters.follower.validate()?;
         require_positive("distance", parameters.distance)?;

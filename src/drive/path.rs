@@ -106,6 +106,10 @@ impl Path {
 
     /// The Hermite spline between two poses (book, section 3.6). `scale` is the book's k: tangent length as a
     /// multiple of the distance.
+    ///
+    /// # Errors
+    ///
+    /// If a pose is not finite, both are in one place, or the scale is not more than 0 and at most 100.
     pub fn hermite(start: Pose, goal: Pose, scale: f64) -> Result<Self> {
         check_pose("start", start)?;
         check_pose("goal", goal)?;

@@ -136,6 +136,10 @@ pub struct PushHome {
 
 impl PushHome {
     /// A behaviour that brings the object found by `finder` to `home`, a point in the odometry frame.
+    ///
+    /// # Errors
+    ///
+    /// If a parameter is out of range, or the place not finite.
     pub fn new(
         finder: ColourFinder,
         home: Point,

@@ -71,6 +71,10 @@ impl BookLaneKeeper {
     }
 
     /// Straight lines in the lower part of the image.
+    ///
+    /// # Errors
+    ///
+    /// If the image is empty or too small for the kernels.
     pub fn lines(&mut self, image: &image::RgbImage) -> Result<Vec<LineSegment>, ImageError> {
         let (width, height) = (image.width() as usize, image.height() as usize);
         self.gray.resize(width * height, 0);

@@ -113,6 +113,10 @@ impl LaneKeeper {
     }
 
     /// Processes an image taken at an odometry pose.
+    ///
+    /// # Errors
+    ///
+    /// If the image is empty.
     pub fn see(&mut self, image: &image::RgbImage, odometry: Pose) -> Result<&LaneEstimate, ImageError> {
         let (width, height) = (image.width() as usize, image.height() as usize);
         self.gray.resize(width * height, 0);

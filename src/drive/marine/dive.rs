@@ -95,6 +95,10 @@ impl Dive {
     }
 
     /// Changes the desired depth (m).
+    ///
+    /// # Errors
+    ///
+    /// If the depth is negative or not finite.
     pub fn set_depth(&mut self, depth: f64) -> Result<()> {
         require_not_negative("depth", depth)?;
         self.parameters.depth = depth;

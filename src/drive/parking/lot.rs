@@ -58,6 +58,10 @@ const HEIGHT: f64 = 0.15;
 impl ParkingLot {
     /// An area by the rules, drawn at random. Parallel gaps are 1.4 to 2.1 times as long as the car, behind
     /// one that is too short.
+    ///
+    /// # Errors
+    ///
+    /// If the road is no course, which none of these is.
     pub fn drawn(kind: ParkingKind, seed: u64) -> Result<Self, CourseError> {
         let mut random = Stream::new(seed).child("parking", 0);
         let mut course = RoadCourse::new(oval())?;

@@ -33,6 +33,10 @@ pub struct ElevationReplanner {
 
 impl ElevationReplanner {
     /// Creates a replanner from a map, the robot's position and its goal.
+    ///
+    /// # Errors
+    ///
+    /// If the objective is out of range, or an end lies outside the surface.
     pub fn new(map: ElevationMap, objective: Objective, robot: Point, goal: Point) -> Result<Self> {
         objective.validate()?;
         let costs = GroundCosts::new(map.field(), objective);
@@ -50,12 +54,20 @@ impl ElevationReplanner {
     }
 
     /// Updates the robot's position.
+    ///
+    /// # Errors
+    ///
+    /// If the position lies outside the surface.
     pub fn move_to(&mut self, robot: Point) -> std::result::Result<(), PlanError> {
         let cell = cell_of(&self.map, End::Start, robot)?;
         self.planner.move_to(cell)
     }
 
     /// Updates the elevation of a sample (m).
+    ///
+    /// # Errors
+    ///
+    /// If the sample lies outside the surface, or its elevation beyond 1000 km.
     pub fn set_height(&mut self, cell: GridCell, height: f64) -> Result<()> {
         let field: &HeightField = self.map.field();
         require("column", cell.column as f64, cell.column < field.columns(), "a column of the surface")?;

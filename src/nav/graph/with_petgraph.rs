@@ -51,6 +51,10 @@ pub fn petgraph_of_grid(grid: &BitGrid) -> UnGraph<GridCell, f64> {
 /// `cost` returns the cost of an edge, `estimate` a lower bound of the cost from a node to the goal: 0 gives
 /// Dijkstra's algorithm.
 ///
+/// # Errors
+///
+/// As [`shortest_path`].
+///
 /// ```
 /// use petgraph::graph::UnGraph;
 /// use roverlab::nav::graph::petgraph_shortest_path;

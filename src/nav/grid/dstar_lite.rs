@@ -72,6 +72,10 @@ impl DStarLite {
 
 impl<C: StepCosts> DStarLite<C> {
     /// As [`new`](DStarLite::new), by what steps cost.
+    ///
+    /// # Errors
+    ///
+    /// For an empty map, and for cells outside it.
     pub fn by(grid: &BitGrid, costs: C, robot: GridCell, goal: GridCell) -> Result<Self, PlanError> {
         if grid.width() == 0 || grid.height() == 0 {
             return Err(PlanError::EmptyMap);

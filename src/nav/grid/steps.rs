@@ -127,6 +127,10 @@ impl<C: StepCosts> GridSearch<C> {
     }
 
     /// Like [`GridPlanner::plan`], and calls back with each cell taken off the queue.
+    ///
+    /// # Errors
+    ///
+    /// As [`GridPlanner::plan`].
     pub fn plan_traced(
         &mut self,
         start: GridCell,
