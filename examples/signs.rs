@@ -1,4 +1,5 @@
-//! Learns what two signs look like, a red square with a bar and a blue disc, and finds them in pictures that it has not seen.
+//! Learns what two signs look like, a red square with a bar and a blue disc, and finds them in pictures that
+//! it has not seen.
 
 use roverlab::random::Stream;
 use roverlab::vision::RgbView;

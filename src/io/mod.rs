@@ -6,9 +6,9 @@
 //!
 //! # Your own robot
 //!
-//! Implement the traits of the devices that the robot has, and no others. A behaviour that needs more does not
-//! compile. [`wrappers::Manoeuvring`] adds [`Manoeuvres`] and a [`StallDetector`] to a drive with odometry. No
-//! method makes up a value: where a program requires a full [`RobotIo`], missing devices return
+//! Implement the traits of the devices that the robot has, and no others. A behaviour that needs more does
+//! not compile. [`wrappers::Manoeuvring`] adds [`Manoeuvres`] and a [`StallDetector`] to a drive with
+//! odometry. No method makes up a value: where a program requires a full [`RobotIo`], missing devices return
 //! [`Error::unsupported`].
 //!
 //! # Which traits a behaviour needs

@@ -75,12 +75,12 @@ impl Tracked {
         Differential { track: 4.0 / (slow + fast) }
     }
 
-    /// Downhill drift of a turn on the spot per radian, for a slope and a friction coefficient of 1 (m/rad). It is
-    /// proportional to the slope, and inversely proportional to the friction coefficient.
+    /// Downhill drift of a turn on the spot per radian, for a slope and a friction coefficient of 1 (m/rad).
+    /// It is proportional to the slope, and inversely proportional to the friction coefficient.
     ///
-    /// In a turn, the whole of each belt slides, with a friction that does not depend on the speed. Against a small
-    /// force across its slide, a point of the belt yields like a viscous one whose coefficient is the friction
-    /// divided by the speed of the slide.
+    /// In a turn, the whole of each belt slides, with a friction that does not depend on the speed. Against a
+    /// small force across its slide, a point of the belt yields like a viscous one whose coefficient is the
+    /// friction divided by the speed of the slide.
     ///
     /// ```
     /// use roverlab::kinematics::Tracked;

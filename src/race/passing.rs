@@ -18,7 +18,8 @@ pub(super) struct Passing {
     /// Distance of each station from the first one, and of a lap (m).
     along: Vec<f64>,
     length: f64,
-    /// Room that the car needs to the right and to the left of its line, and the offsets that this leaves (m).
+    /// Room that the car needs to the right and to the left of its line, and the offsets that this leaves
+    /// (m).
     margins: Vec<[f64; 2]>,
     room: Vec<[f64; 2]>,
     /// Speed on the racing line at each station (m/s).

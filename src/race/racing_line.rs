@@ -100,8 +100,8 @@ impl LineSolver {
         Ok(self.solve_within(corridor, &corridor.free(parameters.margin)?, parameters))
     }
 
-    /// The room that a car with an outline needs to the right and to the left of its line: in a bend, its nose
-    /// needs more outside, its tail inside.
+    /// The room that a car with an outline needs to the right and to the left of its line: in a bend, its
+    /// nose needs more outside, its tail inside.
     pub(super) fn margins_for(
         &mut self,
         corridor: &Corridor,

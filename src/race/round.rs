@@ -180,8 +180,8 @@ mod tests {
     use crate::race::{ConeColour, GeneratedTrack, TrackOptions, generate, parse_eufs, write_eufs};
     use crate::random::Stream;
 
-    /// Reads a track from a file from which rows are removed and to which others are added. Returns the length
-    /// found and the true one.
+    /// Reads a track from a file from which rows are removed and to which others are added. Returns the
+    /// length found and the true one.
     fn spoiled(seed: u64, missing: f64, added: f64) -> (Result<f64, LineError>, f64) {
         let GeneratedTrack { track, corridor } = generate(seed, &TrackOptions::drawn(seed)).unwrap();
         let mut random = Stream::new(seed).child("spoiled", 0);

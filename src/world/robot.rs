@@ -46,8 +46,8 @@ pub struct RobotSpec {
     pub dvl: Option<f64>,
     /// Measurements of its inertial unit.
     pub inertial: InertialSpec,
-    /// Whether its inertial unit has a compass, so that the yaw does not drift. Steel nearby, as in the walls of a
-    /// pool, makes a compass useless.
+    /// Whether its inertial unit has a compass, so that the yaw does not drift. Steel nearby, as in the walls
+    /// of a pool, makes a compass useless.
     pub compass: bool,
     /// File of its 3D model.
     pub model: Option<PathBuf>,

@@ -1,6 +1,6 @@
-//! Content of the page that shows a run: [`Message`]s, among them the [`Frames`] of its world. The page runs commands
-//! by itself (member `web`), or is beside a run: the module `serve`, with the feature of that name, serves it
-//! from a running program.
+//! Content of the page that shows a run: [`Message`]s, among them the [`Frames`] of its world. The page runs
+//! commands by itself (member `web`), or is beside a run: the module `serve`, with the feature of that name,
+//! serves it from a running program.
 
 mod face;
 mod frame;

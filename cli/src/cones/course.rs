@@ -22,8 +22,8 @@ pub(crate) struct Course {
     pub(crate) start: Pose,
     /// Whether it is much wider than a Formula Student track, like TUM's circuits; the racer is informed.
     pub(crate) wide: bool,
-    /// Whether there is room for two cars abreast: about twice the width of a Formula Student track; the racer
-    /// is informed.
+    /// Whether there is room for two cars abreast: about twice the width of a Formula Student track; the
+    /// racer is informed.
     pub(crate) abreast: bool,
     /// The acceleration or skidpad event, if it is not a course of laps.
     pub(crate) event: Option<EventCourse>,
@@ -48,8 +48,8 @@ pub(crate) struct Spoils {
 /// Distance from the rear axle at the start to the timing line, if a file has none ahead of the car (m).
 const RUN_UP: f64 = 6.0;
 
-/// Minimum and maximum width, and minimum radius of the centre line, of a track for two cars (m): in a bend, a
-/// car needs 1.8 m, and between them and the cones there is 0.5 m or more.
+/// Minimum and maximum width, and minimum radius of the centre line, of a track for two cars (m): in a bend,
+/// a car needs 1.8 m, and between them and the cones there is 0.5 m or more.
 const TWO_ABREAST: [f64; 2] = [6.5, 7.5];
 const LEAST_RADIUS: f64 = 7.0;
 

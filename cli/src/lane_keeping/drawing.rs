@@ -10,7 +10,8 @@ use super::drive::Drive;
 
 /// Distance between points of a line (m).
 const STEP: f64 = 0.1;
-/// Length of a crosswalk along the road, and depth of parking areas on the right and on the left, by the rules (m).
+/// Length of a crosswalk along the road, and depth of parking areas on the right and on the left, by the
+/// rules (m).
 const CROSSWALK: f64 = 0.4;
 const PARKING: [f64; 2] = [0.3, 0.5];
 

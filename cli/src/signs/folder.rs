@@ -40,8 +40,8 @@ struct Row {
     line: usize,
 }
 
-/// Reads the table of a folder, and its pictures. Classes are those of `names`, or else those that occur, in the order of
-/// their numbers or letters.
+/// Reads the table of a folder, and its pictures. Classes are those of `names`, or else those that occur, in
+/// the order of their numbers or letters.
 pub(super) fn read(folder: &Path, names: Option<&[String]>) -> Result<Folder, Failure> {
     let table = folder.join("boxes.csv");
     let fail = |line: usize, what: String| Failure::input(format!("{}:{line}: {what}", table.display()));
@@ -134,8 +134,8 @@ fn picture(folder: &Path, name: &str) -> Result<Marked, String> {
     Ok(Marked { name: name.to_owned(), pixels: pixels.into_raw(), size, signs: Vec::new() })
 }
 
-/// If boxes end beyond their pictures, all pictures have been scaled since they were marked: boxes are scaled too, by equal
-/// margins at both sides.
+/// If boxes end beyond their pictures, all pictures have been scaled since they were marked: boxes are scaled
+/// too, by equal margins at both sides.
 fn fit_boxes(pictures: &mut [Marked]) {
     /// Pixels by which a box may end beyond its picture.
     const BEYOND: f64 = 1.5;

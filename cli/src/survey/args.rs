@@ -42,7 +42,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "MM", default_value = "500", value_parser = parse_depth, allow_hyphen_values = true)]
     pub(crate) depth: f64,
 
-    /// Altitude above the floor to hold, of the sensor that points down, instead of the depth, which is then the least one.
+    /// Altitude above the floor to hold, of the sensor that points down, instead of the depth, which is then
+    /// the least one.
     #[arg(long, value_name = "MM", value_parser = parse_altitude, allow_hyphen_values = true)]
     pub(crate) altitude: Option<f64>,
 

@@ -10,8 +10,8 @@ use crate::driving::{Conditions, RESERVE};
 use crate::terrain::percent;
 use crate::water::{Site, limit};
 
-/// The most errors in 95 % (m): depth and place; shares within two standard deviations; the longest way; and the
-/// altitude's most root mean square error (m).
+/// The most errors in 95 % (m): depth and place; shares within two standard deviations; the longest way; and
+/// the altitude's most root mean square error (m).
 const DEPTH: f64 = 0.03;
 const POSITION: f64 = 0.2;
 const INSIDE: [f64; 2] = [0.93, 0.97];

@@ -114,8 +114,8 @@ fn judged(world: &World, map: &DepthMap, cell: f64) -> Quality {
     }
 }
 
-/// The root mean square error of the altitude of the sensor that points down, from when it first was as wanted;
-/// `None` if it never was.
+/// The root mean square error of the altitude of the sensor that points down, from when it first was as
+/// wanted; `None` if it never was.
 fn altitude_error<T>(scene: &Scene, wanted: f64, run: &Run<T>) -> Option<f64> {
     let sensor = scene.robots[0].spec.psds.iter().find(|psd| psd.id == DOWN.0)?.mount;
     let error = |space: &TruthInSpace| {

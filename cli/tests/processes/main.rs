@@ -1,5 +1,5 @@
-//! The program `roverlab` as a process: its warnings, robots behind the library of RoBIOS, runs that are killed, and
-//! the page.
+//! The program `roverlab` as a process: its warnings, robots behind the library of RoBIOS, runs that are
+//! killed, and the page.
 
 #[cfg(feature = "native")]
 mod grade;

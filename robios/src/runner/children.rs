@@ -142,8 +142,8 @@ fn screen(program: &Program, command: &mut Command, panels: &Panels) -> Result<U
     Ok(theirs)
 }
 
-/// Socket for keys that are pressed in the page, or typed for the first program; the others' keys are automatic
-/// then.
+/// Socket for keys that are pressed in the page, or typed for the first program; the others' keys are
+/// automatic then.
 fn keyboard(
     program: &Program,
     command: &mut Command,

@@ -24,8 +24,8 @@ use roverlab::picture::FileType;
                   trail (with --trail)."
 )]
 pub(crate) struct Options {
-    /// World or scene: .sim, .wld, .maz, or a ROS map.yaml [default: the script; the only .sim, or else the only
-    /// .maz or .wld beside the program; or a square of 4 m].
+    /// World or scene: .sim, .wld, .maz, or a ROS map.yaml [default: the script; the only .sim, or else the
+    /// only .maz or .wld beside the program; or a square of 4 m].
     #[arg(long, value_name = "FILE")]
     pub(crate) world: Option<PathBuf>,
 

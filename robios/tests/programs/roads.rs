@@ -1,5 +1,5 @@
-//! Programs for driverless cars (book, chapter 13): in a lane by camera, under a base station, and into a parking
-//! spot; in C and in Python.
+//! Programs for driverless cars (book, chapter 13): in a lane by camera, under a base station, and into a
+//! parking spot; in C and in Python.
 
 use std::fmt::Write as _;
 use std::fs;

@@ -2,9 +2,9 @@ use nalgebra::{Matrix3, RowVector3, Vector3};
 
 use crate::geometry::angle_difference;
 
-/// What a compass reads too much, by the heading at the start, which is known, and the turn rates since: a Kalman
-/// filter (Thrun et al., *Probabilistic Robotics*, 2005, section 3.2). As the sum of the turn rates becomes less sure, the
-/// answer settles.
+/// What a compass reads too much, by the heading at the start, which is known, and the turn rates since: a
+/// Kalman filter (Thrun et al., *Probabilistic Robotics*, 2005, section 3.2). As the sum of the turn rates
+/// becomes less sure, the answer settles.
 #[derive(Debug, Clone)]
 pub(super) struct Alignment {
     /// By the start and turn rates (rad).

@@ -62,13 +62,13 @@ halts!(BoatOutcome { Arrived: "the time on station is over" });
 
 /// Steers a boat with two thrusters along waypoints, and keeps station at the last one.
 ///
-/// The position comes from the log and the compass, which is aligned by the heading at the start. An observer filters
-/// the motion in waves out of the control.
+/// The position comes from the log and the compass, which is aligned by the heading at the start. An observer
+/// filters the motion in waves out of the control.
 ///
-/// On a leg it uses line-of-sight guidance with integral action (Fossen 2021, section 12.3), and it slows down
-/// before a waypoint. The boat has no keel, so only its thrust corrects sideways drift: it points beyond the
-/// desired velocity by a fraction of the velocity error. On station it returns to its position, and estimates
-/// the drift to counteract it.
+/// On a leg it uses line-of-sight guidance with integral action (Fossen 2021, section 12.3), and it slows
+/// down before a waypoint. The boat has no keel, so only its thrust corrects sideways drift: it points beyond
+/// the desired velocity by a fraction of the velocity error. On station it returns to its position, and
+/// estimates the drift to counteract it.
 ///
 /// ```
 /// use roverlab::drive::marine::{Boat, BoatOutcome, BoatParameters};

@@ -5,8 +5,9 @@ use crate::world::Colour;
 
 /// Finds a colour in images of the ground under water.
 ///
-/// The ground is grey and as deep as the objects on it. So its apparent colour, the median of the image, measures
-/// the effect of water and light on all colours. Pixels are divided by it before their hues are compared.
+/// The ground is grey and as deep as the objects on it. So its apparent colour, the median of the image,
+/// measures the effect of water and light on all colours. Pixels are divided by it before their hues are
+/// compared.
 #[derive(Debug, Clone)]
 pub(super) struct ColourSpotter {
     /// On RoBIOS's scale.
@@ -22,8 +23,9 @@ const AROUND: i32 = 252;
 const TOLERANCE: i32 = 10;
 /// A quarter of the full saturation: water with its veil takes the rest. Noise makes less of gray ground.
 const LIMITS: HueLimits = HueLimits { min_saturation: 64, min_intensity: 8 };
-/// The least level of a colour's brightest channel: three quarters of the ground's. A thing of a colour reflects that
-/// about as well as the gray ground does; what is dark has a colour by noise, or by the veil of turbid water.
+/// The least level of a colour's brightest channel: three quarters of the ground's. A thing of a colour
+/// reflects that about as well as the gray ground does; what is dark has a colour by noise, or by the veil of
+/// turbid water.
 const BRIGHT: u8 = 96;
 /// Pixels of the smallest thing.
 const LEAST: usize = 12;
@@ -35,8 +37,8 @@ impl ColourSpotter {
         Self { hue, mask: Vec::new(), components: Components::new() }
     }
 
-    /// The column and row, in pixels from the middle of the picture, of the largest thing of the colour that is
-    /// not cut off by the picture's edge.
+    /// The column and row, in pixels from the middle of the picture, of the largest thing of the colour that
+    /// is not cut off by the picture's edge.
     pub(super) fn find(&mut self, image: &RgbImage) -> Result<Option<(f64, f64)>, ImageError> {
         let ground = ground(image);
         if ground.contains(&0) {

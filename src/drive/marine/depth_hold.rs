@@ -25,8 +25,8 @@ impl Default for DepthHoldParameters {
     }
 }
 
-/// Depth controller: a reference that moves to the desired depth without overshoot; an observer of depth, speed
-/// and the unmodelled force; and state feedback with that force fed forward.
+/// Depth controller: a reference that moves to the desired depth without overshoot; an observer of depth,
+/// speed and the unmodelled force; and state feedback with that force fed forward.
 ///
 /// The observer uses the actual thrust, limits included, so nothing winds up.
 ///
@@ -91,8 +91,8 @@ impl DepthHold {
         self.follow(depth, [goal, 0.0, 0.0], seconds)
     }
 
-    /// Like [`step`](DepthHold::step), for a goal that itself moves, as with the floor below a craft that keeps its
-    /// altitude: its depth (m), speed (m/s) and acceleration (m/s²) downwards.
+    /// Like [`step`](DepthHold::step), for a goal that itself moves, as with the floor below a craft that
+    /// keeps its altitude: its depth (m), speed (m/s) and acceleration (m/s²) downwards.
     pub fn follow(&mut self, depth: f64, [goal, rate, bend]: [f64; 3], seconds: f64) -> f64 {
         self.observe(depth, seconds);
         self.wanted[0] += rate * seconds;

@@ -161,8 +161,9 @@ mod tests {
         assert!((fix.pose().x - 4.95).abs() < 1e-9 && fix.sigma().x > 0.055, "{}", fix.sigma());
     }
 
-    /// The mean of the squared errors of the place in terms of the covariance (NEES), after lanes in a pool whose
-    /// far sides are out of range, of many craft with errors of their own: 2 of a filter that knows its errors.
+    /// The mean of the squared errors of the place in terms of the covariance (NEES), after lanes in a pool
+    /// whose far sides are out of range, of many craft with errors of their own: 2 of a filter that knows its
+    /// errors.
     #[test]
     fn the_covariance_is_that_of_the_errors() {
         let sides = Aabb::new(Point::origin(), Point::new(14.0, 30.0));

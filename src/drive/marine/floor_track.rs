@@ -1,6 +1,6 @@
-/// The depth of the floor below a craft, and how fast it changes as the craft moves on: an observer of both, driven
-/// by soundings (an alpha-beta filter; Bar-Shalom et al., *Estimation with Applications to Tracking and Navigation*,
-/// 2001, section 6.5).
+/// The depth of the floor below a craft, and how fast it changes as the craft moves on: an observer of both,
+/// driven by soundings (an alpha-beta filter; Bar-Shalom et al., *Estimation with Applications to Tracking
+/// and Navigation*, 2001, section 6.5).
 #[derive(Debug, Clone, Default)]
 pub(super) struct FloorTrack {
     /// In metres, once there has been a sounding.
@@ -11,12 +11,13 @@ pub(super) struct FloorTrack {
     off: f64,
 }
 
-/// Bandwidth (rad/s): of an error of 10 mm in each of ten soundings a second 4 mm are left, and it lags behind a
-/// slope that begins for two seconds.
+/// Bandwidth (rad/s): of an error of 10 mm in each of ten soundings a second 4 mm are left, and it lags
+/// behind a slope that begins for two seconds.
 const BANDWIDTH: f64 = 1.5;
 
 impl FloorTrack {
-    /// Takes in the depth (m) of the floor, `seconds` after the sounding before; without an echo the floor is level.
+    /// Takes in the depth (m) of the floor, `seconds` after the sounding before; without an echo the floor is
+    /// level.
     pub(super) fn see(&mut self, depth: Option<f64>, seconds: f64) {
         let Some(depth) = depth else {
             (self.rate, self.off) = (0.0, 0.0);
@@ -28,8 +29,8 @@ impl FloorTrack {
         self.rate += BANDWIDTH * BANDWIDTH * seconds * self.off;
     }
 
-    /// The depth (m) so many metres above the floor, its speed (m/s) and acceleration (m/s²); `None` before the first
-    /// sounding.
+    /// The depth (m) so many metres above the floor, its speed (m/s) and acceleration (m/s²); `None` before
+    /// the first sounding.
     pub(super) fn above(&self, altitude: f64) -> Option<[f64; 3]> {
         // The estimate moves by its rate and by what each sounding corrects.
         let speed = self.rate + 2.0 * BANDWIDTH * self.off;

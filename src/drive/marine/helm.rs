@@ -103,8 +103,8 @@ impl Helm {
         self.seconds
     }
 
-    /// The angle (rad) from the heading to the way of a craft that keeps turning at a speed: it slips until the
-    /// water holds it.
+    /// The angle (rad) from the heading to the way of a craft that keeps turning at a speed: it slips until
+    /// the water holds it.
     pub(super) fn slip(&self, speed: f64, turn_rate: f64) -> f64 {
         let aside = |left: f64| {
             let linear = Vector3::new(speed, left, 0.0);
@@ -169,8 +169,8 @@ impl Helm {
         self.thrust_along([depth, 0.0, 0.0], push)
     }
 
-    /// The thrusters' commands that keep the craft at a depth that moves with a speed and an acceleration (m, m/s,
-    /// m/s²), and push it.
+    /// The thrusters' commands that keep the craft at a depth that moves with a speed and an acceleration (m,
+    /// m/s, m/s²), and push it.
     pub(super) fn thrust_along(&mut self, goal: [f64; 3], push: Push) -> Result<Thrust> {
         let (turning, inertia) = (self.turning, self.craft.inertia());
         let level = inertia[4] * turning * (turning * -self.pitch - 2.0 * self.pitch_rate);
@@ -187,8 +187,8 @@ impl Helm {
     }
 }
 
-/// How fast pitch and heading change: not as fast as a craft that rolls turns about its own axes (Fossen 2021,
-/// section 2.2).
+/// How fast pitch and heading change: not as fast as a craft that rolls turns about its own axes (Fossen
+/// 2021, section 2.2).
 fn levelled(seen: &DiveObservation) -> [f64; 2] {
     let (sin, cos) = math::sin_cos(seen.attitude.roll);
     let upright = (seen.rates.y * sin + seen.rates.z * cos) / math::cos(seen.attitude.pitch).max(STEEPEST);

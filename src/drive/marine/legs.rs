@@ -57,8 +57,8 @@ impl Legs {
         self.next > before
     }
 
-    /// The velocity over ground by which to move on along the leg, `seconds` after the step before. The course
-    /// must not be over.
+    /// The velocity over ground by which to move on along the leg, `seconds` after the step before. The
+    /// course must not be over.
     pub(super) fn guide(&mut self, place: Point, seconds: f64) -> Vector {
         let (from, to) = (self.points[self.next - 1], self.points[self.next]);
         let leg = to - from;

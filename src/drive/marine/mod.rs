@@ -1,5 +1,5 @@
-//! Craft in water (book, chapter 8): diving, following the sides of a pool, surveying its floor, and boats on a
-//! course.
+//! Craft in water (book, chapter 8): diving, following the sides of a pool, surveying its floor, and boats on
+//! a course.
 //!
 //! - [`Dive`]: goes to a depth and stays there, level and on a heading, by pressure sensor and inertial unit;
 //! - [`PoolWall`]: follows the sides of a pool at a depth, by distance sensors;

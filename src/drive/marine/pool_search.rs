@@ -108,7 +108,8 @@ const TILT: u8 = 2;
 const NEARLY: f64 = 0.02;
 
 impl PoolSearch {
-    /// Creates a search of an area, as for [`Survey::new`]. Fails for a robot without a camera that can point down.
+    /// Creates a search of an area, as for [`Survey::new`]. Fails for a robot without a camera that can point
+    /// down.
     pub fn new(
         robot: &RobotSpec,
         start: Pose,

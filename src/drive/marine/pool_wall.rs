@@ -78,13 +78,15 @@ pub enum PoolWallOutcome {
 
 halts!(PoolWallOutcome { Round: "all laps are done" });
 
-/// Follows the sides of a pool at a depth, by the distance sensors ahead and at both sides (book, section 8.5).
+/// Follows the sides of a pool at a depth, by the distance sensors ahead and at both sides (book, section
+/// 8.5).
 ///
-/// It remembers the points that the sensors have hit, placed by dead reckoning, and extrapolates the wall beside
-/// it by a parabola as long as there is no gap. It steers by pure pursuit: of the points at the lookahead
-/// distance, to the one nearest to the wall that keeps the desired distance from all known walls. This one rule
-/// rounds outer corners, turns before walls ahead, and approaches a wall from afar. The sensor at the other side
-/// shows a wall that the craft approaches at a small angle with the wrong side: the beam ahead meets it farther on.
+/// It remembers the points that the sensors have hit, placed by dead reckoning, and extrapolates the wall
+/// beside it by a parabola as long as there is no gap. It steers by pure pursuit: of the points at the
+/// lookahead distance, to the one nearest to the wall that keeps the desired distance from all known walls.
+/// This one rule rounds outer corners, turns before walls ahead, and approaches a wall from afar. The sensor
+/// at the other side shows a wall that the craft approaches at a small angle with the wrong side: the beam
+/// ahead meets it farther on.
 ///
 /// ```
 /// use roverlab::drive::marine::{PoolWall, PoolWallOutcome, PoolWallParameters};

@@ -23,7 +23,8 @@ pub struct SurveyParameters {
     pub margin: f64,
     /// Depth of the pressure sensor (m); with an altitude, the least one.
     pub depth: f64,
-    /// Altitude above the floor to hold, of the distance sensor that points down (m); `None` to hold the depth.
+    /// Altitude above the floor to hold, of the distance sensor that points down (m); `None` to hold the
+    /// depth.
     pub altitude: Option<f64>,
     /// Speed on a lane (m/s).
     pub speed: f64,
@@ -78,12 +79,12 @@ pub enum SurveyOutcome {
 
 halts!(SurveyOutcome { Covered: "all lanes are done" });
 
-/// Drives lanes over the floor of a pool or of open water, at a depth or at an altitude above the floor, with a
-/// sounding at each step (book, section 8.5).
+/// Drives lanes over the floor of a pool or of open water, at a depth or at an altitude above the floor, with
+/// a sounding at each step (book, section 8.5).
 ///
-/// The position, with its covariance, comes from Doppler log and compass, corrected by the distances to the four
-/// sides of a pool. Before diving, the depth sensor is zeroed by the craft's waterline. When the position becomes
-/// uncertain, the next lane is one along which a side can be measured.
+/// The position, with its covariance, comes from Doppler log and compass, corrected by the distances to the
+/// four sides of a pool. Before diving, the depth sensor is zeroed by the craft's waterline. When the
+/// position becomes uncertain, the next lane is one along which a side can be measured.
 /// [`DepthMap`](super::DepthMap) makes a map of the soundings.
 ///
 /// ```
@@ -152,8 +153,8 @@ struct Lane {
 }
 
 impl Survey {
-    /// Creates a survey of an area by a craft with distance sensors to all sides and down, which starts at a pose.
-    /// With `sides` the area ends at walls, by which the craft localises.
+    /// Creates a survey of an area by a craft with distance sensors to all sides and down, which starts at a
+    /// pose. With `sides` the area ends at walls, by which the craft localises.
     ///
     /// Fails without these sensors, without room for a lane, and for parameters out of range.
     pub fn new(
@@ -216,16 +217,16 @@ impl Survey {
         self.ready
     }
 
-    /// The depth to steer for, its speed and acceleration (m, m/s, m/s²): that of the parameters, or the floor's less
-    /// the altitude where this is deeper.
+    /// The depth to steer for, its speed and acceleration (m, m/s, m/s²): that of the parameters, or the
+    /// floor's less the altitude where this is deeper.
     fn goal(&self) -> [f64; 3] {
         let SurveyParameters { depth, altitude, .. } = self.parameters;
         let above = altitude.and_then(|altitude| self.floor.above(altitude));
         above.filter(|[above, ..]| *above > depth).unwrap_or([depth, 0.0, 0.0])
     }
 
-    /// Goes on to the next lane. A craft that has become unsure of its place takes the next one along which it can
-    /// see a side.
+    /// Goes on to the next lane. A craft that has become unsure of its place takes the next one along which
+    /// it can see a side.
     fn go_on(&mut self, place: Point) {
         let unsure = self.fix.sees_sides() && self.fix.sigma().max() > UNSURE;
         let in_sight = |lane: &Lane| !unsure || lane.off < self.sight;

@@ -40,8 +40,8 @@ const ONWARD: f64 = 1.3;
 const SPACING: f64 = 0.1;
 
 impl WallMemory {
-    /// Takes notice of what the sensors have hit from a place: the one at the side, and those ahead and at the other
-    /// side.
+    /// Takes notice of what the sensors have hit from a place: the one at the side, and those ahead and at
+    /// the other side.
     pub(super) fn add(&mut self, place: Point, side: Option<Point>, [ahead, far]: [Option<Point>; 2]) {
         let near = |point: &Point| (point - place).norm() < NEAR;
         let continues =

@@ -29,7 +29,8 @@ pub struct MotionApproachParameters {
     pub reach: f64,
     /// Half the width of the floor that must be free ahead (m).
     pub half_width: f64,
-    /// Time after which a target that has not moved is watched at a stand, and after which it is given up (s).
+    /// Time after which a target that has not moved is watched at a stand, and after which it is given up
+    /// (s).
     pub patience: [f64; 2],
 }
 

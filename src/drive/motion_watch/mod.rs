@@ -1,4 +1,5 @@
-//! Turning towards motion (book, section 11.5), and detecting it while turning and while driving (section 11.6).
+//! Turning towards motion (book, section 11.5), and detecting it while turning and while driving (section
+//! 11.6).
 
 mod approach;
 #[cfg(test)]

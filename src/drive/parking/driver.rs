@@ -130,8 +130,9 @@ const SPOT: f64 = 0.355;
 const OPEN: f64 = 1.2;
 /// Distance that the car goes on behind a gap before it stops (m).
 const BEYOND: f64 = 0.30;
-/// Distance of the wheels from the lines of a parallel spot, and of a perpendicular one (m): odometry is off by some
-/// centimetres at the end of a manoeuvre, and wheels leave 240 mm free in a perpendicular spot's length.
+/// Distance of the wheels from the lines of a parallel spot, and of a perpendicular one (m): odometry is off
+/// by some centimetres at the end of a manoeuvre, and wheels leave 240 mm free in a perpendicular spot's
+/// length.
 const INSIDE: [f64; 2] = [0.02, 0.06];
 /// Direction in which the car has to stand, within (rad).
 const ASKEW: f64 = 0.09;

@@ -1,8 +1,8 @@
 /// Step in which places are tried (m).
 const STEP: f64 = 0.005;
 
-/// Middle of the free spot in a gap between boxes. Spots of a width are beside each other (m), and every box stands
-/// inside one of them; of the places at which boxes cross their lines least, it is the middle one.
+/// Middle of the free spot in a gap between boxes. Spots of a width are beside each other (m), and every box
+/// stands inside one of them; of the places at which boxes cross their lines least, it is the middle one.
 pub(super) fn spot_middle(boxes: &[(f64, f64)], (from, to): (f64, f64), width: f64) -> f64 {
     let count = ((to - width - from) / STEP).max(0.0) as usize;
     let crossed = |begin: f64| boxes.iter().map(|it| crosses(*it, begin, width)).sum::<f64>();

@@ -141,8 +141,8 @@ impl Ascent {
         self.height
     }
 
-    /// The behaviour by distance sensors that look down, on robots that need no lidar. Its first step fails if
-    /// the sensor is a [lidar](SlopeSensor::lidar).
+    /// The behaviour by distance sensors that look down, on robots that need no lidar. Its first step fails
+    /// if the sensor is a [lidar](SlopeSensor::lidar).
     ///
     /// ```
     /// use roverlab::drive::terrain::{Ascent, AscentOutcome, AscentParameters, SlopeSensor};

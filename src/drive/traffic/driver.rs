@@ -41,13 +41,13 @@ pub enum TrafficState {
 /// | `Wait` | the car stands at the line | stands | the time of `halts` is over, and nobody is on the crosswalk or crossing: as before |
 ///
 /// `Stop` and `Wait` add to the other states, whose path the car keeps. In each state, the speed is at most
-/// what bends and sight allow ([`LaneKeeper`]), what stops the car before a box in its way, and what the numbers
-/// of speed zones allow.
+/// what bends and sight allow ([`LaneKeeper`]), what stops the car before a box in its way, and what the
+/// numbers of speed zones allow.
 ///
 /// # Limits
 ///
-/// The start box, signs, turns at crossings and oncoming traffic are not handled. Give-way lines of which less
-/// than a third is left are not seen. `roverlab traffic --campaign` counts what goes wrong.
+/// The start box, signs, turns at crossings and oncoming traffic are not handled. Give-way lines of which
+/// less than a third is left are not seen. `roverlab traffic --campaign` counts what goes wrong.
 ///
 /// ```
 /// use roverlab::drive::traffic::{TrafficDriver, TrafficParameters, TrafficState};
@@ -224,8 +224,8 @@ impl TrafficDriver {
         most.min(self.free_speed(&obstacles))
     }
 
-    /// Maximum speed in a speed zone and before one. A zone begins when the car's front reaches its number, and
-    /// ends when the rear has passed the one that is struck out.
+    /// Maximum speed in a speed zone and before one. A zone begins when the car's front reaches its number,
+    /// and ends when the rear has passed the one that is struck out.
     fn zone_speed(&mut self, elements: &[RoadElement]) -> f64 {
         let mut most = f64::INFINITY;
         for RoadElement { kind, ahead, .. } in elements {
@@ -319,8 +319,8 @@ impl TrafficDriver {
         elements.iter().filter(has_to_stop).map(|element| self.driven + element.ahead).find(is_open)
     }
 
-    /// Keeps the obstacle that the car passes until it is behind, although it leaves the view before or is not
-    /// recognised beside the car.
+    /// Keeps the obstacle that the car passes until it is behind, although it leaves the view before or is
+    /// not recognised beside the car.
     fn remember(&mut self, time: f64, obstacles: &mut Vec<Obstacle>) {
         if self.lateral != Lateral::Pass {
             // The next one to be passed.

@@ -23,9 +23,9 @@ use crate::world::{DriveSpec, Footprint, RobotSpec};
 /// | crosswalk | did not stand | |
 /// | crosswalk with a pedestrian | stood for 3 s, and until the road was free | touched |
 ///
-/// All other encounters are neutral. Leaving the lane away from obstacles costs 2 points, at most ten times, and
-/// driving too fast in a speed zone 5. The run ends when the laps are driven, or when the car strays or stands
-/// for 15 s, which counts as an intervention by remote control.
+/// All other encounters are neutral. Leaving the lane away from obstacles costs 2 points, at most ten times,
+/// and driving too fast in a speed zone 5. The run ends when the laps are driven, or when the car strays or
+/// stands for 15 s, which counts as an intervention by remote control.
 ///
 /// ```
 /// use roverlab::drive::traffic::{ObstacleEvasion, TrafficActors, TrafficScene};

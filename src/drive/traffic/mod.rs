@@ -5,7 +5,8 @@
 //! odometry, and [`ObstacleEvasion`] judges it by the rules. Referee and actors see the truth; the driver
 //! does not.
 //!
-//! Several cars share a road by radio: each is a [`RadioCar`], and a [`RoadStation`] draws them and stops them.
+//! Several cars share a road by radio: each is a [`RadioCar`], and a [`RoadStation`] draws them and stops
+//! them.
 
 mod actors;
 mod driver;

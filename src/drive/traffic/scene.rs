@@ -141,8 +141,8 @@ impl TrafficScene {
         self.course.marks.iter().filter_map(area).collect()
     }
 
-    /// Speed zones: beginning and end along the line (m), the end beyond the line's if the zone goes on in the next
-    /// lap; and the maximum speed (m/s).
+    /// Speed zones: beginning and end along the line (m), the end beyond the line's if the zone goes on in
+    /// the next lap; and the maximum speed (m/s).
     pub fn speed_zones(&self) -> Vec<(f64, f64, f64)> {
         speed_zones(&self.course)
     }

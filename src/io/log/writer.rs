@@ -237,9 +237,9 @@ impl<W: Write> Shared<W> {
         self.most_ahead.is_some_and(|most| self.tracks.get(&track).is_some_and(|track| track.waiting > most))
     }
 
-    /// Where too much waits for robots that record nothing, nothing waits for them any more: a recorder that is
-    /// taken and never driven must not fill the memory. Their messages, if there are any, then come late in
-    /// the file.
+    /// Where too much waits for robots that record nothing, nothing waits for them any more: a recorder that
+    /// is taken and never driven must not fill the memory. Their messages, if there are any, then come late
+    /// in the file.
     fn let_go(&mut self) {
         if self.tracks.values().map(|track| track.waiting).sum::<usize>() > MOST_WAITING {
             let silent = self.tracks.values_mut().filter(|track| track.queue.is_empty());

@@ -9,8 +9,8 @@ use crate::world::InertialSpec;
 #[derive(Debug)]
 pub(super) struct InertialUnit {
     spec: InertialSpec,
-    /// Axes in which the attitude's error is a random walk: gravity bounds that of roll and pitch, and a compass that
-    /// of the yaw.
+    /// Axes in which the attitude's error is a random walk: gravity bounds that of roll and pitch, and a
+    /// compass that of the yaw.
     wanders: Vector3,
     pose: Pose3,
     velocity: Vector3,

@@ -20,7 +20,8 @@ pub struct NoiseModel {
     pub wheel_mismatch: f64,
     /// Relative error of the track.
     pub track: f64,
-    /// Slip of each wheel: standard deviation after one metre (m); it grows with the square root of the distance.
+    /// Slip of each wheel: standard deviation after one metre (m); it grows with the square root of the
+    /// distance.
     pub slip: f64,
     /// Error of each range reading of PSDs and lidar (m).
     pub range: f64,

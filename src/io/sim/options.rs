@@ -23,9 +23,9 @@ pub struct SimOptions {
     pub call_duration: f64,
     /// Time after which every call fails with [`TimedOut`](crate::io::ErrorKind::TimedOut) (s).
     pub time_limit: Option<f64>,
-    /// Real time for which a call waits while another robot's program lets no simulated time pass; then it fails
-    /// and names that robot, instead of blocking for ever (s). For a robot that the waiting thread itself used
-    /// last it is at most 10 s.
+    /// Real time for which a call waits while another robot's program lets no simulated time pass; then it
+    /// fails and names that robot, instead of blocking for ever (s). For a robot that the waiting thread
+    /// itself used last it is at most 10 s.
     pub patience: f64,
     /// Interval between the points of each robot's trail (s); `None` for no trail.
     pub trail_interval: Option<f64>,

@@ -15,9 +15,9 @@ const CREEP: f64 = 0.1;
 impl CraftSpec {
     /// A craft without thrusters whose inertia, added mass and damping follow from its hull.
     ///
-    /// The mass is distributed evenly over the parts. Each part has the added mass of an ellipsoid of its size
-    /// (Lamb) and the drag of a body of its length and width, in proportion to its submerged fraction when the
-    /// craft floats at rest. Parts do not shield each other from the flow.
+    /// The mass is distributed evenly over the parts. Each part has the added mass of an ellipsoid of its
+    /// size (Lamb) and the drag of a body of its length and width, in proportion to its submerged fraction
+    /// when the craft floats at rest. Parts do not shield each other from the flow.
     pub fn of_hull(mass: f64, centre_of_mass: Point3, hull: Vec<HullPart>) -> Self {
         let whole: f64 = hull.iter().map(HullPart::volume).sum();
         let centre: Vector3 = hull.iter().map(|part| part.centre().coords * (part.volume() / whole)).sum();
@@ -61,7 +61,8 @@ impl CraftSpec {
         floats_at(&self.hull, self.mass, density)
     }
 
-    /// Area exposed to wind when the craft floats at rest in fresh water, seen from ahead and from the side (m²).
+    /// Area exposed to wind when the craft floats at rest in fresh water, seen from ahead and from the side
+    /// (m²).
     pub fn windage(&self) -> [f64; 2] {
         let level = self.waterline(FRESH);
         [0, 1].map(|axis| {

@@ -35,8 +35,8 @@ pub struct CraftSpec {
     pub hull: Vec<HullPart>,
     /// Added mass (kg), and added moments of inertia for the last three (kg m²).
     pub added_mass: [f64; 6],
-    /// Whether added mass turns the craft across the flow, as with a bare, slender hull (Munk moment). Frames and
-    /// fins outweigh it; without them a craft does not keep its course.
+    /// Whether added mass turns the craft across the flow, as with a bare, slender hull (Munk moment). Frames
+    /// and fins outweigh it; without them a craft does not keep its course.
     pub munk: bool,
     /// Linear damping (N s/m), and N m s for the last three.
     pub linear_damping: [f64; 6],
@@ -64,8 +64,8 @@ pub struct Thruster {
 }
 
 impl Thruster {
-    /// Backward thrust of a propeller designed for forward thrust, as a fraction of the forward thrust: between
-    /// measurements on boat motors (0.58 for the Otter) and symmetric blades (1).
+    /// Backward thrust of a propeller designed for forward thrust, as a fraction of the forward thrust:
+    /// between measurements on boat motors (0.58 for the Otter) and symmetric blades (1).
     pub const BACK: f64 = 0.7;
     /// Radius of a propeller; at less depth it draws air (m).
     pub const RADIUS: f64 = 0.05;

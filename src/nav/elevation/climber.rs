@@ -45,8 +45,8 @@ fn wheel_diameter(spec: &RobotSpec) -> f64 {
 }
 
 impl Climber {
-    /// The limits of a robot, from its friction, its wheels or belts and the height of its centre of mass: seven
-    /// tenths of the slope on which it would slip or tip over.
+    /// The limits of a robot, from its friction, its wheels or belts and the height of its centre of mass:
+    /// seven tenths of the slope on which it would slip or tip over.
     pub fn of(spec: &RobotSpec) -> Self {
         let step = 0.5 * CLIMBED * wheel_diameter(spec);
         Self { slope: TRUSTED * Self::steepest(spec), step, radius: spec.footprint.bounding_radius() }

@@ -4,11 +4,11 @@ use crate::geometry::{Point, Point3, Vector, math};
 use crate::nav::grid::GridComponents;
 use crate::world::{BitGrid, GridCell, HeightField};
 
-/// A map of where a robot can stand on a surface. The samples of the surface are the cells of a grid; a cell is
-/// free if the robot can stand there.
+/// A map of where a robot can stand on a surface. The samples of the surface are the cells of a grid; a cell
+/// is free if the robot can stand there.
 ///
-/// A cell is occupied if the plane through the ground under the robot is too steep, if a step under the robot is
-/// too high, or if the robot would reach beyond the surface.
+/// A cell is occupied if the plane through the ground under the robot is too steep, if a step under the robot
+/// is too high, or if the robot would reach beyond the surface.
 ///
 /// ```
 /// use roverlab::geometry::{Aabb, Point};

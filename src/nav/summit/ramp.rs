@@ -16,17 +16,18 @@ use crate::world::{BitGrid, Footprint, GridCell, RobotSpec};
 /// Crosses a level above the floor: up a ramp, across, and down another ramp (book, section 7.4).
 ///
 /// The robot stands in front of a ramp, and knows neither its slope nor where the other one is. It looks
-/// around with its lidar as [`SummitSearch`](super::SummitSearch) does. Each look makes a new map, as wheels slip
-/// on ramps and levels show nothing by which a look could be placed; only directions, the ramp that it came by,
-/// and places of looks are remembered. Of a ramp, the map shows its direction (the median rise) and its middle
-/// line. The robot drives to that line on level ground, turns, and follows the line by its inertial unit until it
-/// is level again: it does not turn on ramps, where belts slip. On the level it looks for another ramp; its
-/// paths keep to the middle: a cell costs the more, the nearer it is to ground on which the robot cannot stand.
+/// around with its lidar as [`SummitSearch`](super::SummitSearch) does. Each look makes a new map, as wheels
+/// slip on ramps and levels show nothing by which a look could be placed; only directions, the ramp that it
+/// came by, and places of looks are remembered. Of a ramp, the map shows its direction (the median rise) and
+/// its middle line. The robot drives to that line on level ground, turns, and follows the line by its
+/// inertial unit until it is level again: it does not turn on ramps, where belts slip. On the level it looks
+/// for another ramp; its paths keep to the middle: a cell costs the more, the nearer it is to ground on which
+/// the robot cannot stand.
 ///
 /// # Assumptions
 ///
-/// Ramps have at most 22 degrees, and at most 95 % of the slope on which the robot slips or tips. Both they and
-/// the level are wider than the robot by at least 0.2 m.
+/// Ramps have at most 22 degrees, and at most 95 % of the slope on which the robot slips or tips. Both they
+/// and the level are wider than the robot by at least 0.2 m.
 ///
 /// ```
 /// use roverlab::io::control::run;

@@ -29,8 +29,8 @@ const BETWEEN: f64 = 0.05;
 const FAR: f64 = 1.0;
 /// Metres beyond the last return that a beam shows to be no ground.
 const REACH: f64 = 9.5;
-/// The weight from which a cell is known well enough to compare with: what is between counts, as a single look
-/// shows little else of ground farther away, which tells most about where the robot is.
+/// The weight from which a cell is known well enough to compare with: what is between counts, as a single
+/// look shows little else of ground farther away, which tells most about where the robot is.
 const KNOWN: f64 = 0.04;
 
 /// The map as the robot plans on it.

@@ -35,8 +35,8 @@ impl Racer {
         self.passing.as_ref().is_none_or(Passing::is_idle)
     }
 
-    /// Takes a new line of the whole track, at once if it passes the car. After a lap behind another car, which
-    /// hides cones, the map and with it the line may have changed much.
+    /// Takes a new line of the whole track, at once if it passes the car. After a lap behind another car,
+    /// which hides cones, the map and with it the line may have changed much.
     pub(super) fn take_line(&mut self, tracker: LineTracker, speed: Twist) {
         let place = self.map.pose().to_world(Point::new(self.parameters.tracker.ahead, 0.0));
         let passing = self.passing.as_mut().filter(|_| self.has_met).zip(self.tracker.as_ref());

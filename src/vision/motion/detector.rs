@@ -201,8 +201,8 @@ impl MotionDetector {
         1.0 / self.gain()
     }
 
-    /// Judges two images by the difference of each pixel that nothing explains; the noise is the minimum. Also
-    /// returns the place of the largest change (column, row).
+    /// Judges two images by the difference of each pixel that nothing explains; the noise is the minimum.
+    /// Also returns the place of the largest change (column, row).
     pub(super) fn judge(
         &mut self,
         first: GrayView<'_>,

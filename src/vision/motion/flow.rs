@@ -91,8 +91,8 @@ struct Floor {
 const FLOOR: (f64, f64) = (3.0, 12.0);
 /// Errors of the depth of a foot and of the floor (fractions).
 const DEPTHS: (f64, f64) = (0.15, 0.03);
-/// Depth of a foot below which its column is not judged (m): a few centimetres move it by more pixels than the
-/// depth is certain by.
+/// Depth of a foot below which its column is not judged (m): a few centimetres move it by more pixels than
+/// the depth is certain by.
 const NEAREST: f64 = 0.25;
 /// Distance taken for infinity (m).
 const FAR: f64 = 50.0;
@@ -186,8 +186,8 @@ impl FlowDetector {
         self.parameters.camera.focal(self.size.0 as u32)
     }
 
-    /// Finds the floor in each column, from the bottom up: it ends where two pixels one above the other differ
-    /// from it.
+    /// Finds the floor in each column, from the bottom up: it ends where two pixels one above the other
+    /// differ from it.
     fn find_floor(&mut self, image: GrayView<'_>, floor: &mut Floor) {
         let (width, height) = image.size();
         self.levels.clear();

@@ -33,8 +33,8 @@ pub enum RoadElementKind {
         /// Its length as far as it is in view (m).
         length: f64,
     },
-    /// The number of a speed limit on the own lane (km/h at the scale of the rules: 36 are 1 m/s); its place is
-    /// its near edge.
+    /// The number of a speed limit on the own lane (km/h at the scale of the rules: 36 are 1 m/s); its place
+    /// is its near edge.
     SpeedLimit(u8),
     /// The number of a speed limit that ends, struck out; its place is its near edge.
     SpeedLimitEnd,

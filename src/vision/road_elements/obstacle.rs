@@ -10,13 +10,13 @@ use crate::vision::lane_markings::RoadAhead;
 const WHITE: f64 = 0.30;
 /// Least step of brightness at its foot.
 const STEP: f64 = 0.30;
-/// Largest brightness beside it, relative to its own, and the distance within which it is that dark (cells): a
-/// patch of light fades by a third at most in its middle, and on its fringe in half of that distance.
+/// Largest brightness beside it, relative to its own, and the distance within which it is that dark (cells):
+/// a patch of light fades by a third at most in its middle, and on its fringe in half of that distance.
 const DIMMER: f64 = 0.6;
 const BESIDE: isize = 6;
 const SHARP: isize = 3;
-/// Least brightness of a column of a box's front, relative to the brightest one: between the strokes of numbers
-/// on the road, blurred by distance, it is half as bright or less.
+/// Least brightness of a column of a box's front, relative to the brightest one: between the strokes of
+/// numbers on the road, blurred by distance, it is half as bright or less.
 const EVEN: f64 = 0.6;
 /// Length of ground that the front of the lowest box covers (cells), as it stands in the way of the ground
 /// behind it.
@@ -107,8 +107,8 @@ fn dims_beyond(view: &RoadView, row: usize, column: usize) -> bool {
     dims(view, row, last, 1, SHARP)
 }
 
-/// Columns of the nearest front in a run of columns that is wide enough for a box. Narrower ones are paint, a dash
-/// of the centre line for instance, above which the box behind it appears.
+/// Columns of the nearest front in a run of columns that is wide enough for a box. Narrower ones are paint, a
+/// dash of the centre line for instance, above which the box behind it appears.
 fn front(feet: &[Option<usize>], columns: Range<usize>) -> Option<Range<usize>> {
     let mut rest = vec![columns];
     loop {
@@ -125,8 +125,8 @@ fn front(feet: &[Option<usize>], columns: Range<usize>) -> Option<Range<usize>> 
     }
 }
 
-/// Columns whose feet are about as near as the nearest one. The others belong to a box's sides, and to what it
-/// hides.
+/// Columns whose feet are about as near as the nearest one. The others belong to a box's sides, and to what
+/// it hides.
 fn nearest_front(feet: &[Option<usize>], columns: Range<usize>) -> Option<Range<usize>> {
     let (nearest, near) =
         columns.clone().filter_map(|column| Some((column, feet[column]?))).min_by_key(|&(_, foot)| foot)?;
@@ -136,7 +136,8 @@ fn nearest_front(feet: &[Option<usize>], columns: Range<usize>) -> Option<Range<
     Some(start..end)
 }
 
-/// Whether a front is about as bright everywhere, as one surface is; its outermost columns may be half covered.
+/// Whether a front is about as bright everywhere, as one surface is; its outermost columns may be half
+/// covered.
 fn is_even(view: &RoadView, feet: &[Option<usize>], front: Range<usize>) -> bool {
     let inner = front.start + 1..front.end - 1;
     let bright = inner.filter_map(|column| {

@@ -35,7 +35,8 @@ impl Area {
         if either > 0.0 { common / either } else { 0.0 }
     }
 
-    /// Whether much of the smaller one of two rectangles lies in the other: more than of a sign beside another.
+    /// Whether much of the smaller one of two rectangles lies in the other: more than of a sign beside
+    /// another.
     pub(super) fn shares(&self, other: &Self) -> bool {
         self.common(other) > 0.3 * self.size().min(other.size())
     }
@@ -80,8 +81,8 @@ const MOST: f64 = 1e6;
 /// Most samples of the image, a side, that a pixel of a patch is the mean of.
 const MOST_SAMPLES: f64 = 8.0;
 
-/// Scales a part of an image to a patch of `side` columns and rows: means of bilinear samples about a pixel apart.
-/// Beyond the image, its outermost pixels go on.
+/// Scales a part of an image to a patch of `side` columns and rows: means of bilinear samples about a pixel
+/// apart. Beyond the image, its outermost pixels go on.
 pub(super) fn resample_into<const C: usize>(
     image: View<'_, C>,
     area: Area,

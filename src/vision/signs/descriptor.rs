@@ -14,7 +14,8 @@ const AROUND: f64 = 1.05;
 /// Weight of a square's colours beside histograms of gradients.
 const COLOUR: f32 = 3.0;
 
-/// Describes what a sign looks like: histograms of oriented gradients of a patch, and the colours of its squares.
+/// Describes what a sign looks like: histograms of oriented gradients of a patch, and the colours of its
+/// squares.
 ///
 /// ```
 /// use roverlab::vision::{RgbView, signs::{Area, SignDescriptor}};

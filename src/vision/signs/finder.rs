@@ -18,9 +18,9 @@ pub struct FoundSign {
 
 /// Finds signs in images, and tells their classes, by what a [`SignTrainer`](super::SignTrainer) has learned.
 ///
-/// At each place of a pyramid of images linear classifiers of histograms of gradients say whether there may be a sign; the
-/// likely places are described in more detail, colours included, and another classifier says of which class they are, or
-/// that they are none.
+/// At each place of a pyramid of images linear classifiers of histograms of gradients say whether there may
+/// be a sign; the likely places are described in more detail, colours included, and another classifier says
+/// of which class they are, or that they are none.
 ///
 /// ```
 /// use roverlab::vision::{RgbView, signs::{Area, SignFinder, SignTrainer}};
@@ -61,8 +61,8 @@ impl SignFinder {
         &self.model
     }
 
-    /// The signs in an image, the best first. None of them is a part of another. An image that is smaller than 24 pixels a
-    /// side has none.
+    /// The signs in an image, the best first. None of them is a part of another. An image that is smaller
+    /// than 24 pixels a side has none.
     ///
     /// # Errors
     ///
@@ -88,7 +88,8 @@ impl SignFinder {
         self.detector.candidates(gray, windows)
     }
 
-    /// The class that fits what an area shows best, and by how much better than none; without a class of none, its score.
+    /// The class that fits what an area shows best, and by how much better than none; without a class of
+    /// none, its score.
     ///
     /// # Errors
     ///

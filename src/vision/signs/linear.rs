@@ -22,9 +22,10 @@ impl Default for LinearTraining {
 
 /// Linear classifier: a score for each class, which is a weighted sum of features.
 ///
-/// It learns a support vector machine for each class against all others, with squared hinge loss, by dual coordinate
-/// descent (C.-J. Hsieh et al., "A dual coordinate descent method for large-scale linear SVM", ICML 2008). Sums have a
-/// fixed order, so equal samples, parameters and seeds give the same bits on every platform.
+/// It learns a support vector machine for each class against all others, with squared hinge loss, by dual
+/// coordinate descent (C.-J. Hsieh et al., "A dual coordinate descent method for large-scale linear SVM",
+/// ICML 2008). Sums have a fixed order, so equal samples, parameters and seeds give the same bits on every
+/// platform.
 ///
 /// ```
 /// use roverlab::vision::signs::{LinearClassifier, LinearTraining};
@@ -44,13 +45,13 @@ pub struct LinearClassifier {
 }
 
 impl LinearClassifier {
-    /// Learns from samples: their features one after the other, and their classes. Takes passes x samples x classes x
-    /// features steps.
+    /// Learns from samples: their features one after the other, and their classes. Takes passes x samples x
+    /// classes x features steps.
     ///
     /// # Errors
     ///
-    /// If there are no samples, features or classes, the lengths do not agree, a feature is not finite, or a parameter
-    /// is out of range. A label that is not below `classes` is a sample of none of them.
+    /// If there are no samples, features or classes, the lengths do not agree, a feature is not finite, or a
+    /// parameter is out of range. A label that is not below `classes` is a sample of none of them.
     pub fn train(
         features: &[f32],
         labels: &[usize],

@@ -1,7 +1,7 @@
 //! Traffic signs in images (book, section 13.5): where they are, and of which class.
 //!
-//! [`SignTrainer`] learns from pictures in which signs are marked, [`SignFinder`] finds signs in others. Both describe
-//! what they see by histograms of oriented gradients, as the book does; the classifiers are linear.
+//! [`SignTrainer`] learns from pictures in which signs are marked, [`SignFinder`] finds signs in others. Both
+//! describe what they see by histograms of oriented gradients, as the book does; the classifiers are linear.
 
 mod area;
 mod descriptor;

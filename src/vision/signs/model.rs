@@ -4,8 +4,8 @@ use super::linear::LinearClassifier;
 use crate::ParameterError;
 use crate::parameter::require;
 
-/// What a [`SignTrainer`](super::SignTrainer) has learned: the names of the classes, and the weights by which a
-/// [`SignFinder`](super::SignFinder) works.
+/// What a [`SignTrainer`](super::SignTrainer) has learned: the names of the classes, and the weights by which
+/// a [`SignFinder`](super::SignFinder) works.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SignModel {
     names: Vec<String>,
@@ -74,8 +74,8 @@ mod file {
     const NAMES: &str = "classes";
 
     impl SignModel {
-        /// The model as a file `.safetensors`: 32-bit tensors `signs`, `windows.any` and `windows.each`, a row for each
-        /// class, whose last number is the constant.
+        /// The model as a file `.safetensors`: 32-bit tensors `signs`, `windows.any` and `windows.each`, a
+        /// row for each class, whose last number is the constant.
         ///
         /// # Errors
         ///

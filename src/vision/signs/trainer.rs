@@ -9,8 +9,8 @@ use crate::parameter::require;
 use crate::random::Stream;
 use crate::vision::{GrayView, ImageError, RgbView};
 
-/// Learns to find signs, from pictures in which the areas of signs are known. All signs should be marked: what is not is
-/// learned as none.
+/// Learns to find signs, from pictures in which the areas of signs are known. All signs should be marked:
+/// what is not is learned as none.
 ///
 /// ```
 /// use roverlab::vision::{RgbView, signs::{Area, SignFinder, SignTrainer}};
@@ -140,7 +140,8 @@ impl SignTrainer {
         Ok(SignModel::new(self.names.clone(), signs, None)?)
     }
 
-    /// Learns to find signs. Windows that are taken for signs although they are none are learned as well, in rounds.
+    /// Learns to find signs. Windows that are taken for signs although they are none are learned as well, in
+    /// rounds.
     ///
     /// # Errors
     ///

@@ -178,8 +178,8 @@ fn hills(name: &str, (width, length): (f64, f64), pitch: f64, height: impl FnMut
     World { terrain: surface.map(|surface| Terrain::new(name, surface)), ..World::empty(width, length) }
 }
 
-/// The swimming pool of chapter 8, 25 m by 50 m, inside a rim. It is 1.5 m deep at its near end, and 1.9 m from
-/// the middle on.
+/// The swimming pool of chapter 8, 25 m by 50 m, inside a rim. It is 1.5 m deep at its near end, and 1.9 m
+/// from the middle on.
 fn pool() -> World {
     let (width, length, water) = (25.0, 50.0, 1.9);
     let height = |at: Point| {

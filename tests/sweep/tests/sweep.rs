@@ -30,7 +30,8 @@ const BEGIN: &str = "ROVERLAB_SWEEP_FROM";
 
 /// Functions without a call: the beginning of the path, and the reason.
 const EXCEPTIONS: &[(&str, &str)] = &[
-    // Robots of any type, and what is around them: `wrappers/tests` and `tests/parameters` give these nonsense.
+    // Robots of any type, and what is around them: `wrappers/tests` and `tests/parameters` give these
+    // nonsense.
     ("drive::AToB::by", ROBOT),
     ("drive::AlongWall::new", ROBOT),
     ("drive::Chase::after", ROBOT),

@@ -109,8 +109,8 @@ impl RoadSharing {
         (0..=(SIGHT / STEP) as usize).map(|i| STEP * i as f64)
     }
 
-    /// Maximum speed at a time (s) for a car with a speed (m/s), and what it is about to do. Its path is that of
-    /// its origin, at [`distances`](Self::distances) ahead.
+    /// Maximum speed at a time (s) for a car with a speed (m/s), and what it is about to do. Its path is that
+    /// of its origin, at [`distances`](Self::distances) ahead.
     pub fn limit(&self, time: f64, path: &[Pose], speed: f64) -> (f64, CarIntent) {
         if self.is_stopped {
             return (0.0, CarIntent::Stand);

@@ -151,9 +151,8 @@ fn every_flipped_bit_is_found_out_or_harmless() {
     flip_bits(false);
 }
 
-/// Every bit and every length, in minutes:
-/// `(ulimit -v 500000; cargo test --release --all-features --lib damage::campaigns -- --ignored --test-threads 1)`,
-/// once the tests are built.
+/// Every bit and every length, in minutes: `(ulimit -v 500000; cargo test --release --all-features --lib
+/// damage::campaigns -- --ignored --test-threads 1)`, once the tests are built.
 mod campaigns {
     #[test]
     #[ignore = "a campaign of minutes, by the command above"]

@@ -11,8 +11,8 @@ use crate::random::Stream;
 /// the speed.
 ///
 /// Odometry is dead reckoning: the way through the water that a log measures, along the heading that follows
-/// from the turn rate. Neither knows of a current; a Doppler log that sees the ground does. Both know how the craft
-/// is tilted, as logs with a tilt sensor do, and measure along the level.
+/// from the turn rate. Neither knows of a current; a Doppler log that sees the ground does. Both know how the
+/// craft is tilted, as logs with a tilt sensor do, and measure along the level.
 #[derive(Debug, Clone)]
 pub(in crate::io::sim) struct CraftDrive {
     craft: Craft,
@@ -137,8 +137,8 @@ impl CraftDrive {
         shared.commands
     }
 
-    /// Takes notice of how the craft has moved in a tick, along the level: through the water, and over ground so
-    /// many metres below.
+    /// Takes notice of how the craft has moved in a tick, along the level: through the water, and over ground
+    /// so many metres below.
     pub(super) fn sense(&mut self, through: &CraftMotion, over: &CraftMotion, altitude: f64) {
         let ahead = through.linear.x * self.scale[0];
         let left = through.linear.y * self.scale[0];

@@ -63,8 +63,8 @@ impl Waters {
         self.water.wind
     }
 
-    /// The water around a place at a time, in the mean of a hull that reaches so far ahead and behind, and so far to
-    /// both sides: waves shorter than that hardly move it.
+    /// The water around a place at a time, in the mean of a hull that reaches so far ahead and behind, and so
+    /// far to both sides: waves shorter than that hardly move it.
     pub(super) fn around(&self, at: Point, z: f64, hull: [Vector; 2], time: f64) -> marine::LocalWater {
         let flow = self.water.current_at(self.level - z);
         let mut water = marine::LocalWater {

@@ -43,8 +43,8 @@
 //!
 //! # Craft without lines of their own
 //!
-//! Missing properties of a craft follow from its mass and its colliders. The colliders are the hull, scaled so
-//! that an underwater craft has a reserve of buoyancy of 5 % and a boat floats at least half out of the
+//! Missing properties of a craft follow from its mass and its colliders. The colliders are the hull, scaled
+//! so that an underwater craft has a reserve of buoyancy of 5 % and a boat floats at least half out of the
 //! water; inertia, added mass and damping are those of
 //! [`CraftSpec::of_hull`](crate::kinematics::marine::CraftSpec::of_hull); an underwater craft has four
 //! thrusters as Mako has them (1 left, 2 front, 3 right, 4 back), a boat two at its stern (1 left, 2 right),
