@@ -18,7 +18,7 @@
 //! ```
 //!
 //! [`motion`] detects motion, [`lane_markings`] the lane ahead of a car, [`road_elements`] what is on it, and
-//! [`signs`] what stands beside it. Robots that drive by camera are in [`drive`](crate::drive).
+//! [`signs`] what stands beside it; [`network`] runs trained networks. Robots that drive by camera are in [`drive`](crate::drive).
 //!
 //! The module `images` (feature `image`) has the same kernels on images of the crate `image`; they return new
 //! images.
@@ -62,6 +62,7 @@ pub mod images;
 pub mod lane_markings;
 mod laplace;
 pub mod motion;
+pub mod network;
 #[cfg(feature = "rayon")]
 mod parallel;
 mod planes;
@@ -73,6 +74,8 @@ mod sobel;
 #[cfg(test)]
 mod tests;
 mod view;
+#[cfg(feature = "weights")]
+mod weights;
 
 pub use border::Border;
 pub use camera_geometry::CameraGeometry;
@@ -99,3 +102,5 @@ pub use projection::{maximum, projections_into};
 pub use segment_order::SegmentDefinition;
 pub use sobel::{SobelScale, sobel_l1_into, sobel_l2_into};
 pub use view::{GrayView, GrayViewMut, RgbView, RgbViewMut, View, ViewMut};
+#[cfg(feature = "weights")]
+pub use weights::WeightsError;

@@ -126,7 +126,7 @@ fn train(from: &Path, out: &Path, seed: u64) -> Result<Report, Failure> {
 }
 
 /// FNV-1a of 64 bits.
-fn hash(bytes: &[u8]) -> u64 {
+pub(crate) fn hash(bytes: &[u8]) -> u64 {
     bytes
         .iter()
         .fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))

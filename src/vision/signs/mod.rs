@@ -13,11 +13,11 @@ mod model;
 mod tests;
 mod trainer;
 
+#[cfg(feature = "weights")]
+pub use super::WeightsError;
 pub use area::Area;
 pub use descriptor::SignDescriptor;
 pub use finder::{FoundSign, SignFinder};
 pub use linear::{LinearClassifier, LinearTraining};
 pub use model::SignModel;
-#[cfg(feature = "weights")]
-pub use model::WeightsError;
 pub use trainer::SignTrainer;

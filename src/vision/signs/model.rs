@@ -56,19 +56,7 @@ mod file {
     use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 
     use super::{LinearClassifier, SignModel, WindowWeights};
-    use crate::ParameterError;
-
-    /// Weights that are no weights of signs.
-    #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-    #[non_exhaustive]
-    pub enum WeightsError {
-        /// The file is none of the format, or something is missing.
-        #[error("weights: {0}")]
-        File(String),
-        /// The weights do not belong together.
-        #[error("weights: {0}")]
-        Parameter(#[from] ParameterError),
-    }
+    use crate::vision::WeightsError;
 
     /// Key of the classes' names in the file's metadata, separated by line breaks.
     const NAMES: &str = "classes";
@@ -97,9 +85,9 @@ mod file {
             let view =
                 |(name, shape, bytes)| Ok((name, TensorView::new(Dtype::F32, Vec::from(shape), bytes)?));
             let views = tensors.iter().map(|(name, shape, bytes)| view((*name, *shape, bytes.as_slice())));
-            let views: Vec<_> = views.collect::<Result<_, _>>().map_err(told)?;
+            let views: Vec<_> = views.collect::<Result<_, _>>().map_err(WeightsError::of)?;
             let about = std::iter::once((NAMES.to_owned(), self.names.join("\n"))).collect();
-            safetensors::serialize(views, Some(about)).map_err(told)
+            safetensors::serialize(views, Some(about)).map_err(WeightsError::of)
         }
 
         /// Reads what [`to_safetensors`](Self::to_safetensors) wrote.
@@ -108,11 +96,11 @@ mod file {
         ///
         /// If the file is none of the format, or its weights are not those of a model.
         pub fn from_safetensors(bytes: &[u8]) -> Result<Self, WeightsError> {
-            let (_, about) = SafeTensors::read_metadata(bytes).map_err(told)?;
+            let (_, about) = SafeTensors::read_metadata(bytes).map_err(WeightsError::of)?;
             let names = about.metadata().as_ref().and_then(|about| about.get(NAMES));
             let names =
                 names.ok_or_else(|| WeightsError::File(format!("found no {NAMES} in the metadata")))?;
-            let file = SafeTensors::deserialize(bytes).map_err(told)?;
+            let file = SafeTensors::deserialize(bytes).map_err(WeightsError::of)?;
             let windows = file.names().iter().any(|name| name.starts_with("windows."));
             let windows = windows.then(|| {
                 Ok::<_, WeightsError>(WindowWeights::new(
@@ -125,14 +113,9 @@ mod file {
         }
     }
 
-    #[allow(clippy::needless_pass_by_value, reason = "it maps errors")]
-    fn told(error: safetensors::SafeTensorError) -> WeightsError {
-        WeightsError::File(error.to_string())
-    }
-
     /// A tensor of two dimensions.
     fn read(file: &SafeTensors<'_>, name: &str) -> Result<LinearClassifier, WeightsError> {
-        let tensor = file.tensor(name).map_err(told)?;
+        let tensor = file.tensor(name).map_err(WeightsError::of)?;
         let Some(&columns) =
             tensor.shape().get(1).filter(|&&columns| tensor.shape().len() == 2 && columns > 0)
         else {
@@ -149,5 +132,3 @@ mod file {
         Ok(LinearClassifier::from_weights(weights, columns - 1)?)
     }
 }
-#[cfg(feature = "weights")]
-pub use file::WeightsError;

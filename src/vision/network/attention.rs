@@ -1,0 +1,59 @@
+use super::architecture::{Layer, MapSize};
+use super::net::Network;
+
+impl Network {
+    /// How much each place of the input has contributed to what the layers of convolutions saw in the last run,
+    /// from 0 to 1, in the order of rows and columns (Bojarski et al. 2017, *Explaining how a deep neural
+    /// network trained with end-to-end learning steers a car*): from the last such layer back to the first,
+    /// the mean of each layer's values times what the layer after it looked at.
+    pub fn attention(&self) -> Vec<f64> {
+        let sizes = self.architecture().sizes();
+        let seeing =
+            self.architecture().layers().iter().take_while(|layer| !matches!(layer, Layer::Dense { .. }));
+        let seeing = seeing.count();
+        let mut looked = mean(self.map(seeing), sizes[seeing]);
+        for layer in (0..seeing).rev() {
+            looked = spread(&looked, sizes[layer + 1], sizes[layer], self.architecture().layers()[layer]);
+            if layer > 0 {
+                let here = mean(self.map(layer), sizes[layer]);
+                for (looked, here) in looked.iter_mut().zip(here) {
+                    *looked *= here;
+                }
+            }
+        }
+        let most = looked.iter().copied().fold(0.0, f64::max);
+        if most > 0.0 {
+            for value in &mut looked {
+                *value /= most;
+            }
+        }
+        looked
+    }
+}
+
+/// The mean over the channels at each place.
+fn mean(map: &[f32], size: MapSize) -> Vec<f64> {
+    let places = map.chunks_exact(size.channels);
+    places
+        .map(|place| place.iter().map(|&value| f64::from(value)).sum::<f64>() / size.channels as f64)
+        .collect()
+}
+
+/// Gives each value to all places that its filter saw.
+fn spread(values: &[f64], from: MapSize, to: MapSize, layer: Layer) -> Vec<f64> {
+    let (size, stride) = match layer {
+        Layer::Convolution { size, stride, .. } => (size, stride),
+        Layer::Pool { size } => (size, size),
+        Layer::Dense { .. } => (to.height.max(to.width), 1),
+    };
+    let mut result = vec![0.0; to.height * to.width];
+    for (index, value) in values.iter().enumerate() {
+        let (top, left) = (index / from.width * stride, index % from.width * stride);
+        for y in top..(top + size).min(to.height) {
+            for place in &mut result[y * to.width + left..y * to.width + (left + size).min(to.width)] {
+                *place += value;
+            }
+        }
+    }
+    result
+}
