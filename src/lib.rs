@@ -57,6 +57,7 @@
 //! | 11 Robot vision | edges, colours, blobs, lines, motion; driving by colour and by motion | [`vision`], [`vision::images`], [`vision::motion`], [`drive::colour`], [`drive::motion_watch`] |
 //! | 12 Evolution | genetic algorithms, CMA evolution strategy; a walking robot | [`evolve`], `evolve::checkpoint`, `io::sim::starman` |
 //! | 13 Driverless cars | roads and their files, the lane, what is on the road and signs by camera, driving in traffic, the referees of Free Drive and Obstacle Evasion | [`world::road`], [`vision::lane_markings`], [`vision::road_elements`], [`vision::signs`], [`drive::lane_keeping`], [`drive::traffic`], [`drive::parking`] |
+//! | 13 Driverless cars | trained networks, driving by one, and training | [`vision::network`], [`drive::end_to_end`], `learn` |
 //! | 14 Formula SAE | cone tracks, centre lines, racing lines, racing cars, referee | [`race`] |
 //! | 14 Formula SAE | safety: state machine, monitors, stopping distance | [`safety`] |
 //!
@@ -80,7 +81,7 @@
 //!
 //! Off by default: `log` (recordings), `png` (pictures as PNG), `testing` (property-test strategies and
 //! checks for your own planners), `petgraph` (search on that crate's graphs), `rayon` (vision kernels and
-//! evolution on several threads), `checkpoint` (saved evolutions), `physics` (a walking robot), `robios` (a
+//! evolution on several threads), `checkpoint` (saved evolutions), `physics` (a walking robot), `learn` (training of networks), `robios` (a
 //! real EyeBot).
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
@@ -98,6 +99,8 @@ pub mod geometry;
 #[cfg(feature = "io")]
 pub mod io;
 pub mod kinematics;
+#[cfg(feature = "learn")]
+pub mod learn;
 #[cfg(feature = "maze")]
 pub mod maze;
 #[cfg(feature = "nav")]

@@ -1,0 +1,264 @@
+use std::num::NonZero;
+
+use super::gradient::{Numbers, gradient};
+use crate::ParameterError;
+use crate::parameter::{require, require_not_negative, require_positive};
+use crate::random::Stream;
+use crate::vision::network::{Architecture, Network};
+
+/// What a network is to learn from.
+pub trait Examples: Sync {
+    /// Number of examples.
+    fn count(&self) -> usize;
+
+    /// Writes the input of an example, and returns the result that the network should have: a number, or for
+    /// [`Loss::Classes`] the index of a class. Random numbers vary an input from one time to the next.
+    fn write(&self, index: usize, random: &mut Stream, input: &mut [f32]) -> f32;
+}
+
+/// What a network is to make small.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Loss {
+    /// The squared error of a single result.
+    Squares,
+    /// The negative logarithm of the probability of the right class (cross entropy).
+    Classes,
+}
+
+/// Options of a [`Trainer`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrainerOptions {
+    /// What to make small.
+    pub loss: Loss,
+    /// Number of examples between two steps.
+    pub batch: usize,
+    /// Part of the weights, times the rate, that each step takes off (AdamW's decay).
+    pub decay: f64,
+    /// Seed of the first weights, of the order of the examples, and of their variation.
+    pub seed: u64,
+    /// Number of threads. It does not change the result.
+    pub threads: NonZero<usize>,
+}
+
+impl Default for TrainerOptions {
+    /// Squares, 32 examples between two steps, a decay of 0.01, seed 1, and one thread.
+    fn default() -> Self {
+        Self { loss: Loss::Squares, batch: 32, decay: 0.01, seed: 1, threads: NonZero::<usize>::MIN }
+    }
+}
+
+/// Training that cannot go on.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum TrainingError {
+    /// A parameter is out of range.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    /// Weights or losses are no longer finite.
+    #[error(
+        "training: found {0} as the mean loss of a step; expected a finite number: the rate is too high, or an example is none"
+    )]
+    Diverged(f64),
+    /// A file that holds no state of a training.
+    #[error("training: {0}")]
+    File(String),
+    /// The framework refused.
+    #[error("training: {0}")]
+    Framework(#[from] candle_core::Error),
+}
+
+/// Trains a network; see the [module](super).
+///
+/// Steps are those of AdamW (Loshchilov and Hutter 2019). A batch has a fixed number of parts, whose gradients are
+/// added in their order.
+#[derive(Debug, Clone)]
+pub struct Trainer {
+    pub(super) architecture: Architecture,
+    pub(super) options: TrainerOptions,
+    pub(super) weights: Numbers,
+    /// Means of gradients, and of their squares.
+    pub(super) moments: [Numbers; 2],
+    pub(super) steps: u64,
+    pub(super) epochs: u64,
+}
+
+/// Number of parts of a batch.
+const PARTS: usize = 4;
+/// How much of the means of gradients and of squares a step keeps.
+const KEPT: [f64; 2] = [0.9, 0.999];
+/// Smallest root of a mean square by which a step is divided.
+const LEAST: f64 = 1e-8;
+
+impl Trainer {
+    /// Creates a trainer with random weights (He et al. 2015).
+    ///
+    /// # Errors
+    ///
+    /// If an option is out of range, or the architecture has another number of results than its loss needs.
+    pub fn new(architecture: Architecture, options: TrainerOptions) -> Result<Self, ParameterError> {
+        let results = architecture.outputs();
+        let fits = if options.loss == Loss::Squares { results == 1 } else { results > 1 };
+        require("number of results", results as f64, fits, "1 for squares, more for classes")?;
+        require("batch", options.batch as f64, (1..=10_000).contains(&options.batch), "1 to 10000")?;
+        require_not_negative("decay", options.decay)?;
+        let mut random = Stream::new(options.seed).child("weights", 0);
+        let mut layer = |(filters, taps): (usize, usize)| {
+            let spread = (2.0 / taps as f64).sqrt();
+            let weights = (0..filters * taps).map(|_| (spread * random.normal()) as f32).collect();
+            (weights, vec![0.0; filters])
+        };
+        let weights: Numbers = architecture.filters().flatten().map(&mut layer).collect();
+        let moments = [zeros(&weights), zeros(&weights)];
+        Ok(Self { architecture, options, weights, moments, steps: 0, epochs: 0 })
+    }
+
+    /// Number of epochs so far.
+    pub fn epochs(&self) -> u64 {
+        self.epochs
+    }
+
+    /// The network with the present weights.
+    pub fn network(&self) -> Network {
+        Network::new(self.architecture.clone(), self.weights.clone())
+            .expect("weights were checked after each step")
+    }
+
+    /// Looks once at all examples, in random order. Steps are in proportion to the `rate`, 0.001 for example. Returns
+    /// the mean loss.
+    ///
+    /// # Errors
+    ///
+    /// If there are no examples, the rate is out of range, or the loss is no longer finite. The trainer is then as
+    /// before the epoch.
+    pub fn epoch(&mut self, examples: &(impl Examples + ?Sized), rate: f64) -> Result<f64, TrainingError> {
+        let count = examples.count();
+        require("number of examples", count as f64, count > 0, "at least 1")?;
+        require_positive("rate", rate)?;
+        let before = self.clone();
+        let sum = self.pass(examples, rate);
+        if sum.is_err() {
+            *self = before;
+        }
+        Ok(sum? / count as f64)
+    }
+
+    fn pass(&mut self, examples: &(impl Examples + ?Sized), rate: f64) -> Result<f64, TrainingError> {
+        let stream = Stream::new(self.options.seed).child("epoch", self.epochs);
+        let mut order: Vec<usize> = (0..examples.count()).collect();
+        stream.child("order", 0).shuffle(&mut order);
+        let mut sum = 0.0;
+        for batch in order.chunks(self.options.batch) {
+            let (loss, gradient) = self.batch(examples, batch, &stream)?;
+            let mean = loss / batch.len() as f64;
+            if !mean.is_finite() {
+                return Err(TrainingError::Diverged(mean));
+            }
+            self.step(&gradient, 1.0 / batch.len() as f64, rate);
+            sum += loss;
+        }
+        let weights = self.weights.iter().flat_map(|(weights, constants)| weights.iter().chain(constants));
+        if let Some(weight) = weights.copied().find(|weight| !weight.is_finite()) {
+            return Err(TrainingError::Diverged(weight.into()));
+        }
+        self.epochs += 1;
+        Ok(sum)
+    }
+
+    /// Sums of losses and gradients over a batch.
+    fn batch(
+        &self,
+        examples: &(impl Examples + ?Sized),
+        batch: &[usize],
+        stream: &Stream,
+    ) -> Result<(f64, Numbers), TrainingError> {
+        let parts: Vec<&[usize]> = batch.chunks(batch.len().div_ceil(PARTS)).collect();
+        let threads = self.options.threads.get().min(parts.len());
+        let part = |part: &&[usize]| {
+            let size = self.architecture.input().len();
+            let mut inputs = vec![0.0; size * part.len()];
+            let targets: Vec<f32> = inputs
+                .chunks_exact_mut(size)
+                .zip(*part)
+                .map(|(input, &index)| {
+                    examples.write(index, &mut stream.child("example", index as u64), input)
+                })
+                .collect();
+            self.check(&targets)?;
+            Ok(gradient(&self.architecture, &self.weights, &inputs, &targets, self.options.loss)?)
+        };
+        let mut results: Vec<Option<Result<_, TrainingError>>> = parts.iter().map(|_| None).collect();
+        std::thread::scope(|scope| {
+            let share = parts.len().div_ceil(threads);
+            for (parts, results) in parts.chunks(share).zip(results.chunks_mut(share)) {
+                let work = move || {
+                    for (given, result) in parts.iter().zip(results) {
+                        *result = Some(part(given));
+                    }
+                };
+                if threads == 1 { work() } else { drop(scope.spawn(work)) }
+            }
+        });
+        let mut sum = (0.0, zeros(&self.weights));
+        for result in results.into_iter().flatten() {
+            let (loss, gradient) = result?;
+            sum.0 += loss;
+            for (sum, gradient) in numbers_mut(&mut sum.1).zip(numbers(&gradient)) {
+                *sum += gradient;
+            }
+        }
+        Ok(sum)
+    }
+
+    /// Fails for results that no network can have.
+    fn check(&self, targets: &[f32]) -> Result<(), ParameterError> {
+        let classes = self.architecture.outputs();
+        for &target in targets {
+            let (good, expected) = match self.options.loss {
+                Loss::Squares => (target.is_finite(), "a finite number".to_owned()),
+                Loss::Classes => (
+                    target.fract() == 0.0 && target >= 0.0 && target < classes as f32,
+                    format!("a class from 0 to {}", classes - 1),
+                ),
+            };
+            require("result of an example", target.into(), good, expected)?;
+        }
+        Ok(())
+    }
+
+    /// Changes the weights by a gradient times a factor.
+    fn step(&mut self, gradient: &Numbers, factor: f64, rate: f64) {
+        self.steps += 1;
+        let steps = i32::try_from(self.steps).unwrap_or(i32::MAX);
+        let [first, second] = KEPT.map(|kept| 1.0 - kept.powi(steps));
+        let [means, squares] = &mut self.moments;
+        let moments = numbers_mut(means).zip(numbers_mut(squares));
+        for ((weight, (mean, square)), gradient) in
+            numbers_mut(&mut self.weights).zip(moments).zip(numbers(gradient))
+        {
+            let gradient = factor * f64::from(*gradient);
+            let towards = |mean: &mut f32, kept: f64, value: f64| {
+                *mean = (kept * f64::from(*mean) + (1.0 - kept) * value) as f32;
+                f64::from(*mean)
+            };
+            let mean = towards(mean, KEPT[0], gradient) / first;
+            let square = towards(square, KEPT[1], gradient * gradient) / second;
+            let change = mean / (square.sqrt() + LEAST) + self.options.decay * f64::from(*weight);
+            *weight = (f64::from(*weight) - rate * change) as f32;
+        }
+    }
+}
+
+/// As many zeros.
+fn zeros(like: &Numbers) -> Numbers {
+    like.iter().map(|(weights, constants)| (vec![0.0; weights.len()], vec![0.0; constants.len()])).collect()
+}
+
+/// All numbers, layer by layer.
+pub(super) fn numbers(all: &Numbers) -> impl Iterator<Item = &f32> {
+    all.iter().flat_map(|(weights, constants)| weights.iter().chain(constants))
+}
+
+/// All numbers, layer by layer.
+pub(super) fn numbers_mut(all: &mut Numbers) -> impl Iterator<Item = &mut f32> {
+    all.iter_mut().flat_map(|(weights, constants)| weights.iter_mut().chain(constants))
+}
