@@ -16,9 +16,9 @@ use crate::maze_drive::{explore as maze_explore, left as maze_left, lidar as maz
 use crate::view;
 use crate::{
     a_to_b, ackermann, base_station, boat, bug_compare, camera, color_tracking, cone_drive, cone_race,
-    coverage, distbug, dive, edges, first_steps, follow_me, genetic, grid_benchmark, lane_keeping,
-    lidar_scan, localise, micromouse, motion, navigate, omni, parking, ping, pool_search, pool_wall,
-    quadtree, ramp, random_drive, replay, safety, signs, summit, survey, terrain_plan, traffic,
+    coverage, distbug, dive, edges, end_to_end, first_steps, follow_me, genetic, grid_benchmark,
+    lane_keeping, lidar_scan, localise, micromouse, motion, navigate, omni, parking, ping, pool_search,
+    pool_wall, quadtree, ramp, random_drive, replay, safety, signs, summit, survey, terrain_plan, traffic,
     wall_following,
 };
 #[cfg(feature = "native")]
@@ -79,6 +79,7 @@ commands!(
     distbug by run,
     dive by run,
     edges by run,
+    end_to_end by run,
     first_steps by run,
     follow_me by run,
     genetic by run,

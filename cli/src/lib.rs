@@ -20,6 +20,7 @@ mod distbug;
 mod dive;
 mod driving;
 mod edges;
+mod end_to_end;
 mod first_steps;
 mod follow_me;
 mod genetic;

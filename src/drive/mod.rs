@@ -19,7 +19,7 @@
 //! - [`WallFollower`]: along walls of any shape by three distance sensors (chapter 6), besides
 //!   [`PidWallFollower`], [`LidarWallFollower`] and the book's [`TwoLevelWallFollower`];
 //! - [`colour`]: to an object of a taught colour, and home with it (chapter 11);
-//! - [`lane_keeping`]: along the lane of a road by camera; [`traffic`]: past obstacles, and the referees;
+//! - [`lane_keeping`]: along the lane of a road by camera; [`end_to_end`]: by a trained network; [`traffic`]: past obstacles, and the referees;
 //!   [`parking`]: beside the road (chapter 13);
 //! - [`marine`]: craft in water (chapter 8);
 //! - [`motion_watch`]: turning towards motion (chapter 11);
@@ -34,6 +34,7 @@ pub mod colour;
 mod coverage;
 mod cruise;
 mod dubins;
+pub mod end_to_end;
 mod first_steps;
 mod follow_me;
 mod follower;

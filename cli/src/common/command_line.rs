@@ -37,10 +37,10 @@ const NOT_RECORDED: [&str; 17] = [
 const MET: [&str; 4] = ["seed", "noise", "quantised", "fault"];
 
 /// Options with names of input files.
-const FILES: [&str; 7] = ["world", "robot", "maze", "track", "line", "course", "figure"];
+const FILES: [&str; 9] = ["world", "robot", "maze", "track", "line", "course", "figure", "weights", "drive"];
 
 /// Options without a single driving robot to record: many runs at once, or none.
-const UNRECORDED: [&str; 5] = ["campaign", "plan", "input", "compare", "steps"];
+const UNRECORDED: [&str; 6] = ["campaign", "plan", "input", "compare", "steps", "train"];
 
 /// Reason to reject a command line.
 pub(crate) enum Refusal {

@@ -1,54 +1,86 @@
 //! Drives on many courses.
 
-use super::course::Setting;
-use super::{Args, drive, is_clean};
-use crate::common::{Failure, Outcome, Report, Stage, millimetres, rounded};
+use std::num::NonZero;
 
-/// Share of courses that must be driven without a fault.
-const ENOUGH: f64 = 0.98;
+use roverlab::drive::traffic::FreeDriveScore;
+
+use super::course::Setting;
+use super::drive::Plan;
+use super::{drive, is_clean, rules};
+use crate::common::{Failure, Outcome, Report, Stage, millimetres, rounded, share_out, threads};
+
 /// Limit of Duckietown's survival time (s).
 const MINUTE: f64 = 60.0;
 
+/// Scores on courses, by seed.
+#[derive(Debug, Clone)]
+pub(crate) struct Scores(Vec<(u64, FreeDriveScore)>);
+
 /// Drives on a number of courses, with consecutive seeds.
-pub(super) fn run(args: &Args) -> Result<Report, Failure> {
-    let (mut clean, mut survived) = (0_u64, 0_u64);
-    let (mut distances, mut unclean) = (Vec::new(), Vec::new());
-    let (mut squares, mut metres) = (0.0, 0.0);
-    for seed in (0..args.courses).map(|course| args.common.seed.wrapping_add(course)) {
+pub(crate) fn scores(plan: &Plan<'_>, courses: u64, crew: Option<NonZero<usize>>) -> Result<Scores, Failure> {
+    let trials = share_out("courses", courses, threads(crew), |index| {
+        let seed = plan.common.seed.wrapping_add(index);
         let setting = Setting::drawn(seed)?;
-        let stage = Stage::simulated(&setting.scene()?, setting.options(args), Vec::new())?;
-        let outcome = drive::drive(args, &setting, &stage)?;
+        let options = setting.options(plan.common.noise);
+        let stage = Stage::simulated(&setting.scene()?, options, Vec::new())?;
+        let outcome = drive::drive(plan, &setting, &stage)?;
         outcome.ending.map_err(Failure::run)?;
-        let score = outcome.score;
-        survived += u64::from(score.survival >= MINUTE.min(score.time) - 0.1);
-        squares += score.offset_rms() * score.offset_rms() * score.distance;
-        metres += score.distance;
-        distances.push(score.distance);
-        if is_clean(&score) {
-            clean += 1;
-        } else {
-            unclean.push(seed);
-        }
-        args.common.tell(format_args!(
+        Ok((seed, setting.light, outcome.score))
+    })?;
+    for (seed, light, score) in &trials {
+        plan.common.tell(format_args!(
             "course {seed}: {:.1} m, {} departures, {} interventions, offset {:.1} mm, light {:.0} %",
             score.distance,
             score.departures,
             score.interventions,
             1000.0 * score.offset_rms(),
-            100.0 * setting.light,
+            100.0 * light,
         ));
     }
-    distances.sort_by(f64::total_cmp);
-    let share = clean as f64 / args.courses as f64;
-    let outcome = if share >= ENOUGH { Outcome::verdict("passed") } else { Outcome::failure("wrong") };
-    Ok(Report::new(outcome)
-        .field("driver", args.driver.name())
-        .field("courses", args.courses)
-        .field("clean", clean)
-        .field("unclean", unclean)
-        .field("survived", survived)
-        .field("distance_m", rounded(metres))
-        .field("distance_median_m", distances.get(distances.len() / 2).copied().map(rounded))
-        .field("distance_least_m", distances.first().copied().map(rounded))
-        .field("offset_rms_mm", millimetres((squares / metres.max(1e-9)).sqrt())))
+    Ok(Scores(trials.into_iter().map(|(seed, _, score)| (seed, score)).collect()))
+}
+
+impl Scores {
+    fn sum(&self, of: impl Fn(&FreeDriveScore) -> f64) -> f64 {
+        self.0.iter().map(|(_, score)| of(score)).sum()
+    }
+
+    /// Share of the courses that were driven without a fault.
+    pub(crate) fn clean_share(&self) -> f64 {
+        self.sum(|score| f64::from(u8::from(is_clean(score)))) / self.0.len() as f64
+    }
+
+    /// Share of the time driven without interventions (percent).
+    pub(crate) fn autonomy(&self) -> f64 {
+        self.sum(|score| score.time * score.autonomy(&rules())) / self.sum(|score| score.time).max(1e-9)
+    }
+
+    /// The report, if so much is good.
+    pub(crate) fn report(&self, driver: &str, good: bool) -> Report {
+        let outcome = if good { Outcome::verdict("passed") } else { Outcome::failure("wrong") };
+        let clean = self.0.iter().filter(|(_, score)| is_clean(score)).count();
+        let unclean: Vec<u64> =
+            self.0.iter().filter(|(_, score)| !is_clean(score)).map(|(seed, _)| *seed).collect();
+        let survived =
+            |score: &FreeDriveScore| f64::from(u8::from(score.survival >= MINUTE.min(score.time) - 0.1));
+        let metres = self.sum(|score| score.distance);
+        let squares = self.sum(|score| score.offset_rms() * score.offset_rms() * score.distance);
+        let departures = self.sum(|score| score.departures.into());
+        let mut distances: Vec<f64> = self.0.iter().map(|(_, score)| score.distance).collect();
+        distances.sort_by(f64::total_cmp);
+        Report { sim_time: Some(self.sum(|score| score.time)), ..Report::new(outcome) }
+            .field("driver", driver)
+            .field("courses", self.0.len())
+            .field("clean", clean)
+            .field("unclean", unclean)
+            .field("survived", self.sum(survived) as u64)
+            .field("departures", departures as u64)
+            .field("interventions", self.sum(|score| score.interventions.into()) as u64)
+            .field("departures_per_km", rounded(1000.0 * departures / metres.max(1e-9)))
+            .field("autonomy_percent", rounded(self.autonomy()))
+            .field("distance_m", rounded(metres))
+            .field("distance_median_m", distances.get(distances.len() / 2).copied().map(rounded))
+            .field("distance_least_m", distances.first().copied().map(rounded))
+            .field("offset_rms_mm", millimetres((squares / metres.max(1e-9)).sqrt()))
+    }
 }

@@ -8,30 +8,29 @@ use roverlab::world::formats::course;
 use roverlab::world::road::{Appearance, RoadCourse, RoadCourseOptions, generate};
 use roverlab::world::{Footprint, RobotSpec, Scene};
 
-use super::Args;
 use crate::common::{CommonArgs, Failure};
 
 /// A course, the light, and the state of the paint.
 #[derive(Debug, Clone)]
-pub(super) struct Setting {
+pub(crate) struct Setting {
     pub(super) name: String,
-    pub(super) course: RoadCourse,
-    pub(super) look: Appearance,
+    pub(crate) course: RoadCourse,
+    look: Appearance,
     pub(super) light: f64,
     pub(super) seed: u64,
 }
 
 impl Setting {
-    /// The course of a command line.
-    pub(super) fn of(args: &Args) -> Result<Self, Failure> {
-        let (name, seed) = (args.course.clone(), args.common.seed);
-        let course = course(&args.common, &name, generated)?;
+    /// The course of a command line, in a light.
+    pub(crate) fn of(common: &CommonArgs, name: &str, light: f64) -> Result<Self, Failure> {
+        let seed = common.seed;
+        let course = course(common, name, generated)?;
         let look = Appearance { seed, ..Appearance::default() };
-        Ok(Self { name, course, look, light: args.light, seed })
+        Ok(Self { name: name.into(), course, look, light, seed })
     }
 
     /// The course of a seed in a campaign, with its own light and wear.
-    pub(super) fn drawn(seed: u64) -> Result<Self, Failure> {
+    pub(crate) fn drawn(seed: u64) -> Result<Self, Failure> {
         let mut random = Stream::new(seed).child("lane keeping", 0);
         let light = random.between(0.5, 1.5);
         let look = Appearance {
@@ -44,13 +43,13 @@ impl Setting {
     }
 
     /// The car at the start of the course.
-    pub(super) fn scene(&self) -> Result<Scene, Failure> {
+    pub(crate) fn scene(&self) -> Result<Scene, Failure> {
         let world = self.course.world(&self.look).map_err(Failure::input)?;
         Ok(Scene::with_robot(world, RobotSpec::road_car(), self.course.start()))
     }
 
-    pub(super) fn options(&self, args: &Args) -> SimOptions {
-        SimOptions { light: self.light, ..SimOptions::with_noise(args.common.noise, self.seed) }
+    pub(crate) fn options(&self, noise: f64) -> SimOptions {
+        SimOptions { light: self.light, ..SimOptions::with_noise(noise, self.seed) }
     }
 }
 

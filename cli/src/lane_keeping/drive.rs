@@ -1,5 +1,6 @@
 //! One drive under the referee.
 
+use roverlab::drive::end_to_end::NetworkDriver;
 use roverlab::drive::lane_keeping::{
     BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters, LaneObservation, LaneOutcome,
 };
@@ -10,53 +11,94 @@ use roverlab::io::log::GroundTruth;
 use roverlab::io::sim::RobotTruth;
 use roverlab::io::{self, Clock, Drive as _};
 use roverlab::vision::lane_markings::{RoadCamera, RoadModel};
+use roverlab::vision::network::Network;
 use roverlab::world::RobotSpec;
 use roverlab::world::road::{RoadCourse, Traffic};
 
 use super::course::Setting;
-use super::{Args, Driver, rules};
-use crate::common::{Driven, Failure, Stage, StageTruth};
+use super::rules;
+use crate::common::{CommonArgs, Driven, Failure, Stage, StageTruth};
 use crate::driving::{check_lasted, paced};
 
 /// Result of a drive.
 #[derive(Debug, Clone)]
-pub(super) struct Drive {
-    pub(super) score: FreeDriveScore,
+pub(crate) struct Drive {
+    pub(crate) score: FreeDriveScore,
     pub(super) truth: RobotTruth,
     pub(super) ending: Result<(), String>,
     /// Path of the car: time, pose and speed.
     pub(super) trail: Vec<(f64, Pose, f64)>,
 }
 
-/// Drives on a course for the duration of the command line.
-pub(super) fn drive(args: &Args, setting: &Setting, stage: &Stage) -> Result<Drive, Failure> {
-    let spec = RobotSpec::road_car();
-    let camera = spec.camera.as_ref().map(RoadCamera::from);
+/// Who drives.
+#[derive(Debug, Clone)]
+pub(crate) enum Pilot {
+    Ours,
+    Book,
+    Network(Box<Network>),
+}
+
+impl Pilot {
+    pub(super) fn name(&self) -> &'static str {
+        match self {
+            Self::Ours => "ours",
+            Self::Book => "book",
+            Self::Network(_) => "net",
+        }
+    }
+}
+
+/// What a car is to do.
+#[derive(Debug, Clone)]
+pub(crate) struct Plan<'a> {
+    pub(crate) pilot: Pilot,
+    /// Maximum speed (m/s); `None` for the pilot's own.
+    pub(crate) speed: Option<f64>,
+    pub(crate) minutes: f64,
+    pub(crate) common: &'a CommonArgs,
+}
+
+/// Speed of a network (m/s).
+const NETWORK_SPEED: f64 = 1.0;
+
+/// Lane keeper of a car for a course.
+pub(crate) fn keeper(course: &RoadCourse, parameters: LaneKeeperParameters) -> Result<LaneKeeper, Failure> {
+    let camera = RobotSpec::road_car().camera.as_ref().map(RoadCamera::from);
     let camera = camera.ok_or_else(|| Failure::run("a car without a camera"))?;
-    let seconds = 60.0 * args.minutes;
-    let seconds = args.common.time_limit.map_or(seconds, |limit| limit.min(seconds));
+    let left_hand = course.traffic == Traffic::Left;
+    let road = RoadModel { size: course.size, line_width: course.line_width, left_hand };
+    LaneKeeper::new(camera, road, parameters).map_err(Failure::input)
+}
+
+/// Drives on a course.
+pub(super) fn drive(plan: &Plan<'_>, setting: &Setting, stage: &Stage) -> Result<Drive, Failure> {
+    let spec = RobotSpec::road_car();
+    let (common, seconds) = (plan.common, 60.0 * plan.minutes);
+    let seconds = common.time_limit.map_or(seconds, |limit| limit.min(seconds));
     let mut car = stage.robot(0)?;
     let mut watch = Watch {
         truth: stage.truth(0)?,
         referee: FreeDrive::new(setting.course.clone(), &spec, rules()).map_err(Failure::input)?,
         trail: Vec::new(),
-        pace: Box::new(paced(&args.common)),
+        pace: Box::new(paced(common)),
     };
-    let driven = match args.driver {
-        Driver::Ours => {
+    let driven = match &plan.pilot {
+        Pilot::Ours => {
             let defaults = LaneKeeperParameters::default();
-            let parameters = LaneKeeperParameters { speed: args.speed.unwrap_or(defaults.speed), ..defaults };
-            let left_hand = setting.course.traffic == Traffic::Left;
-            let RoadCourse { size, line_width, .. } = setting.course;
-            let road = RoadModel { size, line_width, left_hand };
-            let mut keeper = LaneKeeper::new(camera, road, parameters).map_err(Failure::input)?;
+            let parameters = LaneKeeperParameters { speed: plan.speed.unwrap_or(defaults.speed), ..defaults };
+            let mut keeper = keeper(&setting.course, parameters)?;
             watch.keep(&mut car, &mut keeper, seconds, LaneKeeper::forget)
         }
-        Driver::Book => {
+        Pilot::Book => {
             let defaults = BookLaneParameters::default();
-            let parameters = BookLaneParameters { speed: args.speed.unwrap_or(defaults.speed), ..defaults };
+            let parameters = BookLaneParameters { speed: plan.speed.unwrap_or(defaults.speed), ..defaults };
             let mut keeper = BookLaneKeeper::new(parameters).map_err(Failure::input)?;
             watch.keep(&mut car, &mut keeper, seconds, |_| ())
+        }
+        Pilot::Network(network) => {
+            let speed = plan.speed.unwrap_or(NETWORK_SPEED);
+            let mut driver = NetworkDriver::new((**network).clone(), speed).map_err(Failure::input)?;
+            watch.keep(&mut car, &mut driver, seconds, |_| ())
         }
     };
     drop(car);

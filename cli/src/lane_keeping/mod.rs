@@ -5,13 +5,18 @@ mod course;
 mod drawing;
 mod drive;
 
+use std::num::NonZero;
+use std::path::PathBuf;
+
 use roverlab::drive::traffic::{FreeDriveRules, FreeDriveScore};
 
 use crate::common::{CommonArgs, Failure, OF_ONE_RUN, Outcome, Report, millimetres, rounded};
-use course::Setting;
-pub(crate) use course::course;
+use crate::end_to_end::steering;
+pub(crate) use campaign::scores;
+pub(crate) use course::{Setting, course};
 pub(crate) use drawing::{area, parking_sides, road};
 use drive::Drive;
+pub(crate) use drive::{Pilot, Plan, keeper};
 
 /// The command line of `lane-keeping`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -19,7 +24,8 @@ use drive::Drive;
     about = "Drives a model car along the lane of a course by its camera alone, before the referee of Free Drive",
     after_help = "\
 The course is drawn by a seed, or read from a file (docs/courses.md). The car sees the road by a camera of 320 x 240 pixels, 30
-times a second, and knows its odometry. With --driver book, it drives by the book's pipeline of Canny and Hough.
+times a second, and knows its odometry. With --driver book, it drives by the book's pipeline of Canny and Hough, with --driver net
+by a trained network (see `end-to-end`).
 
 The referee is that of Free Drive (CAuDri-Challenge 2025): two wheels over a line of the own lane are one departure. A car that
 is a lane's width astray, or stands for 5 s, is taken over by remote control, which drives it back into its lane at 0.3 m/s.
@@ -38,6 +44,7 @@ JSON fields:
   courses, clean, unclean     campaign: number of courses, those without departure and intervention, seeds of the others
   distance_median_m           campaign: of all courses
   survived                    campaign: number that survived the first minute
+  departures_per_km           campaign: of all courses, as departures, interventions, autonomy_percent and offset_rms_mm
 Outcomes: kept, departed (of lanes), failed; with --campaign: passed (at least 98 % are clean), wrong."
 )]
 pub(crate) struct Args {
@@ -57,7 +64,11 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value = "ours")]
     pub(crate) driver: Driver,
 
-    /// Maximum speed in m/s [default: 2.6, 0.5 for the book's driver].
+    /// Weights of --driver net, a file that `end-to-end --train` wrote [default: built in].
+    #[arg(long, value_name = "FILE.safetensors")]
+    pub(crate) weights: Option<PathBuf>,
+
+    /// Maximum speed in m/s [default: 2.6, 0.5 for the book's driver, 1 for the network].
     #[arg(long, value_name = "M/S", value_parser = speed, allow_hyphen_values = true)]
     pub(crate) speed: Option<f64>,
 
@@ -73,6 +84,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=100_000), allow_hyphen_values = true)]
     pub(crate) courses: u64,
 
+    /// Number of threads in a campaign [default: one per core].
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub(crate) threads: Option<NonZero<usize>>,
+
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }
@@ -81,7 +96,8 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["world", "robot", "start", "goal", "quantised", "robios", "supervised"]),
     ("campaign", OF_ONE_RUN),
     ("campaign", &["course", "light"]),
-    ("!campaign", &["courses"]),
+    ("!campaign", &["courses", "threads"]),
+    ("driver!=net", &["weights"]),
 ]);
 
 /// Sensors for the lane.
@@ -98,14 +114,23 @@ pub(crate) enum Driver {
     Ours,
     /// The book's edges and straight lines.
     Book,
+    /// A network that sees the image and steers.
+    Net,
 }
 
-impl Driver {
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Ours => "ours",
-            Self::Book => "book",
-        }
+/// Share of courses that must be driven without a fault.
+const ENOUGH: f64 = 0.98;
+
+impl Args {
+    fn plan(&self) -> Result<Plan<'_>, Failure> {
+        let pilot = match self.driver {
+            Driver::Ours => Pilot::Ours,
+            Driver::Book => Pilot::Book,
+            Driver::Net => {
+                Pilot::Network(Box::new(steering(&self.common, "weights", self.weights.as_deref())?))
+            }
+        };
+        Ok(Plan { pilot, speed: self.speed, minutes: self.minutes, common: &self.common })
     }
 }
 
@@ -114,30 +139,41 @@ fn within(text: &str, least: f64, most: f64) -> Result<f64, String> {
     value.ok_or_else(|| format!("expected a number from {least} to {most}"))
 }
 
-fn minutes(text: &str) -> Result<f64, String> {
+pub(crate) fn minutes(text: &str) -> Result<f64, String> {
     within(text, 0.01, 1000.0)
 }
 
-fn speed(text: &str) -> Result<f64, String> {
+pub(crate) fn speed(text: &str) -> Result<f64, String> {
     within(text, 0.05, 3.0)
 }
 
-fn light(text: &str) -> Result<f64, String> {
+pub(crate) fn light(text: &str) -> Result<f64, String> {
     within(text, 0.0, 10.0)
+}
+
+/// A curvature of disturbances (1/m).
+pub(crate) fn disturbance(text: &str) -> Result<f64, String> {
+    within(text, 0.0, 5.0)
 }
 
 /// Runs the command.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    let plan = args.plan()?;
     if args.campaign {
-        return campaign::run(args);
+        let scores = scores(&plan, args.courses, args.threads)?;
+        return Ok(scores.report(plan.pilot.name(), scores.clean_share() >= ENOUGH));
     }
-    let common = &args.common;
+    one(&plan, &Setting::of(&args.common, &args.course, args.light)?)
+}
+
+/// A single drive.
+pub(crate) fn one(plan: &Plan<'_>, setting: &Setting) -> Result<Report, Failure> {
+    let common = plan.common;
     common.check_picture()?;
-    let setting = Setting::of(args)?;
-    let stage = common.stage(&setting.scene()?, setting.options(args))?;
-    let drive = drive::drive(args, &setting, &stage)?;
-    let report = report(args, &setting, &drive);
-    Ok(common.draw(report, "lane_keeping.svg", || drawing::picture(&setting, &drive)))
+    let stage = common.stage(&setting.scene()?, setting.options(common.noise))?;
+    let drive = drive::drive(plan, setting, &stage)?;
+    let report = report(plan, setting, &drive);
+    Ok(common.draw(report, "lane_keeping.svg", || drawing::picture(setting, &drive)))
 }
 
 /// The referee's rules.
@@ -150,7 +186,7 @@ fn is_clean(score: &FreeDriveScore) -> bool {
     score.departures + score.interventions == 0
 }
 
-fn report(args: &Args, setting: &Setting, drive: &Drive) -> Report {
+fn report(plan: &Plan<'_>, setting: &Setting, drive: &Drive) -> Report {
     let score = &drive.score;
     let (word, error) = match &drive.ending {
         Err(error) => (Outcome::failure("failed"), Some(error.clone())),
@@ -169,7 +205,7 @@ fn report(args: &Args, setting: &Setting, drive: &Drive) -> Report {
     report
         .field("course", &setting.name)
         .field("course_length_m", rounded(setting.course.line.length()))
-        .field("driver", args.driver.name())
+        .field("driver", plan.pilot.name())
         .field("sensors", "camera")
         .field("light", setting.light)
         .field("distance_m", rounded(score.distance))

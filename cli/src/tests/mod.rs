@@ -12,6 +12,7 @@ mod first_steps;
 mod grids;
 mod heed;
 mod hills;
+mod end_to_end;
 mod lane_keeping;
 mod lidar;
 mod maze_drives;

@@ -82,6 +82,7 @@ fn short(program: &str) -> &'static [&'static str] {
         "color_tracking" => &["--job", "home"],
         "cone_drive" | "cone_race" => &["--track", "../tests/data/cones/oval.csv"],
         "edges" => &["--repeat", "3"],
+        "end_to_end" => &["--course", "3", "--minutes", "0.05"],
         "follow_me" => &["--followers", "3", "--mode", "radio"],
         "genetic" => &["--task", "wall", "--generations", "1"],
         "lane_keeping" => &["--course", "3", "--minutes", "0.05"],

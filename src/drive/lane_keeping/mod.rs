@@ -66,7 +66,7 @@ pub struct LaneObservation {
 }
 
 impl LaneObservation {
-    fn read<R: Camera + Odometry + ?Sized>(&mut self, robot: &mut R) -> Result<()> {
+    pub(in crate::drive) fn read<R: Camera + Odometry + ?Sized>(&mut self, robot: &mut R) -> Result<()> {
         robot.image_into(&mut self.image)?;
         (self.odometry, self.speed) = (robot.pose()?, robot.speed()?.linear);
         Ok(())

@@ -1,0 +1,210 @@
+//! Training in rounds.
+
+use std::fs;
+use std::num::NonZero;
+use std::path::{Path, PathBuf};
+
+use roverlab::drive::end_to_end::{NetworkDriver, SteeringExamples, SteeringTeacher, TeacherParameters};
+use roverlab::drive::lane_keeping::LaneKeeperParameters;
+use roverlab::drive::traffic::{FreeDrive, FreeDriveRules};
+use roverlab::io::control::{run, until};
+use roverlab::io::sim::Simulation;
+use roverlab::learn::{Loss, Trainer, TrainerOptions};
+use roverlab::random::Stream;
+use roverlab::vision::network::Network;
+use roverlab::world::RobotSpec;
+use serde_json::{Value, json};
+
+use super::Args;
+use crate::common::{Failure, Outcome, Report, Stopwatch, rounded, share_out, threads};
+use crate::lane_keeping::{Setting, keeper};
+use crate::signs::hash;
+
+/// Duration of a lesson (s).
+const LESSON: f64 = 20.0;
+/// Speed in lessons (m/s).
+const SPEED: f64 = 1.0;
+/// Rate of the first epoch of a round; it falls evenly to a tenth.
+const RATE: f64 = 1e-3;
+/// Seeds of lessons begin far from those that people choose.
+const LESSONS: u64 = 1 << 40;
+
+/// Trains a network and writes it.
+pub(super) fn train(args: &Args, out: &Path) -> Result<Report, Failure> {
+    let watch = Stopwatch::start();
+    let store = Store::open(out, args)?;
+    let crew = threads(args.threads);
+    let results = args.architecture.outputs();
+    let options = TrainerOptions {
+        loss: if results == 1 { Loss::Squares } else { Loss::Classes },
+        seed: args.common.seed,
+        threads: NonZero::new(crew).unwrap_or(NonZero::<usize>::MIN),
+        ..TrainerOptions::default()
+    };
+    let mut trainer = match store.state()? {
+        Some(bytes) => {
+            Trainer::from_checkpoint(&bytes, args.architecture.clone(), options).map_err(Failure::input)?
+        }
+        None => Trainer::new(args.architecture.clone(), options)?,
+    };
+    let mut examples = SteeringExamples::new(args.architecture.input()).for_results(results);
+    let (mut seed, mut pupil, mut rows) = (args.common.seed.wrapping_add(LESSONS), None, Vec::new());
+    let mut bytes = Vec::new();
+    for round in 0..args.rounds {
+        let count = if round == 0 { args.lessons } else { args.lessons.div_ceil(2) };
+        let lessons = share_out("lessons", count, crew, |index| {
+            lesson(args, seed.wrapping_add(index), pupil.as_ref())
+        })?;
+        seed = seed.wrapping_add(count);
+        for (more, _) in &lessons {
+            examples.extend(more)?;
+        }
+        let mut loss = None;
+        while trainer.epochs() < (round + 1) * args.epochs {
+            let part = (trainer.epochs() % args.epochs) as f64 / args.epochs as f64;
+            loss = Some(trainer.epoch(&examples, RATE * (1.0 - 0.9 * part)).map_err(Failure::run)?);
+            store.keep(&trainer.to_checkpoint().map_err(Failure::run)?)?;
+        }
+        // Other rounds meet the network as a file of weights of 16 bits has it.
+        bytes = store.round(round, || trainer.network().to_safetensors().map_err(Failure::run))?;
+        pupil = Some(Network::from_safetensors(&bytes).map_err(Failure::input)?);
+        let astray = lessons.iter().filter(|(_, astray)| *astray).count();
+        let row = Row { examples: examples.len(), loss, interventions: astray };
+        args.common.tell(row.text(round));
+        rows.push(row.json());
+    }
+    fs::write(out, &bytes).map_err(|error| Failure::run(format!("--out {}: {error}", out.display())))?;
+    store.close()?;
+    Ok(Report::new(Outcome::verdict("learned"))
+        .field("architecture", args.architecture.to_string())
+        .field("examples", examples.len())
+        .table("rounds", rows)
+        .field("weights", out.display().to_string())
+        .field("weights_hash", format!("{:016x}", hash(&bytes)))
+        .timing("seconds", watch.seconds()))
+}
+
+/// A round.
+struct Row {
+    examples: usize,
+    /// `None` if it was learned before an interruption.
+    loss: Option<f64>,
+    interventions: usize,
+}
+
+impl Row {
+    fn text(&self, round: u64) -> String {
+        let loss = self.loss.map_or_else(|| "as before".into(), |loss| format!("loss {loss:.5}"));
+        let Self { examples, interventions, .. } = self;
+        format!("round {}: {examples} images, {interventions} lessons ended astray, {loss}", round + 1)
+    }
+
+    fn json(&self) -> Value {
+        json!({ "examples": self.examples, "loss": self.loss.map(rounded), "interventions": self.interventions })
+    }
+}
+
+/// A lesson on a course of its own, which ends early if the car goes astray.
+fn lesson(args: &Args, seed: u64, pupil: Option<&Network>) -> Result<(SteeringExamples, bool), Failure> {
+    let setting = Setting::drawn(seed)?;
+    let spec = RobotSpec::road_car();
+    let simulation =
+        Simulation::new(&setting.scene()?, setting.options(args.common.noise)).map_err(Failure::input)?;
+    let (mut car, truth) = (simulation.robot(0).map_err(Failure::run)?, simulation.truth());
+    let mut referee =
+        FreeDrive::new(setting.course.clone(), &spec, FreeDriveRules::default()).map_err(Failure::input)?;
+    let keeper = keeper(&setting.course, LaneKeeperParameters::default())?;
+    let seed = Stream::new(seed).child("lesson", 0).bits();
+    let parameters = TeacherParameters {
+        speed: SPEED,
+        disturbance: args.disturbance,
+        seed,
+        ..TeacherParameters::default()
+    };
+    let mut teacher = SteeringTeacher::new(keeper, args.architecture.input(), parameters)?;
+    if let Some(network) = pupil {
+        teacher = teacher.with_pupil(NetworkDriver::new(network.clone(), SPEED)?);
+    }
+    let mut astray = false;
+    run(&mut car, &mut teacher, LESSON, |_, _, _| {
+        astray = referee.see(truth.time(), &truth.pose(0).expect("there is a car"));
+        until(astray)
+    })?;
+    Ok((teacher.into_examples(), astray))
+}
+
+/// What is learned so far, in a folder beside the file to be written.
+struct Store {
+    folder: PathBuf,
+}
+
+impl Store {
+    /// Opens the folder, or makes it. Fails if what is in it was learned with other options.
+    fn open(out: &Path, args: &Args) -> Result<Self, Failure> {
+        let mut name = out.file_name().unwrap_or_default().to_owned();
+        name.push(".training");
+        let this = Self { folder: out.with_file_name(name) };
+        fs::create_dir_all(&this.folder).map_err(|error| this.failure(&error))?;
+        let Args { architecture, lessons, rounds: _, epochs, disturbance, common, .. } = args;
+        let (seed, noise) = (common.seed, common.noise);
+        let facts = format!(
+            "{architecture}; lessons {lessons}, epochs {epochs}, disturbance {disturbance}, seed {seed}, noise {noise}\n"
+        );
+        match this.read("options.txt")? {
+            None => this.write("options.txt", facts.as_bytes())?,
+            Some(found) if found == facts.as_bytes() => {}
+            Some(found) => {
+                let (folder, found) = (this.folder.display(), String::from_utf8_lossy(&found).into_owned());
+                return Err(Failure::input(format!(
+                    "{folder}: found what was learned with {}; expected {}, or no such folder",
+                    found.trim_end(),
+                    facts.trim_end()
+                )));
+            }
+        }
+        Ok(this)
+    }
+
+    /// The trainer after its last epoch.
+    fn state(&self) -> Result<Option<Vec<u8>>, Failure> {
+        self.read("state.safetensors")
+    }
+
+    fn keep(&self, state: &[u8]) -> Result<(), Failure> {
+        self.write("state.safetensors", state)
+    }
+
+    /// The network after a round: as it was kept, or as it is now.
+    fn round(&self, round: u64, now: impl FnOnce() -> Result<Vec<u8>, Failure>) -> Result<Vec<u8>, Failure> {
+        let name = format!("round-{}.safetensors", round + 1);
+        if let Some(bytes) = self.read(&name)? {
+            return Ok(bytes);
+        }
+        let bytes = now()?;
+        self.write(&name, &bytes)?;
+        Ok(bytes)
+    }
+
+    /// Removes the folder.
+    fn close(self) -> Result<(), Failure> {
+        fs::remove_dir_all(&self.folder).map_err(|error| self.failure(&error))
+    }
+
+    fn read(&self, name: &str) -> Result<Option<Vec<u8>>, Failure> {
+        match fs::read(self.folder.join(name)) {
+            Ok(bytes) => Ok(Some(bytes)),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(self.failure(&error)),
+        }
+    }
+
+    /// Writes a file anew and renames it, so that there is always a whole one.
+    fn write(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
+        let (file, new) = (self.folder.join(name), self.folder.join(format!("{name}.new")));
+        fs::write(&new, bytes).and_then(|()| fs::rename(&new, &file)).map_err(|error| self.failure(&error))
+    }
+
+    fn failure(&self, error: &std::io::Error) -> Failure {
+        Failure::run(format!("{}: {error}", self.folder.display()))
+    }
+}
