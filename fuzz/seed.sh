@@ -28,3 +28,4 @@ printf '7 3 0 1e80c8288090\n7 3 1 00ff\n' > corpus/worker/two
 printf '{"version":1,"settings":"fuzz","state":{"genomes":[[1,2],[3,4]],"seed":1,"generation":0,"fitness":[],"best":null,"history":[]}}' > corpus/checkpoint/two
 # A header of 60 bytes, and one number.
 printf '\074\0\0\0\0\0\0\0{"signs":{"dtype":"F32","shape":[1,1],"data_offsets":[0,4]}}\0\0\0\0' > corpus/weights/one
+cp ../cli/nets/steering.safetensors corpus/weights/network

@@ -47,6 +47,8 @@ lessons!(
     distbug,
     dive,
     edges,
+    #[cfg(feature = "weights")]
+    end_to_end,
     first_steps,
     follow_me,
     genetic,

@@ -13,13 +13,14 @@ use std::path::Path;
 use source::Source;
 
 /// What each wing may use. All of it stands further up, so arrows between wings point down and in no circle.
-const WINGS: [(&str, &str); 19] = [
+const WINGS: [(&str, &str); 20] = [
     ("parameter", ""),
     ("geometry", ""),
     ("random", "parameter geometry"),
     ("kinematics", "parameter geometry random"),
     ("world", "parameter geometry random kinematics"),
     ("vision", "parameter geometry random"),
+    ("learn", "parameter random vision"),
     ("picture", "parameter geometry world"),
     ("io", "parameter geometry random kinematics world"),
     ("io::sim", "parameter geometry random kinematics world io"),
@@ -27,7 +28,7 @@ const WINGS: [(&str, &str); 19] = [
     ("io::log", "parameter geometry random world io io::sim"),
     ("io::robios", "parameter geometry world io"),
     ("scan", "parameter geometry random kinematics world io"),
-    ("drive", "parameter geometry random kinematics world vision io scan"),
+    ("drive", "parameter geometry random kinematics world vision learn io scan"),
     ("maze", "parameter geometry random kinematics world io drive"),
     ("nav", "parameter geometry random kinematics world io scan"),
     ("race", "parameter geometry random kinematics world vision io"),

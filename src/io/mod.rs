@@ -32,7 +32,7 @@
 //! | [`Ascent::by_distance_sensors`](crate::drive::terrain::Ascent::by_distance_sensors) | [`Drive`], [`Odometry`], [`DistanceSensors`], [`Inertial`] |
 //! | [`RampCrossing`](crate::nav::RampCrossing) | [`Drive`], [`Odometry`], [`Lidar`], [`Inertial`] |
 //! | [`Ascent`](crate::drive::terrain::Ascent) | [`Drive`], [`Odometry`], [`Lidar`], [`DistanceSensors`], [`Inertial`] |
-//! | [`LaneKeeper`](crate::drive::lane_keeping::LaneKeeper), [`TrafficDriver`](crate::drive::traffic::TrafficDriver), [`BookLaneKeeper`](crate::drive::lane_keeping::BookLaneKeeper), [`MotionWatch`](crate::drive::motion_watch::MotionWatch), [`MotionApproach`](crate::drive::motion_watch::MotionApproach) | [`Drive`], [`Odometry`], [`Camera`] |
+//! | [`LaneKeeper`](crate::drive::lane_keeping::LaneKeeper), [`TrafficDriver`](crate::drive::traffic::TrafficDriver), [`BookLaneKeeper`](crate::drive::lane_keeping::BookLaneKeeper), [`NetworkDriver`](crate::drive::end_to_end::NetworkDriver), [`SteeringTeacher`](crate::drive::end_to_end::SteeringTeacher), [`MotionWatch`](crate::drive::motion_watch::MotionWatch), [`MotionApproach`](crate::drive::motion_watch::MotionApproach) | [`Drive`], [`Odometry`], [`Camera`] |
 //! | [`ParkingDriver`](crate::drive::parking::ParkingDriver) | [`Drive`], [`Odometry`], [`Camera`], [`DistanceSensors`] |
 //! | [`ColourTracker`](crate::drive::colour::ColourTracker), [`PushHome`](crate::drive::colour::PushHome) | [`Drive`], [`Odometry`], [`Camera`], [`Lidar`], [`StallDetector`] |
 //! | [`CarToB`](crate::drive::CarToB) | [`Motors`], [`Servos`], [`Odometry`], [`StallDetector`] |

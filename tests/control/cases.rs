@@ -1,6 +1,7 @@
 //! Every behaviour of the library, on a robot that it drives.
 
 use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
+use roverlab::drive::end_to_end::{NetworkDriver, SteeringTeacher, TeacherParameters};
 use roverlab::drive::lane_keeping::{BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters};
 use roverlab::drive::marine::{
     Boat, BoatParameters, Dive, DiveParameters, PoolSearch, PoolSearchParameters, PoolWall,
@@ -39,6 +40,7 @@ use roverlab::nav::{
 use roverlab::race::{EventParameters, EventRacer, GapDriver, Racer, RacerParameters};
 use roverlab::random::Stream;
 use roverlab::vision::lane_markings::RoadModel;
+use roverlab::vision::network::Network;
 use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod};
 use roverlab::world::{RobotSpec, World};
 
@@ -62,6 +64,11 @@ where
     Ok(format!("{outcome:?}"))
 }
 
+/// A network that sees the image and steers straight on.
+fn straight_on() -> Result<Network> {
+    Ok(Network::new("16x40x1 dense1".parse()?, vec![(vec![0.0; 640], vec![0.0])])?)
+}
+
 pub(super) const CASES: &[Case] = &[
     ("lane", RobotSpec::s4, |robot, limit, stop| {
         let camera = RobotSpec::s4().camera.as_ref().unwrap().into();
@@ -72,6 +79,16 @@ pub(super) const CASES: &[Case] = &[
         let mut behaviour = BookLaneKeeper::new(BookLaneParameters::default())
             .map_err(|error| Error::new(ErrorKind::Other, error.to_string()))?;
         driven(robot, &mut behaviour, limit, stop)
+    }),
+    ("a network", RobotSpec::s4, |robot, limit, stop| {
+        driven(robot, &mut NetworkDriver::new(straight_on()?, 0.2)?, limit, stop)
+    }),
+    ("a teacher of steering", RobotSpec::s4, |robot, limit, stop| {
+        let camera = RobotSpec::s4().camera.as_ref().unwrap().into();
+        let keeper = LaneKeeper::new(camera, RoadModel::default(), LaneKeeperParameters::default())?;
+        let parameters = TeacherParameters { speed: 0.2, ..TeacherParameters::default() };
+        let size = straight_on()?.architecture().input();
+        driven(robot, &mut SteeringTeacher::new(keeper, size, parameters)?, limit, stop)
     }),
     ("traffic", RobotSpec::s4, |robot, limit, stop| {
         let camera = RobotSpec::s4().camera.as_ref().unwrap().into();

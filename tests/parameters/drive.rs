@@ -1,4 +1,5 @@
 use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
+use roverlab::drive::end_to_end::{SteeringTeacher, TeacherParameters};
 use roverlab::drive::lane_keeping::{BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters};
 use roverlab::drive::marine::{
     Boat, BoatParameters, DepthHoldParameters, Dive, DiveParameters, PoolSearch, PoolSearchParameters,
@@ -191,6 +192,12 @@ fn lanes() {
     check!(BookLaneParameters = BookLaneParameters::default(),
         |p| BookLaneKeeper::new(p)?,
         { Positive: period, speed, gain; BoundedFromZero: horizon; });
+    let teacher = |p| {
+        let keeper = LaneKeeper::new(camera(), RoadModel::default(), LaneKeeperParameters::default())?;
+        SteeringTeacher::new(keeper, MapSize { height: 8, width: 8, channels: 1 }, p)
+    };
+    check!(TeacherParameters = TeacherParameters::default(), |p| teacher(p)?,
+        { Positive: speed, pause; NotNegative: duration, disturbance; } but seed);
     check!(TrafficParameters = TrafficParameters::default(),
         |p| TrafficDriver::new(camera(), RoadModel::default(), p)?,
         { Positive: brake; NotNegative: gap, following, clearance; } but lane, passing, halts, body);

@@ -12,7 +12,7 @@ export const CHAPTERS = [
   ["Navigation", ["distbug", "bug-compare", "navigate"]],
   ["Robot vision", ["camera", "edges", "color-tracking", "motion"]],
   ["Evolution", ["genetic"]],
-  ["Driverless cars", ["lane-keeping", "traffic", "parking", "base-station"]],
+  ["Driverless cars", ["lane-keeping", "traffic", "parking", "base-station", "end-to-end"]],
   ["Formula SAE", ["cone-race", "cone-drive", "safety"]],
   ["Programs", ["program"]],
 ];
@@ -20,7 +20,7 @@ export const CHAPTERS = [
 const NAMES = {
   "a-to-b": "From A to B", "color-tracking": "Colour tracking", ackermann: "A car", omni: "Mecanum wheels", distbug: "DistBug",
   "bug-compare": "Eleven bugs", motion: "Motion detection", genetic: "Evolved wall follower", "cone-race": "Cone race",
-  summit: "To the summit", ramp: "A ramp over the lane", "pool-wall": "Along a pool's sides", survey: "A map of a pool",
+  "end-to-end": "By a network", summit: "To the summit", ramp: "A ramp over the lane", "pool-wall": "Along a pool's sides", survey: "A map of a pool",
   boat: "A raft on its course", "maze-left": "Left hand", "maze-lidar": "Left wall by lidar", "maze-explore": "Exploring a maze",
   safety: "Safety system", "lidar-scan": "Lidar scan", "first-steps": "To a wall and back", ping: "Ping by radio",
   "follow-me": "Follow me", edges: "Edges in images", program: "Programs in Python", dive: "To a depth",

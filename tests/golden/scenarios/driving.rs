@@ -1,5 +1,6 @@
 //! Driving to goals, along paths and over a whole floor; kinematics, controllers and landmarks.
 
+use roverlab::drive::end_to_end::NetworkDriver;
 use roverlab::drive::lane_keeping::{BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters};
 use roverlab::drive::parking::{ParkingDriver, ParkingKind, ParkingLot, ParkingParameters};
 use roverlab::drive::traffic::{
@@ -23,6 +24,7 @@ use roverlab::kinematics::{
 use roverlab::random::Stream;
 use roverlab::scan::{Landmark, LandmarkFilter};
 use roverlab::vision::lane_markings::RoadModel;
+use roverlab::vision::network::{Architecture, FixedNetwork, Network};
 use roverlab::world::road::{Appearance, RoadCourse, RoadCourseOptions, generate};
 use roverlab::world::{DriveSpec, ObjectKind, RobotSpec, Scene, Shape, World};
 
@@ -41,6 +43,7 @@ pub(super) const SCENARIOS: &[Scenario] = &[
     Scenario::new("landmarks", landmarks),
     Scenario::new("lane-keeping", lane_keeping),
     Scenario::new("lane-keeping-book", lane_keeping_book),
+    Scenario::new("end-to-end", end_to_end),
     Scenario::new("traffic", traffic),
     Scenario::new("parking", parking),
 ];
@@ -348,6 +351,30 @@ fn lane_keeping_book() -> Result<String> {
     let (_, scene) = on_the_road()?;
     let mut keeper = BookLaneKeeper::new(BookLaneParameters::default()).map_err(other)?;
     ride(&scene, noise(1.0, 29), |robot| run(robot, &mut keeper, 2.0, |_, _, _| {}).map(drop))
+}
+
+/// A car that is steered by a network of random weights, which looks at every pixel, and the bits of its results, in
+/// numbers of 32 bits and in integers.
+fn end_to_end() -> Result<String> {
+    let architecture: Architecture = "32x80x1 conv12/5/2 pool2 conv24/3/2 dense16 dense10".parse()?;
+    let mut random = Stream::new(30).child("weights", 0);
+    let mut layer = |(filters, taps): (usize, usize)| {
+        let spread = (2.0 / taps as f64).sqrt();
+        let weights = (0..filters * taps).map(|_| (spread * random.between(-1.0, 1.0)) as f32).collect();
+        (weights, vec![0.01; filters])
+    };
+    let weights = architecture.filters().flatten().map(&mut layer).collect();
+    let mut driver = NetworkDriver::new(Network::new(architecture, weights)?, 0.5)?;
+    let mut seen = String::new();
+    let mut log = ride(&on_the_road()?.1, noise(1.0, 30), |robot| {
+        run(robot, &mut driver, 2.0, |_, driver, _| note(&mut seen, "curvature", &driver.curvature())).map(drop)
+    })?;
+    let mut network = driver.network().clone();
+    let last = network.map(0).to_vec();
+    let mut fixed = FixedNetwork::new(&mut network, [last.as_slice()])?;
+    note(&mut log, "results", &network.run(&last)?.iter().map(|result| result.to_bits()).collect::<Vec<_>>());
+    note(&mut log, "whole", &fixed.run(&last)?.iter().map(|result| result.to_bits()).collect::<Vec<_>>());
+    Ok(log + &seen)
 }
 
 /// A car in traffic: its states, the elements that it finds, and what the referee says. The first box stands
