@@ -9,7 +9,7 @@ use crate::world::{
 
 impl RobotSpec {
     /// The robots that every scene knows by name.
-    pub const PREDEFINED: [&'static str; 15] = [
+    pub const PREDEFINED: [&'static str; 16] = [
         "S4",
         "SoccerBot",
         "LabBot",
@@ -23,6 +23,7 @@ impl RobotSpec {
         "Car",
         "Ackermann",
         "SAE",
+        "RoadCar",
         "Mako",
         "SolarRaft",
     ];
@@ -372,6 +373,7 @@ impl RobotSpec {
             "Blizzard" => Self::blizzard(),
             "Car" | "Ackermann" => Self::car(),
             "SAE" => Self::sae(),
+            "RoadCar" => Self::road_car(),
             "Mako" => Self::mako(),
             "SolarRaft" => Self::solar_raft(),
             _ => Self::s4(),
