@@ -30,6 +30,7 @@ pub(super) struct Passing {
     deviates: bool,
     own: Own,
     other: Option<Other>,
+    away: Option<Away>,
     /// Side on which the other car is being passed: 1 for its left, -1 for its right.
     side: Option<f64>,
     /// Number of decisions since the line was solved.
@@ -54,6 +55,14 @@ struct Other {
     unseen: f64,
 }
 
+/// Another car that is out of sight: distances from this car, around the lap, to where it was last seen and
+/// to where it is if it has kept its speed (m), and that speed (m/s).
+#[derive(Debug, Clone, Copy)]
+struct Away {
+    between: [f64; 2],
+    speed: f64,
+}
+
 /// Extent of a thing along the centre line and beside it (m).
 #[derive(Debug, Clone, Copy)]
 struct Extent {
@@ -73,7 +82,7 @@ const DECISIONS: u32 = 5;
 const GAINS: [f64; 3] = [0.4, 1.0, 0.3];
 /// Residual beyond which a seen car is another one (m).
 const ANOTHER: f64 = 5.0;
-/// Time after which a car ahead that is not seen any more is forgotten (s).
+/// Time after which a car ahead that is not seen any more may be anywhere from there on (s).
 const FORGOTTEN: f64 = 3.0;
 /// Distance kept to the other car's tail while the line changes, and to its nose after passing (m).
 const APART: f64 = 3.0;
@@ -130,6 +139,7 @@ impl Passing {
             deviates: false,
             own: Own::default(),
             other: None,
+            away: None,
             side: None,
             age: 0,
         }
@@ -143,22 +153,36 @@ impl Passing {
     /// Takes the car's place and speed, and the points of seen cars.
     pub(super) fn watch(&mut self, place: Point, speed: f64, bodies: &[Vec<Point>], period: f64) {
         let [along, aside] = self.locate(place);
+        let gained = self.signed(along - self.own.along);
         self.own = Own { along, aside, speed };
         if let Some(other) = &mut self.other {
             other.tail += other.speed * period;
             other.unseen += period;
         }
+        if let Some(Away { between: [seen, expected], speed }) = &mut self.away {
+            *seen -= gained;
+            *expected += *speed * period - gained;
+        }
+        self.away = self.away.filter(|away| away.between[1] > 0.0);
         let seen = bodies.iter().filter_map(|body| self.extent(body));
         let near = seen.filter(|extent| (-ANOTHER..HORIZON).contains(&extent.along[0]));
         if let Some(extent) = near.min_by(|a, b| a.along[0].total_cmp(&b.along[0])) {
             self.learn(&extent);
         }
-        let is_gone = |other: &Other| {
-            let gap = self.ahead(other.tail);
-            let passed = gap + self.car_length() + APART < -(self.outline.ahead + TAIL);
-            passed || (other.unseen > FORGOTTEN && gap > self.nose())
-        };
-        self.other = self.other.filter(|other| !is_gone(other));
+        let Some(other) = self.other else { return };
+        let gap = self.ahead(other.tail);
+        let passed = gap + self.car_length() + APART < -(self.outline.ahead + TAIL);
+        if passed || (other.unseen > FORGOTTEN && gap > self.nose()) {
+            let expected = if passed { gap + self.length } else { gap };
+            let between = [expected - other.speed * other.unseen, expected];
+            (self.other, self.away) = (None, Some(Away { between, speed: other.speed }));
+        }
+    }
+
+    /// Takes over what the passing on an earlier line knows of a car out of sight, at the place of this car.
+    pub(super) fn remember(&mut self, earlier: &Self, place: Point) {
+        self.own.along = self.locate(place)[0];
+        self.away = earlier.away;
     }
 
     /// Updates the other car.
@@ -177,8 +201,11 @@ impl Passing {
         };
         let known = self.other.map(|other| (other, self.signed(tail - other.tail)));
         self.other = Some(match known.filter(|(_, residual)| residual.abs() < ANOTHER) {
-            // Unless it is seen to move, it may stand.
-            None => Other { tail, aside, speed: 0.0, unseen: 0.0 },
+            // Unless it was seen to move, it may stand.
+            None => {
+                let speed = self.away.take().map_or(0.0, |away| away.speed);
+                Other { tail, aside, speed, unseen: 0.0 }
+            }
             Some((other, residual)) => {
                 let [place, speed, offset] = GAINS;
                 let trust = if is_tail_seen { 1.0 } else { 0.25 };
@@ -322,12 +349,18 @@ impl Passing {
         moves
     }
 
-    /// Maximum speed behind or beside a car, for a deceleration (m/s²) and a distance to keep behind it (m).
+    /// Maximum speed behind, beside or before the sight of a car, for a deceleration (m/s²) and a distance to keep behind it (m).
     pub(super) fn limit(&self, brake: f64, kept: f64) -> Option<f64> {
-        let other = self.other?;
+        let closing = |speed: f64, gap: f64| {
+            let passing = speed + CLOSING;
+            (passing * passing + 2.0 * brake * (gap - kept).max(0.0)).sqrt()
+        };
+        let Some(other) = self.other else {
+            // It may come into sight anywhere from where it was last seen on.
+            return self.away.map(|away| closing(away.speed, away.between[0].max(HORIZON)));
+        };
         let gap = self.ahead(other.tail);
-        let passing = other.speed + CLOSING;
-        let closing = (passing * passing + 2.0 * brake * (gap - kept).max(0.0)).sqrt();
+        let closing = closing(other.speed, gap);
         let is_ahead = gap + self.car_length() > self.nose();
         let closing = is_ahead.then_some(closing);
         self.behind(&other, brake, kept).into_iter().chain(closing).reduce(f64::min)

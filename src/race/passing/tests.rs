@@ -78,5 +78,24 @@ fn what_is_beside_the_track_or_past_does_not_matter() {
     let line = passing.change(&mut LineSolver::default(), |line| Some(line.len()));
     let again = (0..5).find_map(|_| passing.change(&mut LineSolver::default(), |line| Some(line.len())));
     assert!(line.or(again).is_some() && passing.is_idle(), "back to the racing line");
-    assert_eq!(passing.limit(5.0, 4.5), None);
+    assert!(passing.limit(5.0, 4.5).is_none_or(|limit| limit > 50.0));
+}
+
+#[test]
+fn a_car_that_was_passed_is_expected_a_lap_later() {
+    let mut passing = passing(3.5);
+    let (_, way) = follow(&mut passing, 0.0);
+    let (seen, lap) = (way + 10.0, TAU * RADIUS);
+    // On past it at 20 m/s, and around the lap to where it was; it drives 3 m/s.
+    let mut limits = Vec::new();
+    for step in 0..420 {
+        let way = way + f64::from(step);
+        passing.watch(at(way).position(), 20.0, &[], 0.05);
+        limits.push((way, passing.limit(5.0, 4.5).unwrap_or(f64::INFINITY)));
+    }
+    let limit = |way: f64| limits.iter().find(|(at, _)| *at >= way).unwrap().1;
+    assert!(limit(seen + 0.5 * lap) > 30.0, "on the far side");
+    let [sighted, expected] = [seen + lap - HORIZON, seen + lap - 10.0].map(limit);
+    assert!(sighted < 18.0 && expected < 18.0, "{sighted} {expected}");
+    assert_eq!(limit(way + 419.0), limit(way + 418.0), "as long as it may come into sight");
 }
