@@ -190,7 +190,7 @@ impl Racer {
             self.looks -= 1;
             return Twist::new(NEXT_TO_NONE, NEXT_TO_NONE * curvature_of(command));
         }
-        self.behind_others(command, seen)
+        self.behind_others(command, speed, seen)
     }
 
     fn command(&mut self, speed: Twist) -> Twist {
