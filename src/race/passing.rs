@@ -30,6 +30,7 @@ pub(super) struct Passing {
     deviates: bool,
     own: Own,
     other: Option<Other>,
+    away: Option<Away>,
     /// Side on which the other car is being passed: 1 for its left, -1 for its right.
     side: Option<f64>,
     /// Number of decisions since the line was solved.
@@ -44,14 +45,23 @@ struct Own {
     speed: f64,
 }
 
-/// Another car: its tail along the centre line (m), its middle beside it (m), its speed (m/s), and the time
-/// since it was last seen (s).
+/// Another car: its tail along the centre line (m), its middle beside it (m), its speed along it and to its
+/// left (m/s), and the time since it was last seen (s).
 #[derive(Debug, Clone, Copy)]
 struct Other {
     tail: f64,
     aside: f64,
     speed: f64,
+    drift: f64,
     unseen: f64,
+}
+
+/// Another car that is out of sight: distances from this car, around the lap, to where it was last seen and
+/// to where it is if it has kept its speed (m), and that speed (m/s).
+#[derive(Debug, Clone, Copy)]
+struct Away {
+    between: [f64; 2],
+    speed: f64,
 }
 
 /// Extent of a thing along the centre line and beside it (m).
@@ -69,11 +79,13 @@ const CAR_LIKE: f64 = 1.4;
 const HORIZON: f64 = 24.0;
 /// Number of decisions between two solutions.
 const DECISIONS: u32 = 5;
-/// Gains of the filter of the other car, for a residual: position, speed (1/s), offset.
-const GAINS: [f64; 3] = [0.4, 1.0, 0.3];
+/// Gains of the filter of the other car, for a residual: position, speed (1/s), offset, lateral speed (1/s).
+const GAINS: [f64; 4] = [0.4, 1.0, 0.3, 1.0];
+/// Time that it takes to give way to a car that comes nearer from the side (s).
+const GIVE_WAY: f64 = 0.5;
 /// Residual beyond which a seen car is another one (m).
 const ANOTHER: f64 = 5.0;
-/// Time after which a car ahead that is not seen any more is forgotten (s).
+/// Time after which a car ahead that is not seen any more may be anywhere from there on (s).
 const FORGOTTEN: f64 = 3.0;
 /// Distance kept to the other car's tail while the line changes, and to its nose after passing (m).
 const APART: f64 = 3.0;
@@ -98,6 +110,14 @@ const KEPT: ([f64; 2], f64) = ([3.0, 1.5], 0.2);
 const ON_LINE: f64 = 0.3;
 /// Maximum speed above that of a car that is passed (m/s).
 const CLOSING: f64 = 6.0;
+
+impl Other {
+    /// The offsets between which its middle is until one can give way (m).
+    fn between(&self) -> [f64; 2] {
+        let soon = self.aside + self.drift * GIVE_WAY;
+        [self.aside.min(soon), self.aside.max(soon)]
+    }
+}
 
 impl Passing {
     /// For a racing line, given by its offsets, with its speeds.
@@ -130,6 +150,7 @@ impl Passing {
             deviates: false,
             own: Own::default(),
             other: None,
+            away: None,
             side: None,
             age: 0,
         }
@@ -143,22 +164,39 @@ impl Passing {
     /// Takes the car's place and speed, and the points of seen cars.
     pub(super) fn watch(&mut self, place: Point, speed: f64, bodies: &[Vec<Point>], period: f64) {
         let [along, aside] = self.locate(place);
+        let gained = self.signed(along - self.own.along);
         self.own = Own { along, aside, speed };
         if let Some(other) = &mut self.other {
             other.tail += other.speed * period;
+            // Out of sight, it may stay aside as well as not.
+            other.drift = if other.unseen > 0.0 { 0.0 } else { other.drift };
+            other.aside += other.drift * period;
             other.unseen += period;
         }
+        if let Some(Away { between: [seen, expected], speed }) = &mut self.away {
+            *seen -= gained;
+            *expected += *speed * period - gained;
+        }
+        self.away = self.away.filter(|away| away.between[1] > 0.0);
         let seen = bodies.iter().filter_map(|body| self.extent(body));
         let near = seen.filter(|extent| (-ANOTHER..HORIZON).contains(&extent.along[0]));
         if let Some(extent) = near.min_by(|a, b| a.along[0].total_cmp(&b.along[0])) {
             self.learn(&extent);
         }
-        let is_gone = |other: &Other| {
-            let gap = self.ahead(other.tail);
-            let passed = gap + self.car_length() + APART < -(self.outline.ahead + TAIL);
-            passed || (other.unseen > FORGOTTEN && gap > self.nose())
-        };
-        self.other = self.other.filter(|other| !is_gone(other));
+        let Some(other) = self.other else { return };
+        let gap = self.ahead(other.tail);
+        let passed = gap + self.car_length() + APART < -(self.outline.ahead + TAIL);
+        if passed || (other.unseen > FORGOTTEN && gap > self.nose()) {
+            let expected = if passed { gap + self.length } else { gap };
+            let between = [expected - other.speed * other.unseen, expected];
+            (self.other, self.away) = (None, Some(Away { between, speed: other.speed }));
+        }
+    }
+
+    /// Takes over what the passing on an earlier line knows of a car out of sight, at the place of this car.
+    pub(super) fn remember(&mut self, earlier: &Self, place: Point) {
+        self.own.along = self.locate(place)[0];
+        self.away = earlier.away;
     }
 
     /// Updates the other car.
@@ -177,15 +215,20 @@ impl Passing {
         };
         let known = self.other.map(|other| (other, self.signed(tail - other.tail)));
         self.other = Some(match known.filter(|(_, residual)| residual.abs() < ANOTHER) {
-            // Unless it is seen to move, it may stand.
-            None => Other { tail, aside, speed: 0.0, unseen: 0.0 },
+            // Unless it was seen to move, it may stand.
+            None => {
+                let speed = self.away.take().map_or(0.0, |away| away.speed);
+                Other { tail, aside, speed, drift: 0.0, unseen: 0.0 }
+            }
             Some((other, residual)) => {
-                let [place, speed, offset] = GAINS;
+                let [place, speed, offset, drift] = GAINS;
+                let moved = aside - other.aside;
                 let trust = if is_tail_seen { 1.0 } else { 0.25 };
                 Other {
                     tail: other.tail + place * trust * residual,
-                    aside: other.aside + offset * (aside - other.aside),
+                    aside: other.aside + offset * moved,
                     speed: (other.speed + speed * trust * residual).max(0.0),
+                    drift: other.drift + drift * moved,
                     unseen: 0.0,
                 }
             }
@@ -304,30 +347,34 @@ impl Passing {
     pub(super) fn leads_over(&mut self, line: &[Point], place: Point, speed: f64) -> bool {
         let [along, aside] = self.locate(place);
         self.own = Own { along, aside, speed };
-        let kept: Vec<usize> = (0..self.along.len()).filter(|&i| self.is_kept(i)).collect();
-        let earlier = kept.iter().filter_map(|&i| {
-            let CrossSection { position, normal, .. } = self.corridor.stations()[i];
+        // All of it: a change may be refused, and come farther on.
+        let offset = |CrossSection { position, normal, .. }: &CrossSection| {
             let away = |point: &&Point| (*point - position).norm_squared();
-            let nearest = line.iter().min_by(|a, b| away(a).total_cmp(&away(b)))?;
-            Some((i, (nearest - position).dot(&normal)))
-        });
-        let earlier: Vec<(usize, f64)> = earlier.collect();
-        let moves = earlier.iter().any(|(i, offset)| (self.offsets[*i] - offset).abs() > ON_LINE);
+            let nearest = line.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
+            nearest.map_or(0.0, |nearest| (nearest - position).dot(normal))
+        };
+        let earlier: Vec<f64> = self.corridor.stations().iter().map(offset).collect();
+        let mut kept = (0..self.along.len()).filter(|&i| self.is_kept(i));
+        let moves = kept.any(|i| (self.offsets[i] - earlier[i]).abs() > ON_LINE);
         if moves {
-            for &(i, offset) in &earlier {
-                self.offsets[i] = offset;
-            }
-            (self.deviates, self.age) = (true, DECISIONS);
+            (self.offsets, self.deviates, self.age) = (earlier, true, DECISIONS);
         }
         moves
     }
 
-    /// Maximum speed behind or beside a car, for a deceleration (m/s²) and a distance to keep behind it (m).
+    /// Maximum speed behind or beside a car, and before one comes into sight, for a deceleration (m/s²) and a
+    /// distance to keep behind it (m).
     pub(super) fn limit(&self, brake: f64, kept: f64) -> Option<f64> {
-        let other = self.other?;
+        let closing = |speed: f64, gap: f64| {
+            let passing = speed + CLOSING;
+            (passing * passing + 2.0 * brake * (gap - kept).max(0.0)).sqrt()
+        };
+        let Some(other) = self.other else {
+            // It may come into sight anywhere from where it was last seen on.
+            return self.away.map(|away| closing(away.speed, away.between[0].max(HORIZON)));
+        };
         let gap = self.ahead(other.tail);
-        let passing = other.speed + CLOSING;
-        let closing = (passing * passing + 2.0 * brake * (gap - kept).max(0.0)).sqrt();
+        let closing = closing(other.speed, gap);
         let is_ahead = gap + self.car_length() > self.nose();
         let closing = is_ahead.then_some(closing);
         self.behind(&other, brake, kept).into_iter().chain(closing).reduce(f64::min)
@@ -341,7 +388,8 @@ impl Passing {
         if gap + 0.5 * self.car_length() < self.nose() {
             return None;
         }
-        let is_close = |offset: f64| (offset - other.aside).abs() < needed;
+        let [right, left] = other.between();
+        let is_close = |offset: f64| (right - needed..left + needed).contains(&offset);
         let on_line = (0..self.along.len()).filter(|&i| is_close(self.offsets[i]));
         let ways = on_line.map(|i| self.ahead(self.along[i]));
         let last = ways.filter(|way| (0.0..gap + self.car_length() + 1.0).contains(way)).reduce(f64::max);

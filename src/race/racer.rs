@@ -190,7 +190,7 @@ impl Racer {
             self.looks -= 1;
             return Twist::new(NEXT_TO_NONE, NEXT_TO_NONE * curvature_of(command));
         }
-        self.behind_others(command, seen)
+        self.behind_others(command, speed, seen)
     }
 
     fn command(&mut self, speed: Twist) -> Twist {
@@ -399,7 +399,11 @@ impl Racer {
         let margins = self.solver.margins_for(&corridor, &p.outline, &line)?;
         let found = self.solver.solve_within(&corridor, &corridor.room(&margins), &line);
         let tracker = tracker_along(&found.points, p)?;
-        self.passing = Some(Passing::new(corridor, p.outline, margins, found.offsets, tracker.profile()));
+        let mut passing = Passing::new(corridor, p.outline, margins, found.offsets, tracker.profile());
+        if let Some(earlier) = &self.passing {
+            passing.remember(earlier, self.map.pose().to_world(ahead));
+        }
+        self.passing = Some(passing);
         Ok(tracker)
     }
 }

@@ -257,6 +257,19 @@ impl LineTracker {
         tyres.left_along(wanted, across)
     }
 
+    /// Slowest speed command that brakes no harder than the tyres allow besides the bend of a command (m/s).
+    pub(super) fn slowest(&self, command: Twist, moving: Twist) -> f64 {
+        let bend = command.angular / command.linear.max(1e-6);
+        moving.linear - self.left_along(bend, moving) * self.parameters.speed_time
+    }
+
+    /// Planned speed at the point of the line nearest to a place (m/s).
+    pub(super) fn speed_at(&self, place: Point) -> f64 {
+        let squared = |i: &usize| (self.points[*i] - place).norm_squared();
+        let nearest = (0..self.points.len()).min_by(|a, b| squared(a).total_cmp(&squared(b)));
+        nearest.map_or(0.0, |nearest| self.profile.speeds[nearest])
+    }
+
     /// Additional yaw rotation along the line (1/m): with increasing slip, the nose turns into the bend.
     fn swing(&self, piece: usize, share: f64, beyond: f64, push: f64) -> f64 {
         let inwards = |beyond: f64| {

@@ -9,6 +9,8 @@ use crate::race::tracker::LineTracker;
 /// Other cars: distance from the line within which one is in the way, distance ahead at which it begins to
 /// matter, and distance kept from the centre of this car to the end of the other (m).
 const OTHERS: (f64, f64, f64) = (1.5, 24.0, 4.5);
+/// Speed by which a car may be too fast for a new line (m/s).
+const TOO_FAST: f64 = 0.5;
 
 impl Racer {
     /// Looks for other cars in a scan, before [`decide`](Self::decide).
@@ -56,14 +58,19 @@ impl Racer {
         let own = pose.to_world(Point::new(self.parameters.tracker.ahead, 0.0));
         passing.watch(own, speed.linear, &bodies, self.parameters.period);
         self.has_met |= !passing.is_idle();
-        let parameters = &self.parameters;
-        if let Some(tracker) = passing.change(&mut self.solver, |line| tracker_along(line, parameters).ok()) {
+        let (parameters, present) = (&self.parameters, self.tracker.as_ref());
+        // A line on which the car is too fast already is not come to: it would slide across the track.
+        let fast = present.map_or(0.0, |line| line.speed_at(own).min(speed.linear) - TOO_FAST);
+        let change = |line: &[Point]| {
+            tracker_along(line, parameters).ok().filter(|tracker| tracker.speed_at(own) >= fast)
+        };
+        if let Some(tracker) = passing.change(&mut self.solver, change) {
             self.tracker = Some(tracker);
         }
     }
 
     /// Limits a command to keep a distance from a car ahead.
-    pub(super) fn behind_others(&self, command: Twist, seen: &[ConeSighting]) -> Twist {
+    pub(super) fn behind_others(&self, command: Twist, speed: Twist, seen: &[ConeSighting]) -> Twist {
         let brake = self.parameters.first_lap.brake;
         let fastest = match &self.passing {
             Some(passing) if self.phase == RacePhase::Racing => passing.limit(brake, OTHERS.2),
@@ -71,7 +78,9 @@ impl Racer {
         };
         match fastest {
             Some(fastest) if command.linear > fastest => {
-                let slower = fastest.max(NEXT_TO_NONE);
+                // No harder than the tyres allow besides the bend: a car that slides hits something else.
+                let softest = self.tracker.as_ref().map_or(0.0, |line| line.slowest(command, speed));
+                let slower = fastest.max(softest.min(command.linear)).max(NEXT_TO_NONE);
                 Twist::new(slower, slower * curvature_of(command))
             }
             _ => command,
