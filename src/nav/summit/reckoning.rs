@@ -31,13 +31,13 @@ const NOISE: f64 = 0.01;
 const HELD: f64 = 0.1;
 /// The share of a turn not made that a step remembers: half of it for 1.4 s.
 const MEMORY: f64 = 0.975;
-/// Turn not made from which a robot is locked, and below which it is free again (rad). Steady turns by a third
-/// too little do not add up to so much.
+/// Turn not made from which a robot is locked, and below which it is free again (rad). Steady turns by a
+/// third too little do not add up to so much.
 const LOCKED: [f64; 2] = [0.6, 0.3];
 
 impl Reckoning {
-    /// Takes in how the wheels turned. In a turn of one radian belts slide `slide` metres downhill for a slope
-    /// of 1; they are two of `half_track` apart.
+    /// Takes in how the wheels turned. In a turn of one radian belts slide `slide` metres downhill for a
+    /// slope of 1; they are two of `half_track` apart.
     ///
     /// In a hollow a robot stands on the ends of its belts, which may hold too well sideways for it to turn.
     /// Then one belt slips and the robot moves as the other one does: on a slope, the one that runs downhill.
@@ -99,7 +99,7 @@ mod tests {
     use crate::nav::SummitParameters;
     use crate::world::RobotSpec;
 
-    /// Belts turn a robot on the spot, which stands in a hollow and does not turn: it slides with the lower one.
+    /// Belts are to turn a robot on the spot, and it stands in a hollow: it slides with the lower one.
     #[test]
     fn a_robot_that_does_not_turn_moves_with_its_lower_belt() {
         let parameters = SummitParameters::of(&RobotSpec::blizzard()).unwrap();

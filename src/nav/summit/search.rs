@@ -19,6 +19,9 @@ use crate::world::GridCell;
 /// [`Climber`](crate::nav::elevation::Climber) allows. The first two looks, with a quarter of a turn between,
 /// show by how much the inertial unit is wrong.
 ///
+/// In hollows a robot stands on the ends of its belts and may not turn. Wheels and inertial unit then differ:
+/// the search counts its way by the belt that holds, and drives straight on to where the robot can turn.
+///
 /// It ends on the highest place that can be reached; what is still unknown when the time is over tells
 /// [`unknown_area`](SummitSearch::unknown_area).
 ///
