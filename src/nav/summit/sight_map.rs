@@ -58,7 +58,7 @@ struct Filled {
 const MEASURED: f64 = 0.06;
 /// Largest error of a step of the map (m).
 const NOISE: f64 = 0.01;
-/// Area of a patch that is worth a look (m²), unless it has been seen to be higher by more than a step's error.
+/// Area of a patch that is worth a look (m²), unless it is seen to be higher by more than a step's error.
 const PATCH: f64 = 0.02;
 /// Depth below what a slope could lead to from which ground is a drop (m).
 const DROP: f64 = 0.04;
