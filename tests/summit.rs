@@ -48,7 +48,7 @@ fn search(kind: ReliefKind, seed: u64, limit: f64) -> Trial {
 
 #[test]
 fn the_highest_place_of_a_range_is_found() {
-    for seed in [SEEDS[0], SEEDS[1]] {
+    for seed in SEEDS {
         let trial = search(ReliefKind::Range, seed, 1200.0);
         assert_eq!((trial.outcome, trial.mishap), (SummitOutcome::Highest, None), "{seed}: {trial:?}");
         assert!(trial.away <= 0.1 || trial.below <= 0.02, "{seed}: {trial:?}");
@@ -56,8 +56,9 @@ fn the_highest_place_of_a_range_is_found() {
     }
 }
 
-/// Seeds of ranges with a way to the top of moderate length.
-const SEEDS: [u64; 2] = [1, 2];
+/// Seeds of ranges: two with a way to the top of moderate length, two with hollows in which belts do not turn
+/// the robot, and one whose top can be given up too early.
+const SEEDS: [u64; 5] = [1, 2, 14, 187, 111];
 
 #[test]
 fn what_is_unknown_is_told_when_the_time_is_over() {

@@ -58,8 +58,8 @@ fn hills() {
     check_variant!(Objective::Time = Objective::Time { speed: 0.1, climb: 0.1 }, |p| plans(p)?, { Positive: speed, climb; });
     check!(SummitParameters = SummitParameters::of(&RobotSpec::blizzard()).expect("a lidar"),
         |p| SummitSearch::new(p)?,
-        { Positive: speed, turn_rate, stride, tolerance, period; NotNegative: slide; Bounded: resolution, extent;
-          Finite: lowest; } but climber, lidar, fence);
+        { Positive: speed, turn_rate, stride, tolerance, period; NotNegative: slide, half_track;
+          Bounded: resolution, extent; Finite: lowest; } but climber, lidar, fence);
 }
 
 #[test]

@@ -1,4 +1,5 @@
 use super::parameters::SummitParameters;
+use super::reckoning::Reckoning;
 use crate::geometry::{Point, Pose, Twist, direction, math, normalize_angle};
 
 /// A way that a [`SummitSearch`](super::SummitSearch) drives.
@@ -11,6 +12,8 @@ pub(super) struct Drive {
     passed: usize,
     /// The least distance to the end so far, and since when.
     nearest: (f64, f64),
+    /// 1 forwards, -1 backwards, while it drives straight to where it can turn.
+    freeing: Option<f64>,
 }
 
 /// What comes of a step on a way.
@@ -49,6 +52,7 @@ impl Drive {
             backwards: bearing.abs() > std::f64::consts::FRAC_PI_2,
             passed: 0,
             nearest: (f64::INFINITY, time),
+            freeing: None,
         }
     }
 
@@ -57,7 +61,14 @@ impl Drive {
     }
 
     /// The next speed for a pose, and the angle by which the robot is tilted.
-    pub(super) fn step(&mut self, time: f64, pose: Pose, tilt: f64, parameters: &SummitParameters) -> Step {
+    pub(super) fn step(
+        &mut self,
+        time: f64,
+        reckoning: &Reckoning,
+        tilt: f64,
+        parameters: &SummitParameters,
+    ) -> Step {
+        let pose = reckoning.pose;
         let SummitParameters { speed, turn_rate, climber, .. } = *parameters;
         let Some(&end) = self.way.last() else { return Step::Arrived };
         let rest = pose.distance_to(end);
@@ -73,6 +84,11 @@ impl Drive {
             let ahead = pose.position() + direction(pose.heading) * (sign * AHEAD);
             return Step::NoWay { ahead, sign };
         }
+        if reckoning.is_locked() {
+            let sign = *self.freeing.get_or_insert_with(|| along_way(&self.way, pose));
+            return Step::Go(Twist::new(sign * speed, 0.0));
+        }
+        self.freeing = None;
         while self.passed + 1 < self.way.len() && pose.distance_to(self.way[self.passed]) < AHEAD {
             self.passed += 1;
         }
@@ -83,6 +99,15 @@ impl Drive {
         let ahead = if bearing.abs() > ASIDE { 0.0 } else { sign * fast * math::cos(bearing) };
         Step::Go(Twist::new(ahead, turn))
     }
+}
+
+/// 1 if the way is nearer ahead of the robot than behind it, or else -1.
+fn along_way(way: &[Point], pose: Pose) -> f64 {
+    let away = |sign: f64| {
+        let place = pose.position() + direction(pose.heading) * (sign * AHEAD);
+        way.iter().map(|point| (point - place).norm_squared()).fold(f64::INFINITY, f64::min)
+    };
+    if away(1.0) <= away(-1.0) { 1.0 } else { -1.0 }
 }
 
 /// Metres along a way.

@@ -98,6 +98,12 @@ const REST: f64 = 0.6;
 const ALIGNED: f64 = 0.1;
 /// Distance that it backs off (m).
 const BACK: f64 = 0.15;
+/// Drive by the wheels from which a robot should have got on (m).
+const TURNED: f64 = 0.2;
+/// The least part of a drive by the wheels that a robot makes if it gets on.
+const GOT_ON: f64 = 0.25;
+/// Distance to the place that a robot does not get to (m).
+const IN_FRONT: f64 = 0.18;
 /// Distance within which a look is compared with the map (m).
 const NEAR: f64 = 4.0;
 /// Error of the inertial unit before its calibration (rad).
@@ -193,13 +199,16 @@ impl Explorer {
             MOST_LOOKS => return Event::Stuck,
             _ if self.forgets => self.map.clear(),
             _ => {
+                let believed = self.here();
                 // What does not lie on the map is not put there; once more, and the map is wrong.
                 let fits = self.align(sweep, CALIBRATED).is_some();
                 if !fits && !self.lost {
                     self.lost = true;
                     return Event::Go(self.settle());
                 }
-                if !fits {
+                if fits {
+                    self.note_slip(believed);
+                } else {
                     self.map.clear();
                 }
             }
@@ -208,6 +217,15 @@ impl Explorer {
         self.take_in(sweep);
         self.views.push(self.here());
         Event::Looked
+    }
+
+    /// If belts have turned and the robot has not got on, it does not try the same again.
+    fn note_slip(&mut self, believed: Point) {
+        let before = self.looked_from.xy();
+        let told = believed - before;
+        if told.norm() > TURNED && (self.here() - before).norm() < GOT_ON * told.norm() {
+            self.map.shun(self.here() + told.normalize() * IN_FRONT, 0.1);
+        }
     }
 
     /// Corrects where the robot takes itself to be by what it knows of the ground. `None` if what it sees
@@ -334,7 +352,8 @@ impl Explorer {
         check_pose(&seen.odometry)?;
         check_attitude(&seen.attitude)?;
         check_scan(&seen.scan)?;
-        self.reckoning.update(seen.odometry, seen.attitude, self.parameters.slide);
+        let SummitParameters { slide, half_track, .. } = self.parameters;
+        self.reckoning.update(seen.odometry, seen.attitude, slide, half_track);
         let go = |twist| Ok(Event::Go(twist));
         match &mut self.state {
             State::Settling { until } => {
@@ -358,12 +377,15 @@ impl Explorer {
                 if rest.abs() < ALIGNED {
                     return go(self.settle());
                 }
+                if self.reckoning.is_locked() {
+                    return go(Twist::new(self.parameters.speed, 0.0));
+                }
                 let rate = self.parameters.turn_rate;
                 go(Twist::new(0.0, (2.0 * rest).clamp(-rate, rate)))
             }
             State::Driving(drive) => {
                 let tilt = self.reckoning.corrected(seen.attitude).frame().tilt();
-                match drive.step(time, self.reckoning.pose, tilt, &self.parameters) {
+                match drive.step(time, &self.reckoning, tilt, &self.parameters) {
                     Step::Go(twist) => go(twist),
                     Step::Arrived => go(self.settle()),
                     Step::NoWay { ahead, sign } => {

@@ -14,6 +14,9 @@ pub struct SummitParameters {
     pub lidar: Pose3,
     /// Downhill slip in a turn on the spot, per radian and per unit of slope (m); 0 for wheels.
     pub slide: f64,
+    /// Half the distance between the wheels of the differential drive that belts are like (m); 0 for wheels,
+    /// which do not slip in turns.
+    pub half_track: f64,
     /// Driving speed (m/s).
     pub speed: f64,
     /// Maximum turn rate (rad/s).
@@ -57,16 +60,18 @@ impl SummitParameters {
     /// Parameters for a robot; `None` without a lidar.
     pub fn of(spec: &RobotSpec) -> Option<Self> {
         let mount = spec.lidar?.mount;
-        let slide = match spec.drive {
+        let (slide, half_track) = match spec.drive {
             DriveSpec::Tracked { track, length, width, .. } => {
-                Tracked { track, length, width }.downhill_drift() / spec.friction.max(0.1)
+                let belts = Tracked { track, length, width };
+                (belts.downhill_drift() / spec.friction.max(0.1), 0.5 * belts.equivalent().track)
             }
-            _ => 0.0,
+            _ => (0.0, 0.0),
         };
         Some(Self {
             climber: Climber::of(spec),
             lidar: mount.frame(),
             slide,
+            half_track,
             speed: 0.15_f64.min(0.5 * spec.drive.top_speed()),
             turn_rate: 0.8,
             stride: 0.8,
@@ -87,6 +92,7 @@ impl SummitParameters {
         let at = self.lidar.position;
         require("lidar height", at.z, self.lidar.is_finite() && at.z > 0.0, "more than 0")?;
         require_not_negative("slide", self.slide)?;
+        require_not_negative("half track", self.half_track)?;
         require_positive("speed", self.speed)?;
         require_positive("turn rate", self.turn_rate)?;
         require_positive("stride", self.stride)?;

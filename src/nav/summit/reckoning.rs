@@ -17,32 +17,56 @@ pub(super) struct Reckoning {
     before: Option<Pose>,
     /// The unit's yaw where the heading is 0.
     north: f64,
+    /// Turn of the last seconds by the wheels that the robot did not make (rad).
+    unturned: f64,
+    locked: bool,
 }
 
 /// The share of a difference between the headings of wheels and unit that a step takes over: belts turn a
 /// robot by a third more or less than they should, while the unit's error is half a degree.
 const TRUST: f64 = 0.25;
+/// Turn by the wheels that the robot does not make, up to which that is noise of the unit (rad).
+const NOISE: f64 = 0.01;
+/// Rise per metre from which the lower belt holds.
+const HELD: f64 = 0.1;
+/// The share of a turn not made that a step remembers: half of it for 1.4 s.
+const MEMORY: f64 = 0.975;
+/// Turn not made from which a robot is locked, and below which it is free again (rad). Steady turns by a
+/// third too little do not add up to so much.
+const LOCKED: [f64; 2] = [0.6, 0.3];
 
 impl Reckoning {
-    /// Takes in how the wheels turned. In a turn of one radian belts slide so many metres downhill for a
-    /// slope of 1.
-    pub(super) fn update(&mut self, odometry: Pose, attitude: Attitude, slide: f64) {
+    /// Takes in how the wheels turned. In a turn of one radian belts slide `slide` metres downhill for a
+    /// slope of 1; they are two of `half_track` apart.
+    ///
+    /// In a hollow a robot stands on the ends of its belts, which may hold too well sideways for it to turn.
+    /// Then one belt slips and the robot moves as the other one does: on a slope, the one that runs downhill.
+    pub(super) fn update(&mut self, odometry: Pose, attitude: Attitude, slide: f64, half_track: f64) {
         let Some(before) = self.before.replace(odometry) else {
             self.north = attitude.yaw;
             return;
         };
         let way = odometry.position() - before.position();
         let length = way.dot(&direction(before.heading));
-        let turned = angle_difference(odometry.heading, before.heading);
-        let heading = self.pose.heading + turned;
-        let turned = turned + TRUST * angle_difference(attitude.yaw - self.north, heading);
+        let told = angle_difference(odometry.heading, before.heading);
+        let heading = self.pose.heading + told;
+        let turned = told + TRUST * angle_difference(attitude.yaw - self.north, heading);
+        self.unturned = MEMORY * (self.unturned + told - turned);
+        self.locked = self.unturned.abs() > LOCKED[usize::from(self.locked)];
         let (rise, run) = math::sin_cos(-(attitude.pitch - self.bias[1]));
+        let lower = (-rise / HELD).clamp(-1.0, 1.0);
+        let length = length + lower * half_track * ((told - turned).abs() - NOISE).max(0.0);
         let place = self.pose.position() + direction(self.pose.heading + 0.5 * turned) * (length * run);
         let up = self.in_space(attitude).up();
         let downhill = Vector::new(up.x, up.y) / up.z.max(0.1);
         let place = place + downhill * (slide * turned.abs());
         self.pose = Pose::new(place.x, place.y, normalize_angle(self.pose.heading + turned));
         self.elevation += length * rise - downhill.norm_squared() * slide * turned.abs();
+    }
+
+    /// Whether the wheels do not turn the robot.
+    pub(super) fn is_locked(&self) -> bool {
+        self.locked
     }
 
     /// Moves the robot to where it has been found to be.
@@ -65,5 +89,49 @@ impl Reckoning {
         let turned = self.corrected(attitude);
         let place = Point3::new(self.pose.x, self.pose.y, self.elevation);
         Pose3::from_angles(place, turned.roll, turned.pitch, turned.yaw)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinematics::Tracked;
+    use crate::nav::SummitParameters;
+    use crate::world::RobotSpec;
+
+    /// Belts are to turn a robot on the spot, and it stands in a hollow: it slides with the lower one.
+    #[test]
+    fn a_robot_that_does_not_turn_moves_with_its_lower_belt() {
+        let parameters = SummitParameters::of(&RobotSpec::blizzard()).unwrap();
+        let half = 0.5 * Tracked::new(0.185, 0.260, 0.070).unwrap().equivalent().track;
+        assert!((parameters.half_track - half).abs() < 1e-9);
+        let (rate, period) = (0.8, parameters.period);
+        for pitch in [0.15, -0.15] {
+            let mut reckoning = Reckoning::default();
+            for step in 0..61 {
+                let odometry = Pose::new(0.0, 0.0, rate * period * f64::from(step));
+                let attitude = Attitude { roll: 0.0, pitch, yaw: 0.0 };
+                reckoning.update(odometry, attitude, parameters.slide, half);
+            }
+            assert!(reckoning.is_locked());
+            // Of its 3 s, it takes a quarter to notice, and then errs by its noise.
+            let way = half * rate * 3.0 * pitch.signum();
+            let found = reckoning.pose.x;
+            assert!(found / way > 0.6 && found / way < 1.1, "{found} {way}");
+            assert!(reckoning.elevation < 0.0 && reckoning.pose.heading.abs() < 0.2);
+        }
+    }
+
+    /// Turns as odometry counts them leave it free.
+    #[test]
+    fn a_robot_that_turns_is_free() {
+        let mut reckoning = Reckoning::default();
+        for step in 0..200 {
+            let heading = normalize_angle(0.04 * f64::from(step));
+            let attitude = Attitude { roll: 0.0, pitch: 0.15, yaw: heading };
+            reckoning.update(Pose::new(0.0, 0.0, heading), attitude, 0.0, 0.187);
+            assert!(!reckoning.is_locked());
+        }
+        assert!(reckoning.pose.position().coords.norm() < 0.01, "{:?}", reckoning.pose);
     }
 }

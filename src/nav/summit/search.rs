@@ -19,6 +19,9 @@ use crate::world::GridCell;
 /// [`Climber`](crate::nav::elevation::Climber) allows. The first two looks, with a quarter of a turn between,
 /// show by how much the inertial unit is wrong.
 ///
+/// In hollows a robot stands on the ends of its belts and may not turn. Wheels and inertial unit then differ:
+/// the search counts its way by the belt that holds, and drives straight on to where the robot can turn.
+///
 /// It ends on the highest place that can be reached; what is still unknown when the time is over tells
 /// [`unknown_area`](SummitSearch::unknown_area).
 ///
@@ -166,9 +169,9 @@ impl SummitSearch {
             if length(known) > LEAST_WAY {
                 return ControlFlow::Continue(self.explorer.drive(time, known));
             }
-            // It has looked from here, and does not see that it could go on: nor will it.
+            // It has looked from here, and does not see that it could go on.
             let beyond = way[known.len().min(way.len() - 1)];
-            self.explorer.map.shun(beyond, LOST_SIGHT);
+            self.explorer.map.give_up(beyond, LOST_SIGHT);
             chart = self.explorer.map.chart(&self.explorer.parameters);
             if self.explorer.footing(&mut chart, here).is_none() {
                 return ControlFlow::Break(SummitOutcome::Stuck);
@@ -213,9 +216,8 @@ impl SummitSearch {
     ) -> ControlFlow<SummitOutcome, Twist> {
         let way = self.explorer.way_over(&chart.safe, climbing_costs(chart), start, top).unwrap_or_default();
         let gain = self.explorer.height(top) - self.explorer.reckoning.elevation;
-        let there = length(&way) <= 1.5 * self.explorer.parameters.resolution
-            || gain < 0.25 * self.explorer.parameters.tolerance;
-        if there || self.approaches >= MOST_APPROACHES {
+        // Not by how near it is: on a slope, half a cell is worth several tolerances.
+        if gain < self.explorer.parameters.tolerance || self.approaches >= MOST_APPROACHES {
             return ControlFlow::Break(SummitOutcome::Highest);
         }
         // Ways that end on the top, not those that lead to it.

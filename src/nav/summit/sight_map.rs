@@ -19,6 +19,8 @@ pub(super) struct SightMap {
     ceilings: Vec<f64>,
     /// Cells on which the robot has found that it cannot stand.
     shunned: Vec<bool>,
+    /// Cells that the robot did not see well enough from beside them: it does not go there to look again.
+    given_up: Vec<bool>,
 }
 
 /// Cosine of the largest tilt of a robot that stands: 60 degrees.
@@ -56,7 +58,7 @@ struct Filled {
 const MEASURED: f64 = 0.06;
 /// Largest error of a step of the map (m).
 const NOISE: f64 = 0.01;
-/// Square metres of a patch that is worth a look.
+/// Area of a patch that is worth a look (m²), unless it is seen to be higher by more than a step's error.
 const PATCH: f64 = 0.02;
 /// Depth below what a slope could lead to from which ground is a drop (m).
 const DROP: f64 = 0.04;
@@ -74,6 +76,7 @@ impl SightMap {
             seen: vec![(0.0, 0.0); side * side],
             ceilings: vec![f64::INFINITY; side * side],
             shunned: vec![false; side * side],
+            given_up: vec![false; side * side],
         }
     }
 
@@ -211,10 +214,25 @@ impl SightMap {
 
     /// Notes that the robot cannot stand around a place.
     pub(super) fn shun(&mut self, place: Point, radius: f64) {
-        for index in 0..self.seen.len() {
-            let cell = GridCell::new(index % self.side, index / self.side);
-            self.shunned[index] |= (self.place(cell) - place).norm() <= radius;
+        for index in self.around(place, radius) {
+            self.shunned[index] = true;
         }
+    }
+
+    /// Notes that a look from beside a place shows no way on. Ground there that is seen from elsewhere is as
+    /// good as any.
+    pub(super) fn give_up(&mut self, place: Point, radius: f64) {
+        for index in self.around(place, radius) {
+            self.given_up[index] = true;
+        }
+    }
+
+    fn around(&self, place: Point, radius: f64) -> Vec<usize> {
+        let is_near = |index: &usize| {
+            let cell = GridCell::new(index % self.side, index / self.side);
+            (self.place(cell) - place).norm() <= radius
+        };
+        (0..self.seen.len()).filter(is_near).collect()
     }
 
     /// Where the robot can drive, and where it perhaps can.
@@ -254,8 +272,12 @@ impl SightMap {
         };
         let holds: Vec<bool> = (0..known.len()).map(|index| fenced(index) && !drops(index)).collect();
         let far_from_drops = eroded(&holds, self.side, reach + (CAUTION / self.resolution).round() as usize);
-        let safe = grid(&|index| covered[index] && far_from_drops[index] && open(index));
-        let perhaps = grid(&|index| !self.shunned[index] && holds[index] && (!covered[index] || open(index)));
+        let is_safe = |index: usize| covered[index] && far_from_drops[index] && open(index);
+        let safe = grid(&is_safe);
+        let perhaps = grid(&|index| {
+            let hopeless = self.shunned[index] || (self.given_up[index] && !is_safe(index));
+            !hopeless && holds[index] && (!covered[index] || open(index))
+        });
         let potential = (0..known.len()).map(|index| {
             let slope = f64::from(field_height(&field, index)) + steepest * f64::from(away[index]) + DROP;
             self.height(index).unwrap_or_else(|| self.ceilings[index].min(slope))
@@ -319,15 +341,15 @@ impl SightMap {
         let side = self.side;
         let cells = BitGrid::from_fn(side, side, |x, y| is_higher(y * side + x)).expect("a map's cells");
         let patches = GridComponents::new(&cells);
-        let sizes = patches.sizes();
         let least = (PATCH / (self.resolution * self.resolution)) as usize;
+        let stands_out = |cell: GridCell| self.smoothed(cell).is_some_and(|height| height > level + NOISE);
         let mut list = vec![Vec::new(); patches.count()];
         for cell in cells.free_cells() {
-            if let Some(patch) = patches.region(cell).filter(|&patch| sizes[patch] >= least) {
+            if let Some(patch) = patches.region(cell) {
                 list[patch].push(cell);
             }
         }
-        list.retain(|patch| !patch.is_empty());
+        list.retain(|patch| patch.len() >= least || patch.iter().any(|&cell| stands_out(cell)));
         list
     }
 }
@@ -352,4 +374,35 @@ fn eroded(flags: &[bool], side: usize, reach: usize) -> Vec<bool> {
         kept
     };
     along(&along(flags, 1, side), side, 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::RobotSpec;
+
+    /// A look that shows no way on gives up ground only until it is seen from elsewhere.
+    #[test]
+    fn what_was_given_up_is_safe_once_it_is_seen() {
+        let mut parameters = SummitParameters::of(&RobotSpec::blizzard()).unwrap();
+        parameters.extent = 1.0;
+        let mut map = SightMap::new(parameters.resolution, parameters.extent, 0.35);
+        let place = Point::new(0.5, 0.0);
+        let cell = map.cell_at(place).unwrap();
+        let see = |map: &mut SightMap, low: i32, high: i32| {
+            for (x, y) in (low..high).flat_map(|x| (-18..=18).map(move |y| (x, y))) {
+                map.stand(Point::new(f64::from(x), f64::from(y)) * 0.05, 0.0);
+            }
+        };
+        see(&mut map, -18, 8);
+        let chart = map.chart(&parameters);
+        assert!(chart.perhaps.is_free(cell) && !chart.safe.is_free(cell));
+        map.give_up(place, 0.15);
+        assert!(!map.chart(&parameters).perhaps.is_free(cell));
+        see(&mut map, 8, 19);
+        let chart = map.chart(&parameters);
+        assert!(chart.perhaps.is_free(cell) && chart.safe.is_free(cell));
+        map.shun(place, 0.15);
+        assert!(!map.chart(&parameters).safe.is_free(cell));
+    }
 }
