@@ -230,7 +230,8 @@ impl Serialize for Object<'_> {
         object.serialize_entry("sim_time_s", &report.sim_time.map(rounded))?;
         object.serialize_entry("collisions", &report.collisions)?;
         object.serialize_entry("path_length_mm", &report.path_length.map(|m| rounded(units::to_mm(m))))?;
-        let pose = report.pose.map(|pose| JsonPose { in_space: report.in_space.map(Stance::from), ..pose.into() });
+        let pose =
+            report.pose.map(|pose| JsonPose { in_space: report.in_space.map(Stance::from), ..pose.into() });
         object.serialize_entry("pose", &pose)?;
         object.serialize_entry("odometry", &report.odometry.map(JsonPose::from))?;
         if let Some(error) = &report.error {

@@ -70,7 +70,8 @@ impl Shore {
 /// Both faces of a wall.
 fn faces(wall: &Wall) -> [Segment; 2] {
     let [x, y]: [f64; 2] = (way(&wall.line) * (0.5 * wall.thickness)).into();
-    [Vector::new(-y, x), Vector::new(y, -x)].map(|aside| Segment::new(wall.line.a + aside, wall.line.b + aside))
+    [Vector::new(-y, x), Vector::new(y, -x)]
+        .map(|aside| Segment::new(wall.line.a + aside, wall.line.b + aside))
 }
 
 fn way(side: &Segment) -> Vector {

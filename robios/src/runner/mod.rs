@@ -34,7 +34,9 @@ pub(crate) fn main() -> ExitCode {
             return ExitCode::SUCCESS;
         }
         // What cannot be parsed still says whether JSON is wanted.
-        Err(error) => return refuse(std::env::args_os().any(|word| word == "--json"), &in_one_line(&error), &[]),
+        Err(error) => {
+            return refuse(std::env::args_os().any(|word| word == "--json"), &in_one_line(&error), &[]);
+        }
     };
     let done = match options.command() {
         Command::Install(folder) => install::install(&folder).map(|()| None),

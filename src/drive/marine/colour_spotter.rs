@@ -9,7 +9,7 @@ use crate::world::Colour;
 /// The ground is grey and as deep as the objects on it. So its apparent colour, the median of the image,
 /// measures the effect of water and light on all colours. Pixels are divided by it before their hues are
 /// compared. What is nearer than the ground, such as a ledge, lacks less red, so that gray looks red there: a colour
-/// counts only if it is one without as much red as the distance may add.
+/// counts only if no distance makes gray of it.
 #[derive(Debug, Clone)]
 pub(super) struct ColourSpotter {
     /// On RoBIOS's scale.
@@ -25,6 +25,8 @@ const AROUND: i32 = 252;
 const TOLERANCE: i32 = 10;
 /// A quarter of the full saturation: water with its veil takes the rest. Noise makes less of gray ground.
 const LIMITS: HueLimits = HueLimits { min_saturation: 64, min_intensity: 8 };
+/// Half of it, for what has a colour by all but its red.
+const GRAY: HueLimits = HueLimits { min_saturation: 32, ..LIMITS };
 /// The least level of a colour's brightest channel: three quarters of the ground's. A thing of a colour
 /// reflects that about as well as the gray ground does; what is dark has a colour by noise, or by the veil of
 /// turbid water.
@@ -44,11 +46,7 @@ impl ColourSpotter {
 
     /// The column and row, in pixels from the middle of the picture, of the largest thing of the colour that
     /// is not cut off by the picture's edge. The ground is so many metres below the camera.
-    pub(super) fn find(
-        &mut self,
-        image: &RgbImage,
-        altitude: f64,
-    ) -> Result<Option<(f64, f64)>, ImageError> {
+    pub(super) fn find(&mut self, image: &RgbImage, altitude: f64) -> Result<Option<(f64, f64)>, ImageError> {
         let ground = ground(image);
         if ground.contains(&0) {
             return Ok(None);
@@ -64,8 +62,10 @@ impl ColourSpotter {
             let found = hue(levels, HueScale::Robios, LIMITS);
             let off = (i32::from(found) - i32::from(self.hue)).rem_euclid(AROUND);
             let is_bright = levels.iter().any(|level| *level >= BRIGHT);
-            let far = [(f64::from(levels[0]) * red) as u8, levels[1], levels[2]];
-            let is_coloured = is_bright && i32::from(hue(far, HueScale::Robios, LIMITS)) < AROUND;
+            // The red, of all that it may be at the ground's distance, which is the most like gray.
+            let least = (f64::from(levels[0]) * red) as u8;
+            let gray = [levels[1].max(levels[2]).clamp(least, levels[0]), levels[1], levels[2]];
+            let is_coloured = is_bright && i32::from(hue(gray, HueScale::Robios, GRAY)) < AROUND;
             u8::from(is_coloured && i32::from(found) < AROUND && off.min(AROUND - off) <= TOLERANCE)
         }));
         let mask = GrayView::new(&self.mask, width, height)?;
@@ -132,14 +132,15 @@ mod tests {
             assert_eq!(spotter.find(&picture(other, 1.0), 1.2).unwrap(), None, "{other:?}");
         }
         assert_eq!(spotter.find(&picture([200, 30, 30], 0.0), 1.2).unwrap(), None);
-        // A gray ledge below the surface, with most of its red; its side is in the shade.
-        for shade in [1.0, 0.6] {
-            let ledge = RgbImage::from_fn(40, 30, |x, y| {
-                let high = (10..18).contains(&x) && (20..25).contains(&y);
-                let gray = if high { [170.0, 190.0, 194.0].map(|level| shade * level) } else { [90.0, 166.0, 186.0] };
-                Rgb(gray.map(|level| level as u8))
+        // Gray ledges below the surface, with most of their red; the last ones in the shade.
+        let ground = [90, 166, 186];
+        for (ledge, ground) in
+            [([170, 190, 194], ground), ([102, 114, 116], ground), ([90, 129, 132], [69, 139, 147])]
+        {
+            let picture = RgbImage::from_fn(40, 30, |x, y| {
+                Rgb(if (10..18).contains(&x) && (20..25).contains(&y) { ledge } else { ground })
             });
-            assert_eq!(spotter.find(&ledge, 1.5).unwrap(), None, "{shade}");
+            assert_eq!(spotter.find(&picture, 1.5).unwrap(), None, "{ledge:?}");
         }
     }
 }
