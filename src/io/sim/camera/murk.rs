@@ -107,7 +107,8 @@ impl Murk {
     fn seen(&self, colour: Packed, way: f64, depth: f64, veil: [f64; 3]) -> Packed {
         let (there, through) = (self.down.left(depth), self.along.left(way));
         let level = |i: usize, shift: u32| {
-            let level = f64::from(colour >> shift & 255) * there[i] * through[i] + veil[i] * (1.0 - through[i]);
+            let level =
+                f64::from(colour >> shift & 255) * there[i] * through[i] + veil[i] * (1.0 - through[i]);
             ((level.min(255.0) + 0.5) as Packed) << shift
         };
         level(0, 16) | level(1, 8) | level(2, 0)
@@ -131,7 +132,8 @@ impl Fading {
     fn left(&self, metres: f64) -> [f64; 3] {
         let steps = metres * self.per_metre;
         let entry = steps as usize;
-        let Some([here, next]) = self.table.get(entry..entry.saturating_add(2)).map(|pair| [pair[0], pair[1]])
+        let Some([here, next]) =
+            self.table.get(entry..entry.saturating_add(2)).map(|pair| [pair[0], pair[1]])
         else {
             return self.exactly(metres);
         };
