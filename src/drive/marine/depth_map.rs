@@ -165,12 +165,15 @@ impl DepthMap {
         let known = own_parts().count() as f64;
         let off = own_parts().map(|part| part.off).sum::<f64>() / known;
         let random = own_parts().map(|part| noise / part.count).sum::<f64>() / (known * known);
-        // What parts are off besides the noise: those measured are a sample of all.
-        let weight: f64 = parts.iter().map(|part| part.weight).sum();
+        // What parts are off besides the noise, and more than by chance: those measured are a sample of all.
         let swell = own.iter().map(|noted| noted.sounding.swell).fold(0.0, f64::max);
         let known_off = |part: &Part| noise / part.count + swell * swell;
-        let squares = parts.iter().map(|part| part.weight * (part.off * part.off - known_off(part)));
-        let rough = squares.sum::<f64>().max(0.0) / weight;
+        let weight: f64 = parts.iter().map(|part| part.weight).sum();
+        let mean_of = |square: &dyn Fn(&Part) -> f64| {
+            parts.iter().map(|part| part.weight * square(part)).sum::<f64>() / weight
+        };
+        let by_noise = mean_of(&known_off) * (1.0 + (2.0 / parts.len() as f64).sqrt());
+        let rough = (mean_of(&|part| part.off * part.off) - by_noise).max(0.0);
         let unknown = rough / known * (1.0 - known / (PARTS * PARTS) as f64);
         let place: Vector = own.iter().map(|noted| noted.sounding.sigma / own.len() as f64).sum();
         let datum = own.iter().map(|noted| noted.sounding.datum).fold(0.0, f64::max);

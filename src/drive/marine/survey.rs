@@ -319,7 +319,8 @@ fn lanes(area: &Aabb, start: Point, spacing: f64, [margin, brim]: [f64; 2]) -> R
     let has_brim = brim < margin;
     let mut lanes: VecDeque<Lane> = (0..=count).map(lane).collect();
     if has_brim {
-        (lanes.pop_front(), lanes.pop_back());
+        lanes.pop_front();
+        lanes.pop_back();
     }
     if let (Some(first), Some(last)) = (lanes.front(), lanes.back())
         && last.distance(start) < first.distance(start)
