@@ -183,7 +183,7 @@ impl Survey {
             parameters;
         require_positive("spacing", spacing)?;
         require_not_negative("margin", margin)?;
-        require("brim", brim, (0.0..=margin).contains(&brim), "0 to the margin")?;
+        require_not_negative("brim", brim)?;
         Water { waves, ..Water::default() }.validate()?;
         require_not_negative("depth", depth)?;
         if let Some(altitude) = altitude {
@@ -206,7 +206,7 @@ impl Survey {
             fix: Fix::new(start, sides.then_some(area)),
             zero: Zero::afloat(craft.waterline(density) - up),
             floor: FloorTrack::default(),
-            lanes: lanes(&area, start.position(), spacing, [margin, brim])?,
+            lanes: lanes(&area, start.position(), spacing, [margin, brim.min(margin)])?,
             sight,
             legs: Legs::new(vec![start.position()], speed, LOOKAHEAD, REACHED),
             has_looked: false,
