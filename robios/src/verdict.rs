@@ -230,9 +230,7 @@ impl Summary {
         value["seed"] = self.seed.into();
         value["noise"] = self.noise.into();
         value["robots"] = robots.into();
-        if !self.warnings.is_empty() {
-            value["warnings"] = self.warnings.clone().into();
-        }
+        value["warnings"] = self.warnings.clone().into();
         if let Some(time) = self.wall_time {
             value["timing"] = json!({ "wall_time_s": rounded(time) });
         }

@@ -108,6 +108,11 @@ impl Waves {
         )
     }
 
+    /// Standard deviation of the surface's level (m).
+    pub fn deviation(&self) -> f64 {
+        if self.irregular { 0.25 * self.height } else { 0.5 * std::f64::consts::FRAC_1_SQRT_2 * self.height }
+    }
+
     /// Wavelength in deep water (m).
     pub fn length(&self) -> f64 {
         9.81 * self.period * self.period / std::f64::consts::TAU

@@ -239,11 +239,11 @@ fn diving() {
     let start = Pose::new(2.0, 2.0, 0.0);
     check!(SurveyParameters = SurveyParameters::default(),
         |p| Survey::new(&RobotSpec::mako(), start, area, true, p)?,
-        { BoundedFromZero: margin; NotNegative: depth; Positive: spacing, speed, density, period; } but altitude, hold);
+        { BoundedFromZero: margin; NotNegative: depth; Positive: spacing, speed, density, period; } but altitude, brim, waves, hold);
     let search = |survey| PoolSearchParameters { survey, ..PoolSearchParameters::default() };
     check!(SurveyParameters = SurveyParameters::default(),
         |p| PoolSearch::new(&RobotSpec::mako(), start, area, true, search(p))?,
-        { BoundedFromZero: margin; NotNegative: depth; Positive: spacing, speed, density, period; } but altitude, hold);
+        { BoundedFromZero: margin; NotNegative: depth; Positive: spacing, speed, density, period; } but altitude, brim, waves, hold);
     check!(BoatParameters = BoatParameters::default(),
         |p| Boat::new(&CraftSpec::solar_raft(), start, &[Point::new(9.0, 9.0)], p)?,
         { NotNegative: station; Positive: speed, lookahead, reached, period; });

@@ -1,4 +1,4 @@
-use roverlab::geometry::{Point, Pose, normalize_angle, units};
+use roverlab::geometry::{Point, Pose, Pose3, normalize_angle, units};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::Value;
 
@@ -43,6 +43,8 @@ pub(crate) struct Report {
     pub(crate) path_length: Option<f64>,
     /// True pose of the robot.
     pub(crate) pose: Option<Pose>,
+    /// The same in space, in a world with hills or water.
+    pub(crate) in_space: Option<Pose3>,
     /// Pose by odometry.
     pub(crate) odometry: Option<Pose>,
     /// Error of the robot, if it ended the run.
@@ -97,6 +99,7 @@ impl Report {
             collisions: None,
             path_length: None,
             pose: None,
+            in_space: None,
             odometry: None,
             error: None,
             trouble: None,
@@ -227,7 +230,9 @@ impl Serialize for Object<'_> {
         object.serialize_entry("sim_time_s", &report.sim_time.map(rounded))?;
         object.serialize_entry("collisions", &report.collisions)?;
         object.serialize_entry("path_length_mm", &report.path_length.map(|m| rounded(units::to_mm(m))))?;
-        object.serialize_entry("pose", &report.pose.map(JsonPose::from))?;
+        let pose =
+            report.pose.map(|pose| JsonPose { in_space: report.in_space.map(Stance::from), ..pose.into() });
+        object.serialize_entry("pose", &pose)?;
         object.serialize_entry("odometry", &report.odometry.map(JsonPose::from))?;
         if let Some(error) = &report.error {
             object.serialize_entry("error", error)?;
@@ -257,6 +262,27 @@ struct JsonPose {
     x_mm: f64,
     y_mm: f64,
     heading_deg: f64,
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    in_space: Option<Stance>,
+}
+
+/// Height and tilt of a pose in space, rotated about the forward, left and up axes in this order.
+#[derive(serde::Serialize)]
+struct Stance {
+    z_mm: f64,
+    roll_deg: f64,
+    pitch_deg: f64,
+}
+
+impl From<Pose3> for Stance {
+    fn from(pose: Pose3) -> Self {
+        let [roll, pitch, _] = pose.roll_pitch_yaw();
+        Self {
+            z_mm: rounded(units::to_mm(pose.position.z)),
+            roll_deg: rounded(units::to_deg(roll)),
+            pitch_deg: rounded(units::to_deg(pitch)),
+        }
+    }
 }
 
 impl From<Pose> for JsonPose {
@@ -265,6 +291,7 @@ impl From<Pose> for JsonPose {
             x_mm: rounded(units::to_mm(pose.x)),
             y_mm: rounded(units::to_mm(pose.y)),
             heading_deg: rounded(units::to_deg(normalize_angle(pose.heading))),
+            in_space: None,
         }
     }
 }
@@ -286,7 +313,7 @@ pub(crate) fn rounded(value: f64) -> f64 {
 }
 
 fn in_words(pose: Pose) -> String {
-    let JsonPose { x_mm, y_mm, heading_deg } = pose.into();
+    let JsonPose { x_mm, y_mm, heading_deg, .. } = pose.into();
     let (x, y, heading) = (x_mm.round() + 0.0, y_mm.round() + 0.0, (10.0 * heading_deg).round() / 10.0 + 0.0);
     format!("{x}, {y} mm, {heading:.1} deg")
 }

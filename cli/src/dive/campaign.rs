@@ -52,7 +52,7 @@ pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
     let squares: f64 = dives.iter().map(|(_, done)| done.heading_rms * done.heading_rms).sum();
     let heading = (squares / dives.len().max(1) as f64).sqrt();
     let least = dives.iter().map(|(_, done)| done.within).fold(1.0, f64::min);
-    let contacts: u64 = dives.iter().map(|(_, done)| u64::from(done.contacts)).sum();
+    let contacts: u64 = dives.iter().map(|(_, done)| u64::from(done.end.contacts)).sum();
     let good = dives.len() - wrong.len();
     args.common.tell("dives    good  contacts  latest to settle  overshoot  least within 10 mm  heading");
     args.common.tell(format_args!(

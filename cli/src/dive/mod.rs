@@ -5,9 +5,9 @@ mod campaign;
 use std::sync::Arc;
 
 use roverlab::drive::marine::{Dive, DiveOutcome, DiveParameters};
-use roverlab::geometry::{Point, Point3, Pose, Vector, units};
+use roverlab::geometry::{Point, Point3, Pose, Pose3, Vector, units};
 use roverlab::io::control;
-use roverlab::io::sim::SimOptions;
+use roverlab::io::sim::{RobotTruth, SimOptions};
 use roverlab::kinematics::marine::CraftSpec;
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::world::{Colour, DriveSpec, RobotSpec, Scene, Water, World};
@@ -93,7 +93,9 @@ struct Plan {
 struct Dived {
     /// Time, true depth, true pose.
     trail: Vec<(f64, f64, Pose)>,
-    contacts: u32,
+    /// The truth at the end; contacts count from when the depth was set.
+    end: RobotTruth,
+    in_space: Option<Pose3>,
     ending: Result<DiveOutcome, String>,
     settle: Option<f64>,
     overshoot: f64,
@@ -105,7 +107,7 @@ impl Dived {
     /// Whether it did as it should.
     fn is_good(&self) -> bool {
         self.ending == Ok(DiveOutcome::Over)
-            && self.contacts == 0
+            && self.end.contacts == 0
             && self.settle.is_some_and(|seconds| seconds <= SETTLING)
             && self.overshoot <= MOST_OVERSHOOT
             && self.within >= 0.95
@@ -137,11 +139,13 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         Ok(_) if done.is_good() => Outcome::verdict("held"),
         Ok(_) => Outcome::failure("not_held"),
     };
-    let last = done.trail.last().map(|point| point.2);
     let report = Report {
         sim_time: done.trail.last().map(|point| point.0),
-        collisions: Some(done.contacts.into()),
-        pose: last,
+        collisions: Some(done.end.contacts.into()),
+        path_length: Some(done.end.path_length),
+        pose: Some(done.end.pose),
+        in_space: done.in_space,
+        odometry: Some(scene.robots[0].pose.compose(&done.end.odometry)),
         error: done.ending.clone().err(),
         ..Report::new(outcome)
     };
@@ -209,7 +213,7 @@ fn dive(
     };
     let mut behaviour = Dive::new(&CraftSpec::mako(), parameters).map_err(Failure::input)?;
     let mut robot = stage.robot(0)?;
-    let mut trail = Vec::new();
+    let (mut trail, mut in_space) = (Vec::new(), None);
     let first = if before > 0.0 {
         control::run(&mut robot, &mut behaviour, before, |_, _, _| {}).map(|_| ())
     } else {
@@ -222,20 +226,22 @@ fn dive(
             if let Ok(seen) = truth.in_space(0) {
                 let place = seen.pose.to_world(Point3::new(0.0, 0.0, up));
                 trail.push((step.time - before, level - place.z, seen.pose.pose()));
+                in_space = Some(seen.pose);
             }
             watch(step.time);
         })
     });
     drop(robot);
     let ending = ending.map_err(|error| error.to_string());
-    let contacts = truth.robot(0).map_err(Failure::run)?.contacts - contacts_before;
-    Ok(judged(plan, trail, contacts, ending))
+    let mut end = truth.robot(0).map_err(Failure::run)?;
+    end.contacts -= contacts_before;
+    Ok(Dived { in_space, ..judged(plan, trail, end, ending) })
 }
 
 fn judged(
     plan: &Plan,
     trail: Vec<(f64, f64, Pose)>,
-    contacts: u32,
+    end: RobotTruth,
     ending: Result<DiveOutcome, String>,
 ) -> Dived {
     let direction = (plan.depth - trail.first().map_or(plan.depth, |point| point.1)).signum();
@@ -259,7 +265,8 @@ fn judged(
     Dived {
         within: watched().filter(good).count() as f64 / count,
         heading_rms: (squares / count).sqrt(),
-        contacts,
+        end,
+        in_space: None,
         ending,
         settle,
         overshoot,

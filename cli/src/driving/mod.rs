@@ -208,6 +208,7 @@ impl<T> Run<T> {
             collisions: Some(self.truth.contacts.into()),
             path_length: Some(self.truth.path_length),
             pose: Some(self.truth.pose),
+            in_space: self.in_space.last().map(|space| space.pose),
             odometry: Some(self.odometry),
             error,
             ..Report::new(outcome)

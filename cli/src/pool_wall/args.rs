@@ -9,7 +9,7 @@ use crate::common::{CampaignArgs, CommonArgs, OF_ONE_RUN};
     after_help = "\
 Without --world, --seed draws the pool: a rectangle, an L or a kidney. A world needs water: a line `water_level MM`.
 If it has no start, the craft starts where the water is widest. Mako dives, drives to a side and follows it at 0.3 m/s with
-the side on its left.
+the side on its left. Its Doppler log tells it what a current does.
 
 With --campaign, generated pools of all kinds, ten laps each.
 
@@ -20,7 +20,7 @@ JSON fields:
   depth_rms_error_mm          root mean square error of the sensor's depth
   picture
   rows                        with --campaign only: the table, by kind of pool
-Away from corners: for 5 s, no side within 1.2 m of the nearest one has been at more than 45 degrees to it.
+Away from corners: for 5 s, the craft has been beside a side, and no side within 1.2 m of it at more than 45 degrees to it.
 Outcomes: round, timed_out, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {

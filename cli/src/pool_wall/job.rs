@@ -2,15 +2,15 @@ use roverlab::drive::marine::{PoolWallOutcome, PoolWallParameters};
 use roverlab::geometry::units;
 use roverlab::picture::Picture;
 use roverlab::random::Stream;
+use roverlab::world::Scene;
 use roverlab::world::generate::{PoolKind, pool};
-use roverlab::world::{RobotSpec, Scene};
 
 use super::Args;
 use super::campaign::campaign;
 use super::round::{Round, round};
 use crate::common::{Failure, Outcome, Report, millimetres};
 use crate::driving::{Conditions, paced};
-use crate::water::{Shore, afloat};
+use crate::water::{Shore, afloat, surveyor};
 
 /// Seconds for a metre of the sides, and besides for the way to the wall.
 const PACE: f64 = 5.0;
@@ -26,7 +26,7 @@ pub(super) fn limit(scene: &Scene, parameters: &PoolWallParameters) -> f64 {
 /// The pool of a seed.
 pub(super) fn generated(seed: u64) -> Result<Scene, Failure> {
     let made = pool(&mut Stream::new(seed), kind(seed)).map_err(Failure::run)?;
-    Ok(Scene::with_robot(made.world, RobotSpec::mako(), made.start))
+    Ok(Scene::with_robot(made.world, surveyor(), made.start))
 }
 
 pub(super) fn kind(seed: u64) -> PoolKind {
@@ -41,7 +41,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
     let own = generated(common.seed)?;
-    let scene = afloat(common, &RobotSpec::mako(), || own)?;
+    let scene = afloat(common, &surveyor(), || own)?;
     let parameters =
         PoolWallParameters { laps: args.laps, depth: args.depth, ..PoolWallParameters::default() };
     let conditions = Conditions::new(common, limit(&scene, &parameters))?;

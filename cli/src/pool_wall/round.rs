@@ -73,8 +73,10 @@ fn errors<T>(scene: &Scene, parameters: &PoolWallParameters, run: &Run<T>) -> Er
     for ((time, pose), space) in run.trail.iter().skip(1).zip(&run.in_space) {
         let Some(distance) = shore.distance(pose.position()) else { break };
         let error = distance - half_width - parameters.distance;
-        begun |= error.abs() < BEGINS;
-        if shore.is_corner(pose.position(), CORNER) {
+        // Coming to the side is a corner too.
+        let comes = !begun && error.abs() < BEGINS;
+        begun |= comes;
+        if comes || shore.is_corner(pose.position(), CORNER) {
             corner = *time;
         }
         if begun && time - corner > AFTER {

@@ -4,6 +4,7 @@ use roverlab::drive::marine::SurveyParameters;
 use roverlab::geometry::units;
 use roverlab::world::World;
 
+use super::tour::OFF;
 use crate::common::{CampaignArgs, CommonArgs, OF_ONE_RUN};
 
 /// Command line of `survey`.
@@ -16,7 +17,9 @@ water: a line `water_level MM`. With --altitude, the floor is a ridge with slope
 log, a compass and distance sensors; where the water ends at four straight sides, it localises by these too. It starts where the
 water is widest, unless the world or --start states a start.
 
-Cells are as wide as the spacing of the lanes; only those at least half a metre from the sides count. --map writes a colour
+Cells are as wide as the spacing of the lanes; only those at least half a metre from the sides count. Where these are narrow,
+the first lanes lead along the sides. The uncertainty of a depth has the noise, place, datum and waves of its soundings in it, and
+how far the floor around is off a quadratic surface. --map writes a colour
 picture, and beside it the depths as an ESRI grid (.asc) and all cells with their uncertainty as a table (.csv), in mm.
 
 With --campaign, floors of all kinds: 12 of them without --runs.
@@ -58,6 +61,9 @@ pub(crate) struct Args {
     pub(crate) common: CommonArgs,
 }
 
+/// Distance from the sides at which Mako, which is half as wide, keeps clear of them on a lane (m).
+const NEAREST: f64 = 0.75;
+
 crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["goal"]),
     ("campaign", OF_ONE_RUN),
@@ -68,12 +74,15 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
 impl Args {
     /// The parameters of a survey in a world's water.
     pub(super) fn parameters(&self, world: &World) -> SurveyParameters {
+        let parameters = SurveyParameters::default();
         SurveyParameters {
             spacing: self.spacing,
+            brim: (OFF + 0.5 * self.spacing).clamp(NEAREST, parameters.margin),
             depth: self.depth,
             altitude: self.altitude,
             density: world.water.density,
-            ..SurveyParameters::default()
+            waves: world.water.waves,
+            ..parameters
         }
     }
 }

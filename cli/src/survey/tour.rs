@@ -1,5 +1,5 @@
 use roverlab::drive::marine::{DepthMap, Survey, SurveyOutcome, SurveyParameters};
-use roverlab::geometry::{Point, Point3, Vector};
+use roverlab::geometry::{Aabb, Point, Point3, Vector};
 use roverlab::io::{Psd, TruthInSpace, control};
 use roverlab::world::{Scene, World};
 
@@ -38,7 +38,7 @@ const DOWN: Psd = Psd(6);
 /// Metres from the altitude at which it counts as reached.
 const REACHED: f64 = 0.01;
 /// Metres off the sides at which cells begin.
-const OFF: f64 = 0.5;
+pub(super) const OFF: f64 = 0.5;
 /// Points of a cell along each side, of which its true depth is the mean.
 const POINTS: u32 = 6;
 
@@ -71,7 +71,7 @@ pub(super) fn tour(
         way: run.truth.path_length * parameters.spacing / (size.x * size.y),
         by_walls: site.by_walls,
         altitude: parameters.altitude.and_then(|wanted| altitude_error(scene, wanted, &run)),
-        ..judged(&scene.world, &map, parameters.spacing)
+        ..judged(&scene.world, &map, &cells, parameters.spacing)
     };
     Ok(Tour { run, map, quality })
 }
@@ -92,10 +92,13 @@ pub(super) fn true_depth(world: &World, centre: Point, cell: f64) -> Option<f64>
     Some(sum / f64::from(POINTS * POINTS))
 }
 
-fn judged(world: &World, map: &DepthMap, cell: f64) -> Quality {
+/// What of the map is wholly in an area.
+fn judged(world: &World, map: &DepthMap, area: &Aabb, cell: f64) -> Quality {
+    let within = |centre: Point| area.inflated(1e-6 - 0.5 * cell).contains(centre);
     let (mut cells, mut inside, mut errors) = (0_u32, 0_u32, Vec::new());
     for (column, row) in (0..map.rows()).flat_map(|row| (0..map.columns()).map(move |column| (column, row))) {
-        let Some(depth) = true_depth(world, map.centre(column, row), cell) else { continue };
+        let centre = map.centre(column, row);
+        let Some(depth) = true_depth(world, centre, cell).filter(|_| within(centre)) else { continue };
         cells += 1;
         let Some(measured) = map.cell(column, row) else { continue };
         let error = (measured.depth - depth).abs();

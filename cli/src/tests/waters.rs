@@ -9,6 +9,10 @@ fn mako_dives_and_holds_its_depth() {
     let ended = run("dive", &["--depth", "800", "--seed", "2"]);
     assert_outcome(&ended, "held");
     assert!(number(&ended.1, "settle_s") < 20.0 && number(&ended.1, "overshoot_mm") < 50.0, "{}", ended.1);
+    let pose = &ended.1["pose"];
+    // The sensor is 260 mm above the origin, in 1900 mm of water.
+    assert!((number(pose, "z_mm") - 840.0).abs() < 15.0 && number(pose, "pitch_deg").abs() < 3.0, "{pose}");
+    assert!(number(&ended.1, "path_length_mm") > 0.0 && ended.1["odometry"].is_object(), "{}", ended.1);
 }
 
 /// Mako floats so deep that it cannot settle at 150 mm; that it was there last says nothing.
@@ -57,6 +61,31 @@ fn mako_comes_to_a_side_at_a_small_angle_without_touching_it() {
 }
 
 #[test]
+fn mako_goes_round_in_a_current() {
+    for (seed, current) in [("1", "100 0"), ("2", "0 -100")] {
+        let world =
+            small_pool(&format!("current{seed}"), &format!("water_level 1900\ncurrent {current}\n"), 2000);
+        let ended = run("pool_wall", &["--world", &world, "--seed", seed]);
+        assert_outcome(&ended, "round");
+        assert!(ended.1["collisions"] == 0 && number(&ended.1, "rms_error_mm") < 100.0, "{}", ended.1);
+    }
+}
+
+/// Lanes of half a metre, of which those along the sides are nearer to them than a craft may turn.
+#[test]
+fn narrow_lanes_cover_the_floor_up_to_the_sides() {
+    let ended = run("survey", &["--spacing", "500"]);
+    assert_outcome(&ended, "covered");
+    assert!(number(&ended.1, "coverage_percent") >= 99.0 && ended.1["collisions"] == 0, "{}", ended.1);
+    let inside = number(&ended.1, "inside_2_sigma_percent");
+    assert!(
+        (92.0..98.0).contains(&inside) && number(&ended.1, "position_error_p95_mm") < 200.0,
+        "{}",
+        ended.1
+    );
+}
+
+#[test]
 fn a_survey_holds_its_altitude_up_and_down_a_ridge() {
     let ended = run("survey", &["--altitude", "1000", "--spacing", "5000"]);
     assert_outcome(&ended, "covered");
@@ -70,17 +99,18 @@ fn a_survey_in_lanes_too_far_apart_covers_nothing() {
     assert_eq!((status, &report["outcome"]), (1, &"not_covered".into()), "{report} {err}");
 }
 
-/// A pool of a world's file, with a red thing.
-fn small_pool(name: &str, lines: &str) -> String {
+/// A pool of a world's file, with walls of so many mm, in the middle of which a craft starts.
+fn small_pool(name: &str, lines: &str, height: u32) -> String {
     let world = temporary(&format!("{name}.wld"));
-    let walls = "0 0 6000 0\n6000 0 6000 5000\n6000 5000 0 5000\n0 5000 0 0\n";
-    fs::write(&world, format!("floor 6000 5000\nposition 2000 2000 90\n{walls}{lines}")).unwrap();
+    let walls = ["0 0 6000 0", "6000 0 6000 5000", "6000 5000 0 5000", "0 5000 0 0"];
+    let walls = walls.map(|line| format!("{line} 10 {height}\n")).concat();
+    fs::write(&world, format!("floor 6000 5000\n{walls}{lines}")).unwrap();
     world.to_str().unwrap().to_owned()
 }
 
 #[test]
 fn a_survey_maps_a_pool_with_honest_uncertainty() {
-    let world = small_pool("surveyed", "water_level 1900\n");
+    let world = small_pool("surveyed", "water_level 1900\n", 200);
     let map = temporary("surveyed.png");
     let ended = run("survey", &["--world", &world, "--map", map.to_str().unwrap()]);
     assert_outcome(&ended, "covered");
@@ -105,7 +135,7 @@ fn something_red_is_found_in_turbid_water_and_only_there() {
     let ended = run("pool_search", &["--seed", "12"]);
     assert_outcome(&ended, "found");
     assert_eq!(ended.1["collisions"], 0, "{}", ended.1);
-    let world = small_pool("searched", "water_level 1900\nturbidity 0.3\n");
+    let world = small_pool("searched", "water_level 1900\nturbidity 0.3\n", 200);
     let ended = run("pool_search", &["--world", &world]);
     assert_outcome(&ended, "not_found");
     assert!(ended.1["found"] == false && ended.1["position_error_mm"].is_null(), "{}", ended.1);
@@ -122,13 +152,13 @@ fn a_boat_keeps_its_course_in_waves() {
 
 #[test]
 fn what_is_no_water_is_refused() {
-    let dry = small_pool("dry", "");
+    let dry = small_pool("dry", "", 200);
     for command in ["pool_wall", "survey", "boat", "pool_search"] {
         let course = if command == "boat" { &["--course", "1000,1000"][..] } else { &[] };
         let (status, _, err) = run(command, &[&["--world", &dry], course].concat());
         assert!(status == 2 && err.contains("without water"), "{command}: {err}");
     }
-    let wet = small_pool("wet", "water_level 1900\n");
+    let wet = small_pool("wet", "water_level 1900\n", 200);
     for (command, options, expected) in [
         ("boat", vec!["--world", &wet], "course"),
         ("boat", vec!["--world", &wet, "--course", "99000,0"], "outside"),

@@ -57,7 +57,8 @@ pub(crate) fn ground(world: &World) -> Option<&HeightField> {
     world.terrain.as_ref().and_then(|terrain| terrain.surface.as_deref())
 }
 
-/// The place of a world's water that is farthest from its shores half-way down, looking along the longer side.
+/// The place of a world's water that is farthest from its shores half-way down, its walls of any height, and the
+/// floor's edges, looking along the longer side.
 fn widest(world: &World, level: f64) -> Option<Pose> {
     let shore = Shore::of(world, 0.5 * level);
     let (low, size) = (world.floor.min, world.floor.size());
@@ -68,7 +69,10 @@ fn widest(world: &World, level: f64) -> Option<Pose> {
         let place = Point::new(low.x + size.x * share(cell % CELLS), low.y + size.y * share(cell / CELLS));
         let is_wet =
             ground(world).is_none_or(|ground| ground.height(place).is_some_and(|floor| floor < 0.5 * level));
-        let room = shore.distance(place).unwrap_or(0.0);
+        let walls = world.walls.iter().map(|wall| wall.line.distance_to(place) - 0.5 * wall.thickness);
+        let (below, above) = (place - world.floor.min, world.floor.max - place);
+        let edges = [below.x, below.y, above.x, above.y];
+        let room = walls.chain(edges).chain(shore.distance(place)).fold(f64::INFINITY, f64::min);
         if is_wet && best.is_none_or(|(most, _)| room > most) {
             best = Some((room, place));
         }

@@ -1,5 +1,5 @@
 use roverlab::geometry::{Aabb, Point, Segment, Vector};
-use roverlab::world::{HeightField, World};
+use roverlab::world::{HeightField, Wall, World};
 
 use super::ground;
 
@@ -7,6 +7,8 @@ use super::ground;
 #[derive(Debug, Clone)]
 pub(crate) struct Shore {
     sides: Vec<Segment>,
+    /// Thickness of the thickest wall (m).
+    thickest: f64,
 }
 
 /// The cosine of the angle (45 degrees) by which a side nearby is turned at a corner.
@@ -15,17 +17,26 @@ const TURNED: f64 = 0.707;
 impl Shore {
     /// The shore at a height above the world's origin.
     pub(crate) fn of(world: &World, height: f64) -> Self {
-        let walls = world.walls.iter().filter(|wall| wall.height >= height).map(|wall| wall.line);
-        let mut sides: Vec<Segment> = walls.collect();
+        let walls = || world.walls.iter().filter(|wall| wall.height >= height);
+        let mut sides: Vec<Segment> = walls().flat_map(faces).collect();
         if let Some(ground) = ground(world) {
             sides.extend(contour(ground, height));
         }
-        Self { sides }
+        Self { sides, thickest: walls().map(|wall| wall.thickness).fold(0.0, f64::max) }
     }
 
-    /// The box around it; `None` if there is no side.
+    /// The box within the walls around it; `None` if there is no side.
     pub(crate) fn bounds(&self) -> Option<Aabb> {
-        Aabb::around(self.points())
+        let mut area = Aabb::around(self.points())?;
+        // Of each wall there, the inner face.
+        for axis in [0, 1] {
+            let across = self.thickest + 1e-9;
+            let (low, high) = (area.min[axis] + across, area.max[axis] - across);
+            let at = || self.points().map(|point| point[axis]);
+            area.min[axis] = at().filter(|at| *at <= low).fold(area.min[axis], f64::max);
+            area.max[axis] = at().filter(|at| *at >= high).fold(area.max[axis], f64::min);
+        }
+        Some(area)
     }
 
     /// The length of all its sides (m).
@@ -54,6 +65,13 @@ impl Shore {
     fn nearest(&self, point: Point) -> Option<&Segment> {
         self.sides.iter().min_by(|a, b| a.distance_to(point).total_cmp(&b.distance_to(point)))
     }
+}
+
+/// Both faces of a wall.
+fn faces(wall: &Wall) -> [Segment; 2] {
+    let [x, y]: [f64; 2] = (way(&wall.line) * (0.5 * wall.thickness)).into();
+    [Vector::new(-y, x), Vector::new(y, -x)]
+        .map(|aside| Segment::new(wall.line.a + aside, wall.line.b + aside))
 }
 
 fn way(side: &Segment) -> Vector {
@@ -90,8 +108,24 @@ fn contour(ground: &HeightField, height: f64) -> Vec<Segment> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{LEVEL, pool};
+    use super::super::{LEVEL, Site, pool, widest};
     use super::*;
+
+    /// Of thick walls the inner faces count, and low ones stop a craft too.
+    #[test]
+    fn walls_bound_the_water_by_their_faces() {
+        let mut world = World { water_level: Some(1.9), ..World::walled(8.0, 6.0) };
+        for height in [2.0, 0.2] {
+            for wall in &mut world.walls {
+                (wall.thickness, wall.height) = (0.4, height);
+            }
+            let start = widest(&world, 1.9).unwrap();
+            assert!((start.x - 4.0).abs() < 1.5 && (start.y - 3.0).abs() < 0.2, "{start:?}");
+            let site = Site::of(&world, 0.5);
+            assert_eq!(site.by_walls, height > 1.0);
+            assert!(!site.by_walls || (site.area.size() - Vector::new(7.6, 5.6)).norm() < 1e-9, "{site:?}");
+        }
+    }
 
     /// Also where the last sample of the ground is, by its rounded place, just beyond it.
     #[test]

@@ -26,42 +26,40 @@ const WRONG: u8 = 2;
 /// Parses the command line, runs the programs and prints the report. Exit status 0: every program ended
 /// properly; 1: one did not, or touched something; 2: the command line or a file is wrong.
 pub(crate) fn main() -> ExitCode {
+    let mut warnings = Vec::new();
     let options = match Options::try_parse() {
         Ok(options) => options,
         Err(error) if !error.use_stderr() => {
             let _ = write!(std::io::stdout(), "{}", error.render());
             return ExitCode::SUCCESS;
         }
-        Err(error) => return refuse(&in_one_line(&error)),
+        // What cannot be parsed still says whether JSON is wanted.
+        Err(error) => {
+            return refuse(std::env::args_os().any(|word| word == "--json"), &in_one_line(&error), &[]);
+        }
     };
-    let mut warnings = Vec::new();
-    match options.command() {
-        Command::Install(folder) => match install::install(&folder) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(message) => refuse(&message),
-        },
-        Command::Compile(source, program) => match programs::compile_to(&source, &program) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(message) => refuse(&message),
-        },
-        Command::Run => match run(&options, &mut warnings) {
-            Ok(summary) => {
-                let text = if options.json { summary.json() } else { summary.words() };
-                // A reader that has closed the pipe is not a failure.
-                let _ = writeln!(std::io::stdout(), "{text}");
-                ExitCode::from(summary.status())
-            }
-            Err(message) => {
-                if options.json {
-                    let _ = writeln!(std::io::stdout(), "{}", verdict::refusal(&message, &warnings));
-                }
-                refuse(&message)
-            }
-        },
+    let done = match options.command() {
+        Command::Install(folder) => install::install(&folder).map(|()| None),
+        Command::Compile(source, program) => programs::compile_to(&source, &program).map(|()| None),
+        Command::Run => run(&options, &mut warnings).map(Some),
+    };
+    match done {
+        Ok(None) => ExitCode::SUCCESS,
+        Ok(Some(summary)) => {
+            let text = if options.json { summary.json() } else { summary.words() };
+            // A reader that has closed the pipe is not a failure.
+            let _ = writeln!(std::io::stdout(), "{text}");
+            ExitCode::from(summary.status())
+        }
+        Err(message) => refuse(options.json, &message, &warnings),
     }
 }
 
-fn refuse(message: &str) -> ExitCode {
+/// Reports what could not start, with --json as an object too.
+fn refuse(json: bool, message: &str, warnings: &[String]) -> ExitCode {
+    if json {
+        let _ = writeln!(std::io::stdout(), "{}", verdict::refusal(message, warnings));
+    }
     // Without standard error nobody can be informed; the status remains.
     let _ = writeln!(std::io::stderr(), "{message}");
     ExitCode::from(WRONG)

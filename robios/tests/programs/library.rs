@@ -66,3 +66,22 @@ fn a_refusal_is_in_the_report() {
     );
     assert!(told["error"].as_str().unwrap().contains("of another build ("), "{told}");
 }
+
+#[test]
+fn a_wrong_command_line_is_one_object_too() {
+    for words in [
+        &["--json", "--no-such-option"][..],
+        &["--json"],
+        &["--json", "--noise", "9", "a.c"],
+        &["--json", "no.c"],
+    ] {
+        let output = Command::new(env!("CARGO_BIN_EXE_robios")).args(words).output().unwrap();
+        let told: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(
+            (output.status.code(), &told["outcome"]),
+            (Some(2), &"failed".into()),
+            "{words:?}: {told}"
+        );
+        assert!(told["error"].is_string() && told["warnings"].is_array(), "{words:?}: {told}");
+    }
+}

@@ -24,7 +24,7 @@ int main(void)
     NEAR(few[0], 995, 15);
     NEAR(few[2], 1995, 15);
     NEAR(few[4], 2995, 15);
-    CHECK(LIDARSet(0, 0, 5) == 1 && LIDARSet(180, 0, 0) == 1 && LIDARSet(180, 0, 2000000000) == 1);
+    CHECK(LIDARSet(-3, 0, 5) == 1 && LIDARSet(180, -91, 5) == 1 && LIDARSet(0, 0, 5) == 1 && LIDARSet(180, 0, 0) == 1 && LIDARSet(180, 0, 2000000000) == 1);
     for (i = 0; i < 100; i++)
         CHECK(LIDARGet(few) == 0);
     return 0;

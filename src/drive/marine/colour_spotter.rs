@@ -1,5 +1,6 @@
 use image::RgbImage;
 
+use crate::geometry::math;
 use crate::vision::{Components, GrayView, HueLimits, HueScale, ImageError, hue};
 use crate::world::Colour;
 
@@ -7,7 +8,8 @@ use crate::world::Colour;
 ///
 /// The ground is grey and as deep as the objects on it. So its apparent colour, the median of the image,
 /// measures the effect of water and light on all colours. Pixels are divided by it before their hues are
-/// compared.
+/// compared. What is nearer than the ground, such as a ledge, lacks less red, so that gray looks red there: a colour
+/// counts only if no distance makes gray of it.
 #[derive(Debug, Clone)]
 pub(super) struct ColourSpotter {
     /// On RoBIOS's scale.
@@ -23,10 +25,15 @@ const AROUND: i32 = 252;
 const TOLERANCE: i32 = 10;
 /// A quarter of the full saturation: water with its veil takes the rest. Noise makes less of gray ground.
 const LIMITS: HueLimits = HueLimits { min_saturation: 64, min_intensity: 8 };
+/// Half of it, for what has a colour by all but its red.
+const GRAY: HueLimits = HueLimits { min_saturation: 32, ..LIMITS };
 /// The least level of a colour's brightest channel: three quarters of the ground's. A thing of a colour
 /// reflects that about as well as the gray ground does; what is dark has a colour by noise, or by the veil of
 /// turbid water.
 const BRIGHT: u8 = 96;
+/// By how much more a metre of pure water absorbs of red light than of green light (1/m; Pope and Fry, *Applied
+/// Optics* 36, 1997).
+const REDDENS: f64 = 0.233;
 /// Pixels of the smallest thing.
 const LEAST: usize = 12;
 
@@ -38,13 +45,15 @@ impl ColourSpotter {
     }
 
     /// The column and row, in pixels from the middle of the picture, of the largest thing of the colour that
-    /// is not cut off by the picture's edge.
-    pub(super) fn find(&mut self, image: &RgbImage) -> Result<Option<(f64, f64)>, ImageError> {
+    /// is not cut off by the picture's edge. The ground is so many metres below the camera.
+    pub(super) fn find(&mut self, image: &RgbImage, altitude: f64) -> Result<Option<(f64, f64)>, ImageError> {
         let ground = ground(image);
         if ground.contains(&0) {
             return Ok(None);
         }
         let (width, height) = (image.width() as usize, image.height() as usize);
+        // Light goes down there, and up again.
+        let red = math::exp(-2.0 * REDDENS * altitude);
         self.mask.clear();
         self.mask.extend(image.pixels().map(|pixel| {
             let level =
@@ -53,7 +62,11 @@ impl ColourSpotter {
             let found = hue(levels, HueScale::Robios, LIMITS);
             let off = (i32::from(found) - i32::from(self.hue)).rem_euclid(AROUND);
             let is_bright = levels.iter().any(|level| *level >= BRIGHT);
-            u8::from(is_bright && i32::from(found) < AROUND && off.min(AROUND - off) <= TOLERANCE)
+            // The red, of all that it may be at the ground's distance, which is the most like gray.
+            let least = (f64::from(levels[0]) * red) as u8;
+            let gray = [levels[1].max(levels[2]).clamp(least, levels[0]), levels[1], levels[2]];
+            let is_coloured = is_bright && i32::from(hue(gray, HueScale::Robios, GRAY)) < AROUND;
+            u8::from(is_coloured && i32::from(found) < AROUND && off.min(AROUND - off) <= TOLERANCE)
         }));
         let mask = GrayView::new(&self.mask, width, height)?;
         let whole = self.components.find(mask, LEAST).iter().filter(|blob| {
@@ -105,7 +118,7 @@ mod tests {
     fn a_colour_is_found_through_water_and_in_little_light() {
         let mut spotter = ColourSpotter::new(Colour::RED);
         for light in [0.3, 1.0] {
-            let (column, row) = spotter.find(&picture([200, 30, 30], light)).unwrap().unwrap();
+            let (column, row) = spotter.find(&picture([200, 30, 30], light), 1.2).unwrap().unwrap();
             assert!((column + 6.0).abs() < 1e-9 && (row - 7.5).abs() < 1e-9, "{column} {row}");
         }
     }
@@ -116,8 +129,18 @@ mod tests {
         for other in
             [[230, 140, 20], [40, 60, 200], [30, 160, 60], [60, 60, 60], [90, 30, 30], [250, 250, 250]]
         {
-            assert_eq!(spotter.find(&picture(other, 1.0)).unwrap(), None, "{other:?}");
+            assert_eq!(spotter.find(&picture(other, 1.0), 1.2).unwrap(), None, "{other:?}");
         }
-        assert_eq!(spotter.find(&picture([200, 30, 30], 0.0)).unwrap(), None);
+        assert_eq!(spotter.find(&picture([200, 30, 30], 0.0), 1.2).unwrap(), None);
+        // Gray ledges below the surface, with most of their red; the last ones in the shade.
+        let ground = [90, 166, 186];
+        for (ledge, ground) in
+            [([170, 190, 194], ground), ([102, 114, 116], ground), ([90, 129, 132], [69, 139, 147])]
+        {
+            let picture = RgbImage::from_fn(40, 30, |x, y| {
+                Rgb(if (10..18).contains(&x) && (20..25).contains(&y) { ledge } else { ground })
+            });
+            assert_eq!(spotter.find(&picture, 1.5).unwrap(), None, "{ledge:?}");
+        }
     }
 }

@@ -1,3 +1,5 @@
+use std::collections::BTreeMap;
+
 use nalgebra::{Matrix6, Vector6};
 
 use crate::ParameterError;
@@ -15,6 +17,10 @@ pub struct Sounding {
     pub sigma: Vector,
     /// Standard deviation of the datum (m): by this all depths of a survey may be wrong together.
     pub datum: f64,
+    /// Standard deviation of the surface's level by waves (m): the soundings of a wave are wrong together.
+    pub swell: f64,
+    /// Half of the phase of these waves that passes until the next sounding (rad).
+    pub phase: f64,
 }
 
 /// A depth and its uncertainty.
@@ -30,8 +36,10 @@ pub struct CellDepth {
 ///
 /// A cell's depth is the mean of its own soundings, each moved to where it should be by the quadratic surface
 /// through the soundings around. Soundings that lie close together count as one. The standard deviation has
-/// three parts: the sensor's noise, which is seen in how soundings differ from those just before and after; the
-/// error of the place times the slope; and that of the datum.
+/// five parts: the sensor's noise, which is seen in how soundings differ from those just before and after; the
+/// error of the place times the slope; that of the datum; the waves that pass while the cell is measured; and what the
+/// quadratic surface does not say of the parts of the cell that were not. The last one is known by how far the
+/// soundings around are off that surface in the mean of each part: the parts that were measured are a sample of all.
 ///
 /// ```
 /// use roverlab::drive::marine::{DepthMap, Sounding};
@@ -40,7 +48,7 @@ pub struct CellDepth {
 /// let mut map = DepthMap::new(area, 1.0)?;
 /// for i in 0..200 {
 ///     let place = Point::new(0.02 * f64::from(i), 0.2 + 0.7 * f64::from(i % 4));
-///     map.add(Sounding { place, depth: 1.5 + 0.1 * place.x, sigma: Vector::repeat(0.02), datum: 0.0 });
+///     map.add(Sounding { place, depth: 1.5 + 0.1 * place.x, sigma: Vector::repeat(0.02), datum: 0.0, swell: 0.0, phase: 0.0 });
 /// }
 /// let cell = map.cell(2, 1).expect("it was measured");
 /// assert!((cell.depth - 1.75).abs() < 1e-4 && cell.sigma > 0.0);
@@ -63,6 +71,19 @@ pub struct DepthMap {
 struct Noted {
     sounding: Sounding,
     ripple: Option<f64>,
+}
+
+/// A part of a cell, or of one beside it.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    /// Row and column, from the corner of the cell before.
+    place: [usize; 2],
+    /// How much deeper than the surface its soundings are in the mean (m).
+    off: f64,
+    /// How much it counts: all in the middle of the cell.
+    weight: f64,
+    /// Number of its soundings.
+    count: f64,
 }
 
 /// The most cells.
@@ -132,33 +153,56 @@ impl DepthMap {
 
     /// The depth of a cell; `None` where it was not measured. O(soundings of the cells around).
     pub fn cell(&self, column: usize, row: usize) -> Option<CellDepth> {
-        let centre = self.centre(column, row);
         let own = self.soundings.get(row * self.columns + column)?;
         if column >= self.columns || own.is_empty() {
             return None;
         }
         let surface = self.surface(column, row)?;
         let noise = self.noise(column, row)?;
-        // Soundings off the surface, in the mean of each part of the cell.
-        let mut parts = [(0.0, 0_u32); PARTS * PARTS];
-        let (mut place, mut datum) = (Vector::zeros(), 0.0_f64);
-        for Noted { sounding, .. } in own {
-            let powers = self.powers(centre, sounding);
-            let part = |off: f64| (((off + 0.5) * PARTS as f64) as usize).min(PARTS - 1);
-            let (sum, count) = &mut parts[part(powers[2]) * PARTS + part(powers[1])];
-            (*sum, *count) = (*sum + sounding.depth - surface.dot(&powers), *count + 1);
-            place += sounding.sigma / own.len() as f64;
-            datum = datum.max(sounding.datum);
-        }
-        let measured = || parts.iter().filter(|part| part.1 > 0).map(|part| (part.0, f64::from(part.1)));
-        let known = measured().count() as f64;
-        let off = measured().map(|(sum, count)| sum / count).sum::<f64>() / known;
-        let random = measured().map(|(_, count)| noise / count).sum::<f64>() / (known * known);
+        let parts = self.parts(column, row, &surface);
+        let is_own = |part: &&Part| part.place.iter().all(|index| (PARTS..2 * PARTS).contains(index));
+        let own_parts = || parts.iter().filter(is_own);
+        let known = own_parts().count() as f64;
+        let off = own_parts().map(|part| part.off).sum::<f64>() / known;
+        let random = own_parts().map(|part| noise / part.count).sum::<f64>() / (known * known);
+        // What parts are off besides the noise, and more than by chance: those measured are a sample of all.
+        let swell = own.iter().map(|noted| noted.sounding.swell).fold(0.0, f64::max);
+        let known_off = |part: &Part| noise / part.count + swell * swell;
+        let weight: f64 = parts.iter().map(|part| part.weight).sum();
+        let mean_of = |square: &dyn Fn(&Part) -> f64| {
+            parts.iter().map(|part| part.weight * square(part)).sum::<f64>() / weight
+        };
+        let by_noise = mean_of(&known_off) * (1.0 + (2.0 / parts.len() as f64).sqrt());
+        let rough = (mean_of(&|part| part.off * part.off) - by_noise).max(0.0);
+        let unknown = rough / known * (1.0 - known / (PARTS * PARTS) as f64);
+        let place: Vector = own.iter().map(|noted| noted.sounding.sigma / own.len() as f64).sum();
+        let datum = own.iter().map(|noted| noted.sounding.datum).fold(0.0, f64::max);
         // The mean of the squares over a cell is a twelfth.
         let mean = surface[0] + (surface[3] + surface[5]) / 12.0;
         let slope = Vector::new(surface[1], surface[2]) / self.cell;
         let placed = slope.component_mul(&place).norm_squared();
-        Some(CellDepth { depth: mean + off, sigma: (random + placed + datum * datum).sqrt() })
+        // The mean of a wave over a phase; where several waves pass, of their envelope.
+        let phase: f64 = own.iter().map(|noted| noted.sounding.phase).sum();
+        let rocked = swell * swell / (1.0 + 0.5 * phase * phase);
+        let variance = random + placed + datum * datum + rocked + unknown;
+        Some(CellDepth { depth: mean + off, sigma: variance.sqrt() })
+    }
+
+    /// The measured parts of a cell and of those beside it.
+    fn parts(&self, column: usize, row: usize, surface: &Vector6<f64>) -> Vec<Part> {
+        let centre = self.centre(column, row);
+        let mut parts: BTreeMap<[usize; 2], (f64, f64, f64)> = BTreeMap::new();
+        for Noted { sounding, .. } in self.around(column, row) {
+            let powers = self.powers(centre, sounding);
+            let place = [powers[2], powers[1]].map(|off| ((off + 1.5) * PARTS as f64).max(0.0) as usize);
+            let (sum, weight, count) = parts.entry(place).or_default();
+            *sum += sounding.depth - surface.dot(&powers);
+            *weight += self.weight(centre, sounding);
+            *count += 1.0;
+        }
+        let part =
+            |(place, (sum, weight, count))| Part { place, off: sum / count, weight: weight / count, count };
+        parts.into_iter().map(part).collect()
     }
 
     /// The quadratic surface through the soundings of a cell and of those beside it, by least squares; what is
@@ -218,7 +262,7 @@ mod tests {
     use super::*;
 
     fn sounding(place: Point, depth: f64) -> Sounding {
-        Sounding { place, depth, sigma: Vector::zeros(), datum: 0.0 }
+        Sounding { place, depth, sigma: Vector::zeros(), datum: 0.0, swell: 0.0, phase: 0.0 }
     }
 
     #[test]
@@ -234,6 +278,37 @@ mod tests {
         assert!((map.cell(0, 0).unwrap().depth - 2.0).abs() < 1e-6);
         assert!(map.cell(2, 0).is_none() && map.cell(0, 1).is_none() && map.cell(5, 0).is_none());
         assert!(DepthMap::new(area, 0.0).is_err() && DepthMap::new(area, 1e-6).is_err());
+    }
+
+    /// Lanes over a bowl, whose rim and middle no quadratic surface is: in how many cells the true mean is within
+    /// two standard deviations.
+    #[test]
+    fn what_is_between_lanes_is_uncertain() {
+        let ground =
+            |x: f64, y: f64| 1.0 + 0.02 * ((x - 20.0) * (x - 20.0) + (y - 20.0) * (y - 20.0)).min(40.0);
+        let (mut inside, mut cells) = (0.0, 0.0);
+        for spacing in [1.0, 2.0, 3.0, 4.0] {
+            let mut map = DepthMap::new(Aabb::new(Point::origin(), Point::new(40.0, 40.0)), spacing).unwrap();
+            let mut stream = crate::random::Stream::new(3);
+            for lane in 0..(40.0 / spacing) as usize {
+                let x = spacing * (lane as f64 + 0.3);
+                for step in 0..800 {
+                    let y = 0.05 * f64::from(step);
+                    map.add(sounding(Point::new(x, y), ground(x, y) + 0.01 * stream.normal()));
+                }
+            }
+            for (column, row) in
+                (0..map.rows()).flat_map(|row| (0..map.columns()).map(move |column| (column, row)))
+            {
+                let (Some(cell), centre) = (map.cell(column, row), map.centre(column, row)) else { continue };
+                let place = |index: u32| spacing * (0.05 * f64::from(index) - 0.475);
+                let points = (0..400).map(|i| ground(centre.x + place(i % 20), centre.y + place(i / 20)));
+                let off = cell.depth - points.sum::<f64>() / 400.0;
+                inside += if off.abs() <= 2.0 * cell.sigma { 1.0 } else { 0.0 };
+                cells += 1.0;
+            }
+        }
+        assert!((0.92..0.98).contains(&(inside / cells)), "{inside} of {cells}");
     }
 
     #[test]

@@ -55,9 +55,9 @@ impl Fix {
         Vector::new(self.covariance[(0, 0)].sqrt(), self.covariance[(1, 1)].sqrt())
     }
 
-    /// Whether there are sides that tell the place.
-    pub(super) fn sees_sides(&self) -> bool {
-        self.sides.is_some()
+    /// The sides that tell the place.
+    pub(super) fn sides(&self) -> Option<Aabb> {
+        self.sides
     }
 
     /// The speed forward and to the left by the log (m/s).

@@ -21,7 +21,7 @@ pub(super) struct Helm {
     turn_rate: f64,
     /// What turn rates say it has turned since the observation before (rad).
     turned: f64,
-    /// The push ahead (N) that a boat's thrusters do.
+    /// The push ahead (N) that the thrusters do.
     pushed: f64,
     before: f64,
     /// Seconds since the observation before; at first the period.
@@ -151,7 +151,7 @@ impl Helm {
         self.turn_rate
     }
 
-    /// The push ahead (N) that a boat's thrusters do since the step before.
+    /// The push ahead (N) that the thrusters do since the step before.
     pub(super) fn pushed(&self) -> f64 {
         self.pushed
     }
@@ -181,6 +181,7 @@ impl Helm {
         hold.told(down * upright.share);
         let along = Wrench { force: Vector3::x() * push.ahead, moment: Vector3::z() * push.turn };
         let along = self.allocation.share(&along);
+        self.pushed = push.ahead * along.share;
         let both = upright.commands.iter().zip(&along.commands);
         let commands: Vec<f64> = both.map(|(a, b)| (a + b).clamp(-1.0, 1.0)).collect();
         Thrust::new(&commands[..self.craft.thrusters().len()])

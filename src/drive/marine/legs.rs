@@ -44,8 +44,18 @@ impl Legs {
     }
 
     /// Goes on to further waypoints.
-    pub(super) fn extend(&mut self, waypoints: [Point; 2]) {
+    pub(super) fn extend(&mut self, waypoints: Vec<Point>) {
         self.points.extend(waypoints);
+    }
+
+    /// Leaves the leg at a place, for another one and back. The course must not be over.
+    pub(super) fn detour(&mut self, place: Point, aside: Point) {
+        self.points.splice(self.next..self.next, [place, aside, place]);
+    }
+
+    /// The leg to the waypoint ahead. The course must not be over.
+    pub(super) fn way(&self) -> Vector {
+        self.points[self.next] - self.points[self.next - 1]
     }
 
     /// Takes notice of where the craft is. Returns whether it has reached a waypoint.

@@ -87,6 +87,8 @@ pub struct PoolSearch {
     area: Aabb,
     /// Position of the servo at which the camera looks straight down.
     down: f64,
+    /// Depth of the deepest floor so far, by the sensor that looks down (m).
+    deepest: f64,
     finds: Vec<Find>,
     found: Option<Point>,
 }
@@ -129,6 +131,7 @@ impl PoolSearch {
             camera,
             area,
             down,
+            deepest: 0.0,
             finds: Vec::new(),
             found: None,
         })
@@ -149,9 +152,10 @@ impl PoolSearch {
         if !(self.survey.is_ready() && seen.survey.down.is_finite()) {
             return Ok(None);
         }
-        let Some((column, row)) = self.spotter.find(&seen.image).map_err(Error::caused_by)? else {
-            return Ok(None);
-        };
+        self.deepest = self.deepest.max(seen.survey.dive.depth + seen.survey.down);
+        let altitude = self.deepest - seen.survey.dive.depth;
+        let thing = self.spotter.find(&seen.image, altitude).map_err(Error::caused_by)?;
+        let Some((column, row)) = thing else { return Ok(None) };
         let focal = 0.5 * f64::from(seen.image.width()) / math::tan(0.5 * self.camera.field_of_view);
         // The top of the picture is ahead.
         let own = Vector3::new(-row, -column, -focal);

@@ -2,13 +2,15 @@ use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
 
 use super::helm::Helm;
+use super::legs::over_ground;
 use super::reckoning::Reckoning;
 use super::wall_memory::WallMemory;
 use super::{DepthHoldParameters, DiveObservation, Thrust};
-use crate::geometry::{Point, Pose, Vector, WallSide, direction, math, normalize_angle};
+use crate::geometry::{Point, Pose, Vector, Vector3, WallSide, direction, math, normalize_angle};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
 use crate::io::reading::{check_distances, check_pose};
 use crate::io::{DepthSensor, DistanceSensors, Error, Inertial, Odometry, Psd, Result};
+use crate::kinematics::marine::{CraftMotion, Wrench};
 use crate::parameter::{require_not_negative, require_positive, require_up_to};
 use crate::world::{DriveSpec, RobotSpec};
 
@@ -54,7 +56,7 @@ impl Default for PoolWallParameters {
 pub struct PoolWallObservation {
     /// Depth, attitude and turn rates.
     pub dive: DiveObservation,
-    /// Pose by the log, relative to the water.
+    /// Pose by the log: over ground, or with a log that does not see the ground, relative to the water.
     pub odometry: Pose,
     /// Reading of the distance sensor ahead (m).
     pub front: f64,
@@ -88,6 +90,10 @@ halts!(PoolWallOutcome { Round: "all laps are done" });
 /// at the other side shows a wall that the craft approaches at a small angle with the wrong side: the beam
 /// ahead meets it farther on.
 ///
+/// In a current it crabs: what of its speed neither thrust nor turn explains is learnt as that of the water, and
+/// steered against. Only a Doppler log, which sees the ground, shows it; without one the remembered points drift away
+/// with the water.
+///
 /// ```
 /// use roverlab::drive::marine::{PoolWall, PoolWallOutcome, PoolWallParameters};
 /// use roverlab::io::control::run;
@@ -115,6 +121,10 @@ pub struct PoolWall {
     side: Point,
     far: Point,
     lap: Option<Lap>,
+    /// Speed ahead through the water that the thrust has led to (m/s).
+    through: f64,
+    /// Velocity of the water (m/s).
+    current: Vector,
 }
 
 /// A round along the wall.
@@ -152,6 +162,8 @@ const GAIN: f64 = 1.0;
 /// Weight of the momentary slip in that angle; the rest is the slip that a turn ends with, because the
 /// momentary slip alone would make the craft swing.
 const MOMENTARY: f64 = 0.45;
+/// Time in which a current is learnt (s): longer than a craft swings in a turn.
+const LEARNING: f64 = 8.0;
 /// Metres between the walls nearest here and there within which the way leads round a corner.
 const PIVOT: f64 = 0.2;
 /// Steps in which a direction is looked for (rad).
@@ -201,6 +213,8 @@ impl PoolWall {
             reckoning: Reckoning::default(),
             walls: WallMemory::default(),
             lap: None,
+            through: 0.0,
+            current: Vector::zeros(),
             parameters,
         })
     }
@@ -237,7 +251,11 @@ impl PoolWall {
         if (wall - place).norm() >= apart + ahead {
             return Aim::at(towards);
         }
-        let there = |aside: f64| place + direction(pose.heading + towards - aside) * ahead;
+        // In the time that it takes to turn there, the current carries it on.
+        let there = |aside: f64| {
+            let turn = normalize_angle(towards - aside);
+            place + direction(pose.heading + turn) * ahead + self.current * (turn.abs() / FASTEST)
+        };
         let is_free = |aside: f64| self.walls.clearance(there(aside)) >= apart;
         let steps = (PI / STEP) as u32;
         let free = (1..=steps).map(|step| STEP * f64::from(step)).find(|&aside| is_free(aside));
@@ -272,12 +290,26 @@ impl PoolWall {
         }
     }
 
+    /// Learns the current. Returns the slip (rad) by it, besides that of turning, of a craft that moves at a
+    /// velocity.
+    fn crab(&mut self, velocity: Vector, turning: f64) -> f64 {
+        let (pose, seconds) = (self.reckoning.pose(), self.helm.seconds());
+        let own = CraftMotion { linear: Vector3::x() * self.through, angular: Vector3::zeros() };
+        let push = Wrench { force: Vector3::x() * self.helm.pushed(), moment: Vector3::zeros() };
+        self.through += self.helm.craft().response(&own, &push).linear.x * seconds;
+        let expected = Vector::new(self.through, self.through * math::tan(turning));
+        let drift = over_ground(&pose, velocity - expected);
+        self.current += (drift - self.current) * (seconds / LEARNING).min(1.0);
+        math::atan2(self.current.dot(&direction(pose.heading + 0.5 * PI)), self.parameters.speed)
+    }
+
     fn thrust(&mut self, seen: &PoolWallObservation) -> Result<Thrust> {
         let PoolWallParameters { depth, speed, lookahead, .. } = self.parameters;
         let Aim { angle, bend } = self.aim();
         let velocity = self.reckoning.velocity();
         let slip = math::atan2(velocity.y, velocity.x.max(CREEP)).clamp(-SLIP, SLIP);
         let lasting = self.helm.slip(speed, speed * bend).clamp(-SLIP, SLIP);
+        let lasting = lasting + self.crab(velocity, lasting);
         let off = angle - MOMENTARY * slip - (1.0 - MOMENTARY) * lasting;
         // What of the angle is the chord of the bend is no error.
         let turn = GAIN * math::sin(off.clamp(-0.5 * PI, 0.5 * PI)) + (speed - 0.5 * GAIN * lookahead) * bend;

@@ -1,4 +1,5 @@
 use std::collections::VecDeque;
+use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
 use super::fix::Fix;
@@ -12,7 +13,7 @@ use crate::io::control::{Behaviour, Decision, Senses, halts};
 use crate::io::reading::{check_distances, check_pose};
 use crate::io::{DepthSensor, DistanceSensors, Error, Inertial, Odometry, Psd, Result};
 use crate::parameter::{require, require_not_negative, require_positive};
-use crate::world::{DriveSpec, RobotSpec};
+use crate::world::{DriveSpec, RobotSpec, Water, Waves};
 
 /// Parameters of [`Survey`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,6 +22,8 @@ pub struct SurveyParameters {
     pub spacing: f64,
     /// Distance kept from the craft's centre to the border of the area, enough to turn on the spot (m).
     pub margin: f64,
+    /// The same on lanes along the border (m). Less than `margin`, the first lanes lead once around the area.
+    pub brim: f64,
     /// Depth of the pressure sensor (m); with an altitude, the least one.
     pub depth: f64,
     /// Altitude above the floor to hold, of the distance sensor that points down (m); `None` to hold the
@@ -30,6 +33,8 @@ pub struct SurveyParameters {
     pub speed: f64,
     /// Density of the water, by which the depth sensor is zeroed afloat (kg/m³).
     pub density: f64,
+    /// Waves on the surface, by which soundings are wrong.
+    pub waves: Option<Waves>,
     /// Control period (s).
     pub period: f64,
     /// Parameters of the depth controller.
@@ -42,10 +47,12 @@ impl Default for SurveyParameters {
         Self {
             spacing: 1.0,
             margin: 1.0,
+            brim: 1.0,
             depth: 0.5,
             altitude: None,
             speed: 0.6,
             density: 1000.0,
+            waves: None,
             period: 0.1,
             hold: DepthHoldParameters::default(),
         }
@@ -84,7 +91,8 @@ halts!(SurveyOutcome { Covered: "all lanes are done" });
 ///
 /// The position, with its covariance, comes from Doppler log and compass, corrected by the distances to the
 /// four sides of a pool. Before diving, the depth sensor is zeroed by the craft's waterline. When the
-/// position becomes uncertain, the next lane is one along which a side can be measured.
+/// position becomes uncertain, the craft leaves its lane for a place from which the nearer side can be measured, and
+/// the next lane is one along which that is so.
 /// [`DepthMap`](super::DepthMap) makes a map of the soundings.
 ///
 /// ```
@@ -120,6 +128,8 @@ pub struct Survey {
     lanes: VecDeque<Lane>,
     sight: f64,
     legs: Legs,
+    /// Whether it has gone to measure a side and is unsure still.
+    has_looked: bool,
     /// The sensors around, in the craft's frame.
     around: [Pose; 4],
     /// Metres from the sensor that looks down up to the depth sensor, and ahead of the craft's origin.
@@ -140,15 +150,17 @@ const REACHED: f64 = 0.2;
 const MOST_LANES: f64 = 1e4;
 /// Metres ahead at which the craft steers.
 const LOOKAHEAD: f64 = 1.5;
+/// Distance within the range of a sensor at which a side is certainly seen (m).
+const WITHIN: f64 = 0.3;
 /// Standard deviation of the place (m) at which a craft is unsure of it.
 const UNSURE: f64 = 0.1;
 /// The most tilt (rad) with which the sensor looks down.
 const LEVEL: f64 = 0.15;
 
-/// A lane: its ends, and how far it is from the nearer side along it (m).
-#[derive(Debug, Clone, Copy)]
+/// A lane: its waypoints, and how far it is from the nearer side along it (m).
+#[derive(Debug, Clone)]
 struct Lane {
-    ends: [Point; 2],
+    points: Vec<Point>,
     off: f64,
 }
 
@@ -167,9 +179,12 @@ impl Survey {
         let DriveSpec::Craft(craft) = &robot.drive else {
             return Err(Error::invalid_input("robot", &robot.name, "a craft"));
         };
-        let SurveyParameters { spacing, margin, depth, altitude, speed, density, period, hold } = parameters;
+        let SurveyParameters { spacing, margin, brim, depth, altitude, speed, density, waves, period, hold } =
+            parameters;
         require_positive("spacing", spacing)?;
         require_not_negative("margin", margin)?;
+        require_not_negative("brim", brim)?;
+        Water { waves, ..Water::default() }.validate()?;
         require_not_negative("depth", depth)?;
         if let Some(altitude) = altitude {
             require_positive("altitude", altitude)?;
@@ -191,9 +206,10 @@ impl Survey {
             fix: Fix::new(start, sides.then_some(area)),
             zero: Zero::afloat(craft.waterline(density) - up),
             floor: FloorTrack::default(),
-            lanes: lanes(&area, start.position(), spacing, margin)?,
+            lanes: lanes(&area, start.position(), spacing, [margin, brim.min(margin)])?,
             sight,
             legs: Legs::new(vec![start.position()], speed, LOOKAHEAD, REACHED),
+            has_looked: false,
             around: [sensor(AROUND[0])?, sensor(AROUND[1])?, sensor(AROUND[2])?, sensor(AROUND[3])?],
             down: Point::new(down.x, up - down.z),
             sounding: None,
@@ -228,12 +244,27 @@ impl Survey {
     /// Goes on to the next lane. A craft that has become unsure of its place takes the next one along which
     /// it can see a side.
     fn go_on(&mut self, place: Point) {
-        let unsure = self.fix.sees_sides() && self.fix.sigma().max() > UNSURE;
+        let unsure = self.fix.sides().is_some() && self.fix.sigma().max() > UNSURE;
         let in_sight = |lane: &Lane| !unsure || lane.off < self.sight;
         let next = self.lanes.iter().position(in_sight).unwrap_or(0);
         if let Some(lane) = self.lanes.remove(next) {
             self.legs.extend(lane.from(place));
         }
+    }
+
+    /// Where an unsure craft finds out how far the sides along its lane are, if it does not see them now.
+    fn lookout(&mut self, place: Point) -> Option<Point> {
+        let (sides, way) = (self.fix.sides()?, self.legs.way().abs());
+        let axis = usize::from(way.x > way.y);
+        let is_unsure = self.fix.sigma()[axis] > UNSURE;
+        let has_looked = std::mem::replace(&mut self.has_looked, is_unsure);
+        let (low, high) = (sides.min[axis] + self.sight, sides.max[axis] - self.sight);
+        if !is_unsure || has_looked || !(low..high).contains(&place[axis]) {
+            return None;
+        }
+        let mut aside = place;
+        aside[axis] = if place[axis] - low < high - place[axis] { low - WITHIN } else { high + WITHIN };
+        Some(aside)
     }
 
     fn notice(&mut self, time: f64, seen: &SurveyObservation) -> Result<()> {
@@ -257,33 +288,61 @@ impl Survey {
             depth: seen.dive.depth - self.zero.offset() + self.down.y + seen.down,
             sigma: self.fix.sigma(),
             datum: self.zero.sigma(),
+            swell: self.parameters.waves.map_or(0.0, |waves| waves.deviation()),
+            phase: self.parameters.waves.map_or(0.0, |waves| PI * self.helm.seconds() / waves.period),
         });
         self.ready |= (seen.dive.depth - self.goal()[0]).abs() < BEGIN;
         Ok(())
     }
 }
 
-/// The lanes of an area, along its longer side, from the corner nearest to a place on.
-fn lanes(area: &Aabb, start: Point, spacing: f64, margin: f64) -> Result<VecDeque<Lane>> {
-    let (low, size) = (area.min + Vector::repeat(margin), area.size() - Vector::repeat(2.0 * margin));
-    if !(size.x > 0.0 && size.y > 0.0) {
-        let found = format!("{} x {} m", area.size().x, area.size().y);
+/// The lanes of an area: along its longer side, from the corner nearest to a place on. Those along the border are
+/// nearer to it than the corners where the craft turns, if there is a brim, and lead around.
+fn lanes(area: &Aabb, start: Point, spacing: f64, [margin, brim]: [f64; 2]) -> Result<VecDeque<Lane>> {
+    let [x, y]: [f64; 2] = area.size().into();
+    let (long, short) = (x.max(y), x.min(y));
+    if short <= 2.0 * margin {
+        let found = format!("{x} x {y} m");
         return Err(Error::invalid_input("area", found, "room for a lane between its margins"));
     }
-    let (long, short) = if size.x >= size.y { (size.x, size.y) } else { (size.y, size.x) };
-    let count = (short / spacing).ceil();
+    let count = ((short - 2.0 * brim) / spacing).ceil();
     require("number of lanes", count, count <= MOST_LANES, "at most 10000")?;
     let count = count as usize;
     let place = |along: f64, aside: f64| {
-        low + if size.x >= size.y { Vector::new(along, aside) } else { Vector::new(aside, along) }
+        area.min + if x >= y { Vector::new(along, aside) } else { Vector::new(aside, along) }
     };
     let lane = |index: usize| {
-        let aside = short * index as f64 / count as f64;
-        Lane { ends: [place(0.0, aside), place(long, aside)], off: margin + aside.min(short - aside) }
+        let aside = brim + (short - 2.0 * brim) * index as f64 / count as f64;
+        let points = vec![place(margin, aside), place(long - margin, aside)];
+        Lane { points, off: aside.min(short - aside) }
     };
+    let has_brim = brim < margin;
     let mut lanes: VecDeque<Lane> = (0..=count).map(lane).collect();
-    if lanes[count].distance(start) < lanes[0].distance(start) {
+    if has_brim {
+        lanes.pop_front();
+        lanes.pop_back();
+    }
+    if let (Some(first), Some(last)) = (lanes.front(), lanes.back())
+        && last.distance(start) < first.distance(start)
+    {
         lanes = lanes.into_iter().rev().collect();
+    }
+    if has_brim {
+        let far = (long - margin, short - margin);
+        let corners = [(margin, margin), (far.0, margin), far, (margin, far.1)];
+        let corners = corners.map(|(along, aside)| place(along, aside));
+        let middle = place(0.5 * long, 0.5 * short);
+        let side = |index: usize| {
+            let [from, to] = [corners[index % 4], corners[(index + 1) % 4]];
+            let along = (to - from).normalize();
+            let out = from - middle;
+            let out = (out - along * out.dot(&along)).normalize() * (margin - brim);
+            let points = vec![from, from + along * margin + out, to - along * margin + out, to];
+            Lane { points, off: brim }
+        };
+        let off = |index: &usize| (corners[*index] - start).norm();
+        let nearest = (0..4).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0);
+        (0..4).rev().for_each(|index| lanes.push_front(side(nearest + index)));
     }
     Ok(lanes)
 }
@@ -291,13 +350,18 @@ fn lanes(area: &Aabb, start: Point, spacing: f64, margin: f64) -> Result<VecDequ
 impl Lane {
     /// Metres from a place to the nearer end.
     fn distance(&self, place: Point) -> f64 {
-        (self.ends[0] - place).norm().min((self.ends[1] - place).norm())
+        let ends = [self.points.first(), self.points.last()];
+        ends.iter().flatten().map(|end| (*end - place).norm()).fold(f64::INFINITY, f64::min)
     }
 
-    /// Its ends, the one nearer to a place first.
-    fn from(&self, place: Point) -> [Point; 2] {
-        let [one, other] = self.ends;
-        if (other - place).norm() < (one - place).norm() { [other, one] } else { [one, other] }
+    /// Its waypoints, from the end nearer to a place on.
+    fn from(mut self, place: Point) -> Vec<Point> {
+        if let [first, .., last] = self.points[..]
+            && (last - place).norm() < (first - place).norm()
+        {
+            self.points.reverse();
+        }
+        self.points
     }
 }
 
@@ -323,6 +387,9 @@ impl Behaviour for Survey {
         }
         if self.legs.is_over() {
             return Ok(ControlFlow::Break(SurveyOutcome::Covered));
+        }
+        if let Some(aside) = self.lookout(pose.position()) {
+            self.legs.detour(pose.position(), aside);
         }
         if !self.zero.is_over() {
             return Ok(ControlFlow::Continue(Thrust::new(&[])?));

@@ -3,7 +3,7 @@
 //! | line | meaning |
 //! |---|---|
 //! | `drive AUV_DRIVE`, `BOAT_DRIVE` | a craft in water, underwater or on the surface: names of our own |
-//! | `drive DIFFERENTIAL_DRIVE`, `ACKERMANN_DRIVE`, `OMNI_DRIVE`, `TRACKED_DRIVE` | how it moves; `TRACK_DRIVE` and `CHAIN_DRIVE` are tracked too, other names are read as differential |
+//! | `drive DIFFERENTIAL_DRIVE`, `ACKERMANN_DRIVE`, `OMNI_DRIVE`, `TRACKED_DRIVE` | how it moves; `TRACK_DRIVE` and `CHAIN_DRIVE` are tracked too; other names are read as differential with a `wheel` line, as `AUV_DRIVE` without one |
 //! | `name NAME` | name for scenes; default: the name of the file |
 //! | `model FILE [X Y Z RX RY RZ]` | 3D model for cameras, with its offset and rotation |
 //! | `collider box SX SY SZ X Y Z`, `sphere R X Y Z`, `capsule R H X Y Z` | solid parts: sizes, then centre |

@@ -90,6 +90,8 @@ enum Drive {
     Omni,
     Submarine,
     Boat,
+    /// One of another name.
+    Unknown,
 }
 
 /// A `psd` line.
@@ -263,9 +265,9 @@ impl<'f> Reader<'f> {
             "BOAT_DRIVE" => Drive::Boat,
             "TRACKED_DRIVE" | "TRACK_DRIVE" | "CHAIN_DRIVE" => Drive::Tracked,
             _ => {
-                let message = format!("unknown drive {}; read as DIFFERENTIAL_DRIVE", shown(name));
-                self.notes.warn(line.location(1), message);
-                Drive::Differential
+                let read = "read as DIFFERENTIAL_DRIVE with a `wheel` line, as AUV_DRIVE without one";
+                self.notes.warn(line.location(1), format!("unknown drive {}; {read}", shown(name)));
+                Drive::Unknown
             }
         });
         Ok(())

@@ -2,6 +2,7 @@ use proptest::prelude::*;
 
 use super::{parse, parse_with_model, print};
 use crate::geometry::{Aabb, Point, units};
+use crate::kinematics::marine::Craft;
 use crate::world::formats::MemoryFiles;
 use crate::world::formats::source::Files;
 use crate::world::{
@@ -212,13 +213,22 @@ fn other_drives_and_old_keywords_are_read_with_warnings() {
     assert_eq!(
         messages,
         [
-            "Snow.robi:1:7: unknown drive `SAIL_DRIVE`; read as DIFFERENTIAL_DRIVE",
+            "Snow.robi:1:7: unknown drive `SAIL_DRIVE`; read as DIFFERENTIAL_DRIVE with a `wheel` line, as \
+             AUV_DRIVE without one",
             "Snow.robi:3:1: unknown keyword `diameter`; the line is skipped",
             "Snow.robi:4:1: unknown keyword `speed`; the line is skipped",
         ]
     );
     assert_eq!(parsed.value.name, "Snow");
     assert_eq!(parsed.value.footprint, Footprint::Disc { radius: 0.072 });
+}
+
+#[test]
+fn a_stranger_of_an_unknown_drive_without_wheels_floats() {
+    let text = "drive SUBMARINE_DRIVE\nmass 35 0 0 0\ncollider box 1340 460 645 0 230 0\n";
+    let parsed = parse(text, "mako.robi").unwrap();
+    let DriveSpec::Craft(craft) = &parsed.value.drive else { panic!("{:?}", parsed.value.drive) };
+    assert!(Craft::new(craft, 0.01).unwrap().reserve(1000.0) > 0.0 && craft.thrusters.len() == 4);
 }
 
 #[test]

@@ -19,6 +19,12 @@ impl Reader<'_> {
             let (found, expected) = ("no `drive` line", "`drive` and the name of a drive");
             return Err(FormatError::new(self.notes.file, Location::START, found, expected));
         };
+        // What has no wheels does not drive.
+        let drive = match (drive, self.wheel) {
+            (Drive::Unknown, Some(_)) => Drive::Differential,
+            (Drive::Unknown, None) => Drive::Submarine,
+            (known, _) => known,
+        };
         self.spec.drive = self.drive_spec(drive)?;
         self.place_sensors();
         self.place_footprint(drive);
