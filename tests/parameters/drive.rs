@@ -28,6 +28,7 @@ use roverlab::kinematics::marine::CraftSpec;
 use roverlab::kinematics::{Ackermann, Omni};
 use roverlab::random::Stream;
 use roverlab::vision::lane_markings::{RoadCamera, RoadModel};
+use roverlab::vision::network::MapSize;
 use roverlab::vision::motion::{FlowDetector, FlowParameters, MotionParameters};
 use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod};
 use roverlab::world::road::{RoadCourseOptions, generate};
