@@ -16,7 +16,8 @@ use roverlab::world::road::{Appearance, RoadCourseOptions, generate};
 use roverlab::world::{RobotSpec, Scene, World};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let network = Network::from_safetensors(&fs::read("cli/nets/steering.safetensors")?)?;
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/cli/nets/steering.safetensors");
+    let network = Network::from_safetensors(&fs::read(file)?)?;
     println!("{}: {} weights", network.architecture(), network.architecture().weights());
 
     let course = generate(3, &RoadCourseOptions::default())?;
@@ -44,7 +45,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let size = driver.network().architecture().input();
     let attention = driver.network().attention();
     for row in attention.chunks_exact(size.width) {
-        println!("{}", row.iter().map(|&part| [' ', '.', ':', '*', '#'][(4.0 * part) as usize]).collect::<String>());
+        println!(
+            "{}",
+            row.iter().map(|&part| [' ', '.', ':', '*', '#'][(4.0 * part) as usize]).collect::<String>()
+        );
     }
 
     let mut picture = Picture::new(&World { floor: course.floor(), ..World::empty(1.0, 1.0) });

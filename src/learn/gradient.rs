@@ -2,8 +2,16 @@
 
 use candle_core::{D, Device, Result, Tensor, Var};
 
-use super::trainer::Loss;
 use crate::vision::network::{Architecture, Layer};
+
+/// What a network is to make small.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Loss {
+    /// The squared error of a single result.
+    Squares,
+    /// The negative logarithm of the probability of the right class (cross entropy).
+    Classes,
+}
 
 /// Weights and constants of a layer, and their gradients alike.
 pub(super) type Numbers = Vec<(Vec<f32>, Vec<f32>)>;

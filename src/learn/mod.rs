@@ -40,4 +40,5 @@ mod gradient;
 mod tests;
 mod trainer;
 
-pub use trainer::{Examples, Loss, Trainer, TrainerOptions, TrainingError};
+pub use gradient::Loss;
+pub use trainer::{Examples, Trainer, TrainerOptions, TrainingError};

@@ -1,12 +1,16 @@
 use std::num::NonZero;
 
-use super::gradient::{Numbers, gradient};
+use super::gradient::{Loss, Numbers, gradient};
 use crate::ParameterError;
-use crate::parameter::{require, require_not_negative, require_positive};
+use crate::parameter::{debug_as_sentence, require, require_not_negative, require_positive};
 use crate::random::Stream;
 use crate::vision::network::{Architecture, Network};
 
 /// What a network is to learn from.
+///
+/// # For implementers
+///
+/// The same index and the same random numbers must give the same example, whichever thread asks.
 pub trait Examples: Sync {
     /// Number of examples.
     fn count(&self) -> usize;
@@ -14,15 +18,6 @@ pub trait Examples: Sync {
     /// Writes the input of an example, and returns the result that the network should have: a number, or for
     /// [`Loss::Classes`] the index of a class. Random numbers vary an input from one time to the next.
     fn write(&self, index: usize, random: &mut Stream, input: &mut [f32]) -> f32;
-}
-
-/// What a network is to make small.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Loss {
-    /// The squared error of a single result.
-    Squares,
-    /// The negative logarithm of the probability of the right class (cross entropy).
-    Classes,
 }
 
 /// Options of a [`Trainer`].
@@ -48,7 +43,7 @@ impl Default for TrainerOptions {
 }
 
 /// Training that cannot go on.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum TrainingError {
     /// A parameter is out of range.
@@ -66,6 +61,8 @@ pub enum TrainingError {
     #[error("training: {0}")]
     Framework(#[from] candle_core::Error),
 }
+
+debug_as_sentence!(TrainingError);
 
 /// Trains a network; see the [module](super).
 ///

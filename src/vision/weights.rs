@@ -1,7 +1,8 @@
 use crate::ParameterError;
+use crate::parameter::debug_as_sentence;
 
 /// Weights that cannot be read or written.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WeightsError {
     /// The file is none of the format, or something is missing.
@@ -11,6 +12,8 @@ pub enum WeightsError {
     #[error("weights: {0}")]
     Parameter(#[from] ParameterError),
 }
+
+debug_as_sentence!(WeightsError);
 
 impl WeightsError {
     /// The error of the format's reader.

@@ -176,7 +176,8 @@ fn affects_run(command: &Command, option: &str) -> bool {
 fn is_built_in(option: &str, value: &str) -> bool {
     match option {
         "robot" => RobotSpec::predefined(value).is_some() && !Path::new(value).exists(),
-        "figure" => Path::new(value).extension().is_none(),
+        // The ways to drive of `maze-left` have names, weights of networks are files.
+        "figure" | "drive" => Path::new(value).extension().is_none(),
         _ => false,
     }
 }

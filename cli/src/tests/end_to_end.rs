@@ -31,7 +31,8 @@ fn what_is_no_network_is_refused() {
 #[cfg(feature = "learn")]
 #[test]
 fn equal_seeds_train_equal_weights_after_an_interruption_too() {
-    const SMALL: [&str; 6] = ["--architecture", "8x20x1 conv4/5/2 dense10", "--lessons", "1", "--epochs", "2"];
+    const SMALL: [&str; 6] =
+        ["--architecture", "8x20x1 conv4/5/2 dense10", "--lessons", "1", "--epochs", "2"];
     let train = |name: &str, rounds: &str, threads: &str| {
         let file = temporary(name);
         let words = ["--train", "--out", text(&file), "--rounds", rounds, "--threads", threads];

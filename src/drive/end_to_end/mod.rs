@@ -7,8 +7,11 @@
 //! (DAgger; Ross et al. 2011). The feature `learn` trains with them.
 //!
 //! ```
-//! use roverlab::drive::end_to_end::{NetworkDriver, SteeringTeacher, TeacherParameters};
+//! use roverlab::drive::end_to_end::{
+//!     NetworkDriver, SteeringExamples, SteeringTeacher, TeacherParameters, see_road_into,
+//! };
 //! use roverlab::drive::lane_keeping::{LaneKeeper, LaneKeeperParameters};
+//! use roverlab::io::Camera;
 //! use roverlab::io::control::run;
 //! use roverlab::io::sim::{SimOptions, Simulation};
 //! use roverlab::vision::lane_markings::RoadModel;
@@ -29,7 +32,8 @@
 //! let keeper = LaneKeeper::new(camera, RoadModel::default(), LaneKeeperParameters::default())?;
 //! let mut teacher = SteeringTeacher::new(keeper, architecture.input(), TeacherParameters::default())?;
 //! run(&mut car, &mut teacher, 1.0, |_, _, _| ())?;
-//! assert!(teacher.into_examples().len() >= 29);
+//! let examples: SteeringExamples = teacher.into_examples();
+//! assert!(examples.len() >= 29);
 //!
 //! // A network of zeros drives straight on.
 //! let weights = architecture.filters().flatten().map(|(filters, taps)| (vec![0.0; filters * taps], vec![0.0; filters]));
@@ -37,6 +41,10 @@
 //! let mut driver = NetworkDriver::new(network, 1.0)?;
 //! run(&mut car, &mut driver, 0.5, |_, _, _| ())?;
 //! assert_eq!(driver.curvature(), 0.0);
+//!
+//! // What it sees of an image.
+//! let mut input = vec![0.0; architecture.input().len()];
+//! see_road_into(&car.image()?, architecture.input(), &mut input)?;
 //! # Ok(())
 //! # }
 //! ```

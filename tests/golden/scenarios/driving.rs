@@ -367,7 +367,8 @@ fn end_to_end() -> Result<String> {
     let mut driver = NetworkDriver::new(Network::new(architecture, weights)?, 0.5)?;
     let mut seen = String::new();
     let mut log = ride(&on_the_road()?.1, noise(1.0, 30), |robot| {
-        run(robot, &mut driver, 2.0, |_, driver, _| note(&mut seen, "curvature", &driver.curvature())).map(drop)
+        run(robot, &mut driver, 2.0, |_, driver, _| note(&mut seen, "curvature", &driver.curvature()))
+            .map(drop)
     })?;
     let mut network = driver.network().clone();
     let last = network.map(0).to_vec();
