@@ -54,6 +54,8 @@ const EXCEPTIONS: &[(&str, &str)] = &[
     ("safety::CliffGuard", ROBOT),
     ("safety::Supervised", ROBOT),
     ("vision::road_elements::RoadElementFinder::see", "takes what a `LaneMarkingFinder` makes"),
+    ("learn::Trainer::epoch", "takes examples of the caller's own; `learn::tests` gives it nonsense"),
+    ("vision::network::FixedNetwork", "takes any inputs of the caller's; `network::tests` gives it nonsense"),
     // Functions of the caller's own.
     ("evolve::Genetic", GENES),
     ("evolve::Parallel", CLOSURE),
