@@ -1,5 +1,5 @@
-//! Driving by a network (book, chapter 13): it has learned from images what a lane keeper steers, and drives a
-//! course that it has never seen, before the referee of Free Drive. The picture shows what it looks at.
+//! Driving by a network (book, chapter 13): it has learned from images what a lane keeper steers, and drives
+//! a course that it has never seen, before the referee of Free Drive. The picture shows what it looks at.
 //!
 //! `cargo run --release --example end_to_end --features weights`
 

@@ -81,8 +81,8 @@
 //!
 //! Off by default: `log` (recordings), `png` (pictures as PNG), `testing` (property-test strategies and
 //! checks for your own planners), `petgraph` (search on that crate's graphs), `rayon` (vision kernels and
-//! evolution on several threads), `checkpoint` (saved evolutions), `physics` (a walking robot), `learn` (training of networks), `robios` (a
-//! real EyeBot).
+//! evolution on several threads), `checkpoint` (saved evolutions), `physics` (a walking robot), `learn`
+//! (training of networks), `robios` (a real EyeBot).
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 // With some wings off, code used only by them is unused, and links to them are plain text.

@@ -81,6 +81,15 @@ pub(crate) fn write_with_causes(error: &dyn std::error::Error, f: &mut fmt::Form
     Ok(())
 }
 
+/// Fails unless there are as many of something as expected.
+pub(crate) fn require_count(name: &'static str, found: usize, expected: usize) -> Result<(), ParameterError> {
+    if found == expected {
+        Ok(())
+    } else {
+        Err(ParameterError::new(name, found as f64, expected.to_string()))
+    }
+}
+
 /// Returns an error unless a parameter is good.
 pub(crate) fn require(
     name: &'static str,

@@ -1,4 +1,4 @@
-//! Weights of signs, and networks. What is read comes back from its writer.
+//! Weights of signs, and networks. What is read can be written; weights of signs come back.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -9,8 +9,8 @@ const TENSORS: [&str; 3] = ["weights", "means", "squares"];
 const KEYS: [&str; 4] = ["architecture", "options", "steps", "epochs"];
 
 impl Trainer {
-    /// The state between two epochs, as a file `.safetensors`. A trainer that goes on from it ends with the same
-    /// weights as one that was never interrupted.
+    /// The state between two epochs, as a file `.safetensors`. A trainer that goes on from it ends with the
+    /// same weights as one that was never interrupted.
     ///
     /// # Errors
     ///

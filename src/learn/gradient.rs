@@ -2,7 +2,7 @@
 
 use candle_core::{D, Device, Result, Tensor, Var};
 
-use crate::vision::network::{Architecture, Layer};
+use crate::vision::network::{Architecture, Layer, MapSize};
 
 /// What a network is to make small.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -47,7 +47,8 @@ pub(super) fn gradient(
     Ok((f64::from(sum.to_scalar::<f32>()?), numbers.collect::<Result<_>>()?))
 }
 
-/// The weights of layers as candle's variables: a row for each filter, in the order of rows, columns and channels.
+/// The weights of layers as candle's variables: a row for each filter, in the order of rows, columns and
+/// channels.
 fn variables(architecture: &Architecture, weights: &Numbers, device: &Device) -> Result<Vec<(Var, Var)>> {
     let layers = architecture.layers().iter().zip(architecture.sizes());
     let shapes = layers.filter_map(|(&layer, from)| match layer {
@@ -76,12 +77,14 @@ fn forward(
     let mut variables = variables.iter();
     let last = architecture.layers().len() - 1;
     for (index, &layer) in architecture.layers().iter().enumerate() {
+        let to = architecture.sizes()[index + 1];
         if let Layer::Pool { size } = layer {
-            values = values.max_pool2d(size)?;
+            values = reached(&values, to, (size, size))?.max_pool2d(size)?;
             continue;
         }
         let Some((weights, constants)) = variables.next() else { break };
-        values = if let Layer::Convolution { stride, .. } = layer {
+        values = if let Layer::Convolution { size, stride, .. } = layer {
+            let values = reached(&values, to, (size, stride))?;
             let weights = weights.permute((0, 3, 1, 2))?.contiguous()?;
             let constants = constants.reshape((1, constants.elem_count(), 1, 1))?;
             values.conv2d(&weights, 0, stride, 1, 1)?.broadcast_add(&constants)?
@@ -95,4 +98,11 @@ fn forward(
         }
     }
     if values.rank() == 4 { values.permute((0, 2, 3, 1))?.flatten_from(1) } else { Ok(values) }
+}
+
+/// The rows and columns that filters of a size reach by their stride: of others candle wants as many below as
+/// to the right.
+fn reached(values: &Tensor, to: MapSize, (size, stride): (usize, usize)) -> Result<Tensor> {
+    let [height, width] = [to.height, to.width].map(|places| (places - 1) * stride + size);
+    values.narrow(2, 0, height)?.narrow(3, 0, width)?.contiguous()
 }

@@ -1,8 +1,9 @@
 //! Training of networks (feature `learn`; book, section 13.6).
 //!
-//! A [`Trainer`] fits the weights of a [`Network`](crate::vision::network::Network) to [`Examples`], which may differ
-//! each time that they are looked at. Gradients come from the crate `candle-core`; this module adds the order of the
-//! work, so that equal seeds give equal weights, whatever the number of threads and of interruptions.
+//! A [`Trainer`] fits the weights of a [`Network`](crate::vision::network::Network) to [`Examples`], which
+//! may differ each time that they are looked at. Gradients come from the crate `candle-core`; this module
+//! adds the order of the work, so that equal seeds give equal weights on one kind of processor, whatever the
+//! number of threads and of interruptions.
 //!
 //! ```
 //! use roverlab::learn::{Examples, Loss, Trainer, TrainerOptions};

@@ -138,3 +138,33 @@ fn a_damaged_state_is_refused() {
     let other = TrainerOptions { seed: 2, ..options(1, Loss::Squares) };
     assert!(read(&bytes, other).unwrap_err().to_string().contains("expected"));
 }
+
+/// Pictures of odd sizes, whose last rows or columns no filter reaches.
+struct Odd;
+
+impl Examples for Odd {
+    fn count(&self) -> usize {
+        2
+    }
+
+    fn write(&self, index: usize, random: &mut Stream, input: &mut [f32]) -> f32 {
+        input.fill_with(|| random.normal() as f32);
+        index as f32
+    }
+}
+
+#[test]
+fn any_architecture_is_trained() {
+    let pilot =
+        "66x200x3 conv24/5/2 conv36/5/2 conv48/5/2 conv64/3/1 conv64/3/1 dense100 dense50 dense10 dense1";
+    for architecture in [
+        pilot,
+        "8x21x1 conv4/3/1 conv4/5/2 dense1",
+        "7x20x1 conv2/3/2 pool2 dense1",
+        "5x4x2 conv1/5/1 dense1",
+    ] {
+        let options = TrainerOptions { batch: 2, ..options(1, Loss::Squares) };
+        let mut trainer = Trainer::new(architecture.parse().unwrap(), options).unwrap();
+        assert!(trainer.epoch(&Odd, 1e-3).is_ok(), "{architecture}");
+    }
+}

@@ -31,7 +31,8 @@ pub struct TrainerOptions {
     pub decay: f64,
     /// Seed of the first weights, of the order of the examples, and of their variation.
     pub seed: u64,
-    /// Number of threads. It does not change the result.
+    /// Number of threads for the parts of a batch, at most four. It does not change the result. Candle has
+    /// threads of its own besides.
     pub threads: NonZero<usize>,
 }
 
@@ -51,7 +52,7 @@ pub enum TrainingError {
     Parameter(#[from] ParameterError),
     /// Weights or losses are no longer finite.
     #[error(
-        "training: found {0} as the mean loss of a step; expected a finite number: the rate is too high, or an example is none"
+        "training: found a loss or a weight of {0}; expected a finite number: the rate is too high, or an example is none"
     )]
     Diverged(f64),
     /// A file that holds no state of a training.
@@ -66,8 +67,8 @@ debug_as_sentence!(TrainingError);
 
 /// Trains a network; see the [module](super).
 ///
-/// Steps are those of AdamW (Loshchilov and Hutter 2019). A batch has a fixed number of parts, whose gradients are
-/// added in their order.
+/// Steps are those of AdamW (Loshchilov and Hutter 2019). A batch has a fixed number of parts, whose
+/// gradients are added in their order.
 #[derive(Debug, Clone)]
 pub struct Trainer {
     pub(super) architecture: Architecture,
@@ -117,16 +118,16 @@ impl Trainer {
     /// The network with the present weights.
     pub fn network(&self) -> Network {
         Network::new(self.architecture.clone(), self.weights.clone())
-            .expect("weights were checked after each step")
+            .expect("weights were checked after each epoch")
     }
 
-    /// Looks once at all examples, in random order. Steps are in proportion to the `rate`, 0.001 for example. Returns
-    /// the mean loss.
+    /// Looks once at all examples, in random order. Steps are in proportion to the `rate`, 0.001 for example.
+    /// Returns the mean loss.
     ///
     /// # Errors
     ///
-    /// If there are no examples, the rate is out of range, or the loss is no longer finite. The trainer is then as
-    /// before the epoch.
+    /// If there are no examples, the rate is out of range, or the loss is no longer finite. The trainer is
+    /// then as before the epoch.
     pub fn epoch(&mut self, examples: &(impl Examples + ?Sized), rate: f64) -> Result<f64, TrainingError> {
         let count = examples.count();
         require("number of examples", count as f64, count > 0, "at least 1")?;
@@ -153,11 +154,12 @@ impl Trainer {
             self.step(&gradient, 1.0 / batch.len() as f64, rate);
             sum += loss;
         }
-        let weights = self.weights.iter().flat_map(|(weights, constants)| weights.iter().chain(constants));
-        if let Some(weight) = weights.copied().find(|weight| !weight.is_finite()) {
-            return Err(TrainingError::Diverged(weight.into()));
+        let [means, squares] = &self.moments;
+        let state = [&self.weights, means, squares].into_iter().flat_map(numbers);
+        if let Some(number) = state.copied().find(|number| !number.is_finite()) {
+            return Err(TrainingError::Diverged(number.into()));
         }
-        self.epochs += 1;
+        self.epochs = self.epochs.saturating_add(1);
         Ok(sum)
     }
 
@@ -224,7 +226,7 @@ impl Trainer {
 
     /// Changes the weights by a gradient times a factor.
     fn step(&mut self, gradient: &Numbers, factor: f64, rate: f64) {
-        self.steps += 1;
+        self.steps = self.steps.saturating_add(1);
         let steps = i32::try_from(self.steps).unwrap_or(i32::MAX);
         let [first, second] = KEPT.map(|kept| 1.0 - kept.powi(steps));
         let [means, squares] = &mut self.moments;

@@ -18,7 +18,8 @@
 //! ```
 //!
 //! [`motion`] detects motion, [`lane_markings`] the lane ahead of a car, [`road_elements`] what is on it, and
-//! [`signs`] what stands beside it; [`network`] runs trained networks. Robots that drive by camera are in [`drive`](crate::drive).
+//! [`signs`] what stands beside it; [`network`] runs trained networks. Robots that drive by camera are in
+//! [`drive`](crate::drive).
 //!
 //! The module `images` (feature `image`) has the same kernels on images of the crate `image`; they return new
 //! images.

@@ -7,15 +7,15 @@ use crate::parameter::{require, require_finite, require_not_negative, require_po
 pub struct Water {
     /// Density (kg/m³).
     pub density: f64,
-    /// Layers of the current: depth below the surface (m), and velocity along x and y (m/s). Between layers it is
-    /// interpolated; above the first and below the last it is constant.
+    /// Layers of the current: depth below the surface (m), and velocity along x and y (m/s). Between layers
+    /// it is interpolated; above the first and below the last it is constant.
     pub current: Vec<(f64, Vector)>,
     /// Waves on the surface.
     pub waves: Option<Waves>,
     /// Velocity of the wind along x and y (m/s).
     pub wind: Vector,
-    /// Fraction of the light scattered per metre of water (1/m): 0 in clear water, 0.1 in a filtered pool, 1 in a
-    /// lake. It veils distant objects in camera images.
+    /// Fraction of the light scattered per metre of water (1/m): 0 in clear water, 0.1 in a filtered pool, 1
+    /// in a lake. It veils distant objects in camera images.
     pub turbidity: f64,
 }
 

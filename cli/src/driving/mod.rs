@@ -67,7 +67,8 @@ pub(crate) struct Run<T> {
     pub(crate) others: Vec<Trail>,
     /// Final positions of the scene's objects.
     pub(crate) objects: Vec<Point>,
-    /// Where the robot was in space, in a world with hills or water, at each moment of the trail but the first.
+    /// Where the robot was in space, in a world with hills or water, at each moment of the trail but the
+    /// first.
     pub(crate) in_space: Vec<TruthInSpace>,
 }
 
@@ -181,7 +182,8 @@ impl Conditions {
     }
 }
 
-/// Fails if a run that lasts until its time limit (s) ended well before it: the robot's clock has jumped ahead.
+/// Fails if a run that lasts until its time limit (s) ended well before it: the robot's clock has jumped
+/// ahead.
 pub(crate) fn check_lasted(sim_time: f64, limit: f64) -> Ending<()> {
     if sim_time + RESERVE >= limit {
         return Ok(());
@@ -190,7 +192,8 @@ pub(crate) fn check_lasted(sim_time: f64, limit: f64) -> Ending<()> {
 }
 
 impl<T> Run<T> {
-    /// The same for a run that lasts until its time limit (s); it has failed if the robot's clock ended it early.
+    /// The same for a run that lasts until its time limit (s); it has failed if the robot's clock ended it
+    /// early.
     pub(crate) fn lasting(self, limit: f64) -> Self {
         let ending = self.ending.and_then(|ended| check_lasted(self.sim_time, limit).map(|()| ended));
         Self { ending, ..self }

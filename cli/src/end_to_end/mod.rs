@@ -16,8 +16,8 @@ use crate::lane_keeping::{Pilot, Plan, Setting, one, scores};
 #[command(
     about = "Trains a network to steer a model car by its camera image, and drives by it before the referee of Free Drive",
     after_help = "\
-The network sees the road part of the image in grey, 32 x 80 pixels, and says the curvature to steer; several results are classes of
-curvature, ten as in the book with an --architecture that ends in dense10. It drives at one speed, without odometry.
+The network sees the road part of the image, unless told otherwise in grey and of 32 x 80 pixels, and says the curvature to steer;
+several results are classes of curvature, ten as in the book with an --architecture that ends in dense10. It drives at one speed, without odometry.
 
 --train drives courses of its own, other ones than those of a campaign, by the lane keeper of `lane-keeping`, which is disturbed now
 and then, and learns its steering. In further rounds the network drives half as many courses itself, and learns what the lane
@@ -25,8 +25,9 @@ keeper would have steered there (DAgger). Equal options give equal weights on on
 is learned so far is kept in the folder FILE.training, from which the same command goes on after an interruption.
 
 JSON fields:
-  examples, weights, weights_hash   --train: number of images; file that was written, and its hash
-  rounds                            --train: rows: examples, loss (mean of the last epoch), interventions
+  architecture, examples            --train: the network; number of images
+  weights, weights_hash             --train: file that was written, and its hash
+  rounds                            --train: rows: examples, loss (mean of the last epoch; none if it was learned before an interruption), interventions
   and those of lane-keeping otherwise
 Outcomes: learned; kept, departed (of lanes), failed; with --campaign: passed (autonomy of at least 99 %), wrong."
 )]
@@ -71,7 +72,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 2.0, value_parser = crate::lane_keeping::minutes, allow_hyphen_values = true)]
     pub(crate) minutes: f64,
 
-    /// Speed in m/s.
+    /// Speed in m/s [default: 1].
     #[arg(long, value_name = "M/S", value_parser = crate::lane_keeping::speed, allow_hyphen_values = true)]
     pub(crate) speed: Option<f64>,
 

@@ -16,7 +16,9 @@ use roverlab::world::RobotSpec;
 use serde_json::{Value, json};
 
 use super::Args;
-use crate::common::{Failure, Outcome, Report, Stopwatch, rounded, share_out, threads};
+use crate::common::{
+    Failure, Outcome, Progress, Report, Stopwatch, check_writable, rounded, share_out, threads,
+};
 use crate::lane_keeping::{Setting, keeper};
 use crate::signs::hash;
 
@@ -32,6 +34,7 @@ const LESSONS: u64 = 1 << 40;
 /// Trains a network and writes it.
 pub(super) fn train(args: &Args, out: &Path) -> Result<Report, Failure> {
     let watch = Stopwatch::start();
+    check_writable("--out", out)?;
     let store = Store::open(out, args)?;
     let crew = threads(args.threads);
     let results = args.architecture.outputs();
@@ -59,22 +62,27 @@ pub(super) fn train(args: &Args, out: &Path) -> Result<Report, Failure> {
         for (more, _) in &lessons {
             examples.extend(more)?;
         }
-        let mut loss = None;
+        let (mut loss, mut progress) = (None, Progress::start());
         while trainer.epochs() < (round + 1) * args.epochs {
+            progress.show(|| format!("{} of {} epochs", trainer.epochs(), args.rounds * args.epochs));
             let part = (trainer.epochs() % args.epochs) as f64 / args.epochs as f64;
             loss = Some(trainer.epoch(&examples, RATE * (1.0 - 0.9 * part)).map_err(Failure::run)?);
             store.keep(&trainer.to_checkpoint().map_err(Failure::run)?)?;
         }
         // Other rounds meet the network as a file of weights of 16 bits has it.
         bytes = store.round(round, || trainer.network().to_safetensors().map_err(Failure::run))?;
-        pupil = Some(Network::from_safetensors(&bytes).map_err(Failure::input)?);
+        let network =
+            Network::from_safetensors(&bytes).ok().filter(|found| *found.architecture() == args.architecture);
+        let error =
+            || Failure::input(format!("{}: found a round of another network", store.folder.display()));
+        pupil = Some(network.ok_or_else(error)?);
         let astray = lessons.iter().filter(|(_, astray)| *astray).count();
         let row = Row { examples: examples.len(), loss, interventions: astray };
         args.common.tell(row.text(round));
         rows.push(row.json());
     }
     fs::write(out, &bytes).map_err(|error| Failure::run(format!("--out {}: {error}", out.display())))?;
-    store.close()?;
+    store.close(args.rounds)?;
     Ok(Report::new(Outcome::verdict("learned"))
         .field("architecture", args.architecture.to_string())
         .field("examples", examples.len())
@@ -144,14 +152,23 @@ impl Store {
         let mut name = out.file_name().unwrap_or_default().to_owned();
         name.push(".training");
         let this = Self { folder: out.with_file_name(name) };
-        fs::create_dir_all(&this.folder).map_err(|error| this.failure(&error))?;
+        let is_new = !this.folder.exists();
+        if is_new {
+            fs::create_dir(&this.folder).map_err(|error| this.failure(&error))?;
+        }
         let Args { architecture, lessons, rounds: _, epochs, disturbance, common, .. } = args;
         let (seed, noise) = (common.seed, common.noise);
         let facts = format!(
             "{architecture}; lessons {lessons}, epochs {epochs}, disturbance {disturbance}, seed {seed}, noise {noise}\n"
         );
         match this.read("options.txt")? {
-            None => this.write("options.txt", facts.as_bytes())?,
+            None if is_new => this.write("options.txt", facts.as_bytes())?,
+            None => {
+                let folder = this.folder.display();
+                return Err(Failure::input(format!(
+                    "{folder}: found a folder of something else; expected none"
+                )));
+            }
             Some(found) if found == facts.as_bytes() => {}
             Some(found) => {
                 let (folder, found) = (this.folder.display(), String::from_utf8_lossy(&found).into_owned());
@@ -185,9 +202,13 @@ impl Store {
         Ok(bytes)
     }
 
-    /// Removes the folder.
-    fn close(self) -> Result<(), Failure> {
-        fs::remove_dir_all(&self.folder).map_err(|error| self.failure(&error))
+    /// Removes what was kept, and the folder if nothing else is in it.
+    fn close(self, rounds: u64) -> Result<(), Failure> {
+        let rounds = (1..=rounds).map(|round| format!("round-{round}.safetensors"));
+        for name in rounds.chain(["state.safetensors", "options.txt"].map(String::from)) {
+            fs::remove_file(self.folder.join(name)).map_err(|error| self.failure(&error))?;
+        }
+        fs::remove_dir(&self.folder).map_err(|error| self.failure(&error))
     }
 
     fn read(&self, name: &str) -> Result<Option<Vec<u8>>, Failure> {

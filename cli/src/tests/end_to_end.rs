@@ -40,13 +40,20 @@ fn equal_seeds_train_equal_weights_after_an_interruption_too() {
     };
     let (ended, whole) = train("whole.safetensors", "2", "2");
     assert_outcome(&ended, "learned");
-    // What cannot be written at the end is not lost.
+    // What was learned before something could not be written is not lost.
     let again = temporary("again.safetensors");
-    fs::create_dir(&again).unwrap();
-    let ((status, ..), _) = train("again.safetensors", "1", "1");
     let kept = again.with_file_name("again.safetensors.training");
-    assert!(status == 1 && kept.join("round-1.safetensors").exists());
-    fs::remove_dir(&again).unwrap();
+    let _ = fs::remove_dir_all(&kept);
+    fs::create_dir(&kept).unwrap();
+    let ((status, _, err), _) = train("again.safetensors", "2", "1");
+    assert!(status == 2 && err.contains("something else"), "{err}");
+    let options = "8x20x1 conv4/5/2 dense10; lessons 1, epochs 2, disturbance 1.5, seed 1, noise 1\n";
+    fs::write(kept.join("options.txt"), options).unwrap();
+    let obstacle = kept.join("round-1.safetensors.new");
+    fs::create_dir(&obstacle).unwrap();
+    let ((status, ..), _) = train("again.safetensors", "2", "1");
+    assert!(status == 1 && kept.join("state.safetensors").exists());
+    fs::remove_dir(&obstacle).unwrap();
     let ((status, _, err), _) = train("again.safetensors", "2", "1");
     assert_eq!(status, 0, "{err}");
     assert!(!kept.exists(), "nothing is left over");

@@ -57,8 +57,8 @@ pub(crate) fn ground(world: &World) -> Option<&HeightField> {
     world.terrain.as_ref().and_then(|terrain| terrain.surface.as_deref())
 }
 
-/// The place of a world's water that is farthest from its shores half-way down, its walls of any height, and the
-/// floor's edges, looking along the longer side.
+/// The place of a world's water that is farthest from its shores half-way down, its walls of any height, and
+/// the floor's edges, looking along the longer side.
 fn widest(world: &World, level: f64) -> Option<Pose> {
     let shore = Shore::of(world, 0.5 * level);
     let (low, size) = (world.floor.min, world.floor.size());

@@ -2,13 +2,13 @@ use std::ops::ControlFlow;
 
 use image::RgbImage;
 
-use super::sight::see_road_into;
+use super::sight::{check_sight, see_road_into};
 use crate::ParameterError;
 use crate::drive::lane_keeping::{LaneObservation, LaneOutcome};
 use crate::geometry::Twist;
 use crate::io::control::{Behaviour, Decision, Senses};
 use crate::io::{self, Camera, Odometry, Resolution};
-use crate::parameter::{require, require_positive};
+use crate::parameter::{require_finite, require_positive};
 use crate::vision::network::Network;
 
 /// Largest curvature that a network steers (1/m).
@@ -16,9 +16,9 @@ const MOST_CURVATURE: f64 = 2.0;
 /// Control period, one image each (s).
 const PERIOD: f64 = 1.0 / 30.0;
 
-/// Drives at one speed along the curvature that a network reads off the camera image. A network of one result says the
-/// curvature as a part of 2/m; one of several has a class for each range of curvatures from -2/m to 2/m, and the most
-/// likely one is driven, as in the book with ten.
+/// Drives at one speed along the curvature that a network reads off the camera image. A network of one result
+/// says the curvature as a part of 2/m; one of several has a class for each range of curvatures from -2/m to
+/// 2/m, and the most likely one is driven, as in the book with ten.
 #[derive(Debug, Clone)]
 pub struct NetworkDriver {
     network: Network,
@@ -36,7 +36,7 @@ impl NetworkDriver {
     pub fn new(network: Network, speed: f64) -> Result<Self, ParameterError> {
         require_positive("speed", speed)?;
         let size = network.architecture().input();
-        require("channels of an image", size.channels as f64, matches!(size.channels, 1 | 3), "1 or 3")?;
+        check_sight(size)?;
         Ok(Self { network, speed, input: vec![0.0; size.len()], curvature: 0.0 })
     }
 
@@ -54,10 +54,13 @@ impl NetworkDriver {
     ///
     /// # Errors
     ///
-    /// If the image has fewer pixels than the network sees.
+    /// If the image has fewer pixels than the network sees, or a result is not finite.
     pub fn steer(&mut self, image: &RgbImage) -> Result<f64, ParameterError> {
         see_road_into(image, self.network.architecture().input(), &mut self.input)?;
         let results = self.network.run(&self.input)?;
+        for result in results {
+            require_finite("result of the network", f64::from(*result))?;
+        }
         self.curvature = meant(results);
         Ok(self.curvature)
     }

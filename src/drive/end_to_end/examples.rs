@@ -55,8 +55,8 @@ impl SteeringExamples {
     ///
     /// If their images have another size.
     pub fn extend(&mut self, others: &Self) -> Result<(), ParameterError> {
-        let (found, expected) = (others.size.len(), self.size.len());
-        require("values of an image", found as f64, others.size == self.size, format!("{expected}"))?;
+        let same = others.size == self.size;
+        require("values of an image", others.size.len() as f64, same, "the size of those before")?;
         self.inputs.extend_from_slice(&others.inputs);
         self.curvatures.extend_from_slice(&others.curvatures);
         Ok(())

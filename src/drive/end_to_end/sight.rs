@@ -1,47 +1,44 @@
 use image::RgbImage;
 
 use crate::ParameterError;
-use crate::parameter::require;
+use crate::parameter::{require, require_count};
 use crate::vision::network::MapSize;
 
 /// Part of an image's height, from above, where a tilted camera sees the road.
 const ROAD: [f64; 2] = [0.27, 0.93];
+/// Largest side of what a network sees.
+const MOST: usize = 4096;
 /// Parts of red, green and blue in grey.
 const GREY: [f32; 3] = [0.299, 0.587, 0.114];
 /// Smallest deviation of pixels that counts, against division by zero in the dark.
 const LEAST_DEVIATION: f64 = 1.0;
 
-/// Writes what a network sees of a camera image: the part below the horizon in its number of rows and columns, each
-/// the mean of the pixels there, in grey if the network has one channel, with mean 0 and deviation 1, so that the light
-/// does not matter.
+/// Writes what a network sees of a camera image: the part below the horizon in its number of rows and
+/// columns, each the mean of the pixels there, in grey if the network has one channel, with mean 0 and
+/// deviation 1, so that the light does not matter.
 ///
 /// # Errors
 ///
-/// If the network has other channels than one or three, the image has fewer pixels than it sees, or there is room for
-/// more or fewer values.
+/// If the network has other channels than one or three, the image has fewer pixels than it sees, or there is
+/// room for more or fewer values.
 pub fn see_road_into(image: &RgbImage, size: MapSize, values: &mut [f32]) -> Result<(), ParameterError> {
-    require("channels of an image", size.channels as f64, matches!(size.channels, 1 | 3), "1 or 3")?;
-    require(
-        "values of an image",
-        values.len() as f64,
-        values.len() == size.len(),
-        format!("{}", size.len()),
-    )?;
+    check_sight(size)?;
+    require_count("values of an image", values.len(), size.len())?;
     let (width, height) = (image.width() as usize, image.height() as usize);
     let [top, bottom] = ROAD.map(|part| (part * height as f64) as usize);
-    require("width of the image", width as f64, width >= size.width, format!("at least {}", size.width))?;
     let rows = bottom - top;
-    require("rows with road", rows as f64, rows >= size.height, format!("at least {}", size.height))?;
+    require("width of the image", width as f64, width >= size.width, "as many pixels as the network sees")?;
+    require("rows with road", rows as f64, rows >= size.height, "as many as the network sees")?;
     for (y, line) in values.chunks_exact_mut(size.width * size.channels).enumerate() {
         let [above, below] = [y, y + 1].map(|y| top + y * rows / size.height);
         for (x, place) in line.chunks_exact_mut(size.channels).enumerate() {
             let [left, right] = [x, x + 1].map(|x| x * width / size.width);
-            let mut sums = [0_u32; 3];
+            let mut sums = [0_u64; 3];
             for row in above..below {
                 let pixels = &image.as_raw()[3 * (row * width + left)..3 * (row * width + right)];
                 for pixel in pixels.chunks_exact(3) {
                     for (sum, value) in sums.iter_mut().zip(pixel) {
-                        *sum += u32::from(*value);
+                        *sum += u64::from(*value);
                     }
                 }
             }
@@ -55,6 +52,15 @@ pub fn see_road_into(image: &RgbImage, size: MapSize, values: &mut [f32]) -> Res
         }
     }
     normalise(values);
+    Ok(())
+}
+
+/// Fails for what no network can see of an image.
+pub(super) fn check_sight(size: MapSize) -> Result<(), ParameterError> {
+    require("channels of an image", size.channels as f64, matches!(size.channels, 1 | 3), "1 or 3")?;
+    for side in [size.height, size.width] {
+        require("side of an image", side as f64, (1..=MOST).contains(&side), "1 to 4096")?;
+    }
     Ok(())
 }
 

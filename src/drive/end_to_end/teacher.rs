@@ -2,7 +2,7 @@ use std::ops::ControlFlow;
 
 use super::driver::NetworkDriver;
 use super::examples::SteeringExamples;
-use super::sight::see_road_into;
+use super::sight::{check_sight, see_road_into};
 use crate::ParameterError;
 use crate::drive::lane_keeping::{LaneKeeper, LaneObservation, LaneOutcome};
 use crate::geometry::Twist;
@@ -43,8 +43,8 @@ impl TeacherParameters {
     }
 }
 
-/// Collects examples of steering: the lane keeper's curvature for each image. It drives itself, disturbed now and then,
-/// or has a network drive. Images in which the lane keeper knows no lane are left out.
+/// Collects examples of steering: the lane keeper's curvature for each image. It drives itself, disturbed now
+/// and then, or has a network drive. Images in which the lane keeper knows no lane are left out.
 #[derive(Debug, Clone)]
 pub struct SteeringTeacher {
     keeper: LaneKeeper,
@@ -71,6 +71,7 @@ impl SteeringTeacher {
         parameters: TeacherParameters,
     ) -> Result<Self, ParameterError> {
         parameters.validate()?;
+        check_sight(size)?;
         let random = Stream::new(parameters.seed).child("disturbances", 0);
         Ok(Self {
             keeper,

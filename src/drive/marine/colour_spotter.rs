@@ -8,8 +8,8 @@ use crate::world::Colour;
 ///
 /// The ground is grey and as deep as the objects on it. So its apparent colour, the median of the image,
 /// measures the effect of water and light on all colours. Pixels are divided by it before their hues are
-/// compared. What is nearer than the ground, such as a ledge, lacks less red, so that gray looks red there: a colour
-/// counts only if no distance makes gray of it.
+/// compared. What is nearer than the ground, such as a ledge, lacks less red, so that gray looks red there: a
+/// colour counts only if no distance makes gray of it.
 #[derive(Debug, Clone)]
 pub(super) struct ColourSpotter {
     /// On RoBIOS's scale.
@@ -31,8 +31,8 @@ const GRAY: HueLimits = HueLimits { min_saturation: 32, ..LIMITS };
 /// reflects that about as well as the gray ground does; what is dark has a colour by noise, or by the veil of
 /// turbid water.
 const BRIGHT: u8 = 96;
-/// By how much more a metre of pure water absorbs of red light than of green light (1/m; Pope and Fry, *Applied
-/// Optics* 36, 1997).
+/// By how much more a metre of pure water absorbs of red light than of green light (1/m; Pope and Fry,
+/// *Applied Optics* 36, 1997).
 const REDDENS: f64 = 0.233;
 /// Pixels of the smallest thing.
 const LEAST: usize = 12;

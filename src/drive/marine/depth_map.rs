@@ -36,10 +36,11 @@ pub struct CellDepth {
 ///
 /// A cell's depth is the mean of its own soundings, each moved to where it should be by the quadratic surface
 /// through the soundings around. Soundings that lie close together count as one. The standard deviation has
-/// five parts: the sensor's noise, which is seen in how soundings differ from those just before and after; the
-/// error of the place times the slope; that of the datum; the waves that pass while the cell is measured; and what the
-/// quadratic surface does not say of the parts of the cell that were not. The last one is known by how far the
-/// soundings around are off that surface in the mean of each part: the parts that were measured are a sample of all.
+/// five parts: the sensor's noise, which is seen in how soundings differ from those just before and after;
+/// the error of the place times the slope; that of the datum; the waves that pass while the cell is measured;
+/// and what the quadratic surface does not say of the parts of the cell that were not. The last one is known
+/// by how far the soundings around are off that surface in the mean of each part: the parts that were
+/// measured are a sample of all.
 ///
 /// ```
 /// use roverlab::drive::marine::{DepthMap, Sounding};
@@ -96,8 +97,8 @@ const PARTS: usize = 5;
 const MEDIAN: f64 = 0.455;
 
 impl DepthMap {
-    /// Creates an empty map of an area. Fails for a cell size that is not positive, and for more than a million
-    /// cells.
+    /// Creates an empty map of an area. Fails for a cell size that is not positive, and for more than a
+    /// million cells.
     pub fn new(area: Aabb, cell: f64) -> Result<Self, ParameterError> {
         require_positive("cell", cell)?;
         let size = area.size();
@@ -205,8 +206,8 @@ impl DepthMap {
         parts.into_iter().map(part).collect()
     }
 
-    /// The quadratic surface through the soundings of a cell and of those beside it, by least squares; what is
-    /// farther off counts less.
+    /// The quadratic surface through the soundings of a cell and of those beside it, by least squares; what
+    /// is farther off counts less.
     fn surface(&self, column: usize, row: usize) -> Option<Vector6<f64>> {
         let centre = self.centre(column, row);
         let (mut square, mut right, mut count) = (Matrix6::zeros(), Vector6::zeros(), 0);
@@ -227,7 +228,8 @@ impl DepthMap {
         Some((square + Matrix6::from_diagonal(&slack)).try_inverse()? * right)
     }
 
-    /// The variance of the sensor's noise: from the median of ripples, to which steps of the ground do not matter.
+    /// The variance of the sensor's noise: from the median of ripples, to which steps of the ground do not
+    /// matter.
     fn noise(&self, column: usize, row: usize) -> Option<f64> {
         let mut ripples: Vec<f64> = self.around(column, row).filter_map(|noted| noted.ripple).collect();
         let middle = ripples.len() / 2;
@@ -280,8 +282,8 @@ mod tests {
         assert!(DepthMap::new(area, 0.0).is_err() && DepthMap::new(area, 1e-6).is_err());
     }
 
-    /// Lanes over a bowl, whose rim and middle no quadratic surface is: in how many cells the true mean is within
-    /// two standard deviations.
+    /// Lanes over a bowl, whose rim and middle no quadratic surface is: in how many cells the true mean is
+    /// within two standard deviations.
     #[test]
     fn what_is_between_lanes_is_uncertain() {
         let ground =

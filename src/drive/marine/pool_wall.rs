@@ -90,9 +90,9 @@ halts!(PoolWallOutcome { Round: "all laps are done" });
 /// at the other side shows a wall that the craft approaches at a small angle with the wrong side: the beam
 /// ahead meets it farther on.
 ///
-/// In a current it crabs: what of its speed neither thrust nor turn explains is learnt as that of the water, and
-/// steered against. Only a Doppler log, which sees the ground, shows it; without one the remembered points drift away
-/// with the water.
+/// In a current it crabs: what of its speed neither thrust nor turn explains is learnt as that of the water,
+/// and steered against. Only a Doppler log, which sees the ground, shows it; without one the remembered
+/// points drift away with the water.
 ///
 /// ```
 /// use roverlab::drive::marine::{PoolWall, PoolWallOutcome, PoolWallParameters};

@@ -91,9 +91,9 @@ halts!(SurveyOutcome { Covered: "all lanes are done" });
 ///
 /// The position, with its covariance, comes from Doppler log and compass, corrected by the distances to the
 /// four sides of a pool. Before diving, the depth sensor is zeroed by the craft's waterline. When the
-/// position becomes uncertain, the craft leaves its lane for a place from which the nearer side can be measured, and
-/// the next lane is one along which that is so.
-/// [`DepthMap`](super::DepthMap) makes a map of the soundings.
+/// position becomes uncertain, the craft leaves its lane for a place from which the nearer side can be
+/// measured, and the next lane is one along which that is so. [`DepthMap`](super::DepthMap) makes a map of
+/// the soundings.
 ///
 /// ```
 /// use roverlab::drive::marine::{DepthMap, Survey, SurveyOutcome, SurveyParameters};
@@ -296,8 +296,8 @@ impl Survey {
     }
 }
 
-/// The lanes of an area: along its longer side, from the corner nearest to a place on. Those along the border are
-/// nearer to it than the corners where the craft turns, if there is a brim, and lead around.
+/// The lanes of an area: along its longer side, from the corner nearest to a place on. Those along the border
+/// are nearer to it than the corners where the craft turns, if there is a brim, and lead around.
 fn lanes(area: &Aabb, start: Point, spacing: f64, [margin, brim]: [f64; 2]) -> Result<VecDeque<Lane>> {
     let [x, y]: [f64; 2] = area.size().into();
     let (long, short) = (x.max(y), x.min(y));

@@ -19,7 +19,7 @@ impl MapSize {
     /// Number of values.
     #[allow(clippy::len_without_is_empty, reason = "none is empty")]
     pub fn len(&self) -> usize {
-        self.height * self.width * self.channels
+        self.height.saturating_mul(self.width).saturating_mul(self.channels)
     }
 }
 
@@ -70,7 +70,9 @@ impl Layer {
     /// Number of filters, and of weights of each; `None` for a layer without weights.
     fn filters(self, input: MapSize) -> Option<(usize, usize)> {
         match self {
-            Self::Convolution { channels, size, .. } => Some((channels, size * size * input.channels)),
+            Self::Convolution { channels, size, .. } => {
+                Some((channels, (size * size).saturating_mul(input.channels)))
+            }
             Self::Dense { outputs } => Some((outputs, input.len())),
             Self::Pool { .. } => None,
         }
@@ -101,7 +103,7 @@ pub struct Architecture {
 const MOST_LAYERS: usize = 64;
 /// Largest side, number of channels, or stride.
 const MOST: usize = 4096;
-/// Largest number of weights of a network, and of values of a layer.
+/// Largest number of weights of a network, and of values of all its layers.
 const MOST_VALUES: usize = 10_000_000;
 
 impl Architecture {
@@ -109,8 +111,9 @@ impl Architecture {
     ///
     /// # Errors
     ///
-    /// If there is no layer with weights at the end, a number is 0 or more than 4096, a layer gets fewer rows or
-    /// columns than its filters have, or there are more than 64 layers, or 10 million weights or values.
+    /// If there is no layer with weights at the end, a number is 0 or more than 4096, a layer gets fewer rows
+    /// or columns than its filters have, a layer that is not dense comes after a dense one, or there are more
+    /// than 64 layers, or 10 million weights or values.
     pub fn new(input: MapSize, layers: Vec<Layer>) -> Result<Self, ParameterError> {
         let number = |what: String, value: usize| {
             let error = || ParameterError::new(what, value as f64, format!("1 to {MOST}"));
@@ -128,7 +131,7 @@ impl Architecture {
         )?;
         let pools_last = matches!(layers.last(), Some(Layer::Pool { .. }));
         require("last layer", count as f64, !pools_last, "one with weights")?;
-        let mut sizes = vec![input];
+        let (mut sizes, mut values, mut is_flat) = (vec![input], input.len(), false);
         for (index, layer) in (1..).zip(&layers) {
             let numbers = match *layer {
                 Layer::Convolution { channels, size, stride } => vec![channels, size, stride],
@@ -138,20 +141,20 @@ impl Architecture {
             for value in numbers {
                 number(format!("size of layer {index}"), value)?;
             }
+            let is_dense = matches!(layer, Layer::Dense { .. });
+            require("layer after a dense one", f64::from(index), is_dense || !is_flat, "a dense one")?;
+            is_flat = is_dense;
             let before = sizes[sizes.len() - 1];
             let least = before.height.min(before.width);
             let result = layer.result(before).ok_or_else(|| {
                 let what = format!("rows and columns of layer {index}");
                 ParameterError::new(what, least as f64, "at least those of its filters")
             })?;
-            require(
-                "values of a layer",
-                result.len() as f64,
-                result.len() <= MOST_VALUES,
-                format!("at most {MOST_VALUES}"),
-            )?;
+            values = values.saturating_add(result.len());
             sizes.push(result);
         }
+        let most = || format!("at most {MOST_VALUES}");
+        require("values of all layers", values as f64, values <= MOST_VALUES, most())?;
         let this = Self { layers, sizes };
         let weights = this.weights();
         require(
@@ -187,11 +190,12 @@ impl Architecture {
     pub fn weights(&self) -> usize {
         self.filters()
             .flatten()
-            .map(|(filters, taps)| filters.saturating_mul(taps + 1))
+            .map(|(filters, taps)| filters.saturating_mul(taps.saturating_add(1)))
             .fold(0, usize::saturating_add)
     }
 
-    /// For each layer, its number of filters, and of weights of each without the constant; `None` for a layer without.
+    /// For each layer, its number of filters, and of weights of each without the constant; `None` for a layer
+    /// without.
     pub fn filters(&self) -> impl Iterator<Item = Option<(usize, usize)>> {
         self.layers.iter().zip(&self.sizes).map(|(layer, &size)| layer.filters(size))
     }

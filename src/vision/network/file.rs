@@ -8,8 +8,9 @@ use crate::vision::WeightsError;
 const ARCHITECTURE: &str = "architecture";
 
 impl Network {
-    /// The network as a file `.safetensors`, with weights of 16 bits. For each layer with weights, numbered from 1:
-    /// `N.weights`, a row for each filter; `N.units`, by which its whole numbers are multiplied; and `N.constants`.
+    /// The network as a file `.safetensors`, with weights of 16 bits. For each layer with weights, numbered
+    /// from 1: `N.weights`, a row for each filter; `N.units`, by which its whole numbers are multiplied; and
+    /// `N.constants`.
     ///
     /// # Errors
     ///
@@ -53,8 +54,14 @@ impl Network {
             text.ok_or_else(|| WeightsError::File(format!("found no {ARCHITECTURE} in the metadata")))?;
         let architecture: Architecture = text.parse()?;
         let file = SafeTensors::deserialize(bytes).map_err(WeightsError::of)?;
-        let mut weights = Vec::new();
-        for (layer, shape) in shapes(&architecture) {
+        let (mut weights, shapes) = (Vec::new(), shapes(&architecture));
+        if file.len() != 3 * shapes.len() {
+            let (found, expected) = (file.len(), 3 * shapes.len());
+            return Err(WeightsError::File(format!(
+                "found {found} tensors; expected {expected} for {architecture}"
+            )));
+        }
+        for (layer, shape) in shapes {
             let filters = vec![shape[0]];
             let units = tensor(&file, &format!("{layer}.units"), Dtype::F32, &filters)?;
             let constants = tensor(&file, &format!("{layer}.constants"), Dtype::F32, &filters)?;

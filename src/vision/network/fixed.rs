@@ -1,14 +1,14 @@
 use super::architecture::{Architecture, Layer, MapSize};
 use super::net::{Network, pool};
 use crate::ParameterError;
-use crate::parameter::require;
+use crate::parameter::{require, require_count, require_finite};
 use crate::vision::dispatch::vectorised;
 
 /// A [`Network`] in integers of 16 bits: values and weights have 16, sums 32, which no input can exceed.
 ///
-/// Values of a layer share a power of two as their unit. It follows from the largest value that each layer had for
-/// some inputs; what is more than twice as large is cut off. The unit of a layer's weights is the smallest with which
-/// no sum overflows.
+/// Values of a layer share a power of two as their unit. It follows from the largest value that each layer
+/// had for some inputs; what is more than four times as large is cut off, or less. The unit of a layer's
+/// weights is the smallest with which no sum overflows.
 ///
 /// ```
 /// use roverlab::vision::network::{FixedNetwork, Network};
@@ -43,8 +43,10 @@ struct FixedFilters {
 
 /// Largest value of a layer that fits, with one digit in reserve.
 const MOST_VALUE: f64 = 16383.0;
-/// Largest number of digits after the point.
+/// Largest number of digits after the point, or before it.
 const MOST_DIGITS: i32 = 24;
+/// Most digits that a sum can have more than the results.
+const MOST_SHIFT: i32 = 62;
 
 impl FixedNetwork {
     /// Rounds a network. The inputs show how large the values of its layers become.
@@ -60,6 +62,9 @@ impl FixedNetwork {
         let mut largest = vec![0.0_f64; architecture.sizes().len()];
         let mut count = 0;
         for input in inputs {
+            for value in input {
+                require_finite("value of an input", f64::from(*value))?;
+            }
             network.run(input)?;
             count += 1;
             for (index, largest) in largest.iter_mut().enumerate() {
@@ -68,7 +73,7 @@ impl FixedNetwork {
             }
         }
         require("number of inputs", f64::from(count), count > 0, "at least 1")?;
-        let input = digits_for(largest[0], MOST_VALUE);
+        let input = digits_for(largest[0], MOST_VALUE)?;
         let mut digits = input;
         let mut weights = network.weights().into_iter();
         let mut layers = Vec::new();
@@ -92,7 +97,7 @@ impl FixedNetwork {
     /// If the input has more or fewer values than the architecture says.
     pub fn run(&mut self, input: &[f32]) -> Result<&[f32], ParameterError> {
         let expected = self.architecture.input().len();
-        require("values of the input", input.len() as f64, input.len() == expected, format!("{expected}"))?;
+        require_count("values of the input", input.len(), expected)?;
         let unit = power(self.digits[0]);
         for (value, &given) in self.maps[0].iter_mut().zip(input) {
             // Conversion saturates, and makes 0 of what is no number.
@@ -118,7 +123,8 @@ impl FixedNetwork {
 }
 
 impl FixedFilters {
-    /// Rounds weights. `digits` are those of the input, then those of the results, whose largest value is given.
+    /// Rounds weights. `digits` are those of the input, then those of the results, whose largest value is
+    /// given.
     fn new(
         weights: &[f32],
         constants: &[f32],
@@ -135,15 +141,13 @@ impl FixedFilters {
         });
         let sum = sum.fold(0.0, f64::max);
         let room = f64::from(i32::MAX) / 32768.0 - taps as f64;
-        let own = digits_for(heaviest, f64::from(i16::MAX)).min(digits_for(sum, room));
-        let results = digits_for(largest, MOST_VALUE).min(*digits + own);
+        require("weights of a filter", taps as f64, room > 0.0, "at most 65000")?;
+        let own = digits_for(heaviest, f64::from(i16::MAX))?.min(digits_for(sum, room)?);
+        let results = digits_for(largest, MOST_VALUE)?.min(*digits + own);
+        let fits = "values and weights that fit into 16 bits";
+        require("digits of a layer", results.into(), results >= -MOST_DIGITS, fits)?;
         let shift = *digits + own - results;
-        require(
-            "weights of a layer",
-            heaviest,
-            (0..32).contains(&shift) && room > 0.0,
-            "weights that fit into 16 bits",
-        )?;
+        require("digits of a sum", shift.into(), (0..=MOST_SHIFT).contains(&shift), fits)?;
         let round = |value: f32, digits: i32| (f64::from(value) * power(digits)).round_ties_even();
         let filters = Self {
             weights: weights.iter().map(|&weight| round(weight, own) as i16).collect(),
@@ -189,9 +193,10 @@ vectorised! {
 }
 
 /// Most digits after the point with which a value is at most a limit.
-fn digits_for(value: f64, limit: f64) -> i32 {
+fn digits_for(value: f64, limit: f64) -> Result<i32, ParameterError> {
     let fits = |digits: &i32| value * power(*digits) <= limit;
-    (-MOST_DIGITS..=MOST_DIGITS).rev().find(fits).unwrap_or(-MOST_DIGITS)
+    let digits = (-MOST_DIGITS..=MOST_DIGITS).rev().find(fits);
+    digits.ok_or_else(|| ParameterError::new("value or weight", value, "one that fits into 16 bits"))
 }
 
 /// Two to the power of digits.

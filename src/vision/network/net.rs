@@ -2,7 +2,7 @@ use super::architecture::{Architecture, Layer, MapSize};
 use super::filters::{Filters, LANES, Pass};
 use crate::ParameterError;
 use crate::geometry::math;
-use crate::parameter::{require, require_finite};
+use crate::parameter::{require_count, require_finite};
 
 /// A trained network; see the [module](super).
 #[derive(Debug, Clone)]
@@ -32,7 +32,7 @@ impl Network {
         weights: Vec<(Vec<f32>, Vec<f32>)>,
     ) -> Result<Self, ParameterError> {
         let layers = architecture.filters().flatten().count();
-        require("layers with weights", weights.len() as f64, weights.len() == layers, format!("{layers}"))?;
+        require_count("layers with weights", weights.len(), layers)?;
         let mut given = weights.into_iter();
         let mut filters = Vec::new();
         for sizes in architecture.filters() {
@@ -43,7 +43,7 @@ impl Network {
             let (weights, constants) = given.next().unwrap_or_default();
             let expected = [(weights.len(), count * taps), (constants.len(), count)];
             for (found, expected) in expected {
-                require("weights of a layer", found as f64, found == expected, format!("{expected}"))?;
+                require_count("weights of a layer", found, expected)?;
             }
             for weight in weights.iter().chain(&constants) {
                 require_finite("weight", f64::from(*weight))?;
@@ -71,7 +71,7 @@ impl Network {
     /// If the input has more or fewer values than the architecture says.
     pub fn run(&mut self, input: &[f32]) -> Result<&[f32], ParameterError> {
         let expected = self.architecture.input().len();
-        require("values of the input", input.len() as f64, input.len() == expected, format!("{expected}"))?;
+        require_count("values of the input", input.len(), expected)?;
         self.maps[0][..expected].copy_from_slice(input);
         let last = self.filters.len() - 1;
         for index in 0..=last {

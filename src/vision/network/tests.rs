@@ -115,6 +115,12 @@ fn whole_numbers_bear_any_input() {
         assert!(fixed.run(&vec![value; small.len()]).unwrap().iter().all(|result| result.is_finite()));
     }
     assert!(FixedNetwork::new(&mut network, []).is_err());
+    assert!(FixedNetwork::new(&mut network, [vec![f32::NAN; small.len()].as_slice()]).is_err());
+    let chain: Architecture = "1x1x1 dense1 dense1 dense1".parse().unwrap();
+    for weight in [1e12, 1e30] {
+        let mut huge = Network::new(chain.clone(), vec![(vec![weight], vec![0.0]); 3]).unwrap();
+        assert!(FixedNetwork::new(&mut huge, [[1.0].as_slice()]).is_err());
+    }
     assert!(fixed.run(&[0.0]).is_err() && network.run(&[0.0]).is_err());
 }
 
@@ -136,6 +142,11 @@ fn what_is_no_architecture_is_refused() {
         "4000x4000x1 conv4000/1/1 dense1",
         "100x100x1 dense4096 dense4096",
         "3x3x1 dense99999999999999999999",
+        "4096x4096x4096 conv1/1/4096 dense1",
+        "4096x4096x1 conv4096/4096/1 dense1",
+        "3000x3000x1 conv1/1/1 conv1/1/1 dense1",
+        "3x3x1 dense4 conv2/1/1 dense1",
+        "3x3x1 dense4 pool1 dense1",
     ];
     for text in bad {
         assert!(text.parse::<Architecture>().is_err(), "{text}");

@@ -353,8 +353,8 @@ fn lane_keeping_book() -> Result<String> {
     ride(&scene, noise(1.0, 29), |robot| run(robot, &mut keeper, 2.0, |_, _, _| {}).map(drop))
 }
 
-/// A car that is steered by a network of random weights, which looks at every pixel, and the bits of its results, in
-/// numbers of 32 bits and in integers.
+/// A car that is steered by a network of random weights, which looks at every pixel, and the bits of its
+/// results, in numbers of 32 bits and in integers.
 fn end_to_end() -> Result<String> {
     let architecture: Architecture = "32x80x1 conv12/5/2 pool2 conv24/3/2 dense16 dense10".parse()?;
     let mut random = Stream::new(30).child("weights", 0);

@@ -6,9 +6,9 @@ use crate::world::World;
 
 /// Effect of water on a picture: it absorbs red first, veils distant things, and is darker below.
 ///
-/// Light from above and light to the camera fade exponentially; light scattered by the water on the way is added
-/// (Jaffe's model, in the form of Schechner and Karpel, *Recovery of underwater visibility and structure by
-/// polarization analysis*, 2005).
+/// Light from above and light to the camera fade exponentially; light scattered by the water on the way is
+/// added (Jaffe's model, in the form of Schechner and Karpel, *Recovery of underwater visibility and
+/// structure by polarization analysis*, 2005).
 #[derive(Debug, Clone)]
 pub(super) struct Murk {
     level: f64,
@@ -31,17 +31,19 @@ struct Fading {
     per_metre: f64,
 }
 
-/// Steps of a table within which the colour that fades fastest fades to 1/e: a mean between two of them is off by
-/// a hundredth of a level.
+/// Steps of a table within which the colour that fades fastest fades to 1/e: a mean between two of them is
+/// off by a hundredth of a level.
 const STEPS: f64 = 64.0;
 /// Entries of a table; what is farther is computed.
 const ENTRIES: u32 = 2048;
 
 /// Absorption of pure water at 620, 530 and 460 nm (1/m; Pope and Fry, *Applied Optics* 36, 1997).
 const PURE: [f64; 3] = [0.276, 0.043, 0.0098];
-/// The share of scattered light that goes on downwards nearly as it came: it lights the ground, but shows nothing.
+/// The share of scattered light that goes on downwards nearly as it came: it lights the ground, but shows
+/// nothing.
 const FORWARD: f64 = 0.9;
-/// The brightness of endless water, seen through what only scatters, in levels: it sends back a tenth of the light.
+/// The brightness of endless water, seen through what only scatters, in levels: it sends back a tenth of the
+/// light.
 const VEIL: f64 = 25.0;
 
 impl Murk {

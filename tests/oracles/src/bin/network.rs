@@ -1,5 +1,6 @@
-//! Runs a network of a file on inputs from standard input, 32-bit numbers one after the other, and prints its results, a
-//! line for each; to standard error, the median time of a run in milliseconds. `tests/interop/network.py` compares them.
+//! Runs a network of a file on inputs from standard input, 32-bit numbers one after the other, and prints its
+//! results, a line for each; to standard error, the median time of a run in milliseconds.
+//! `tests/interop/network.py` compares them.
 
 use std::io::Read;
 use std::time::Instant;
