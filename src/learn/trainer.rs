@@ -27,7 +27,7 @@ pub struct TrainerOptions {
     pub loss: Loss,
     /// Number of examples between two steps.
     pub batch: usize,
-    /// Part of the weights, times the rate, that each step takes off (AdamW's decay).
+    /// Part of the weights, times the rate, that each step takes off.
     pub decay: f64,
     /// Seed of the first weights, of the order of the examples, and of their variation.
     pub seed: u64,
@@ -67,7 +67,7 @@ debug_as_sentence!(TrainingError);
 
 /// Trains a network; see the [module](super).
 ///
-/// Steps are those of AdamW (Loshchilov and Hutter 2019). A batch has a fixed number of parts, whose
+/// Steps are those of Adam with decoupled decay (Loshchilov and Hutter 2019). A batch has a fixed number of parts, whose
 /// gradients are added in their order.
 #[derive(Debug, Clone)]
 pub struct Trainer {
@@ -116,6 +116,7 @@ impl Trainer {
     }
 
     /// The network with the present weights.
+    #[allow(clippy::missing_panics_doc, reason = "weights are checked after each epoch")]
     pub fn network(&self) -> Network {
         Network::new(self.architecture.clone(), self.weights.clone())
             .expect("weights were checked after each epoch")
@@ -227,8 +228,7 @@ impl Trainer {
     /// Changes the weights by a gradient times a factor.
     fn step(&mut self, gradient: &Numbers, factor: f64, rate: f64) {
         self.steps = self.steps.saturating_add(1);
-        let steps = i32::try_from(self.steps).unwrap_or(i32::MAX);
-        let [first, second] = KEPT.map(|kept| 1.0 - kept.powi(steps));
+        let [first, second] = KEPT.map(|kept| 1.0 - power(kept, self.steps));
         let [means, squares] = &mut self.moments;
         let moments = numbers_mut(means).zip(numbers_mut(squares));
         for ((weight, (mean, square)), gradient) in
@@ -260,4 +260,17 @@ pub(super) fn numbers(all: &Numbers) -> impl Iterator<Item = &f32> {
 /// All numbers, layer by layer.
 pub(super) fn numbers_mut(all: &mut Numbers) -> impl Iterator<Item = &mut f32> {
     all.iter_mut().flat_map(|(weights, constants)| weights.iter_mut().chain(constants))
+}
+
+/// A whole power, by squares.
+fn power(mut base: f64, mut exponent: u64) -> f64 {
+    let mut result = 1.0;
+    while exponent > 0 {
+        if exponent % 2 == 1 {
+            result *= base;
+        }
+        exponent /= 2;
+        base *= base;
+    }
+    result
 }

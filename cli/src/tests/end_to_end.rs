@@ -43,6 +43,7 @@ fn equal_seeds_train_equal_weights_after_an_interruption_too() {
     // What was learned before something could not be written is not lost.
     let again = temporary("again.safetensors");
     let kept = again.with_file_name("again.safetensors.training");
+    // What an earlier run that failed has left.
     let _ = fs::remove_dir_all(&kept);
     fs::create_dir(&kept).unwrap();
     let ((status, _, err), _) = train("again.safetensors", "2", "1");

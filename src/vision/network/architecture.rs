@@ -23,7 +23,7 @@ impl MapSize {
     }
 }
 
-/// A layer of a [`Network`](super::Network). Layers with weights set negative results to 0 (ReLU), except for
+/// A layer of a [`Network`](super::Network). Layers with weights set negative results to 0, except for
 /// the last layer of a network.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Layer {
@@ -208,7 +208,7 @@ impl fmt::Display for Architecture {
         for layer in &self.layers {
             match layer {
                 Layer::Convolution { channels, size, stride } => {
-                    write!(f, " conv{channels}/{size}/{stride}")?
+                    write!(f, " conv{channels}/{size}/{stride}")?;
                 }
                 Layer::Pool { size } => write!(f, " pool{size}")?,
                 Layer::Dense { outputs } => write!(f, " dense{outputs}")?,

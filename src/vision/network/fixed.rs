@@ -80,7 +80,7 @@ impl FixedNetwork {
         for (index, sizes) in architecture.filters().enumerate() {
             // What a pool takes out keeps its unit.
             let filters = sizes.map(|(_, taps)| {
-                let (weights, constants) = weights.next().expect("a network has the weights of its layers");
+                let (weights, constants) = weights.next().unwrap_or_default();
                 FixedFilters::new(&weights, &constants, taps, &mut digits, largest[index + 1])
             });
             layers.push(filters.transpose()?);
