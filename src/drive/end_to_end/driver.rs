@@ -78,6 +78,7 @@ fn meant(results: &[f32]) -> f64 {
 }
 
 /// The result that a network of a number of results should have for a curvature (1/m).
+#[cfg(any(test, feature = "learn"))]
 pub(super) fn wanted(curvature: f64, results: usize) -> f32 {
     let part = (curvature / MOST_CURVATURE).clamp(-1.0, 1.0);
     if results == 1 {
