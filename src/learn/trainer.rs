@@ -67,8 +67,8 @@ debug_as_sentence!(TrainingError);
 
 /// Trains a network; see the [module](super).
 ///
-/// Steps are those of Adam with decoupled decay (Loshchilov and Hutter 2019). A batch has a fixed number of parts, whose
-/// gradients are added in their order.
+/// Steps are those of Adam with decoupled decay (Loshchilov and Hutter 2019). A batch has a fixed number of
+/// parts, whose gradients are added in their order.
 #[derive(Debug, Clone)]
 pub struct Trainer {
     pub(super) architecture: Architecture,

@@ -4,8 +4,8 @@
 //! are [`SteeringExamples`]: images, each with the curvature that a
 //! [`LaneKeeper`](super::lane_keeping::LaneKeeper) would steer there. A [`SteeringTeacher`] collects them
 //! while the lane keeper drives and is disturbed, so that there are images from beside the lane's middle too,
-//! or while a network drives whose mistakes the lane keeper corrects on paper (dataset aggregation; Ross et al. 2011). The
-//! feature `learn` trains with them.
+//! or while a network drives whose mistakes the lane keeper corrects on paper (dataset aggregation; Ross et
+//! al. 2011). The feature `learn` trains with them.
 //!
 //! ```
 //! use roverlab::drive::end_to_end::{
