@@ -16,7 +16,9 @@ pub(crate) use campaign::scores;
 pub(crate) use course::{Setting, course};
 pub(crate) use drawing::{area, parking_sides, road};
 use drive::Drive;
-pub(crate) use drive::{Pilot, Plan, keeper};
+#[cfg(feature = "learn")]
+pub(crate) use drive::keeper;
+pub(crate) use drive::{Pilot, Plan};
 
 /// The command line of `lane-keeping`.
 #[derive(Debug, Clone, clap::Parser)]
