@@ -19,7 +19,8 @@
 //! - [`WallFollower`]: along walls of any shape by three distance sensors (chapter 6), besides
 //!   [`PidWallFollower`], [`LidarWallFollower`] and the book's [`TwoLevelWallFollower`];
 //! - [`colour`]: to an object of a taught colour, and home with it (chapter 11);
-//! - [`lane_keeping`]: along the lane of a road by camera; [`end_to_end`]: by a trained network; [`traffic`]: past obstacles, and the referees;
+//! - [`lane_keeping`]: along the lane of a road by camera; [`end_to_end`]: by a trained network;
+//!   [`traffic`]: past obstacles, and the referees;
 //!   [`parking`]: beside the road (chapter 13);
 //! - [`marine`]: craft in water (chapter 8);
 //! - [`motion_watch`]: turning towards motion (chapter 11);

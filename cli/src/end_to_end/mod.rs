@@ -17,7 +17,8 @@ use crate::lane_keeping::{Pilot, Plan, Setting, one, scores};
     about = "Trains a network to steer a model car by its camera image, and drives by it before the referee of Free Drive",
     after_help = "\
 The network sees the road part of the image, unless told otherwise in grey and of 32 x 80 pixels, and says the curvature to steer;
-several results are classes of curvature, ten as in the book with an --architecture that ends in dense10. It drives at one speed, without odometry.
+several results are classes of curvature, ten as in the book with an --architecture that ends in dense10. It drives at one speed,
+without odometry.
 
 --train drives courses of its own, other ones than those of a campaign, by the lane keeper of `lane-keeping`, which is disturbed now
 and then, and learns its steering. In further rounds the network drives half as many courses itself, and learns what the lane
@@ -27,7 +28,8 @@ is learned so far is kept in the folder FILE.training, from which the same comma
 JSON fields:
   architecture, examples            --train: the network; number of images
   weights, weights_hash             --train: file that was written, and its hash
-  rounds                            --train: rows: examples, loss (mean of the last epoch; none if it was learned before an interruption), interventions
+  rounds                            --train: rows: examples, interventions, loss (mean of the last epoch; none if an
+                                    interruption came after it)
   and those of lane-keeping otherwise
 Outcomes: learned; kept, departed (of lanes), failed; with --campaign: passed (autonomy of at least 99 %), wrong."
 )]

@@ -58,6 +58,7 @@ pub(crate) fn main() -> ExitCode {
 /// Reports what could not start, with --json as an object too.
 fn refuse(json: bool, message: &str, warnings: &[String]) -> ExitCode {
     if json {
+        // A reader that has closed the pipe is told by the status.
         let _ = writeln!(std::io::stdout(), "{}", verdict::refusal(message, warnings));
     }
     // Without standard error nobody can be informed; the status remains.

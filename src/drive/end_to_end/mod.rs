@@ -37,7 +37,8 @@
 //! assert!(examples.len() >= 29);
 //!
 //! // A network of zeros drives straight on.
-//! let weights = architecture.filters().flatten().map(|(filters, taps)| (vec![0.0; filters * taps], vec![0.0; filters]));
+//! let zeros = |(filters, taps): (usize, usize)| (vec![0.0; filters * taps], vec![0.0; filters]);
+//! let weights = architecture.filters().flatten().map(zeros);
 //! let network = Network::new(architecture.clone(), weights.collect())?;
 //! let mut driver = NetworkDriver::new(network, 1.0)?;
 //! run(&mut car, &mut driver, 0.5, |_, _, _| ())?;

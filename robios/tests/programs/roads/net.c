@@ -1,5 +1,5 @@
-/* A car that a trained network steers: it sees the road part of the grey image, and says the curvature. The network is
- * that of `roverlab end-to-end`, read from a file .safetensors: a header in JSON, then its numbers.
+/* A car that a trained network steers: it sees the road part of the grey image, and says the curvature. The
+ * network is that of `roverlab end-to-end`, read from a file .safetensors: a header in JSON, then its numbers.
  */
 #include "check.h"
 

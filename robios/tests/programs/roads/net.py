@@ -10,7 +10,7 @@ TOP, BOTTOM = 64, 223  # rows of the image with road
 
 
 def read(name):
-    """Rows and columns that the network sees; its layers: size and stride of a filter, and for each its weights and constant."""
+    """Rows and columns that the network sees; its layers: size and stride, and each filter's weights and constant."""
     with open(name, "rb") as file:
         head = json.loads(file.read(struct.unpack("<Q", file.read(8))[0]))
         data = file.read()
