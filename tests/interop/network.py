@@ -96,7 +96,7 @@ def session(text, floats):
             at = f"{index}r"
     value = helper.make_tensor_value_info
     graph = helper.make_graph(
-        nodes, "network", [value("input", TensorProto.FLOAT, [1, height, width, channels])], [value(at, TensorProto.FLOAT, None)], constants
+        nodes, "network", [value("input", TensorProto.FLOAT, [1, height, width, channels])], [value(at, TensorProto.FLOAT, [1, steps[-1][1][0]])], constants
     )
     model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 17)], ir_version=9)
     onnx.checker.check_model(model)
