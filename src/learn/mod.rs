@@ -37,6 +37,7 @@
 
 mod checkpoint;
 mod gradient;
+mod signs;
 #[cfg(test)]
 mod tests;
 mod trainer;

@@ -80,6 +80,8 @@ mod report;
 mod run;
 mod stage;
 mod supervision;
+#[cfg(feature = "learn")]
+mod training_store;
 mod trip;
 mod values;
 #[cfg(feature = "view")]
@@ -102,6 +104,8 @@ pub(crate) use report::{Outcome, Report, millimetres, point_in_mm, rounded};
 pub(crate) use run::{Printed, parser, refused, run, run_plain, run_printing, written};
 pub(crate) use stage::{Claimed, Driven, Stage, StageTruth};
 pub(crate) use supervision::DEADMAN;
+#[cfg(feature = "learn")]
+pub(crate) use training_store::TrainingStore;
 pub(crate) use trip::{StandIn, Trip};
 pub(crate) use values::{GoalOption, parse_noise, parse_picture, parse_point, parse_pose, parse_seconds};
 #[cfg(feature = "view")]

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::num::NonZero;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use roverlab::drive::end_to_end::{NetworkDriver, SteeringExamples, SteeringTeacher, TeacherParameters};
 use roverlab::drive::lane_keeping::LaneKeeperParameters;
@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 
 use super::Args;
 use crate::common::{
-    Failure, Outcome, Progress, Report, Stopwatch, check_writable, rounded, share_out, threads,
+    Failure, Outcome, Progress, Report, Stopwatch, TrainingStore, check_writable, rounded, share_out, threads,
 };
 use crate::lane_keeping::{Setting, keeper};
 use crate::signs::hash;
@@ -35,7 +35,7 @@ const LESSONS: u64 = 1 << 40;
 pub(super) fn train(args: &Args, out: &Path) -> Result<Report, Failure> {
     let watch = Stopwatch::start();
     check_writable("--out", out)?;
-    let store = Store::open(out, args)?;
+    let store = TrainingStore::open(out, &facts(args))?;
     let crew = threads(args.threads);
     let results = args.architecture.outputs();
     let options = TrainerOptions {
@@ -70,11 +70,11 @@ pub(super) fn train(args: &Args, out: &Path) -> Result<Report, Failure> {
             store.keep(&trainer.to_checkpoint().map_err(Failure::run)?)?;
         }
         // Other rounds meet the network as a file of weights of 16 bits has it.
-        bytes = store.round(round, || trainer.network().to_safetensors().map_err(Failure::run))?;
+        bytes = store.once(&file_of(round), || trainer.network().to_safetensors().map_err(Failure::run))?;
         let network =
             Network::from_safetensors(&bytes).ok().filter(|found| *found.architecture() == args.architecture);
         let error =
-            || Failure::input(format!("{}: found a round of another network", store.folder.display()));
+            || Failure::input(format!("{}: found a round of another network", store.folder().display()));
         pupil = Some(network.ok_or_else(error)?);
         let astray = lessons.iter().filter(|(_, astray)| *astray).count();
         let row = Row { examples: examples.len(), loss, interventions: astray };
@@ -82,7 +82,7 @@ pub(super) fn train(args: &Args, out: &Path) -> Result<Report, Failure> {
         rows.push(row.json());
     }
     fs::write(out, &bytes).map_err(|error| Failure::run(format!("--out {}: {error}", out.display())))?;
-    store.close(args.rounds)?;
+    store.close((0..args.rounds).map(file_of))?;
     Ok(Report::new(Outcome::verdict("learned"))
         .field("architecture", args.architecture.to_string())
         .field("examples", examples.len())
@@ -90,6 +90,20 @@ pub(super) fn train(args: &Args, out: &Path) -> Result<Report, Failure> {
         .field("weights", out.display().to_string())
         .field("weights_hash", format!("{:016x}", hash(&bytes)))
         .timing("seconds", watch.seconds()))
+}
+
+/// The options on which what is learned depends.
+fn facts(args: &Args) -> String {
+    let Args { architecture, lessons, rounds: _, epochs, disturbance, common, .. } = args;
+    let (seed, noise) = (common.seed, common.noise);
+    format!(
+        "{architecture}; lessons {lessons}, epochs {epochs}, disturbance {disturbance}, seed {seed}, noise {noise}"
+    )
+}
+
+/// Where the network after a round is kept.
+fn file_of(round: u64) -> String {
+    format!("round-{}.safetensors", round + 1)
 }
 
 /// A round.
@@ -139,93 +153,4 @@ fn lesson(args: &Args, seed: u64, pupil: Option<&Network>) -> Result<(SteeringEx
         until(astray)
     })?;
     Ok((teacher.into_examples(), astray))
-}
-
-/// What is learned so far, in a folder beside the file to be written.
-struct Store {
-    folder: PathBuf,
-}
-
-impl Store {
-    /// Opens the folder, or makes it. Fails if what is in it was learned with other options.
-    fn open(out: &Path, args: &Args) -> Result<Self, Failure> {
-        let mut name = out.file_name().unwrap_or_default().to_owned();
-        name.push(".training");
-        let this = Self { folder: out.with_file_name(name) };
-        let is_new = !this.folder.exists();
-        if is_new {
-            fs::create_dir(&this.folder).map_err(|error| this.failure(&error))?;
-        }
-        let Args { architecture, lessons, rounds: _, epochs, disturbance, common, .. } = args;
-        let (seed, noise) = (common.seed, common.noise);
-        let facts = format!(
-            "{architecture}; lessons {lessons}, epochs {epochs}, disturbance {disturbance}, seed {seed}, noise {noise}\n"
-        );
-        match this.read("options.txt")? {
-            None if is_new => this.write("options.txt", facts.as_bytes())?,
-            None => {
-                let folder = this.folder.display();
-                return Err(Failure::input(format!(
-                    "{folder}: found a folder of something else; expected none"
-                )));
-            }
-            Some(found) if found == facts.as_bytes() => {}
-            Some(found) => {
-                let (folder, found) = (this.folder.display(), String::from_utf8_lossy(&found).into_owned());
-                return Err(Failure::input(format!(
-                    "{folder}: found what was learned with {}; expected {}, or no such folder",
-                    found.trim_end(),
-                    facts.trim_end()
-                )));
-            }
-        }
-        Ok(this)
-    }
-
-    /// The trainer after its last epoch.
-    fn state(&self) -> Result<Option<Vec<u8>>, Failure> {
-        self.read("state.safetensors")
-    }
-
-    fn keep(&self, state: &[u8]) -> Result<(), Failure> {
-        self.write("state.safetensors", state)
-    }
-
-    /// The network after a round: as it was kept, or as it is now.
-    fn round(&self, round: u64, now: impl FnOnce() -> Result<Vec<u8>, Failure>) -> Result<Vec<u8>, Failure> {
-        let name = format!("round-{}.safetensors", round + 1);
-        if let Some(bytes) = self.read(&name)? {
-            return Ok(bytes);
-        }
-        let bytes = now()?;
-        self.write(&name, &bytes)?;
-        Ok(bytes)
-    }
-
-    /// Removes what was kept, and the folder if nothing else is in it.
-    fn close(self, rounds: u64) -> Result<(), Failure> {
-        let rounds = (1..=rounds).map(|round| format!("round-{round}.safetensors"));
-        for name in rounds.chain(["state.safetensors", "options.txt"].map(String::from)) {
-            fs::remove_file(self.folder.join(name)).map_err(|error| self.failure(&error))?;
-        }
-        fs::remove_dir(&self.folder).map_err(|error| self.failure(&error))
-    }
-
-    fn read(&self, name: &str) -> Result<Option<Vec<u8>>, Failure> {
-        match fs::read(self.folder.join(name)) {
-            Ok(bytes) => Ok(Some(bytes)),
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
-            Err(error) => Err(self.failure(&error)),
-        }
-    }
-
-    /// Writes a file anew and renames it, so that there is always a whole one.
-    fn write(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
-        let (file, new) = (self.folder.join(name), self.folder.join(format!("{name}.new")));
-        fs::write(&new, bytes).and_then(|()| fs::rename(&new, &file)).map_err(|error| self.failure(&error))
-    }
-
-    fn failure(&self, error: &std::io::Error) -> Failure {
-        Failure::run(format!("{}: {error}", self.folder.display()))
-    }
 }

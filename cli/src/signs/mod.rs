@@ -5,14 +5,18 @@ mod evaluation;
 mod faces;
 mod folder;
 mod frames;
+#[cfg(feature = "learn")]
+mod network;
 
 use std::fs;
+use std::num::NonZero;
 use std::path::{Path, PathBuf};
 
 use roverlab::vision::RgbView;
+use roverlab::vision::network::Network;
 use roverlab::vision::signs::{Area, SignFinder, SignModel, SignTrainer};
 
-use crate::common::{Failure, Outcome, PlainArgs, Report, Stopwatch};
+use crate::common::{Failure, Outcome, PlainArgs, Report, Stopwatch, check_writable};
 use evaluation::Evaluation;
 
 /// Command line of `signs`.
@@ -49,6 +53,18 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE.safetensors", requires = "train")]
     pub(crate) out: Option<PathBuf>,
 
+    /// Let a network learn the classes too, which tells them better: minutes instead of seconds.
+    #[arg(long, requires = "train")]
+    pub(crate) network: bool,
+
+    /// How often the network sees as many signs as there are.
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=1000), allow_hyphen_values = true)]
+    pub(crate) epochs: u64,
+
+    /// Number of threads that train it [default: one per core].
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub(crate) threads: Option<NonZero<usize>>,
+
     /// Folder to be tried on.
     #[arg(long, value_name = "FOLDER", requires = "weights")]
     pub(crate) evaluate: Option<PathBuf>,
@@ -73,6 +89,7 @@ crate::common::shares_options!(Args, plain: PlainArgs, unheeded: [
     ("always", &["animation"]),
     ("train", &["frames", "learn", "picture"]),
     ("evaluate", &["frames", "learn", "seed"]),
+    ("!network", &["epochs", "threads"]),
 ]);
 
 /// A picture and its signs: their classes, by index, and boxes.
@@ -96,14 +113,14 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     args.plain.check_picture()?;
     let seed = args.plain.seed;
     match (&args.train, &args.out, &args.evaluate, &args.weights) {
-        (Some(from), Some(out), ..) => train(from, out, seed),
+        (Some(from), Some(out), ..) => train(args, from, out),
         (.., Some(folder), Some(weights)) => {
             let evaluation = evaluate(folder, weights)?;
             Ok(args.plain.draw(evaluation.report(), "signs.svg", || drawing::picture(&evaluation)))
         }
         _ => {
             let names: Vec<String> = faces::NAMES.map(String::from).to_vec();
-            let model = learned(&names, &frames::drawn(args.learn, seed, "learned"), true, seed)?;
+            let model = learned(&trainer(&names, &frames::drawn(args.learn, seed, "learned"))?, true, seed)?;
             let pictures = frames::drawn(args.frames, seed, "tried");
             let evaluation = Evaluation::by_search(&mut SignFinder::new(model), &pictures, frames::LEAST)?;
             Ok(args.plain.draw(evaluation.report(), "signs.svg", || drawing::picture(&evaluation)))
@@ -111,10 +128,15 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     }
 }
 
-fn train(from: &Path, out: &Path, seed: u64) -> Result<Report, Failure> {
+fn train(args: &Args, from: &Path, out: &Path) -> Result<Report, Failure> {
     let watch = Stopwatch::start();
+    check_writable("--out", out)?;
     let folder = folder::read(from, None)?;
-    let model = learned(&folder.names, &folder.pictures, folder.finds(), seed)?;
+    let trainer = trainer(&folder.names, &folder.pictures)?;
+    let mut model = learned(&trainer, folder.finds(), args.plain.seed)?;
+    if args.network {
+        model = model.with_network(network(args, out, &trainer, folder.names.len())?)?;
+    }
     let bytes = model.to_safetensors().map_err(Failure::run)?;
     fs::write(out, &bytes).map_err(|error| Failure::run(format!("--out {}: {error}", out.display())))?;
     Ok(Report::new(Outcome::verdict("learned"))
@@ -132,13 +154,28 @@ pub(crate) fn hash(bytes: &[u8]) -> u64 {
         .fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
-fn learned(names: &[String], pictures: &[Marked], finds: bool, seed: u64) -> Result<SignModel, Failure> {
+#[cfg(feature = "learn")]
+fn network(args: &Args, out: &Path, signs: &SignTrainer, classes: usize) -> Result<Network, Failure> {
+    network::learned(args, out, signs, classes)
+}
+
+#[cfg(not(feature = "learn"))]
+fn network(_: &Args, _: &Path, _: &SignTrainer, _: usize) -> Result<Network, Failure> {
+    Err(Failure::input("--network: this program was built without training; expected the feature `learn`"))
+}
+
+/// A trainer of marked pictures.
+fn trainer(names: &[String], pictures: &[Marked]) -> Result<SignTrainer, Failure> {
     let mut trainer = SignTrainer::new(names.iter().map(String::as_str))?;
     for picture in pictures {
         trainer
             .add(picture.view(), &picture.signs)
             .map_err(|error| Failure::input(format!("{}: {error}", picture.name)))?;
     }
+    Ok(trainer)
+}
+
+fn learned(trainer: &SignTrainer, finds: bool, seed: u64) -> Result<SignModel, Failure> {
     let model = if finds { trainer.finder(seed) } else { trainer.classifier(seed) };
     model.map_err(Failure::input)
 }

@@ -44,6 +44,31 @@ fn what_is_learned_from_a_folder_is_told_again() {
     assert!(ended.1["accuracy"] == 1.0 && ended.1["finds"] == false, "{}", ended.1);
 }
 
+/// The same bytes with other numbers of threads, and after an interruption.
+#[cfg(feature = "learn")]
+#[test]
+fn a_network_learns_the_classes_of_a_folder() {
+    let folder =
+        folder("signs-net", "file,class,x1,y1,x2,y2\nleft.pgm,west,2,2,38,38\nright.pgm,east,2,2,38,38\n");
+    let folder = folder.to_str().unwrap();
+    let weights = |name: &str| format!("{folder}/{name}.safetensors");
+    let train = |name: &str, more: &[&str]| {
+        let out = weights(name);
+        run("signs", &[&["--train", folder, "--out", &out, "--network", "--epochs", "30"], more].concat())
+    };
+    for (name, threads) in [("one", "1"), ("other", "2")] {
+        assert_outcome(&train(name, &["--threads", threads]), "learned");
+    }
+    assert_eq!(fs::read(weights("one")).unwrap(), fs::read(weights("other")).unwrap());
+    let ended = run("signs", &["--evaluate", folder, "--weights", &weights("one")]);
+    assert_eq!(ended.1["accuracy"], 1.0, "{}", ended.1);
+    let kept = format!("{}.training", weights("third"));
+    fs::create_dir(&kept).unwrap();
+    fs::write(format!("{kept}/options.txt"), "2 signs of others").unwrap();
+    let (status, _, err) = train("third", &[]);
+    assert!(status == 2 && err.contains("2 signs of others"), "{err}");
+}
+
 #[test]
 fn bad_tables_are_refused_with_their_line() {
     for (table, said) in [

@@ -121,8 +121,8 @@ pub struct PoolWall {
     side: Point,
     far: Point,
     lap: Option<Lap>,
-    /// Speed ahead through the water that the thrust has led to (m/s).
-    through: f64,
+    /// Speed through the water forward and to the left (m/s) that thrust and turn have led to.
+    through: Vector,
     /// Velocity of the water (m/s).
     current: Vector,
 }
@@ -213,7 +213,7 @@ impl PoolWall {
             reckoning: Reckoning::default(),
             walls: WallMemory::default(),
             lap: None,
-            through: 0.0,
+            through: Vector::zeros(),
             current: Vector::zeros(),
             parameters,
         })
@@ -292,13 +292,14 @@ impl PoolWall {
 
     /// Learns the current. Returns the slip (rad) by it, besides that of turning, of a craft that moves at a
     /// velocity.
-    fn crab(&mut self, velocity: Vector, turning: f64) -> f64 {
+    fn crab(&mut self, velocity: Vector) -> f64 {
         let (pose, seconds) = (self.reckoning.pose(), self.helm.seconds());
-        let own = CraftMotion { linear: Vector3::x() * self.through, angular: Vector3::zeros() };
+        let turn_rate = mirror(self.parameters.side) * self.helm.turn_rate();
+        let linear = Vector3::new(self.through.x, self.through.y, 0.0);
+        let own = CraftMotion { linear, angular: Vector3::z() * turn_rate };
         let push = Wrench { force: Vector3::x() * self.helm.pushed(), moment: Vector3::zeros() };
-        self.through += self.helm.craft().response(&own, &push).linear.x * seconds;
-        let expected = Vector::new(self.through, self.through * math::tan(turning));
-        let drift = over_ground(&pose, velocity - expected);
+        self.through += self.helm.craft().response(&own, &push).linear.xy() * seconds;
+        let drift = over_ground(&pose, velocity - self.through);
         self.current += (drift - self.current) * (seconds / LEARNING).min(1.0);
         math::atan2(self.current.dot(&direction(pose.heading + 0.5 * PI)), self.parameters.speed)
     }
@@ -309,7 +310,7 @@ impl PoolWall {
         let velocity = self.reckoning.velocity();
         let slip = math::atan2(velocity.y, velocity.x.max(CREEP)).clamp(-SLIP, SLIP);
         let lasting = self.helm.slip(speed, speed * bend).clamp(-SLIP, SLIP);
-        let lasting = lasting + self.crab(velocity, lasting);
+        let lasting = lasting + self.crab(velocity);
         let off = angle - MOMENTARY * slip - (1.0 - MOMENTARY) * lasting;
         // What of the angle is the chord of the bend is no error.
         let turn = GAIN * math::sin(off.clamp(-0.5 * PI, 0.5 * PI)) + (speed - 0.5 * GAIN * lookahead) * bend;

@@ -4,8 +4,11 @@ use super::architecture::{Architecture, Layer};
 use super::net::Network;
 use crate::vision::WeightsError;
 
+/// A tensor's name, its kind of numbers, shape and bytes.
+pub(in crate::vision) type NamedTensor = (String, Dtype, Vec<usize>, Vec<u8>);
+
 /// Key of the architecture in the file's metadata.
-const ARCHITECTURE: &str = "architecture";
+pub(in crate::vision) const ARCHITECTURE: &str = "architecture";
 
 impl Network {
     /// The network as a file `.safetensors`, with weights of 16 bits. For each layer with weights, numbered
@@ -16,6 +19,17 @@ impl Network {
     ///
     /// If it does not fit into the format.
     pub fn to_safetensors(&self) -> Result<Vec<u8>, WeightsError> {
+        let tensors = self.to_tensors();
+        let views = tensors.iter().map(|(name, kind, shape, bytes)| {
+            Ok((name.as_str(), TensorView::new(*kind, shape.clone(), bytes).map_err(WeightsError::of)?))
+        });
+        let views: Vec<_> = views.collect::<Result<_, WeightsError>>()?;
+        let about = std::iter::once((ARCHITECTURE.to_owned(), self.architecture().to_string())).collect();
+        safetensors::serialize(views, Some(about)).map_err(WeightsError::of)
+    }
+
+    /// Its tensors, in the order of the layers.
+    pub(in crate::vision) fn to_tensors(&self) -> Vec<NamedTensor> {
         let mut tensors = Vec::new();
         let shapes = shapes(self.architecture());
         for ((layer, shape), (weights, constants)) in shapes.into_iter().zip(self.weights()) {
@@ -34,12 +48,7 @@ impl Network {
             tensors.push((format!("{layer}.units"), Dtype::F32, vec![filters], units));
             tensors.push((format!("{layer}.constants"), Dtype::F32, vec![filters], constants));
         }
-        let views = tensors.iter().map(|(name, kind, shape, bytes)| {
-            Ok((name.as_str(), TensorView::new(*kind, shape.clone(), bytes).map_err(WeightsError::of)?))
-        });
-        let views: Vec<_> = views.collect::<Result<_, WeightsError>>()?;
-        let about = std::iter::once((ARCHITECTURE.to_owned(), self.architecture().to_string())).collect();
-        safetensors::serialize(views, Some(about)).map_err(WeightsError::of)
+        tensors
     }
 
     /// Reads what [`to_safetensors`](Self::to_safetensors) wrote.
@@ -54,18 +63,26 @@ impl Network {
             text.ok_or_else(|| WeightsError::File(format!("found no {ARCHITECTURE} in the metadata")))?;
         let architecture: Architecture = text.parse()?;
         let file = SafeTensors::deserialize(bytes).map_err(WeightsError::of)?;
-        let (mut weights, shapes) = (Vec::new(), shapes(&architecture));
-        if file.len() != 3 * shapes.len() {
-            let (found, expected) = (file.len(), 3 * shapes.len());
+        let (found, expected) = (file.len(), 3 * shapes(&architecture).len());
+        if found != expected {
             return Err(WeightsError::File(format!(
                 "found {found} tensors; expected {expected} for {architecture}"
             )));
         }
-        for (layer, shape) in shapes {
+        Self::from_tensors(architecture, &file)
+    }
+
+    /// The network whose tensors are in a file, among others.
+    pub(in crate::vision) fn from_tensors(
+        architecture: Architecture,
+        file: &SafeTensors<'_>,
+    ) -> Result<Self, WeightsError> {
+        let mut weights = Vec::new();
+        for (layer, shape) in shapes(&architecture) {
             let filters = vec![shape[0]];
-            let units = tensor(&file, &format!("{layer}.units"), Dtype::F32, &filters)?;
-            let constants = tensor(&file, &format!("{layer}.constants"), Dtype::F32, &filters)?;
-            let whole = tensor(&file, &format!("{layer}.weights"), Dtype::I16, &shape)?;
+            let units = tensor(file, &format!("{layer}.units"), Dtype::F32, &filters)?;
+            let constants = tensor(file, &format!("{layer}.constants"), Dtype::F32, &filters)?;
+            let whole = tensor(file, &format!("{layer}.weights"), Dtype::I16, &shape)?;
             let units = floats(units);
             let (whole, _) = whole.as_chunks::<2>();
             let rows = whole.chunks(whole.len() / units.len()).zip(units);

@@ -29,6 +29,9 @@ mod net;
 #[cfg(test)]
 mod tests;
 
+#[cfg(feature = "weights")]
+pub(super) use file::ARCHITECTURE;
+
 pub use architecture::{Architecture, Layer, MapSize};
 pub use fixed::FixedNetwork;
 pub use net::{Network, softmax};

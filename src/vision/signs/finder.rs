@@ -2,6 +2,7 @@ use super::area::Area;
 use super::descriptor::SignDescriptor;
 use super::detector::{Candidate, Detector, best_around, gray_of};
 use super::model::SignModel;
+use super::patch::SignPatch;
 use crate::ParameterError;
 use crate::vision::{GrayView, ImageError, RgbView};
 
@@ -20,7 +21,7 @@ pub struct FoundSign {
 ///
 /// At each place of a pyramid of images linear classifiers of histograms of gradients say whether there may
 /// be a sign; the likely places are described in more detail, colours included, and another classifier says
-/// of which class they are, or that they are none.
+/// of which class they are, or that they are none. A model's network has the last word on the class.
 ///
 /// ```
 /// use roverlab::vision::{RgbView, signs::{Area, SignFinder, SignTrainer}};
@@ -44,6 +45,7 @@ pub struct SignFinder {
     model: SignModel,
     detector: Detector,
     descriptor: SignDescriptor,
+    patch: SignPatch,
     gray: Vec<u8>,
     scores: Vec<f32>,
 }
@@ -53,7 +55,7 @@ impl SignFinder {
     pub fn new(model: SignModel) -> Self {
         let scores = vec![0.0; model.signs.classes()];
         let (detector, descriptor) = (Detector::default(), SignDescriptor::default());
-        Self { model, detector, descriptor, gray: Vec::new(), scores }
+        Self { model, detector, descriptor, patch: SignPatch::default(), gray: Vec::new(), scores }
     }
 
     /// What it works by.
@@ -70,13 +72,19 @@ impl SignFinder {
     pub fn find(&mut self, image: RgbView<'_>) -> Result<Vec<FoundSign>, ImageError> {
         let mut found = Vec::new();
         for candidate in self.likely(image)? {
-            let (class, score) = self.classify(image, candidate.area)?;
+            let (class, score) = self.by_gradients(image, candidate.area)?;
             let sign = FoundSign { class, area: candidate.area, score: score + candidate.score };
             if sign.score > 0.0 {
                 found.push(sign);
             }
         }
-        Ok(best_around(found, |sign| (sign.area, sign.score)))
+        let mut found = best_around(found, |sign| (sign.area, sign.score));
+        for sign in &mut found {
+            if let Some((class, _)) = self.by_network(image, sign.area)? {
+                sign.class = class;
+            }
+        }
+        Ok(found)
     }
 
     /// Windows that are looked at in detail.
@@ -88,20 +96,37 @@ impl SignFinder {
         self.detector.candidates(gray, windows)
     }
 
-    /// The class that fits what an area shows best, and by how much better than none; without a class of
-    /// none, its score.
+    /// The class that fits what an area shows best, and its score: the result of the model's network, if it
+    /// has one, else by how much the class fits better than none, if the model knows what is none.
     ///
     /// # Errors
     ///
     /// If the area is empty, or not finite.
     pub fn classify(&mut self, image: RgbView<'_>, area: Area) -> Result<(usize, f32), ImageError> {
+        match self.by_network(image, area)? {
+            Some(told) => Ok(told),
+            None => self.by_gradients(image, area),
+        }
+    }
+
+    fn by_network(&mut self, image: RgbView<'_>, area: Area) -> Result<Option<(usize, f32)>, ImageError> {
+        let Some(network) = &mut self.model.network else { return Ok(None) };
+        Ok(Some(best(network.run(self.patch.read(image, area)?)?)))
+    }
+
+    fn by_gradients(&mut self, image: RgbView<'_>, area: Area) -> Result<(usize, f32), ImageError> {
         let features = self.descriptor.describe(image, area)?;
         self.model.signs.scores(features, &mut self.scores)?;
         let (scores, others) = self.scores.split_at(self.model.names().len());
         let none = others.first().copied().unwrap_or_default();
-        // A model has a class.
-        let best =
-            (1..scores.len()).fold(0, |best, class| if scores[class] > scores[best] { class } else { best });
-        Ok((best, scores[best] - none))
+        let (class, score) = best(scores);
+        Ok((class, score - none))
     }
+}
+
+/// The class with the highest score, and this. A model has a class.
+fn best(scores: &[f32]) -> (usize, f32) {
+    let class =
+        (1..scores.len()).fold(0, |best, class| if scores[class] > scores[best] { class } else { best });
+    (class, scores[class])
 }

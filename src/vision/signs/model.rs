@@ -1,8 +1,10 @@
 use super::descriptor::SignDescriptor;
 use super::detector::WindowWeights;
 use super::linear::LinearClassifier;
+use super::patch::SignPatch;
 use crate::ParameterError;
 use crate::parameter::require;
+use crate::vision::network::{MapSize, Network};
 
 /// What a [`SignTrainer`](super::SignTrainer) has learned: the names of the classes, and the weights by which
 /// a [`SignFinder`](super::SignFinder) works.
@@ -12,6 +14,8 @@ pub struct SignModel {
     /// A row for each class, and one for none if there are weights of windows.
     pub(super) signs: LinearClassifier,
     pub(super) windows: Option<WindowWeights>,
+    /// Tells the classes of what are signs.
+    pub(super) network: Option<Network>,
 }
 
 impl SignModel {
@@ -36,7 +40,22 @@ impl SignModel {
                 format!("{classes}"),
             )?;
         }
-        Ok(Self { names, signs, windows })
+        Ok(Self { names, signs, windows, network: None })
+    }
+
+    /// With a network that tells the classes of signs, by what a [`SignPatch`] shows; whether something is a
+    /// sign is still told by histograms of gradients.
+    ///
+    /// # Errors
+    ///
+    /// If the network has another input than a patch, or not a result for each class.
+    pub fn with_network(self, network: Network) -> Result<Self, ParameterError> {
+        let (input, results) = (network.architecture().input(), network.architecture().outputs());
+        let patch = MapSize { height: SignPatch::SIDE, width: SignPatch::SIDE, channels: 3 };
+        require("values of the input", input.len() as f64, input == patch, format!("{patch:?}"))?;
+        let classes = self.names.len();
+        require("number of results", results as f64, results == classes, format!("{classes}"))?;
+        Ok(Self { network: Some(network), ..self })
     }
 
     /// The names of the classes.
@@ -55,15 +74,17 @@ impl SignModel {
 mod file {
     use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 
-    use super::{LinearClassifier, SignModel, WindowWeights};
+    use super::{LinearClassifier, Network, SignModel, WindowWeights};
     use crate::vision::WeightsError;
+    use crate::vision::network::ARCHITECTURE;
 
     /// Key of the classes' names in the file's metadata, separated by line breaks.
     const NAMES: &str = "classes";
 
     impl SignModel {
         /// The model as a file `.safetensors`: 32-bit tensors `signs`, `windows.any` and `windows.each`, a
-        /// row for each class, whose last number is the constant.
+        /// row for each class, whose last number is the constant; and those of the network, if there is one, as
+        /// [`Network::to_safetensors`] writes them.
         ///
         /// # Errors
         ///
@@ -76,18 +97,24 @@ mod file {
             let bytes = |classifier: &LinearClassifier| {
                 classifier.weights().iter().flat_map(|weight| weight.to_le_bytes()).collect()
             };
-            let tensors: Vec<(&str, [usize; 2], Vec<u8>)> = tensors
+            let mut tensors: Vec<_> = tensors
                 .into_iter()
                 .map(|(name, classifier)| {
-                    (name, [classifier.classes(), classifier.features() + 1], bytes(classifier))
+                    let shape = vec![classifier.classes(), classifier.features() + 1];
+                    (name.to_owned(), Dtype::F32, shape, bytes(classifier))
                 })
                 .collect();
-            let view =
-                |(name, shape, bytes)| Ok((name, TensorView::new(Dtype::F32, Vec::from(shape), bytes)?));
-            let views = tensors.iter().map(|(name, shape, bytes)| view((*name, *shape, bytes.as_slice())));
+            let mut about = vec![(NAMES.to_owned(), self.names.join("\n"))];
+            if let Some(network) = &self.network {
+                tensors.extend(network.to_tensors());
+                about.push((ARCHITECTURE.to_owned(), network.architecture().to_string()));
+            }
+            let view = |(name, kind, shape, bytes)| Ok((name, TensorView::new(kind, shape, bytes)?));
+            let views = tensors.iter().map(|(name, kind, shape, bytes)| {
+                view((name.as_str(), *kind, shape.clone(), bytes.as_slice()))
+            });
             let views: Vec<_> = views.collect::<Result<_, _>>().map_err(WeightsError::of)?;
-            let about = std::iter::once((NAMES.to_owned(), self.names.join("\n"))).collect();
-            safetensors::serialize(views, Some(about)).map_err(WeightsError::of)
+            safetensors::serialize(views, Some(about.into_iter().collect())).map_err(WeightsError::of)
         }
 
         /// Reads what [`to_safetensors`](Self::to_safetensors) wrote.
@@ -97,9 +124,9 @@ mod file {
         /// If the file is none of the format, or its weights are not those of a model.
         pub fn from_safetensors(bytes: &[u8]) -> Result<Self, WeightsError> {
             let (_, about) = SafeTensors::read_metadata(bytes).map_err(WeightsError::of)?;
-            let names = about.metadata().as_ref().and_then(|about| about.get(NAMES));
+            let said = |key: &str| about.metadata().as_ref().and_then(|about| about.get(key));
             let names =
-                names.ok_or_else(|| WeightsError::File(format!("found no {NAMES} in the metadata")))?;
+                said(NAMES).ok_or_else(|| WeightsError::File(format!("found no {NAMES} in the metadata")))?;
             let file = SafeTensors::deserialize(bytes).map_err(WeightsError::of)?;
             let windows = file.names().iter().any(|name| name.starts_with("windows."));
             let windows = windows.then(|| {
@@ -109,7 +136,13 @@ mod file {
                 )?)
             });
             let names = names.split('\n').map(String::from).collect();
-            Ok(Self::new(names, read(&file, "signs")?, windows.transpose()?)?)
+            let model = Self::new(names, read(&file, "signs")?, windows.transpose()?)?;
+            match said(ARCHITECTURE) {
+                Some(architecture) => {
+                    Ok(model.with_network(Network::from_tensors(architecture.parse()?, &file)?)?)
+                }
+                None => Ok(model),
+            }
         }
     }
 

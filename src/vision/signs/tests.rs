@@ -2,8 +2,9 @@ use proptest::prelude::*;
 
 use super::area::resample_into;
 use super::linear::dot;
-use super::{Area, LinearClassifier, LinearTraining, SignFinder, SignTrainer};
+use super::{Area, LinearClassifier, LinearTraining, SignFinder, SignPatch, SignTrainer};
 use crate::random::Stream;
+use crate::vision::network::Network;
 use crate::vision::{GrayView, RgbView};
 
 /// Width and height of the pictures of the tests.
@@ -92,13 +93,120 @@ fn nonsense_is_refused() {
 fn models_are_read_back_and_damage_is_refused() {
     use super::SignModel;
     let trainer = trainer();
-    for model in [trainer.finder(1).unwrap(), trainer.classifier(1).unwrap()] {
+    let told = trainer.classifier(1).unwrap().with_network(by_blue()).unwrap();
+    for model in [trainer.finder(1).unwrap(), trainer.classifier(1).unwrap(), told] {
         let bytes = model.to_safetensors().unwrap();
         assert_eq!(SignModel::from_safetensors(&bytes).unwrap(), model);
         for length in (0..bytes.len()).step_by(97) {
             assert!(SignModel::from_safetensors(&bytes[..length]).is_err(), "{length}");
         }
     }
+}
+
+/// A network whose second class is the bluer one.
+fn by_blue() -> Network {
+    let pixels = 32 * 32;
+    let weights = [[1.0_f32, 0.0, 0.0].repeat(pixels), [0.0, 0.0, 1.0].repeat(pixels)].concat();
+    Network::new("32x32x3 dense2".parse().unwrap(), vec![(weights, vec![0.0; 2])]).unwrap()
+}
+
+#[test]
+fn a_network_has_the_last_word_on_the_class() {
+    let named = |names: [&str; 2]| {
+        let mut trainer = SignTrainer::new(names).unwrap();
+        let mut stream = Stream::new(5);
+        for class in [0, 1].repeat(12) {
+            let area = place(&mut stream);
+            // What is marked is the other way round.
+            trainer.add(view(&picture(class, area, &mut stream)), &[(1 - class, area)]).unwrap();
+        }
+        trainer.finder(1).unwrap()
+    };
+    let model = named(["disc", "bar"]);
+    assert!(
+        model
+            .clone()
+            .with_network(
+                Network::new("32x32x3 dense3".parse().unwrap(), vec![(vec![0.0; 9216], vec![0.0; 3])])
+                    .unwrap()
+            )
+            .is_err()
+    );
+    assert!(
+        model
+            .clone()
+            .with_network(
+                Network::new("32x32x1 dense2".parse().unwrap(), vec![(vec![0.0; 2048], vec![0.0; 2])])
+                    .unwrap()
+            )
+            .is_err()
+    );
+    let (mut before, mut after) =
+        (SignFinder::new(model.clone()), SignFinder::new(model.with_network(by_blue()).unwrap()));
+    let mut stream = Stream::new(6);
+    for class in [0, 1].repeat(4) {
+        let area = place(&mut stream);
+        let pixels = picture(class, area, &mut stream);
+        let [found, told] = [&mut before, &mut after].map(|finder| finder.find(view(&pixels)).unwrap());
+        assert_eq!((found[0].class, told[0].class), (1 - class, class));
+        assert_eq!((found[0].area, found[0].score), (told[0].area, told[0].score));
+        assert_eq!(after.classify(view(&pixels), area).unwrap().0, class);
+    }
+}
+
+/// A sign in the shade before a bright sky looks as in the light.
+#[test]
+fn light_is_that_of_the_middle() {
+    let sign = |x: usize, y: usize| (x / 8 + y / 8) % 2 == 0;
+    let shown = |bright: u8, dark: u8, sky: u8| {
+        let pixels: Vec<u8> = (0..64 * 64)
+            .flat_map(|i| {
+                let (x, y) = (i % 64, i / 64);
+                let inside = (8..56).contains(&x) && (8..56).contains(&y);
+                [if !inside {
+                    sky
+                } else if sign(x, y) {
+                    bright
+                } else {
+                    dark
+                }; 3]
+            })
+            .collect();
+        let all = Area::new(0.0, 0.0, 64.0, 64.0);
+        SignPatch::default().read(RgbView::new(&pixels, 64, 64).unwrap(), all).unwrap().to_vec()
+    };
+    let (light, shade) = (shown(200, 100, 150), shown(50, 25, 255));
+    let middle = |values: &[f32]| -> Vec<f32> {
+        (10..22).flat_map(|y| values[3 * (32 * y + 10)..3 * (32 * y + 22)].to_vec()).collect()
+    };
+    for (a, b) in middle(&light).into_iter().zip(middle(&shade)) {
+        assert!((a - b).abs() < 0.25, "{a} {b}");
+    }
+}
+
+#[test]
+fn patches_vary_and_rare_classes_are_shown_oftener() {
+    let mut trainer = SignTrainer::new(["bar", "disc"]).unwrap();
+    let mut stream = Stream::new(5);
+    for class in [0; 9].into_iter().chain([1]) {
+        let area = place(&mut stream);
+        trainer.add(view(&picture(class, area, &mut stream)), &[(class, area)]).unwrap();
+    }
+    let patches = trainer.patches().unwrap();
+    let mut shown = vec![0.0; 3 * SignPatch::SIDE * SignPatch::SIDE];
+    let (mut discs, mut before) = (0, Vec::new());
+    for seed in 0..400 {
+        discs += patches.vary(&mut Stream::new(seed), &mut shown);
+        assert!(shown.iter().all(|value| value.abs() <= 2.5) && shown != before);
+        before.clone_from(&shown);
+    }
+    // In proportion to the root of the number: one to three.
+    assert!((80..120).contains(&discs), "{discs}");
+    assert_eq!(
+        patches.vary(&mut Stream::new(399), &mut shown),
+        patches.vary(&mut Stream::new(399), &mut before)
+    );
+    assert_eq!(shown, before);
 }
 
 proptest! {

@@ -4,6 +4,7 @@ use super::detector::{Detector, WindowWeights, best_around, gray_of};
 use super::finder::SignFinder;
 use super::linear::{LinearClassifier, LinearTraining};
 use super::model::SignModel;
+use super::patch::SignPatches;
 use crate::ParameterError;
 use crate::parameter::require;
 use crate::random::Stream;
@@ -228,6 +229,19 @@ impl SignTrainer {
             signs.push(descriptor.describe(picture.view(), area)?, self.names.len());
         }
         Ok(())
+    }
+
+    /// The signs, for a network to learn from; see [`SignModel::with_network`].
+    ///
+    /// # Errors
+    ///
+    /// If there are no signs.
+    pub fn patches(&self) -> Result<SignPatches, ParameterError> {
+        let signs = self
+            .pictures
+            .iter()
+            .flat_map(|picture| picture.signs.iter().map(|(class, area)| (picture.view(), *area, *class)));
+        SignPatches::new(signs, self.names.len())
     }
 
     /// How many copies of a sign of each class are learned.
