@@ -107,7 +107,9 @@ pub(crate) use supervision::DEADMAN;
 #[cfg(feature = "learn")]
 pub(crate) use training_store::TrainingStore;
 pub(crate) use trip::{StandIn, Trip};
-pub(crate) use values::{GoalOption, parse_noise, parse_picture, parse_point, parse_pose, parse_seconds};
+pub(crate) use values::{
+    GoalOption, parse_noise, parse_picture, parse_png, parse_point, parse_pose, parse_seconds,
+};
 #[cfg(feature = "view")]
 pub(crate) use view::{announce, port_failure};
 pub(crate) use wall_clock::{Pacer, Progress, Stopwatch};

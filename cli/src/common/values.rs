@@ -68,6 +68,13 @@ pub(crate) fn parse_picture(text: &str) -> Result<PathBuf, String> {
     FileType::of(text).map(|_| PathBuf::from(text)).map_err(|error| error.to_string())
 }
 
+/// Name of a PNG file.
+pub(crate) fn parse_png(text: &str) -> Result<PathBuf, String> {
+    let file = PathBuf::from(text);
+    let is_png = file.extension().is_some_and(|end| end.eq_ignore_ascii_case("png"));
+    if is_png { Ok(file) } else { Err("expected a name that ends in .png".into()) }
+}
+
 /// Exactly `N` finite numbers separated by commas.
 fn numbers<const N: usize>(text: &str, expected: &str) -> Result<[f64; N], String> {
     let parsed: Option<Vec<f64>> = text.split(',').map(finite).collect();

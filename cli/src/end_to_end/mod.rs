@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use roverlab::vision::network::{Architecture, Network};
 
-use crate::common::{CommonArgs, Failure, OF_ONE_RUN, Report};
+use crate::common::{CommonArgs, Failure, OF_ONE_RUN, Report, check_writable, parse_png};
 use crate::lane_keeping::{Pilot, Plan, Setting, one, scores};
 
 /// The command line of `end-to-end`.
@@ -30,6 +30,7 @@ JSON fields:
   weights, weights_hash             --train: file that was written, and its hash
   rounds                            --train: rows: examples, interventions, loss (mean of the last epoch; none if an
                                     interruption came after it)
+  attention                         --attention: the picture
   and those of lane-keeping otherwise
 Outcomes: learned; kept, departed (of lanes), failed; with --campaign: passed (autonomy of at least 99 %), wrong."
 )]
@@ -66,6 +67,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE.safetensors")]
     pub(crate) drive: Option<PathBuf>,
 
+    /// Picture of what the network looks at: the camera's last image, redder where that contributes to what its filters see.
+    #[arg(long, value_name = "FILE.png", value_parser = parse_png)]
+    pub(crate) attention: Option<PathBuf>,
+
     /// Course to drive: a seed, or a file in the format of docs/courses.md.
     #[arg(long, value_name = "SEED|FILE", default_value = "1")]
     pub(crate) course: String,
@@ -101,12 +106,12 @@ pub(crate) struct Args {
 crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["world", "robot", "start", "goal", "quantised", "robios", "supervised"]),
     ("campaign", OF_ONE_RUN),
-    ("campaign", &["course", "light"]),
+    ("campaign", &["attention", "course", "light"]),
     ("!campaign", &["courses"]),
     ("!campaign&!train", &["threads"]),
     ("!train", &["architecture", "lessons", "rounds", "epochs", "disturbance"]),
     ("train", OF_ONE_RUN),
-    ("train", &["course", "minutes", "speed", "light", "time_limit"]),
+    ("train", &["attention", "course", "minutes", "speed", "light", "time_limit"]),
 ]);
 
 /// The built-in network.
@@ -123,7 +128,11 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     }
     let network = Box::new(steering(&args.common, "drive", args.drive.as_deref())?);
     let pilot = Pilot::Network(network);
-    let plan = Plan { pilot, speed: args.speed, minutes: args.minutes, common: &args.common };
+    let attention = args.attention.as_deref();
+    if let Some(file) = attention {
+        check_writable("--attention", file)?;
+    }
+    let plan = Plan { pilot, speed: args.speed, minutes: args.minutes, attention, common: &args.common };
     if args.campaign {
         let scores = scores(&plan, args.courses, args.threads)?;
         return Ok(scores.report("net", scores.autonomy() >= ENOUGH));

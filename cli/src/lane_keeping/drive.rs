@@ -1,5 +1,8 @@
 //! One drive under the referee.
 
+use std::path::Path;
+
+use image::RgbImage;
 use roverlab::drive::end_to_end::NetworkDriver;
 use roverlab::drive::lane_keeping::{
     BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters, LaneObservation, LaneOutcome,
@@ -9,7 +12,7 @@ use roverlab::geometry::{Pose, Twist, math};
 use roverlab::io::control::{Behaviour, Senses, run, until};
 use roverlab::io::log::GroundTruth;
 use roverlab::io::sim::RobotTruth;
-use roverlab::io::{self, Clock, Drive as _};
+use roverlab::io::{self, Camera, Clock, Drive as _};
 use roverlab::vision::lane_markings::{RoadCamera, RoadModel};
 use roverlab::vision::network::Network;
 use roverlab::world::RobotSpec;
@@ -28,6 +31,8 @@ pub(crate) struct Drive {
     pub(super) ending: Result<(), String>,
     /// Path of the car: time, pose and speed.
     pub(super) trail: Vec<(f64, Pose, f64)>,
+    /// The last image, redder where the network looks.
+    pub(crate) attention: Option<RgbImage>,
 }
 
 /// Who drives.
@@ -55,6 +60,8 @@ pub(crate) struct Plan<'a> {
     /// Maximum speed (m/s); `None` for the pilot's own.
     pub(crate) speed: Option<f64>,
     pub(crate) minutes: f64,
+    /// Where to draw what a network looks at.
+    pub(crate) attention: Option<&'a Path>,
     pub(crate) common: &'a CommonArgs,
 }
 
@@ -82,6 +89,7 @@ pub(super) fn drive(plan: &Plan<'_>, setting: &Setting, stage: &Stage) -> Result
         trail: Vec::new(),
         pace: Box::new(paced(common)),
     };
+    let mut attention = None;
     let driven = match &plan.pilot {
         Pilot::Ours => {
             let defaults = LaneKeeperParameters::default();
@@ -98,7 +106,11 @@ pub(super) fn drive(plan: &Plan<'_>, setting: &Setting, stage: &Stage) -> Result
         Pilot::Network(network) => {
             let speed = plan.speed.unwrap_or(NETWORK_SPEED);
             let mut driver = NetworkDriver::new((**network).clone(), speed).map_err(Failure::input)?;
-            watch.keep(&mut car, &mut driver, seconds, |_| ())
+            let driven = watch.keep(&mut car, &mut driver, seconds, |_| ());
+            if plan.attention.is_some() {
+                attention = Some(driver.looks_at(&car.image()?).map_err(Failure::run)?);
+            }
+            driven
         }
     };
     drop(car);
@@ -107,6 +119,7 @@ pub(super) fn drive(plan: &Plan<'_>, setting: &Setting, stage: &Stage) -> Result
         truth: watch.truth.robot(0)?,
         ending: driven.map_err(|error| Failure::from(error).to_string()),
         trail: watch.trail,
+        attention,
     })
 }
 

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 use roverlab::drive::traffic::{FreeDriveRules, FreeDriveScore};
 
-use crate::common::{CommonArgs, Failure, OF_ONE_RUN, Outcome, Report, millimetres, rounded};
+use crate::common::{CommonArgs, Failure, OF_ONE_RUN, Outcome, Report, millimetres, rounded, write_image};
 use crate::end_to_end::steering;
 pub(crate) use campaign::scores;
 pub(crate) use course::{Setting, course};
@@ -132,7 +132,7 @@ impl Args {
                 Pilot::Network(Box::new(steering(&self.common, "weights", self.weights.as_deref())?))
             }
         };
-        Ok(Plan { pilot, speed: self.speed, minutes: self.minutes, common: &self.common })
+        Ok(Plan { pilot, speed: self.speed, minutes: self.minutes, attention: None, common: &self.common })
     }
 }
 
@@ -174,7 +174,12 @@ pub(crate) fn one(plan: &Plan<'_>, setting: &Setting) -> Result<Report, Failure>
     common.check_picture()?;
     let stage = common.stage(&setting.scene()?, setting.options(common.noise))?;
     let drive = drive::drive(plan, setting, &stage)?;
-    let report = report(plan, setting, &drive);
+    let mut report = report(plan, setting, &drive);
+    if let (Some(file), Some(image)) = (plan.attention, &drive.attention) {
+        let failed = |error| Failure::run(format!("--attention {}: {error}", file.display()));
+        write_image(&image.clone().into(), file).map_err(failed)?;
+        report = report.field("attention", file.display().to_string());
+    }
     Ok(common.draw(report, "lane_keeping.svg", || drawing::picture(setting, &drive)))
 }
 

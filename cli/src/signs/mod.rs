@@ -30,6 +30,9 @@ at least a quarter of the picture, only its class is learned and told, and its b
 one is right if it has the class and at least half of what box and find cover together is in both. If boxes do not fit into
 their pictures, all pictures have been scaled since; boxes are then taken to have equal margins left and right, above and below.
 
+With --network, a network learns the classes too: from signs that are shown turned, slanted, darker, coarser and partly covered. What
+it has learned is kept in the folder FILE.training, from which the same command goes on after an interruption.
+
 Without a folder it learns from, and is tried on, pictures that it draws: six faces at 0.4 to 1.5 m, turned by up to 35 degrees, in
 30 to 150 % of the light, blurred by motion. Signs of less than 20 pixels may be found, but need not be.
 

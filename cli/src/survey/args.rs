@@ -5,7 +5,7 @@ use roverlab::geometry::units;
 use roverlab::world::World;
 
 use super::tour::OFF;
-use crate::common::{CampaignArgs, CommonArgs, OF_ONE_RUN};
+use crate::common::{CampaignArgs, CommonArgs, OF_ONE_RUN, parse_png};
 
 /// Command line of `survey`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -51,7 +51,7 @@ pub(crate) struct Args {
     pub(crate) altitude: Option<f64>,
 
     /// Write the map to a .png file, with .asc and .csv files beside it.
-    #[arg(long, value_name = "OUT.png", value_parser = parse_map)]
+    #[arg(long, value_name = "OUT.png", value_parser = parse_png)]
     pub(crate) map: Option<PathBuf>,
 
     #[command(flatten)]
@@ -100,10 +100,4 @@ fn parse_depth(text: &str) -> Result<f64, String> {
 fn parse_altitude(text: &str) -> Result<f64, String> {
     let altitude = text.trim().parse().ok().filter(|altitude: &f64| (200.0..=100_000.0).contains(altitude));
     altitude.map(units::from_mm).ok_or_else(|| "expected 200 to 100000 mm".into())
-}
-
-fn parse_map(text: &str) -> Result<PathBuf, String> {
-    let file = PathBuf::from(text);
-    let is_png = file.extension().is_some_and(|end| end.eq_ignore_ascii_case("png"));
-    if is_png { Ok(file) } else { Err("expected a name that ends in .png".into()) }
 }

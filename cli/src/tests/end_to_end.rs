@@ -13,6 +13,23 @@ fn a_network_keeps_the_lane_on_an_unseen_course() {
     assert_eq!(same.1["distance_m"], ended.1["distance_m"]);
 }
 
+/// On the road's lines, which are white.
+#[test]
+fn a_picture_shows_what_the_network_looks_at() {
+    let file = temporary("attention.png");
+    let ended = run("end_to_end", &["--course", "3", "--minutes", "0.05", "--attention", text(&file)]);
+    assert_outcome(&ended, "kept");
+    let image = image::open(&file).unwrap().into_rgb8();
+    let red = |y: u32| {
+        let row = (0..image.width()).map(|x| image.get_pixel(x, y).0);
+        row.filter(|[red, green, _]| i32::from(*red) - i32::from(*green) > 60).count()
+    };
+    assert_eq!((0..60).map(red).sum::<usize>(), 0, "it does not look at the sky");
+    assert!((60..220).map(red).sum::<usize>() > 200);
+    let (status, _, err) = run("end_to_end", &["--attention", "attention.txt"]);
+    assert!(status == 2 && err.contains(".png"), "{err}");
+}
+
 #[test]
 fn what_is_no_network_is_refused() {
     let file = temporary("none.safetensors");

@@ -62,12 +62,12 @@ fn mako_comes_to_a_side_at_a_small_angle_without_touching_it() {
 
 #[test]
 fn mako_goes_round_in_a_current() {
-    for (seed, current) in [("1", "100 0"), ("2", "0 -50")] {
+    for (seed, current) in [("1", "100 0"), ("2", "0 -100")] {
         let world =
             small_pool(&format!("current{seed}"), &format!("water_level 1900\ncurrent {current}\n"), 2000);
         let ended = run("pool_wall", &["--world", &world, "--seed", seed]);
         assert_outcome(&ended, "round");
-        assert!(ended.1["collisions"] == 0 && number(&ended.1, "rms_error_mm") < 100.0, "{}", ended.1);
+        assert!(ended.1["collisions"] == 0 && number(&ended.1, "rms_error_mm") < 60.0, "{}", ended.1);
     }
 }
 

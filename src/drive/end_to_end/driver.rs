@@ -2,7 +2,7 @@ use std::ops::ControlFlow;
 
 use image::RgbImage;
 
-use super::sight::{check_sight, see_road_into};
+use super::sight::{check_sight, redder, see_road_into};
 use crate::ParameterError;
 use crate::drive::lane_keeping::{LaneObservation, LaneOutcome};
 use crate::geometry::Twist;
@@ -63,6 +63,16 @@ impl NetworkDriver {
         }
         self.curvature = meant(results);
         Ok(self.curvature)
+    }
+
+    /// An image, redder where the network looks: at places that contributed to what its filters see.
+    ///
+    /// # Errors
+    ///
+    /// As of [`steer`](Self::steer).
+    pub fn looks_at(&mut self, image: &RgbImage) -> Result<RgbImage, ParameterError> {
+        self.steer(image)?;
+        Ok(redder(image, self.network.architecture().input(), &self.network.attention()))
     }
 }
 

@@ -55,6 +55,25 @@ pub fn see_road_into(image: &RgbImage, size: MapSize, values: &mut [f32]) -> Res
     Ok(())
 }
 
+/// An image, redder where a network looked at, by the [attention](crate::vision::network::Network::attention)
+/// of places of a size that [`see_road_into`] showed it.
+pub(super) fn redder(image: &RgbImage, size: MapSize, attention: &[f64]) -> RgbImage {
+    let (width, height) = (image.width() as usize, image.height() as usize);
+    let [top, bottom] = ROAD.map(|part| (part * height as f64) as usize);
+    let mut shown = image.clone();
+    for (x, y, pixel) in shown.enumerate_pixels_mut() {
+        let (x, y) = (x as usize, y as usize);
+        if (top..bottom).contains(&y) {
+            let row = (y - top) * size.height / (bottom - top);
+            let part = attention[row * size.width + x * size.width / width];
+            for (channel, full) in pixel.0.iter_mut().zip([255.0, 0.0, 0.0]) {
+                *channel = (f64::from(*channel) * (1.0 - part) + full * part) as u8;
+            }
+        }
+    }
+    shown
+}
+
 /// Fails for what no network can see of an image.
 pub(super) fn check_sight(size: MapSize) -> Result<(), ParameterError> {
     require("channels of an image", size.channels as f64, matches!(size.channels, 1 | 3), "1 or 3")?;
