@@ -89,8 +89,8 @@ impl Trainer {
 
 /// The options on which the result depends.
 fn facts(options: &TrainerOptions) -> String {
-    let TrainerOptions { loss, batch, decay, seed, threads: _ } = options;
-    format!("{loss:?}, batch {batch}, decay {decay}, seed {seed}")
+    let TrainerOptions { loss, batch, decay, hidden, seed, threads: _ } = options;
+    format!("{loss:?}, batch {batch}, decay {decay}, hidden {hidden}, seed {seed}")
 }
 
 #[allow(clippy::needless_pass_by_value, reason = "it maps errors")]

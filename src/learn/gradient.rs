@@ -16,18 +16,27 @@ pub enum Loss {
 /// Weights and constants of a layer, and their gradients alike.
 pub(super) type Numbers = Vec<(Vec<f32>, Vec<f32>)>;
 
+/// Some examples.
+pub(super) struct Part<'a> {
+    /// Inputs, one after the other.
+    pub(super) inputs: &'a [f32],
+    /// A result for each.
+    pub(super) targets: &'a [f32],
+    /// Factors of what the last layer sees; none if all is shown.
+    pub(super) shown: &'a [f32],
+}
+
 /// Sum of the losses of some examples, and its gradient.
 pub(super) fn gradient(
     architecture: &Architecture,
     weights: &Numbers,
-    inputs: &[f32],
-    targets: &[f32],
+    examples: &Part<'_>,
     loss: Loss,
 ) -> Result<(f64, Numbers)> {
     let device = &Device::Cpu;
     let variables = variables(architecture, weights, device)?;
-    let results = forward(architecture, &variables, inputs, targets.len())?;
-    let targets = Tensor::from_slice(targets, targets.len(), device)?;
+    let results = forward(architecture, &variables, examples)?;
+    let targets = Tensor::from_slice(examples.targets, examples.targets.len(), device)?;
     let sum = match loss {
         Loss::Squares => (results.squeeze(1)? - targets)?.sqr()?.sum_all()?,
         Loss::Classes => {
@@ -50,59 +59,60 @@ pub(super) fn gradient(
 /// The weights of layers as candle's variables: a row for each filter, in the order of rows, columns and
 /// channels.
 fn variables(architecture: &Architecture, weights: &Numbers, device: &Device) -> Result<Vec<(Var, Var)>> {
-    let layers = architecture.layers().iter().zip(architecture.sizes());
-    let shapes = layers.filter_map(|(&layer, from)| match layer {
-        Layer::Convolution { channels, size, .. } => Some(vec![channels, size, size, from.channels]),
-        Layer::Dense { outputs } => Some(vec![outputs, from.len()]),
-        Layer::Pool { .. } => None,
-    });
-    let variables = shapes.zip(weights).map(|(shape, (weights, constants))| {
+    let shapes = architecture.filters().flatten().zip(weights);
+    let variables = shapes.map(|(shape, (weights, constants))| {
         let constants = Tensor::from_slice(constants, constants.len(), device)?;
         Ok((Var::from_tensor(&Tensor::from_slice(weights, shape, device)?)?, Var::from_tensor(&constants)?))
     });
     variables.collect()
 }
 
-/// Results of a number of inputs.
-fn forward(
-    architecture: &Architecture,
-    variables: &[(Var, Var)],
-    inputs: &[f32],
-    count: usize,
-) -> Result<Tensor> {
-    let size = architecture.input();
-    let inputs = Tensor::from_slice(inputs, (count, size.height, size.width, size.channels), &Device::Cpu)?;
-    // Candle has channels before rows and columns.
-    let mut values = inputs.permute((0, 3, 1, 2))?.contiguous()?;
+/// Results of examples. Maps have a row for each place, of all inputs one after the other, so that
+/// a convolution is a product of matrices.
+fn forward(architecture: &Architecture, variables: &[(Var, Var)], examples: &Part<'_>) -> Result<Tensor> {
+    let count = examples.targets.len();
+    let mut values = Tensor::from_slice(examples.inputs, (count, architecture.input().len()), &Device::Cpu)?;
     let mut variables = variables.iter();
     let last = architecture.layers().len() - 1;
     for (index, &layer) in architecture.layers().iter().enumerate() {
-        let to = architecture.sizes()[index + 1];
+        let [from, to] = [architecture.sizes()[index], architecture.sizes()[index + 1]];
+        let places = count * to.height * to.width;
+        if index == last && !examples.shown.is_empty() {
+            values = (values.reshape((count, from.len()))?
+                * Tensor::from_slice(examples.shown, (count, from.len()), &Device::Cpu)?)?;
+        }
         if let Layer::Pool { size } = layer {
-            values = reached(&values, to, (size, size))?.max_pool2d(size)?;
+            let squares = seen(&values, count, (from, to), (size, size))?;
+            values = squares.reshape((places, size * size, from.channels))?.max(1)?;
             continue;
         }
         let Some((weights, constants)) = variables.next() else { break };
-        values = if let Layer::Convolution { size, stride, .. } = layer {
-            let values = reached(&values, to, (size, stride))?;
-            let weights = weights.permute((0, 3, 1, 2))?.contiguous()?;
-            let constants = constants.reshape((1, constants.elem_count(), 1, 1))?;
-            values.conv2d(&weights, 0, stride, 1, 1)?.broadcast_add(&constants)?
+        let columns = if let Layer::Convolution { size, stride, .. } = layer {
+            seen(&values, count, (from, to), (size, stride))?
+                .reshape((places, size * size * from.channels))?
         } else {
-            let flat =
-                if values.rank() == 4 { values.permute((0, 2, 3, 1))?.flatten_from(1)? } else { values };
-            flat.matmul(&weights.t()?)?.broadcast_add(constants)?
+            values.reshape((count, from.len()))?
         };
+        values = columns.matmul(&weights.t()?)?.broadcast_add(constants)?;
         if index < last {
             values = values.relu()?;
         }
     }
-    if values.rank() == 4 { values.permute((0, 2, 3, 1))?.flatten_from(1) } else { Ok(values) }
+    values.reshape((count, architecture.outputs()))
 }
 
-/// The rows and columns that filters of a size reach by their stride: of others candle wants as many below as
-/// to the right.
-fn reached(values: &Tensor, to: MapSize, (size, stride): (usize, usize)) -> Result<Tensor> {
-    let [height, width] = [to.height, to.width].map(|places| (places - 1) * stride + size);
-    values.narrow(2, 0, height)?.narrow(3, 0, width)?.contiguous()
+/// What filters of a size see at each place to which their stride brings them: rows, columns, channels.
+fn seen(
+    values: &Tensor,
+    count: usize,
+    (from, to): (MapSize, MapSize),
+    (size, stride): (usize, usize),
+) -> Result<Tensor> {
+    let square = |y: usize, x: usize| {
+        (0..size * size)
+            .map(move |at| ((y * stride + at / size) * from.width + x * stride + at % size) as u32)
+    };
+    let places = (0..to.height).flat_map(|y| (0..to.width).flat_map(move |x| square(y, x)));
+    let places = Tensor::from_iter(places, &Device::Cpu)?;
+    values.reshape((count, from.height * from.width, from.channels))?.index_select(&places, 1)
 }

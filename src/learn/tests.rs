@@ -75,14 +75,14 @@ fn the_loss_is_that_of_the_network() {
 #[test]
 fn threads_and_interruptions_change_nothing() {
     let examples = Columns { classes: true };
+    let options = |threads| TrainerOptions { hidden: 0.2, ..options(threads, Loss::Classes) };
     let weights = |threads: usize, interrupted: bool| {
-        let mut trainer = Trainer::new(architecture(8), options(threads, Loss::Classes)).unwrap();
+        let mut trainer = Trainer::new(architecture(8), options(threads)).unwrap();
         for _ in 0..4 {
             trainer.epoch(&examples, 0.01).unwrap();
             if interrupted {
                 let bytes = trainer.to_checkpoint().unwrap();
-                trainer =
-                    Trainer::from_checkpoint(&bytes, architecture(8), options(1, Loss::Classes)).unwrap();
+                trainer = Trainer::from_checkpoint(&bytes, architecture(8), options(1)).unwrap();
             }
         }
         trainer.network().weights()
@@ -111,7 +111,13 @@ impl Examples for Bad {
 fn what_cannot_be_learned_is_told_and_changes_nothing() {
     assert!(Trainer::new(architecture(2), options(1, Loss::Squares)).is_err());
     assert!(Trainer::new(architecture(1), options(1, Loss::Classes)).is_err());
-    assert!(Trainer::new(architecture(1), TrainerOptions { batch: 0, ..options(1, Loss::Squares) }).is_err());
+    for bad in [
+        TrainerOptions { batch: 0, ..options(1, Loss::Squares) },
+        TrainerOptions { hidden: 1.0, ..options(1, Loss::Squares) },
+        TrainerOptions { hidden: f64::NAN, ..options(1, Loss::Squares) },
+    ] {
+        assert!(Trainer::new(architecture(1), bad).is_err());
+    }
     for (bad, loss, results) in
         [(f32::NAN, Loss::Squares, 1), (8.0, Loss::Classes, 8), (-1.0, Loss::Classes, 8)]
     {

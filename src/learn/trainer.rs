@@ -1,6 +1,6 @@
 use std::num::NonZero;
 
-use super::gradient::{Loss, Numbers, gradient};
+use super::gradient::{Loss, Numbers, Part, gradient};
 use crate::ParameterError;
 use crate::parameter::{debug_as_sentence, require, require_not_negative, require_positive};
 use crate::random::Stream;
@@ -29,6 +29,9 @@ pub struct TrainerOptions {
     pub batch: usize,
     /// Part of the weights, times the rate, that each step takes off.
     pub decay: f64,
+    /// Part of what the last layer sees that is hidden, at random for each example, so that it does not learn
+    /// to rely on little (dropout, Srivastava et al. 2014).
+    pub hidden: f64,
     /// Seed of the first weights, of the order of the examples, and of their variation.
     pub seed: u64,
     /// Number of threads for the parts of a batch, at most four. It does not change the result. Candle has
@@ -37,9 +40,16 @@ pub struct TrainerOptions {
 }
 
 impl Default for TrainerOptions {
-    /// Squares, 32 examples between two steps, a decay of 0.01, seed 1, and one thread.
+    /// Squares, 32 examples between two steps, a decay of 0.01, nothing hidden, seed 1, and one thread.
     fn default() -> Self {
-        Self { loss: Loss::Squares, batch: 32, decay: 0.01, seed: 1, threads: NonZero::<usize>::MIN }
+        Self {
+            loss: Loss::Squares,
+            batch: 32,
+            decay: 0.01,
+            hidden: 0.0,
+            seed: 1,
+            threads: NonZero::<usize>::MIN,
+        }
     }
 }
 
@@ -99,6 +109,7 @@ impl Trainer {
         require("number of results", results as f64, fits, "1 for squares, more for classes")?;
         require("batch", options.batch as f64, (1..=10_000).contains(&options.batch), "1 to 10000")?;
         require_not_negative("decay", options.decay)?;
+        require("hidden", options.hidden, (0.0..1.0).contains(&options.hidden), "0 to less than 1")?;
         let mut random = Stream::new(options.seed).child("weights", 0);
         let mut layer = |(filters, taps): (usize, usize)| {
             let spread = (2.0 / taps as f64).sqrt();
@@ -184,7 +195,9 @@ impl Trainer {
                 })
                 .collect();
             self.check(&targets)?;
-            Ok(gradient(&self.architecture, &self.weights, &inputs, &targets, self.options.loss)?)
+            let shown = self.shown(part, stream);
+            let examples = Part { inputs: &inputs, targets: &targets, shown: &shown };
+            Ok(gradient(&self.architecture, &self.weights, &examples, self.options.loss)?)
         };
         let mut results: Vec<Option<Result<_, TrainingError>>> = parts.iter().map(|_| None).collect();
         std::thread::scope(|scope| {
@@ -207,6 +220,19 @@ impl Trainer {
             }
         }
         Ok(sum)
+    }
+
+    /// Factors of what the last layer sees of examples: 0 for what is hidden, and for the rest what keeps the
+    /// sum as it is. None if nothing is hidden.
+    fn shown(&self, part: &[usize], stream: &Stream) -> Vec<f32> {
+        let hidden = self.options.hidden;
+        let width = self.architecture.sizes()[self.architecture.layers().len() - 1].len();
+        let factors = |&index: &usize| {
+            let mut random = stream.child("hidden", index as u64);
+            let factor = move || if random.uniform() < hidden { 0.0 } else { (1.0 / (1.0 - hidden)) as f32 };
+            std::iter::repeat_with(factor).take(width)
+        };
+        if hidden > 0.0 { part.iter().flat_map(factors).collect() } else { Vec::new() }
     }
 
     /// Fails for results that no network can have.

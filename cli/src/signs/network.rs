@@ -16,6 +16,8 @@ const LAYERS: &str = "32x32x3 conv24/5/1 pool2 conv48/3/1 pool2 conv96/3/1 dense
 const BATCH: usize = 64;
 /// Part of the weights, times the rate, that each step takes off.
 const DECAY: f64 = 0.05;
+/// Part of what the last layer sees that is hidden from it.
+const HIDDEN: f64 = 0.5;
 /// Rate of the first epoch; it falls evenly to almost nothing.
 const RATE: f64 = 1e-3;
 
@@ -40,6 +42,7 @@ pub(super) fn learned(
         loss: Loss::Classes,
         batch: BATCH,
         decay: DECAY,
+        hidden: HIDDEN,
         seed: args.plain.seed,
         threads: NonZero::new(threads(args.threads)).unwrap_or(NonZero::<usize>::MIN),
     };

@@ -101,6 +101,7 @@ const EXCEPTIONS: &[(&str, &str)] = &[
     ("scan::plot_scan", "draws on any display"),
     ("vision::ColourFinder::find", BORROWS),
     ("vision::View", "borrows pixels; the sweep gives views to all that takes them"),
+    ("vision::signs::SignPatches", "made by a trainer, of pictures that it was given"),
     ("vision::signs::SignTrainer", "made of any names; `tests` beside it give it nonsense"),
     ("vision::teach_hue", BORROWS),
     ("vision::lane_markings::LaneEstimate", "a result"),
