@@ -1,5 +1,7 @@
 use std::num::NonZero;
 
+use rayon::prelude::*;
+
 use super::gradient::{Loss, Numbers, Part, gradient};
 use crate::ParameterError;
 use crate::parameter::{debug_as_sentence, require, require_not_negative, require_positive};
@@ -34,8 +36,7 @@ pub struct TrainerOptions {
     pub hidden: f64,
     /// Seed of the first weights, of the order of the examples, and of their variation.
     pub seed: u64,
-    /// Number of threads for the parts of a batch, at most four. It does not change the result. Candle has
-    /// threads of its own besides.
+    /// Number of threads. It does not change the result.
     pub threads: NonZero<usize>,
 }
 
@@ -65,6 +66,9 @@ pub enum TrainingError {
         "training: found a loss or a weight of {0}; expected a finite number: the rate is too high, or an example is none"
     )]
     Diverged(f64),
+    /// Threads could not be started.
+    #[error("training: threads: {0}")]
+    Threads(String),
     /// A file that holds no state of a training.
     #[error("training: {0}")]
     File(String),
@@ -154,11 +158,14 @@ impl Trainer {
 
     fn pass(&mut self, examples: &(impl Examples + ?Sized), rate: f64) -> Result<f64, TrainingError> {
         let stream = Stream::new(self.options.seed).child("epoch", self.epochs);
+        // What candle does in parallel is done by the same threads.
+        let threads = rayon::ThreadPoolBuilder::new().num_threads(self.options.threads.get());
+        let threads = threads.build().map_err(|error| TrainingError::Threads(error.to_string()))?;
         let mut order: Vec<usize> = (0..examples.count()).collect();
         stream.child("order", 0).shuffle(&mut order);
         let mut sum = 0.0;
         for batch in order.chunks(self.options.batch) {
-            let (loss, gradient) = self.batch(examples, batch, &stream)?;
+            let (loss, gradient) = threads.install(|| self.batch(examples, batch, &stream))?;
             let mean = loss / batch.len() as f64;
             if !mean.is_finite() {
                 return Err(TrainingError::Diverged(mean));
@@ -183,7 +190,6 @@ impl Trainer {
         stream: &Stream,
     ) -> Result<(f64, Numbers), TrainingError> {
         let parts: Vec<&[usize]> = batch.chunks(batch.len().div_ceil(PARTS)).collect();
-        let threads = self.options.threads.get().min(parts.len());
         let part = |part: &&[usize]| {
             let size = self.architecture.input().len();
             let mut inputs = vec![0.0; size * part.len()];
@@ -199,21 +205,9 @@ impl Trainer {
             let examples = Part { inputs: &inputs, targets: &targets, shown: &shown };
             Ok(gradient(&self.architecture, &self.weights, &examples, self.options.loss)?)
         };
-        let mut results: Vec<Option<Result<_, TrainingError>>> = parts.iter().map(|_| None).collect();
-        std::thread::scope(|scope| {
-            let share = parts.len().div_ceil(threads);
-            for (parts, results) in parts.chunks(share).zip(results.chunks_mut(share)) {
-                let work = move || {
-                    for (given, result) in parts.iter().zip(results) {
-                        *result = Some(part(given));
-                    }
-                };
-                if threads == 1 { work() } else { drop(scope.spawn(work)) }
-            }
-        });
+        let results: Vec<_> = parts.par_iter().map(part).collect::<Result<_, TrainingError>>()?;
         let mut sum = (0.0, zeros(&self.weights));
-        for result in results.into_iter().flatten() {
-            let (loss, gradient) = result?;
+        for (loss, gradient) in results {
             sum.0 += loss;
             for (sum, gradient) in numbers_mut(&mut sum.1).zip(numbers(&gradient)) {
                 *sum += gradient;
