@@ -157,7 +157,7 @@ fn a_network_has_the_last_word_on_the_class() {
 /// A sign in the shade before a bright sky looks as in the light.
 #[test]
 fn light_is_that_of_the_middle() {
-    let sign = |x: usize, y: usize| (x / 8 + y / 8) % 2 == 0;
+    let sign = |x: usize, y: usize| (x / 8 + y / 8).is_multiple_of(2);
     let shown = |bright: u8, dark: u8, sky: u8| {
         let pixels: Vec<u8> = (0..64 * 64)
             .flat_map(|i| {
