@@ -22,17 +22,18 @@ impl TrainingStore {
         if is_new {
             fs::create_dir(&this.folder).map_err(|error| this.failure(&error))?;
         }
-        let folder = this.folder.display();
+        let (folder, line) = (this.folder.display(), format!("{facts}\n"));
         match this.read(OPTIONS)? {
-            None if is_new => this.write(OPTIONS, facts.as_bytes())?,
+            None if is_new => this.write(OPTIONS, line.as_bytes())?,
             None => {
                 return Err(Failure::input(format!(
                     "{folder}: found a folder of something else; expected none"
                 )));
             }
-            Some(found) if found == facts.as_bytes() => {}
+            Some(found) if found == line.as_bytes() => {}
             Some(found) => {
                 let found = String::from_utf8_lossy(&found).into_owned();
+                let found = found.trim_end();
                 return Err(Failure::input(format!(
                     "{folder}: found what was learned with {found}; expected {facts}, or no such folder"
                 )));
