@@ -36,7 +36,7 @@ pub struct TrainerOptions {
     pub hidden: f64,
     /// Seed of the first weights, of the order of the examples, and of their variation.
     pub seed: u64,
-    /// Number of threads. It does not change the result.
+    /// Number of threads, of which at most four are used. It does not change the result.
     pub threads: NonZero<usize>,
 }
 
@@ -159,7 +159,7 @@ impl Trainer {
     fn pass(&mut self, examples: &(impl Examples + ?Sized), rate: f64) -> Result<f64, TrainingError> {
         let stream = Stream::new(self.options.seed).child("epoch", self.epochs);
         // What candle does in parallel is done by the same threads.
-        let threads = rayon::ThreadPoolBuilder::new().num_threads(self.options.threads.get());
+        let threads = rayon::ThreadPoolBuilder::new().num_threads(self.options.threads.get().min(PARTS));
         let threads = threads.build().map_err(|error| TrainingError::Threads(error.to_string()))?;
         let mut order: Vec<usize> = (0..examples.count()).collect();
         stream.child("order", 0).shuffle(&mut order);

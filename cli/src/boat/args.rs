@@ -10,7 +10,7 @@ use crate::common::{CampaignArgs, CommonArgs, OF_ONE_RUN};
     after_help = "\
 Without --world, the raft is on a lake of 40 x 30 m with islands; --seed draws these, a wind of up to 4 m/s, a current of
 up to 0.2 m/s, waves of up to 0.15 m, and the course if --course does not. A world needs water: a line `water_level MM`. The raft
-has a Doppler log and an inertial unit, and knows its start.
+has a Doppler log and a compass, and knows its start.
 
 With --campaign, 200 lakes with a course each.
 

@@ -9,7 +9,7 @@ use super::lake::{Lake, lake, raft};
 use super::voyage::{Voyage, sail};
 use crate::common::{Failure, Outcome, Report, millimetres, point_in_mm};
 use crate::driving::{Conditions, paced};
-use crate::water::afloat;
+use crate::water::{afloat, ground};
 
 /// Seconds for a metre of the course, and besides.
 const PACE: f64 = 8.0;
@@ -42,6 +42,14 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         return Err(Failure::input(format!(
             "--course: found {x},{y}, outside of the world; expected places in it"
         )));
+    }
+    let level = scene.world.water_level.unwrap_or(f64::INFINITY);
+    let is_ashore = |point: &Point| {
+        ground(&scene.world).and_then(|ground| ground.height(*point)).is_some_and(|height| height >= level)
+    };
+    if let Some(&ashore) = course.iter().find(|point| is_ashore(point)) {
+        let [x, y] = point_in_mm(ashore);
+        return Err(Failure::input(format!("--course: found {x},{y}, ashore; expected places in the water")));
     }
     let conditions = Conditions::new(common, limit(&scene, &course))?;
     let voyage = sail(&scene, &course, &conditions, paced(common))?;

@@ -1,4 +1,5 @@
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::Failure;
@@ -18,10 +19,8 @@ impl TrainingStore {
         let mut name = out.file_name().unwrap_or_default().to_owned();
         name.push(".training");
         let this = Self { folder: out.with_file_name(name) };
-        let is_new = !this.folder.exists();
-        if is_new {
-            fs::create_dir(&this.folder).map_err(|error| this.failure(&error))?;
-        }
+        fs::create_dir_all(&this.folder).map_err(|error| this.failure(&error))?;
+        let is_new = fs::read_dir(&this.folder).map_err(|error| this.failure(&error))?.next().is_none();
         let (folder, line) = (this.folder.display(), format!("{facts}\n"));
         match this.read(OPTIONS)? {
             None if is_new => this.write(OPTIONS, line.as_bytes())?,
@@ -71,16 +70,20 @@ impl TrainingStore {
 
     /// Removes what was kept, that of these names too, and the folder if nothing else is in it.
     pub(crate) fn close(self, names: impl Iterator<Item = String>) -> Result<(), Failure> {
+        let unless = |allowed: ErrorKind, done: std::io::Result<()>| match done {
+            Err(error) if error.kind() != allowed => Err(self.failure(&error)),
+            _ => Ok(()),
+        };
         for name in names.chain([STATE, OPTIONS].map(String::from)) {
-            fs::remove_file(self.folder.join(name)).map_err(|error| self.failure(&error))?;
+            unless(ErrorKind::NotFound, fs::remove_file(self.folder.join(name)))?;
         }
-        fs::remove_dir(&self.folder).map_err(|error| self.failure(&error))
+        unless(ErrorKind::DirectoryNotEmpty, fs::remove_dir(&self.folder))
     }
 
     fn read(&self, name: &str) -> Result<Option<Vec<u8>>, Failure> {
         match fs::read(self.folder.join(name)) {
             Ok(bytes) => Ok(Some(bytes)),
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
             Err(error) => Err(self.failure(&error)),
         }
     }

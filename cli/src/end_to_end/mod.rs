@@ -52,7 +52,7 @@ pub(crate) struct Args {
     pub(crate) lessons: u64,
 
     /// Rounds; from the second one on, the network drives.
-    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u64).range(1..=20), allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u64).range(1..=MOST_ROUNDS), allow_hyphen_values = true)]
     pub(crate) rounds: u64,
 
     /// How often each round looks at all examples.
@@ -114,6 +114,8 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("train", &["attention", "course", "minutes", "speed", "light", "time_limit"]),
 ]);
 
+/// Most rounds of a training.
+const MOST_ROUNDS: u64 = 20;
 /// The built-in network.
 const SMALL: &str = "32x80x1 conv12/5/2 conv24/5/2 conv32/3/1 dense64 dense1";
 /// Its weights: `roverlab end-to-end --train --out cli/nets/steering.safetensors`.

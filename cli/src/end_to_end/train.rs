@@ -15,7 +15,7 @@ use roverlab::vision::network::Network;
 use roverlab::world::RobotSpec;
 use serde_json::{Value, json};
 
-use super::Args;
+use super::{Args, MOST_ROUNDS};
 use crate::common::{
     Failure, Outcome, Progress, Report, Stopwatch, TrainingStore, check_writable, rounded, share_out, threads,
 };
@@ -82,7 +82,7 @@ pub(super) fn train(args: &Args, out: &Path) -> Result<Report, Failure> {
         rows.push(row.json());
     }
     fs::write(out, &bytes).map_err(|error| Failure::run(format!("--out {}: {error}", out.display())))?;
-    store.close((0..args.rounds).map(file_of))?;
+    store.close((0..MOST_ROUNDS).map(file_of))?;
     Ok(Report::new(Outcome::verdict("learned"))
         .field("architecture", args.architecture.to_string())
         .field("examples", examples.len())

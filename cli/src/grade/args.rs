@@ -13,7 +13,7 @@ A program is a C, C++ or Python file or an executable for RoBIOS, or a command o
 and real time, memory and file size. After two runs that exceed the real time, a program is not run again. The programs
 run with the user's rights: for strangers' programs use an account or a container of its own as well.
 
-The rubric is a TOML file; docs/grading.md explains it, and the folder cli/rubrics has ten. --html writes a page with
+The rubric is a TOML file; docs/grading.md explains it, and the folder cli/rubrics has eleven. --html writes a page with
 the table and pictures. The runner `robios` is expected beside this program.
 
 JSON fields:

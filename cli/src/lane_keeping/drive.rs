@@ -107,7 +107,7 @@ pub(super) fn drive(plan: &Plan<'_>, setting: &Setting, stage: &Stage) -> Result
             let speed = plan.speed.unwrap_or(NETWORK_SPEED);
             let mut driver = NetworkDriver::new((**network).clone(), speed).map_err(Failure::input)?;
             let driven = watch.keep(&mut car, &mut driver, seconds, |_| ());
-            if plan.attention.is_some() {
+            if plan.attention.is_some() && driven.is_ok() {
                 attention = Some(driver.looks_at(&car.image()?).map_err(Failure::run)?);
             }
             driven

@@ -13,7 +13,6 @@ use std::num::NonZero;
 use std::path::{Path, PathBuf};
 
 use roverlab::vision::RgbView;
-use roverlab::vision::network::Network;
 use roverlab::vision::signs::{Area, SignFinder, SignModel, SignTrainer};
 
 use crate::common::{Failure, Outcome, PlainArgs, Report, Stopwatch, check_writable};
@@ -136,15 +135,21 @@ fn train(args: &Args, from: &Path, out: &Path) -> Result<Report, Failure> {
     check_writable("--out", out)?;
     let folder = folder::read(from, None)?;
     let trainer = trainer(&folder.names, &folder.pictures)?;
-    let mut model = learned(&trainer, folder.finds(), args.plain.seed)?;
-    if args.network {
-        model = model.with_network(network(args, out, &trainer, folder.names.len())?)?;
-    }
-    let bytes = model.to_safetensors().map_err(Failure::run)?;
-    fs::write(out, &bytes).map_err(|error| Failure::run(format!("--out {}: {error}", out.display())))?;
+    let model = learned(&trainer, folder.finds(), args.plain.seed)?;
+    let finds = model.finds();
+    let write = |model: SignModel| {
+        let bytes = model.to_safetensors().map_err(Failure::run)?;
+        fs::write(out, &bytes).map_err(|error| Failure::run(format!("--out {}: {error}", out.display())))?;
+        Ok(bytes)
+    };
+    let bytes = if args.network {
+        network(args, out, (&trainer, &folder.names), |network| write(model.with_network(network)?))?
+    } else {
+        write(model)?
+    };
     Ok(Report::new(Outcome::verdict("learned"))
         .field("pictures", folder.pictures.len())
-        .field("finds", model.finds())
+        .field("finds", finds)
         .field("weights_hash", format!("{:016x}", hash(&bytes)))
         .field("weights", out.display().to_string())
         .timing("seconds", watch.seconds()))
@@ -158,12 +163,15 @@ pub(crate) fn hash(bytes: &[u8]) -> u64 {
 }
 
 #[cfg(feature = "learn")]
-fn network(args: &Args, out: &Path, signs: &SignTrainer, classes: usize) -> Result<Network, Failure> {
-    network::learned(args, out, signs, classes)
-}
+use network::learned as network;
 
 #[cfg(not(feature = "learn"))]
-fn network(_: &Args, _: &Path, _: &SignTrainer, _: usize) -> Result<Network, Failure> {
+fn network<T>(
+    _: &Args,
+    _: &Path,
+    _: (&SignTrainer, &[String]),
+    _: impl FnOnce(roverlab::vision::network::Network) -> Result<T, Failure>,
+) -> Result<T, Failure> {
     Err(Failure::input("--network: this program was built without training; expected the feature `learn`"))
 }
 

@@ -21,23 +21,26 @@ const HIDDEN: f64 = 0.5;
 /// Rate of the first epoch; it falls evenly to almost nothing.
 const RATE: f64 = 1e-3;
 
-/// Learns the classes of a trainer's signs. What is learned so far is kept beside the file to be written.
-pub(super) fn learned(
+/// Learns the classes of a trainer's signs, and has the network written. What is learned so far is kept beside
+/// the file until then.
+pub(super) fn learned<T>(
     args: &Args,
     out: &Path,
-    signs: &SignTrainer,
-    classes: usize,
-) -> Result<Network, Failure> {
+    (signs, names): (&SignTrainer, &[String]),
+    write: impl FnOnce(Network) -> Result<T, Failure>,
+) -> Result<T, Failure> {
     let patches = signs.patches()?;
+    let labels = patches.classes().iter().map(|&class| names[class].as_str()).collect::<Vec<_>>().join("\n");
     let facts = format!(
-        "{} signs of hash {:016x}, {} epochs, seed {}",
+        "{} signs of hash {:016x}, classes of hash {:016x}, {} epochs, seed {}",
         patches.len(),
         hash(patches.bytes()),
+        hash(labels.as_bytes()),
         args.epochs,
         args.plain.seed
     );
     let store = TrainingStore::open(out, &facts)?;
-    let architecture = format!("{LAYERS} dense{classes}").parse()?;
+    let architecture = format!("{LAYERS} dense{}", names.len()).parse()?;
     let options = TrainerOptions {
         loss: Loss::Classes,
         batch: BATCH,
@@ -58,6 +61,7 @@ pub(super) fn learned(
         loss = Some(trainer.epoch(&patches, RATE * (1.0 - part)).map_err(Failure::run)?);
         store.keep(&trainer.to_checkpoint().map_err(Failure::run)?)?;
     }
+    let written = write(trainer.network())?;
     store.close(std::iter::empty())?;
-    Ok(trainer.network())
+    Ok(written)
 }

@@ -63,8 +63,10 @@ fn equal_seeds_train_equal_weights_after_an_interruption_too() {
     // What an earlier run that failed has left.
     let _ = fs::remove_dir_all(&kept);
     fs::create_dir(&kept).unwrap();
+    fs::write(kept.join("diary.txt"), "of somebody").unwrap();
     let ((status, _, err), _) = train("again.safetensors", "2", "1");
     assert!(status == 2 && err.contains("something else"), "{err}");
+    fs::remove_file(kept.join("diary.txt")).unwrap();
     let options = "8x20x1 conv4/5/2 dense10; lessons 1, epochs 2, disturbance 1.5, seed 1, noise 1\n";
     fs::write(kept.join("options.txt"), options).unwrap();
     let obstacle = kept.join("round-1.safetensors.new");

@@ -63,7 +63,7 @@ fn a_network_learns_the_classes_of_a_folder() {
     let ended = run("signs", &["--evaluate", folder, "--weights", &weights("one")]);
     assert_eq!(ended.1["accuracy"], 1.0, "{}", ended.1);
     let kept = format!("{}.training", weights("third"));
-    fs::create_dir(&kept).unwrap();
+    fs::create_dir_all(&kept).unwrap();
     fs::write(format!("{kept}/options.txt"), "2 signs of others").unwrap();
     let (status, _, err) = train("third", &[]);
     assert!(status == 2 && err.contains("2 signs of others"), "{err}");

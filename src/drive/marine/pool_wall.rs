@@ -301,7 +301,8 @@ impl PoolWall {
         self.through += self.helm.craft().response(&own, &push).linear.xy() * seconds;
         let drift = over_ground(&pose, velocity - self.through);
         self.current += (drift - self.current) * (seconds / LEARNING).min(1.0);
-        math::atan2(self.current.dot(&direction(pose.heading + 0.5 * PI)), self.parameters.speed)
+        let aside = self.current.dot(&direction(pose.heading + 0.5 * PI));
+        math::atan2(aside, self.parameters.speed).clamp(-SLIP, SLIP)
     }
 
     fn thrust(&mut self, seen: &PoolWallObservation) -> Result<Thrust> {

@@ -5,7 +5,7 @@ impl Network {
     /// How much each place of the input has contributed to what the layers of convolutions saw in the last
     /// run, from 0 to 1, in the order of rows and columns (Bojarski et al. 2017, *Explaining how a deep
     /// neural network trained with end-to-end learning steers a car*): from the last such layer back to the
-    /// first, the mean of each layer's values times what the layer after it looked at.
+    /// first, the mean of each layer's values times what the layer after it looked at. 0 without such layers.
     pub fn attention(&self) -> Vec<f64> {
         let sizes = self.architecture().sizes();
         let seeing = self.architecture().layers().iter().map_while(|layer| match *layer {
@@ -14,6 +14,9 @@ impl Network {
             Layer::Dense { .. } => None,
         });
         let seeing: Vec<(usize, usize)> = seeing.collect();
+        if seeing.is_empty() {
+            return vec![0.0; sizes[0].height * sizes[0].width];
+        }
         let mut looked = mean(self.map(seeing.len()), sizes[seeing.len()]);
         for (layer, &filter) in seeing.iter().enumerate().rev() {
             looked = spread(&looked, sizes[layer + 1], sizes[layer], filter);
@@ -39,6 +42,7 @@ fn mean(map: &[f32], size: MapSize) -> Vec<f64> {
     let places = map.chunks_exact(size.channels);
     places
         .map(|place| place.iter().map(|&value| f64::from(value)).sum::<f64>() / size.channels as f64)
+        .map(|mean| mean.max(0.0))
         .collect()
 }
 

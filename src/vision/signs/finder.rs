@@ -4,6 +4,7 @@ use super::detector::{Candidate, Detector, best_around, gray_of};
 use super::model::SignModel;
 use super::patch::SignPatch;
 use crate::ParameterError;
+use crate::parameter::require_finite;
 use crate::vision::{GrayView, ImageError, RgbView};
 
 /// A sign in an image.
@@ -13,7 +14,7 @@ pub struct FoundSign {
     pub class: usize,
     /// Where it is.
     pub area: Area,
-    /// By how much its class fits better than none; positive.
+    /// By how much histograms of gradients take it for a sign rather than none; positive.
     pub score: f32,
 }
 
@@ -111,7 +112,11 @@ impl SignFinder {
 
     fn by_network(&mut self, image: RgbView<'_>, area: Area) -> Result<Option<(usize, f32)>, ImageError> {
         let Some(network) = &mut self.model.network else { return Ok(None) };
-        Ok(Some(best(network.run(self.patch.read(image, area)?)?)))
+        let results = network.run(self.patch.read(image, area)?)?;
+        for result in results {
+            require_finite("result of the network", f64::from(*result))?;
+        }
+        Ok(Some(best(results)))
     }
 
     fn by_gradients(&mut self, image: RgbView<'_>, area: Area) -> Result<(usize, f32), ImageError> {

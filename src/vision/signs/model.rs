@@ -83,8 +83,8 @@ mod file {
 
     impl SignModel {
         /// The model as a file `.safetensors`: 32-bit tensors `signs`, `windows.any` and `windows.each`, a
-        /// row for each class, whose last number is the constant; and those of the network, if there is one, as
-        /// [`Network::to_safetensors`] writes them.
+        /// row for each class, whose last number is the constant; and if there is a network, its `architecture` as
+        /// text, and its tensors as [`Network::to_safetensors`] writes them.
         ///
         /// # Errors
         ///
@@ -104,17 +104,19 @@ mod file {
                     (name.to_owned(), Dtype::F32, shape, bytes(classifier))
                 })
                 .collect();
-            let mut about = vec![(NAMES.to_owned(), self.names.join("\n"))];
             if let Some(network) = &self.network {
+                let architecture = network.architecture().to_string().into_bytes();
+                tensors.push((ARCHITECTURE.to_owned(), Dtype::U8, vec![architecture.len()], architecture));
                 tensors.extend(network.to_tensors());
-                about.push((ARCHITECTURE.to_owned(), network.architecture().to_string()));
             }
+            // A second entry would stand before or after it by chance.
+            let about = std::iter::once((NAMES.to_owned(), self.names.join("\n"))).collect();
             let view = |(name, kind, shape, bytes)| Ok((name, TensorView::new(kind, shape, bytes)?));
             let views = tensors.iter().map(|(name, kind, shape, bytes)| {
                 view((name.as_str(), *kind, shape.clone(), bytes.as_slice()))
             });
             let views: Vec<_> = views.collect::<Result<_, _>>().map_err(WeightsError::of)?;
-            safetensors::serialize(views, Some(about.into_iter().collect())).map_err(WeightsError::of)
+            safetensors::serialize(views, Some(about)).map_err(WeightsError::of)
         }
 
         /// Reads what [`to_safetensors`](Self::to_safetensors) wrote.
@@ -124,9 +126,9 @@ mod file {
         /// If the file is none of the format, or its weights are not those of a model.
         pub fn from_safetensors(bytes: &[u8]) -> Result<Self, WeightsError> {
             let (_, about) = SafeTensors::read_metadata(bytes).map_err(WeightsError::of)?;
-            let said = |key: &str| about.metadata().as_ref().and_then(|about| about.get(key));
+            let names = about.metadata().as_ref().and_then(|about| about.get(NAMES));
             let names =
-                said(NAMES).ok_or_else(|| WeightsError::File(format!("found no {NAMES} in the metadata")))?;
+                names.ok_or_else(|| WeightsError::File(format!("found no {NAMES} in the metadata")))?;
             let file = SafeTensors::deserialize(bytes).map_err(WeightsError::of)?;
             let windows = file.names().iter().any(|name| name.starts_with("windows."));
             let windows = windows.then(|| {
@@ -137,12 +139,9 @@ mod file {
             });
             let names = names.split('\n').map(String::from).collect();
             let model = Self::new(names, read(&file, "signs")?, windows.transpose()?)?;
-            match said(ARCHITECTURE) {
-                Some(architecture) => {
-                    Ok(model.with_network(Network::from_tensors(architecture.parse()?, &file)?)?)
-                }
-                None => Ok(model),
-            }
+            let Ok(architecture) = file.tensor(ARCHITECTURE) else { return Ok(model) };
+            let architecture = String::from_utf8_lossy(architecture.data()).parse()?;
+            Ok(model.with_network(Network::from_tensors(architecture, &file)?)?)
         }
     }
 

@@ -132,6 +132,11 @@ impl SignPatches {
         &self.bytes
     }
 
+    /// Class of each sign.
+    pub fn classes(&self) -> &[usize] {
+        &self.classes
+    }
+
     /// Shows some sign in some way. Returns its class.
     ///
     /// # Panics
