@@ -21,8 +21,8 @@ const HIDDEN: f64 = 0.5;
 /// Rate of the first epoch; it falls evenly to almost nothing.
 const RATE: f64 = 1e-3;
 
-/// Learns the classes of a trainer's signs, and has the network written. What is learned so far is kept beside
-/// the file until then.
+/// Learns the classes of a trainer's signs, and has the network written. What is learned so far is kept
+/// beside the file until then.
 pub(super) fn learned<T>(
     args: &Args,
     out: &Path,

@@ -1,8 +1,8 @@
 //! Traffic signs in images (book, section 13.5): where they are, and of which class.
 //!
 //! [`SignTrainer`] learns from pictures in which signs are marked, [`SignFinder`] finds signs in others. Both
-//! describe what they see by histograms of oriented gradients, as the book does; the classifiers are linear. A
-//! [`network`](super::network) that has learned from [`SignPatches`] tells classes better.
+//! describe what they see by histograms of oriented gradients, as the book does; the classifiers are linear.
+//! A [`network`](super::network) that has learned from [`SignPatches`] tells classes better.
 
 mod area;
 mod descriptor;

@@ -83,8 +83,8 @@ mod file {
 
     impl SignModel {
         /// The model as a file `.safetensors`: 32-bit tensors `signs`, `windows.any` and `windows.each`, a
-        /// row for each class, whose last number is the constant; and if there is a network, its `architecture` as
-        /// text, and its tensors as [`Network::to_safetensors`] writes them.
+        /// row for each class, whose last number is the constant; and if there is a network, its
+        /// `architecture` as text, and its tensors as [`Network::to_safetensors`] writes them.
         ///
         /// # Errors
         ///

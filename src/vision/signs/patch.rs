@@ -9,7 +9,8 @@ use crate::vision::{ImageError, RgbView};
 ///
 /// ```
 /// use roverlab::vision::{RgbView, signs::{Area, SignPatch}};
-/// let pixels: Vec<u8> = (0..40 * 40).flat_map(|i| if i % 40 < 20 { [90, 10, 10] } else { [40; 3] }).collect();
+/// let pixel = |i: usize| if i % 40 < 20 { [90, 10, 10] } else { [40; 3] };
+/// let pixels: Vec<u8> = (0..40 * 40).flat_map(pixel).collect();
 /// let all = Area::new(0.0, 0.0, 40.0, 40.0);
 /// let patch = SignPatch::default().read(RgbView::new(&pixels, 40, 40)?, all)?.to_vec();
 /// assert_eq!(patch.len(), 3 * SignPatch::SIDE * SignPatch::SIDE);
