@@ -95,9 +95,9 @@ def session(text, floats):
             nodes.append(helper.make_node("Relu", [at], [f"{index}r"]))
             at = f"{index}r"
     value = helper.make_tensor_value_info
-    graph = helper.make_graph(
-        nodes, "network", [value("input", TensorProto.FLOAT, [1, height, width, channels])], [value(at, TensorProto.FLOAT, [1, steps[-1][1][0]])], constants
-    )
+    seen = value("input", TensorProto.FLOAT, [1, height, width, channels])
+    results = value(at, TensorProto.FLOAT, [1, steps[-1][1][0]])
+    graph = helper.make_graph(nodes, "network", [seen], [results], constants)
     model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 17)], ir_version=9)
     onnx.checker.check_model(model)
     options = onnxruntime.SessionOptions()

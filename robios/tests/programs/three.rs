@@ -59,7 +59,7 @@ mod campaigns {
     use super::*;
 
     #[test]
-    #[ignore = "a campaign: a hundred seeds, five minutes each"]
+    #[ignore = "a campaign: cargo test --release -p robios --test programs three::campaigns -- --ignored"]
     fn a_hundred_times_five_minutes_without_a_contact() {
         let folder = folder("three-campaign");
         let (mut contacts, mut metres) = (0, 0.0);
