@@ -2,6 +2,7 @@ use roverlab::geometry::Point;
 use roverlab::geometry::units::from_mm;
 
 use crate::common::{CampaignArgs, CommonArgs, OF_ONE_RUN};
+use crate::water::WaterArgs;
 
 /// Command line of `boat`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -30,6 +31,9 @@ pub(crate) struct Args {
     pub(crate) course: Option<Course>,
 
     #[command(flatten)]
+    pub(crate) waters: WaterArgs,
+
+    #[command(flatten)]
     pub(crate) trials: CampaignArgs,
 
     #[command(flatten)]
@@ -43,7 +47,7 @@ pub(crate) struct Course(pub(crate) Vec<Point>);
 crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["goal"]),
     ("campaign", OF_ONE_RUN),
-    ("campaign", &["course"]),
+    ("campaign", &["water", "course"]),
     ("!campaign", &["runs", "threads"]),
 ]);
 

@@ -34,7 +34,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     if common.world.is_some() && args.course.is_none() {
         return Err(Failure::input("--world: found no course; expected --course X,Y;X,Y..."));
     }
-    let scene = afloat(common, &raft(), || scene)?;
+    let scene = afloat((common, &args.waters), &raft(), || scene)?;
     let course = args.course.as_ref().map_or(course, |given| given.0.clone());
     let floor = scene.world.bounds();
     if let Some(&outside) = course.iter().find(|&&point| !floor.contains(point)) {

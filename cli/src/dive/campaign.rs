@@ -1,5 +1,6 @@
 use roverlab::geometry::{Vector, direction, units};
 use roverlab::random::Stream;
+use roverlab::world::Water;
 use serde_json::json;
 
 use super::{Args, Dived, LIMIT, Plan, SETTLING, dive, options, scene};
@@ -32,7 +33,7 @@ fn plan(args: &Args, seed: u64) -> Plan {
         depth,
         mass: 1.0 + stream.between(-MASS, MASS),
         thrust: 1.0 + stream.between(-THRUST, THRUST),
-        current,
+        water: Water { current: vec![(0.0, current)], ..Water::default() },
     }
 }
 

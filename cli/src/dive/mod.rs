@@ -16,7 +16,7 @@ use crate::common::{
     CampaignArgs, CommonArgs, Failure, OF_ONE_RUN, Outcome, Report, Stage, millimetres, rounded,
 };
 use crate::driving::{RESERVE, paced};
-use crate::water::{BOOK, LEVEL, pool};
+use crate::water::{BOOK, LEVEL, WaterArgs, pool};
 
 /// Command line of `dive`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -43,6 +43,9 @@ pub(crate) struct Args {
     pub(crate) depth: f64,
 
     #[command(flatten)]
+    pub(crate) waters: WaterArgs,
+
+    #[command(flatten)]
     pub(crate) trials: CampaignArgs,
 
     #[command(flatten)]
@@ -52,7 +55,7 @@ pub(crate) struct Args {
 crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["world", "robot", "start", "goal"]),
     ("campaign", OF_ONE_RUN),
-    ("campaign", &["depth"]),
+    ("campaign", &["water", "depth"]),
     ("!campaign", &["runs", "threads"]),
 ]);
 
@@ -85,7 +88,7 @@ struct Plan {
     /// Mass and thrust in terms of the model's.
     mass: f64,
     thrust: f64,
-    current: Vector,
+    water: Water,
 }
 
 /// What came of it.
@@ -128,7 +131,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         depth: units::from_mm(args.depth),
         mass: 1.0,
         thrust: 1.0,
-        current: Vector::zeros(),
+        water: args.waters.water.clone().unwrap_or_default(),
     };
     let scene = scene(&plan);
     let limit = common.time_limit.unwrap_or(LIMIT);
@@ -180,9 +183,8 @@ fn craft(plan: &Plan) -> RobotSpec {
 fn scene(plan: &Plan) -> Scene {
     let spec = craft(plan);
     let up = sensor(&spec);
-    let water = Water { current: vec![(0.0, plan.current)], ..Water::default() };
-    let mut scene =
-        Scene::with_robot(World { water, ..pool(BOOK, |_| 0.0) }, spec, Pose::new(12.5, 25.0, 0.0));
+    let world = World { water: plan.water.clone(), ..pool(BOOK, |_| 0.0) };
+    let mut scene = Scene::with_robot(world, spec, Pose::new(12.5, 25.0, 0.0));
     if let Some(depth) = plan.start {
         scene.robots[0].elevation = LEVEL - depth - up;
     }

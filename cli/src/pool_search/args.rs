@@ -1,4 +1,5 @@
 use crate::common::{CampaignArgs, CommonArgs, OF_ONE_RUN};
+use crate::water::WaterArgs;
 
 /// Command line of `pool-search`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -27,6 +28,9 @@ pub(crate) struct Args {
     pub(crate) light: Option<f64>,
 
     #[command(flatten)]
+    pub(crate) waters: WaterArgs,
+
+    #[command(flatten)]
     pub(crate) trials: CampaignArgs,
 
     #[command(flatten)]
@@ -36,7 +40,7 @@ pub(crate) struct Args {
 crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["goal"]),
     ("campaign", OF_ONE_RUN),
-    ("campaign", &["light"]),
+    ("campaign", &["water", "light"]),
     ("!campaign", &["runs", "threads"]),
 ]);
 

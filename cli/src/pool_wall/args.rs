@@ -1,6 +1,7 @@
 use roverlab::geometry::units;
 
 use crate::common::{CampaignArgs, CommonArgs, OF_ONE_RUN};
+use crate::water::WaterArgs;
 
 /// Command line of `pool-wall`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -33,6 +34,9 @@ pub(crate) struct Args {
     pub(crate) depth: f64,
 
     #[command(flatten)]
+    pub(crate) waters: WaterArgs,
+
+    #[command(flatten)]
     pub(crate) trials: CampaignArgs,
 
     #[command(flatten)]
@@ -42,7 +46,7 @@ pub(crate) struct Args {
 crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["goal"]),
     ("campaign", OF_ONE_RUN),
-    ("campaign", &["laps", "depth"]),
+    ("campaign", &["water", "laps", "depth"]),
     ("!campaign", &["runs", "threads"]),
 ]);
 

@@ -41,7 +41,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
     let own = generated(common.seed)?;
-    let scene = afloat(common, &surveyor(), || own)?;
+    let scene = afloat((common, &args.waters), &surveyor(), || own)?;
     let parameters =
         PoolWallParameters { laps: args.laps, depth: args.depth, ..PoolWallParameters::default() };
     let conditions = Conditions::new(common, limit(&scene, &parameters))?;

@@ -6,6 +6,7 @@ use roverlab::world::World;
 
 use super::tour::OFF;
 use crate::common::{CampaignArgs, CommonArgs, OF_ONE_RUN, parse_png};
+use crate::water::WaterArgs;
 
 /// Command line of `survey`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -55,6 +56,9 @@ pub(crate) struct Args {
     pub(crate) map: Option<PathBuf>,
 
     #[command(flatten)]
+    pub(crate) waters: WaterArgs,
+
+    #[command(flatten)]
     pub(crate) trials: CampaignArgs,
 
     #[command(flatten)]
@@ -67,7 +71,7 @@ const NEAREST: f64 = 0.75;
 crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["goal"]),
     ("campaign", OF_ONE_RUN),
-    ("campaign", &["map"]),
+    ("campaign", &["water", "map"]),
     ("!campaign", &["runs", "threads"]),
 ]);
 

@@ -23,7 +23,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     for file in args.map.iter().flat_map(|file| map::files(file)) {
         check_writable("--map", &file)?;
     }
-    let scene = afloat(common, &surveyor(), || scene(common.seed, args.altitude))?;
+    let scene = afloat((common, &args.waters), &surveyor(), || scene(common.seed, args.altitude))?;
     let site = Site::of(&scene.world, args.depth);
     let conditions = Conditions::new(common, limit(&site, args.spacing))?;
     let done = tour(&scene, args.parameters(&scene.world), &conditions, paced(common))?;

@@ -7,7 +7,7 @@ mod site;
 use std::sync::Arc;
 
 use roverlab::geometry::{Point, Pose};
-use roverlab::world::{DriveSpec, HeightField, RobotSpec, Scene, World};
+use roverlab::world::{DriveSpec, HeightField, RobotSpec, Scene, Water, World};
 
 use crate::common::{CommonArgs, Failure, StandIn};
 
@@ -18,10 +18,23 @@ pub(crate) use site::{Site, limit, surveyor};
 /// Cells along a side of the grid on which a start is looked for.
 const CELLS: usize = 40;
 
+/// The options of a run in water, flattened into a command's own.
+#[derive(Debug, Clone, clap::Args)]
+pub(crate) struct WaterArgs {
+    /// Water instead of the world's: lines of a world file with commas between them, such as
+    /// "current 100 0, waves 40 2 90, wind 3000 0, turbidity 0.5, water_density 1025".
+    #[arg(long, value_name = "LINES", value_parser = parse_water)]
+    pub(crate) water: Option<Water>,
+}
+
+fn parse_water(text: &str) -> Result<Water, String> {
+    text.replace(',', "\n").parse::<Water>().map_err(|error| error.to_string())
+}
+
 /// The scene of the options, or the command's own, with a craft in its water. A world without a start has one
 /// where the water is widest.
 pub(crate) fn afloat(
-    common: &CommonArgs,
+    (common, waters): (&CommonArgs, &WaterArgs),
     spec: &RobotSpec,
     own: impl FnOnce() -> Scene,
 ) -> Result<Scene, Failure> {
@@ -32,6 +45,9 @@ pub(crate) fn afloat(
             "{name}found a world without water; expected a line `water_level MM`"
         )));
     };
+    if let Some(water) = &waters.water {
+        scene.world.water.clone_from(water);
+    }
     if scene.robots.is_empty() && common.start.is_none() && scene.world.start.is_none() {
         scene.world.start = widest(&scene.world, level);
     }

@@ -1,13 +1,50 @@
 //! The lines of a world's water.
 
 use std::fmt::{Result as Written, Write as _};
+use std::str::FromStr;
 
 use super::args::Args;
 use super::error::FormatError;
-use super::lexer::Line;
+use super::lexer::{self, Line};
 use super::number::{self, degrees, millimetres};
+use super::source::check_length;
 use crate::geometry::Vector;
 use crate::world::{Water, Waves};
+
+impl FromStr for Water {
+    type Err = FormatError;
+
+    /// Reads the lines of a world's file that describe its water.
+    ///
+    /// ```
+    /// use roverlab::world::Water;
+    /// let water: Water = "current 100 0\nturbidity 0.5".parse()?;
+    /// assert_eq!((water.current[0].1.x, water.turbidity), (0.1, 0.5));
+    /// let error = "current fast".parse::<Water>().unwrap_err();
+    /// assert_eq!(error.to_string(), "water:1:9: found `fast`; expected the current's speed along x in mm/s");
+    /// # Ok::<(), roverlab::world::formats::FormatError>(())
+    /// ```
+    fn from_str(text: &str) -> Result<Self, FormatError> {
+        check_length(text, NAME)?;
+        let mut water = Self::default();
+        for (number, text) in lexer::numbered(text) {
+            let Some(words) = lexer::line(NAME, number, text)? else { continue };
+            let mut args = Args::after_keyword(&words);
+            if !line(&words.words[0].text.to_ascii_lowercase(), &words, &mut args, &mut water)? {
+                return Err(words.error(0, format!("one of {}", KEYWORDS.join(", "))));
+            }
+            if args.left() > 0 {
+                return Err(words.error(words.words.len() - args.left(), "the end of the line"));
+            }
+        }
+        Ok(water)
+    }
+}
+
+/// Name of a text without a file.
+const NAME: &str = "water";
+/// First words of the lines of water.
+const KEYWORDS: [&str; 5] = ["water_density", "current", "waves", "turbidity", "wind"];
 
 /// Reads a line into a world's water. Returns whether the keyword is one of water.
 pub(super) fn line(
