@@ -37,6 +37,8 @@ mod sight;
 mod three;
 #[path = "programs/time.rs"]
 mod time;
+#[path = "programs/water.rs"]
+mod water;
 
 fn programs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/programs")
