@@ -76,8 +76,12 @@ impl Trials {
 
     /// The bytes of a genome for the gait, and those for the body.
     fn parts<'g>(&self, bytes: &'g [u8]) -> (&'g [u8], &'g [u8]) {
-        let genes = if self.evolves { self.figure.genes() } else { 0 };
-        bytes.split_at(bytes.len().saturating_sub(genes))
+        bytes.split_at(bytes.len().saturating_sub(self.body_genes()))
+    }
+
+    /// Number of bytes by which the body evolves.
+    fn body_genes(&self) -> usize {
+        if self.evolves { self.figure.genes() } else { 0 }
     }
 
     /// A random initial gait.
@@ -86,11 +90,11 @@ impl Trials {
         let uniform = |count: usize, random: &mut Stream| -> Vec<u8> {
             (0..count).map(|_| random.below(256) as u8).collect()
         };
-        let body = if self.evolves { uniform(self.figure.genes(), random) } else { Vec::new() };
         let gait = match init {
             Init::Neutral => Gait::near_middle(servos, points, STEP, random)?,
             Init::Uniform => uniform(servos * points, random),
         };
+        let body = uniform(self.body_genes(), random);
         Ok([gait, body].concat())
     }
 }

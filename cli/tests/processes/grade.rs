@@ -24,6 +24,17 @@ fn folder() -> PathBuf {
     folder
 }
 
+/// A rubric with `seeds` runs, and its world.
+fn rubric(folder: &Path, seeds: u32) {
+    let world = "floor 3000 2000\n0 0 3000 0\n3000 0 3000 2000\n3000 2000 0 2000\n0 2000 0 0\n";
+    let rubric = format!(
+        "title = 'One metre'\nseeds = {seeds}\ntime_limit = 20\nreal_limit = 2\n\
+         [[world]]\nfile = 'room.wld'\nstart = [1000, 1000, 0]\nend = [2000, 1000, 60]\n"
+    );
+    fs::write(folder.join("room.wld"), world).unwrap();
+    fs::write(folder.join("rubric.toml"), rubric).unwrap();
+}
+
 fn there_is(command: &str) -> bool {
     std::process::Command::new(command).arg("--version").output().is_ok_and(|output| output.status.success())
 }
@@ -36,12 +47,7 @@ fn each_program_gets_what_it_deserves() {
     }
     let folder = folder();
     let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
-    write("room.wld", "floor 3000 2000\n0 0 3000 0\n3000 0 3000 2000\n3000 2000 0 2000\n0 2000 0 0\n");
-    write(
-        "rubric.toml",
-        "title = 'One metre'\nseeds = 3\ntime_limit = 20\nreal_limit = 2\n\
-         [[world]]\nfile = 'room.wld'\nstart = [1000, 1000, 0]\nend = [2000, 1000, 60]\n",
-    );
+    rubric(&folder, 3);
     let cases = [
         ("good.py", GOOD, "reached"),
         ("cheat.py", CHEAT, "reached"),
@@ -90,5 +96,53 @@ fn what_cannot_be_graded_is_refused() {
     ] {
         let (status, text) = said(&mut roverlab(words));
         assert!(status == 2 && text.contains(expected), "{text}");
+    }
+}
+
+mod campaigns {
+    use std::time::Instant;
+
+    use super::*;
+
+    /// Thirty programs with twenty seeds each; asked for were 60 s on two cores.
+    #[test]
+    #[ignore = "a campaign: cargo test --release -p roverlab-cli --test processes grade::campaigns -- --ignored --nocapture"]
+    fn thirty_programs_with_twenty_seeds_each() {
+        let folder = folder().join("thirty");
+        fs::create_dir_all(&folder).unwrap();
+        let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
+        rubric(&folder, 20);
+        let mut programs: Vec<String> =
+            (0..27).map(|number| format!("{number}.{}", ["c", "py"][number % 2])).collect();
+        for (number, program) in programs.iter().enumerate() {
+            let drive = format!("VWStraight(1000, {});", 150 + 5 * number);
+            let text = match number % 2 {
+                0 => format!("#include \"eyebot.h\"\nint main() {{ {drive} VWWait(); return 0; }}\n"),
+                _ => format!("from eye import *\n{drive} VWWait()\n"),
+            };
+            write(program, &text);
+        }
+        for (name, text) in [("crash.c", CRASH), ("endless.c", ENDLESS), ("writer.py", WRITER)] {
+            write(name, text);
+            programs.push(name.into());
+        }
+        let begun = Instant::now();
+        let mut words = vec!["grade", "rubric.toml", "--json", "--html", "page.html"];
+        words.extend(programs.iter().map(String::as_str));
+        let (status, text) = said(roverlab(&words).current_dir(&folder));
+        println!("30 programs with 20 seeds each: {:.1} s", begun.elapsed().as_secs_f64());
+        assert_eq!(status, 0, "{text}");
+        let report: Value = serde_json::from_str(&text).unwrap();
+        let rows = report["programs"].as_array().unwrap();
+        let all = |row: usize, outcome: &str| rows[row]["outcomes"][outcome] == report["runs"];
+        assert_eq!((rows.len(), &report["runs"]), (30, &20.into()), "{text}");
+        assert!(all(27, "crashed") && all(28, "timed_out"), "{} {}", rows[27], rows[28]);
+        assert_eq!(rows[29]["written"], serde_json::json!(["notes.txt"]));
+        for row in &rows[..27] {
+            let ended = ["reached", "missed", "collided"]
+                .map(|outcome| row["outcomes"][outcome].as_u64().unwrap_or(0));
+            assert_eq!(ended.iter().sum::<u64>(), 20, "{row}");
+        }
+        fs::remove_dir_all(folder).unwrap();
     }
 }
