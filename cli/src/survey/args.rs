@@ -5,7 +5,7 @@ use roverlab::geometry::units;
 use roverlab::world::World;
 
 use super::tour::OFF;
-use crate::common::{CampaignArgs, CommonArgs, OF_ONE_RUN, parse_png};
+use crate::common::{CampaignArgs, CommonArgs, OF_A_CAMPAIGN, OF_ONE_RUN, parse_png};
 
 /// Command line of `survey`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -68,7 +68,7 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["goal"]),
     ("campaign", OF_ONE_RUN),
     ("campaign", &["map"]),
-    ("!campaign", &["runs", "threads"]),
+    ("!campaign", OF_A_CAMPAIGN),
 ]);
 
 impl Args {
