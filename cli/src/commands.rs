@@ -8,7 +8,9 @@ use std::process::ExitCode;
 use clap::CommandFactory;
 use serde_json::{Value, json};
 
-use crate::common::{Failure, Onlooker, onlooker, parser, refused, run, run_plain, run_printing, written};
+use crate::common::{
+    Failure, Onlooker, onlooker, parser, refused, run, run_again, run_plain, run_printing, written,
+};
 #[cfg(test)]
 use crate::common::{Heeds, Unheeded};
 use crate::maze_drive::{explore as maze_explore, left as maze_left, lidar as maze_lidar};
@@ -17,9 +19,9 @@ use crate::view;
 use crate::{
     a_to_b, ackermann, base_station, boat, bug_compare, camera, color_tracking, cone_drive, cone_race,
     coverage, distbug, dive, edges, end_to_end, first_steps, follow_me, genetic, grid_benchmark,
-    lane_keeping, lidar_scan, localise, micromouse, motion, navigate, omni, parking, ping, pool_search,
-    pool_wall, quadtree, ramp, random_drive, replay, safety, signs, summit, survey, terrain_plan, traffic,
-    wall_following,
+    lane_keeping, lidar_scan, localise, merge, micromouse, motion, navigate, omni, parking, ping,
+    pool_search, pool_wall, quadtree, ramp, random_drive, replay, safety, signs, summit, survey,
+    terrain_plan, traffic, wall_following,
 };
 #[cfg(feature = "native")]
 use crate::{grade, starman};
@@ -92,6 +94,7 @@ commands!(
     maze_explore by run,
     maze_left by run,
     maze_lidar by run,
+    merge by run_merged,
     micromouse by run,
     motion by run,
     navigate by run,
@@ -124,9 +127,38 @@ impl Command {
         (self.parser)().get_arguments().map(|argument| argument.get_id().to_string()).collect()
     }
 
+    /// Whether its campaigns run in parts.
+    pub(crate) fn has_parts(&self) -> bool {
+        (self.parser)().get_arguments().any(|argument| argument.get_id() == "part")
+    }
+
     /// Whether it drives robots, so that its runs can be recorded.
     pub(crate) fn drives(&self) -> bool {
         (self.parser)().get_arguments().any(|argument| argument.get_id() == "record")
+    }
+}
+
+/// Runs the campaign whose parts the command `merge` names, on their results.
+fn run_merged(
+    name: &str,
+    words: Vec<OsString>,
+    out: &mut dyn Write,
+    err: &mut dyn Write,
+    work: fn(&merge::Args) -> Result<Vec<OsString>, Failure>,
+) -> u8 {
+    let campaign = |args: &merge::Args| {
+        let words = work(args)?;
+        let command = words[0].to_str().and_then(named).filter(|command| command.has_parts());
+        command.map(|command| (command, words)).ok_or_else(|| {
+            Failure::input(format!(
+                "{}: line 1: found no campaign that runs in parts; expected the results of one",
+                args.files[0].display()
+            ))
+        })
+    };
+    match run_again(name, words, out, err, campaign) {
+        Ok((command, words)) => (command.run)(words, out, err),
+        Err(status) => status,
     }
 }
 
@@ -185,7 +217,7 @@ pub fn options() -> String {
 
 /// An option as JSON.
 fn option(argument: &clap::Arg) -> Option<Value> {
-    let name = argument.get_long().filter(|name| *name != "help")?;
+    let name = argument.get_long().filter(|name| *name != "help" && !argument.is_hide_set())?;
     let choices: Vec<_> =
         argument.get_possible_values().iter().map(|choice| choice.get_name().to_owned()).collect();
     let default = argument.get_default_values().first().map(|value| value.to_string_lossy().into_owned());

@@ -31,6 +31,7 @@ mod lane_keeping;
 mod lidar_scan;
 mod localise;
 mod maze_drive;
+mod merge;
 mod micromouse;
 mod motion;
 mod navigate;

@@ -40,7 +40,7 @@ export const FILES = ["world", "robot", "track", "maze", "line", "input"];
 const HIDDEN = new Set([
   "record", "force", "fsync", "replay", "picture", "robios", "json", "timing", "realtime", "threads", "processes", "checkpoint", "campaign", "worlds",
   "levels", "save", "runs", "animation", "output", "lcd", "plan", "compare", "steps", "mms", "mms-run", "mms-limit", "rooms",
-  "map", "starts", "scenes", "pairs", "courses", "second", "families", "explore", "repeat",
+  "map", "starts", "scenes", "pairs", "courses", "second", "families", "explore", "repeat", "part", "out",
 ]);
 
 export function isShown(option) {

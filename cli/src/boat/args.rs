@@ -1,7 +1,7 @@
 use roverlab::geometry::Point;
 use roverlab::geometry::units::from_mm;
 
-use crate::common::{CampaignArgs, CommonArgs, OF_ONE_RUN};
+use crate::common::{CampaignArgs, CommonArgs, OF_A_CAMPAIGN, OF_ONE_RUN};
 use crate::water::WaterArgs;
 
 /// Command line of `boat`.
@@ -48,7 +48,7 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["goal"]),
     ("campaign", OF_ONE_RUN),
     ("campaign", &["water", "course"]),
-    ("!campaign", &["runs", "threads"]),
+    ("!campaign", OF_A_CAMPAIGN),
 ]);
 
 fn parse_course(text: &str) -> Result<Course, String> {

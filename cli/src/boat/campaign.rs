@@ -4,30 +4,47 @@ use serde_json::json;
 use super::Args;
 use super::job::limit;
 use super::lake::{Lake, lake};
-use super::voyage::{Voyage, sail};
-use crate::common::{Failure, Report, campaign_report, millimetres, wrong_seeds};
+use super::voyage::sail;
+use crate::common::{Failure, Report, campaign_report, millimetres, portable, wrong_seeds};
 use crate::driving::{Conditions, RESERVE};
 
 /// Courses without `--runs`.
 const COURSES: u64 = 200;
 
+/// What came of a voyage.
+#[derive(Debug, Clone)]
+struct Trial {
+    is_good: bool,
+    contacts: u32,
+    miss: Option<f64>,
+    cross_track: Option<f64>,
+    station: Option<f64>,
+}
+
+portable!(struct Trial { is_good, contacts, miss, cross_track, station });
+
 /// The campaign's work.
 pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
-    let voyages = args.trials.trials("courses", COURSES, args.common.seed, |seed| {
+    let voyages = args.trials.trials(&args.common, "courses", COURSES, |seed| {
         let Lake { scene, course } = lake(seed)?;
         let limit = args.common.time_limit.unwrap_or_else(|| limit(&scene, &course));
         let conditions =
             Conditions { seed, common: None, reserve: RESERVE, ..Conditions::new(&args.common, limit)? };
-        let mut voyage = sail(&scene, &course, &conditions, |_| {})?;
-        (voyage.run.trail, voyage.run.odometry_path, voyage.run.in_space) = Default::default();
-        Ok(voyage)
+        let voyage = sail(&scene, &course, &conditions, |_| {})?;
+        Ok(Trial {
+            is_good: voyage.is_good(),
+            contacts: voyage.run.truth.contacts,
+            miss: voyage.miss,
+            cross_track: voyage.cross_track,
+            station: voyage.station,
+        })
     })?;
-    let worst = |of: fn(&Voyage) -> Option<f64>| {
+    let worst = |of: fn(&Trial) -> Option<f64>| {
         voyages.iter().map(|(_, voyage)| of(voyage).unwrap_or(f64::INFINITY)).fold(0.0, f64::max)
     };
     let (miss, track, station) = (worst(|v| v.miss), worst(|v| v.cross_track), worst(|v| v.station));
-    let contacts: u64 = voyages.iter().map(|(_, voyage)| u64::from(voyage.run.truth.contacts)).sum();
-    let wrong = wrong_seeds(&voyages, Voyage::is_good);
+    let contacts: u64 = voyages.iter().map(|(_, voyage)| u64::from(voyage.contacts)).sum();
+    let wrong = wrong_seeds(&voyages, |voyage| voyage.is_good);
     let good = voyages.len() - wrong.len();
     args.common.tell(format_args!(
         "courses   good  contacts  worst miss  worst cross-track rms  worst station rms\n\

@@ -3,7 +3,7 @@ use std::num::NonZero;
 use roverlab::nav::BugKind;
 use roverlab::world::generate::CourseFamily;
 
-use crate::common::CommonArgs;
+use crate::common::{CommonArgs, OF_PARTS, PartArgs};
 
 /// Command line of `bug-compare`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -54,12 +54,17 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) threads: Option<NonZero<usize>>,
 
+    /// The part to do.
+    #[command(flatten)]
+    pub(crate) parts: PartArgs,
+
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }
 
 crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["quantised"]),
+    ("!campaign", OF_PARTS),
 ]);
 
 impl Args {

@@ -9,7 +9,7 @@ use super::boundaries::Boundaries;
 use super::contest::{Setting, campaign_options, of_campaign};
 use super::ride::{Ride, parameters, ride};
 use super::{Args, job};
-use crate::common::{Failure, Outcome, Report, rounded, share_out, threads};
+use crate::common::{Failure, Outcome, Report, portable, rounded};
 
 /// Checked results of one run in the campaign.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,6 +25,8 @@ pub(crate) struct Checked {
     pub(crate) of_bound: Option<f64>,
 }
 
+portable!(struct Checked { kind, seed, complete, correct, contacts, sim_time, of_bound });
+
 /// Relative tolerance of the traced perimeters.
 const TOLERANCE: f64 = 0.02;
 /// Distance by which contours are traced nearer to obstacles than the middle of the narrowest corridor (m).
@@ -35,7 +37,7 @@ const FAR: f64 = 1e3;
 /// Runs the campaign.
 pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
     let courses = args.runs.unwrap_or(1000);
-    let checked = share_out("courses", courses, threads(args.threads), |index| {
+    let checked = args.parts.share_out(&args.common.origin, "courses", courses, args.threads, |index| {
         check(args, args.common.seed.wrapping_add(index))
     })?;
     let checked: Vec<Checked> = checked.into_iter().flatten().collect();

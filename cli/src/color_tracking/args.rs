@@ -1,6 +1,6 @@
 use roverlab::vision::FindMethod;
 
-use crate::common::{CommonArgs, OF_ONE_RUN};
+use crate::common::{CommonArgs, OF_ONE_RUN, OF_PARTS, PartArgs};
 
 /// Command line of `color-tracking`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -54,6 +54,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) scenes: u64,
 
+    /// The part to do.
+    #[command(flatten)]
+    pub(crate) parts: PartArgs,
+
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }
@@ -62,6 +66,7 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["goal"]),
     ("campaign", OF_ONE_RUN),
     ("!campaign", &["scenes"]),
+    ("!campaign", OF_PARTS),
 ]);
 
 /// Task of the robot.

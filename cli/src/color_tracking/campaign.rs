@@ -34,8 +34,12 @@ pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
 
 pub(crate) fn tally(args: &Args) -> Result<Tally, Failure> {
     let mut tally = Tally { scenes: args.scenes, ..Tally::default() };
-    for seed in (0..args.scenes).map(|scene| args.common.seed.wrapping_add(scene)) {
-        if good(args, seed)? { tally.reached += 1 } else { tally.wrong.push(seed) }
+    let scenes = args.parts.share_out(&args.common.origin, "scenes", args.scenes, None, |index| {
+        let seed = args.common.seed.wrapping_add(index);
+        Ok((seed, good(args, seed)?))
+    })?;
+    for (seed, good) in scenes {
+        if good { tally.reached += 1 } else { tally.wrong.push(seed) }
     }
     Ok(tally)
 }

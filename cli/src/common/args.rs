@@ -137,6 +137,10 @@ pub(crate) struct PlainArgs {
     /// Report the duration too, which differs from run to run.
     #[arg(long)]
     pub(crate) timing: bool,
+
+    /// Description of the run, for campaigns in parts.
+    #[arg(skip)]
+    pub(crate) origin: Origin,
 }
 
 impl CommonArgs {

@@ -1,7 +1,6 @@
 use std::num::NonZero;
 
-use super::workers::{share_out, threads};
-use super::{Failure, Outcome, Report};
+use super::{CommonArgs, Failure, Outcome, PartArgs, Portable, Report};
 
 /// The options of a campaign, flattened into a command's own.
 #[derive(Debug, Clone, clap::Args)]
@@ -17,23 +16,28 @@ pub(crate) struct CampaignArgs {
     /// Number of threads in a campaign [default: one per core].
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) threads: Option<NonZero<usize>>,
+
+    /// The part to do.
+    #[command(flatten)]
+    pub(crate) parts: PartArgs,
 }
 
 /// Seeds of failures that a report lists.
 const LISTED: usize = 10;
 
 impl CampaignArgs {
-    /// The results of all runs, by seed, of which there are `usual` unless the options say otherwise. `things`
-    /// names them in the progress line.
-    pub(crate) fn trials<T: Send>(
+    /// The results of all runs, by seed, of which there are `usual` unless the options say otherwise.
+    /// `things` names them in the progress line. Fails with the report of a part, if only that was to be done.
+    pub(crate) fn trials<T: Send + Portable>(
         &self,
+        common: &CommonArgs,
         things: &str,
         usual: u64,
-        seed: u64,
         trial: impl Fn(u64) -> Result<T, Failure> + Sync,
     ) -> Result<Vec<(u64, T)>, Failure> {
-        share_out(things, self.runs.unwrap_or(usual), threads(self.threads), |index| {
-            let seed = seed.wrapping_add(index);
+        let runs = self.runs.unwrap_or(usual);
+        self.parts.share_out(&common.origin, things, runs, self.threads, |index| {
+            let seed = common.seed.wrapping_add(index);
             Ok((seed, trial(seed)?))
         })
     }

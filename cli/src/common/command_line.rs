@@ -1,5 +1,5 @@
 use std::ffi::OsString;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::parser::ValueSource;
 use clap::{ArgAction, ArgMatches, Command};
@@ -8,8 +8,8 @@ use roverlab::world::RobotSpec;
 
 use super::files::{recorded_name, recording_bytes};
 use super::origin::Facts;
-use super::outputs::check_outputs;
-use super::{CommonArgs, Failure, Heeds, Unheeded, heed, parser, stage};
+use super::outputs::{OUTPUTS, check_outputs};
+use super::{CommonArgs, Failure, Heeds, OF_PARTS, PlainArgs, Unheeded, heed, parser, stage};
 
 /// Options that do not affect a run.
 const NOT_RECORDED: [&str; 17] = [
@@ -42,6 +42,9 @@ const FILES: [&str; 9] = ["world", "robot", "maze", "track", "line", "course", "
 /// Options without a single driving robot to record: many runs at once, or none.
 const UNRECORDED: [&str; 6] = ["campaign", "plan", "input", "compare", "steps", "train"];
 
+/// Folders that a campaign writes to.
+const FOLDERS: [&str; 1] = ["save"];
+
 /// Reason to reject a command line.
 pub(crate) enum Refusal {
     /// The parser's error, or its help.
@@ -58,6 +61,28 @@ where
     let mut command = parser::<A>(name);
     let words = command_line.into_iter().collect();
     let (mut matches, facts) = matches(name, &mut command, A::UNHEEDED, words)?;
+    let args =
+        A::from_arg_matches_mut(&mut matches).map_err(|error| Refusal::Parser(error.format(&mut command)))?;
+    args.as_ref().origin.set(facts);
+    Ok(args)
+}
+
+/// Parses the command line of a command that drives no robot.
+pub(crate) fn parse_plain<A>(name: &str, words: impl IntoIterator<Item = OsString>) -> Result<A, Refusal>
+where
+    A: clap::Parser + AsRef<PlainArgs> + Heeds,
+{
+    let mut command = parser::<A>(name);
+    let mut matches = command.try_get_matches_from_mut(words).map_err(Refusal::Parser)?;
+    check_outputs(&matches).map_err(Refusal::Files)?;
+    heed::check(&matches, A::UNHEEDED, |_| true).map_err(Refusal::Files)?;
+    check_part(&matches).map_err(Refusal::Files)?;
+    let facts = Facts {
+        program: name.into(),
+        settings: settings(&command, &matches),
+        inputs: inputs(&matches),
+        ..Facts::default()
+    };
     let args =
         A::from_arg_matches_mut(&mut matches).map_err(|error| Refusal::Parser(error.format(&mut command)))?;
     args.as_ref().origin.set(facts);
@@ -89,7 +114,45 @@ fn matches(
     if let Some(log) = &log {
         check_met(command, &options, &log.header().options).map_err(Refusal::Files)?;
     }
-    Ok((matches, Facts { program: name.into(), options, log }))
+    check_part(&matches).map_err(Refusal::Files)?;
+    let (settings, inputs) = (settings(command, &matches), inputs(&matches));
+    Ok((matches, Facts { program: name.into(), options, settings, inputs, log }))
+}
+
+/// Whether an option decides about a campaign's results, rather than about what is made of them and how.
+pub(crate) fn is_setting(name: &str) -> bool {
+    let id = name.replace('-', "_");
+    ![&NOT_RECORDED[..], &OUTPUTS[..], OF_PARTS, &FOLDERS[..]].concat().contains(&id.as_str())
+}
+
+/// Fails if a part of a campaign is to write what only the whole can.
+fn check_part(matches: &ArgMatches) -> Result<(), Failure> {
+    let given = |id: &&&str| {
+        matches.try_contains_id(id).is_ok_and(|known| known)
+            && matches.value_source(id) == Some(ValueSource::CommandLine)
+    };
+    let outputs = OUTPUTS.iter().chain(&FOLDERS).filter(|id| **id != "out");
+    match (given(&&"part"), outputs.copied().find(|id| given(&id))) {
+        (true, Some(output)) => Err(Failure::input(format!(
+            "--{output}: has no meaning with --part; expected it after the files of `roverlab merge`, behind --"
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// The given options that decide about a campaign's results, in the command's order.
+fn settings(command: &Command, matches: &ArgMatches) -> Vec<String> {
+    given_options(command, matches, is_setting, |_, value| value)
+}
+
+/// The given input files.
+fn inputs(matches: &ArgMatches) -> Vec<(String, PathBuf)> {
+    let file = |id: &&str| {
+        let value = matches.try_get_raw(id).ok().flatten()?.next()?.to_owned();
+        let file = matches.value_source(id) == Some(ValueSource::CommandLine) && Path::new(&value).is_file();
+        file.then(|| ((*id).to_owned(), PathBuf::from(value)))
+    };
+    FILES.iter().filter_map(file).collect()
 }
 
 /// Fails if a recording or a page is requested for a run that cannot be recorded.
@@ -197,13 +260,30 @@ fn value_of(option: &str) -> Option<&str> {
     option.split_once('=').map(|(_, value)| value)
 }
 
-/// The given options that affect a run, in the command's order.
+/// The given options that affect a run, in the command's order, with the names that files have in recordings.
 fn options(command: &Command, matches: &ArgMatches) -> Vec<String> {
+    given_options(
+        command,
+        matches,
+        |id| !NOT_RECORDED.contains(&id),
+        |id, value| {
+            let is_file = FILES.contains(&id) && !is_built_in(id, &value);
+            if is_file { recorded_name(id, Path::new(&value)) } else { value }
+        },
+    )
+}
+
+/// The given options of a kind, in the command's order, as single words.
+fn given_options(
+    command: &Command,
+    matches: &ArgMatches,
+    counts: impl Fn(&str) -> bool,
+    written: impl Fn(&str, String) -> String,
+) -> Vec<String> {
     let mut options = Vec::new();
     for arg in command.get_arguments() {
         let id = arg.get_id().as_str();
-        let given = matches.value_source(id) == Some(ValueSource::CommandLine);
-        if !given || NOT_RECORDED.contains(&id) {
+        if matches.value_source(id) != Some(ValueSource::CommandLine) || !counts(id) {
             continue;
         }
         let name = arg.get_long().map(|long| format!("--{long}"));
@@ -211,12 +291,8 @@ fn options(command: &Command, matches: &ArgMatches) -> Vec<String> {
             options.extend(name);
             continue;
         }
-        let values =
-            matches.get_raw(id).into_iter().flatten().map(|value| value.to_string_lossy().into_owned());
-        let is_file = FILES.contains(&id);
-        let values = values.map(|value| {
-            if is_file && !is_built_in(id, &value) { recorded_name(id, Path::new(&value)) } else { value }
-        });
+        let values = matches.get_raw(id).into_iter().flatten();
+        let values = values.map(|value| written(id, value.to_string_lossy().into_owned()));
         options.extend(values.map(|value| match &name {
             Some(name) => format!("{name}={value}"),
             None => value,

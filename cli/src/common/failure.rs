@@ -3,11 +3,15 @@ use std::fmt::{self, Display};
 
 use roverlab::picture::SaveError;
 
-/// Reason why a command ends without a report.
+use super::Report;
+
+/// Reason why a command ends without its usual report.
 #[derive(Debug)]
 pub(crate) struct Failure {
     status: u8,
     message: String,
+    /// The report of a part of the work, if only that was to be done.
+    done: Option<Box<Report>>,
 }
 
 impl Failure {
@@ -18,12 +22,25 @@ impl Failure {
 
     /// The command line or an input file is wrong: what was found, and what was expected.
     pub(crate) fn input(message: impl Display) -> Self {
-        Self { status: Self::INPUT, message: message.to_string() }
+        Self { status: Self::INPUT, message: message.to_string(), done: None }
     }
 
     /// An error during the run.
     pub(crate) fn run(message: impl Display) -> Self {
-        Self { status: Self::RUN, message: message.to_string() }
+        Self { status: Self::RUN, message: message.to_string(), done: None }
+    }
+
+    /// The work ends here, as it was to be done in part.
+    pub(crate) fn done(part: Report) -> Self {
+        Self { status: 0, message: "a part of the work is done".into(), done: Some(Box::new(part)) }
+    }
+
+    /// The report on a part of the work. Fails for other reasons.
+    pub(crate) fn into_report(self) -> Result<Report, Self> {
+        match self.done {
+            Some(report) => Ok(*report),
+            None => Err(self),
+        }
     }
 
     /// Its exit status.

@@ -33,6 +33,9 @@ pub(crate) const OF_ONE_RUN: &[&str] = &[
     "supervised",
 ];
 
+/// Options of a campaign, unsupported by single runs.
+pub(crate) const OF_A_CAMPAIGN: &[&str] = &["runs", "threads", "part", "out", "collected"];
+
 /// Fails if an unsupported option was given. `counts` selects the options to check.
 pub(super) fn check(
     matches: &ArgMatches,

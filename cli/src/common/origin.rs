@@ -1,4 +1,5 @@
 use std::io::Write;
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -26,6 +27,10 @@ pub(crate) struct Facts {
     pub(crate) program: String,
     /// Options that affect the run, in the order of `--help`.
     pub(crate) options: Vec<String>,
+    /// Options that decide about a campaign's results, with the names of files as given.
+    pub(crate) settings: Vec<String>,
+    /// Input files among them, by option.
+    pub(crate) inputs: Vec<(String, PathBuf)>,
     /// The replayed recording.
     pub(crate) log: Option<Log>,
 }

@@ -5,7 +5,7 @@ use clap::ArgMatches;
 use super::Failure;
 
 /// Options with output files.
-const OUTPUTS: [&str; 9] =
+pub(super) const OUTPUTS: [&str; 9] =
     ["picture", "animation", "record", "output", "lcd", "statistics", "checkpoint", "csv", "out"];
 
 /// Fails if an output file is also an input file, or another option's output.

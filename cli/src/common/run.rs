@@ -30,7 +30,7 @@ where
         let common = args.as_ref();
         let stopwatch = Stopwatch::start();
         common.check()?;
-        let whole = || completed(command, common, stopwatch, work(args)?);
+        let whole = || completed(command, common, stopwatch, work(args).or_else(Failure::into_report)?);
         #[cfg(feature = "view")]
         let whole = || super::view::beside(common, whole);
         whole()
@@ -69,11 +69,16 @@ pub(crate) fn run_plain<A: clap::Parser + AsRef<PlainArgs> + Heeds>(
     err: &mut dyn Write,
     work: impl FnOnce(&A) -> Result<Report, Failure>,
 ) -> u8 {
-    run_printing(command, command_line, out, err, |args: &A| {
+    let args = match command_line::parse_plain(command, command_line) {
+        Ok(args) => Ok(args),
+        Err(Refusal::Parser(error)) => Err(error),
+        Err(Refusal::Files(failure)) => return complain(err, &failure),
+    };
+    run_parsed(args, out, err, |args: &A| {
         let stopwatch = Stopwatch::start();
-        let mut report = work(args)?;
+        let mut report = work(args).or_else(Failure::into_report)?;
         report.timing.insert(0, ("wall_time_s", rounded(stopwatch.seconds())));
-        let &PlainArgs { seed, json, timing, .. } = args.as_ref();
+        let PlainArgs { seed, json, timing, .. } = *args.as_ref();
         Ok(report.printed(Header { command, seed, noise: None, timing }, json))
     })
 }
@@ -112,6 +117,21 @@ pub(crate) fn run_printing<A: clap::Parser + Heeds>(
         Ok(()) => run_parsed(A::from_arg_matches(&matches), out, err, work),
         Err(failure) => complain(err, &failure),
     }
+}
+
+/// What a command found to run in its place, or its exit status if it found nothing.
+pub(crate) fn run_again<A: clap::Parser, R>(
+    name: &str,
+    command_line: impl IntoIterator<Item = OsString>,
+    out: &mut dyn Write,
+    err: &mut dyn Write,
+    work: impl FnOnce(&A) -> Result<R, Failure>,
+) -> Result<R, u8> {
+    let args = parser::<A>(name)
+        .try_get_matches_from(command_line)
+        .and_then(|matches| A::from_arg_matches(&matches))
+        .map_err(|error| refused(&error, out, err))?;
+    work(&args).map_err(|failure| complain(err, &failure))
 }
 
 /// Does the work of a parsed command line, or reports its error.

@@ -10,7 +10,7 @@ use roverlab::picture::Picture;
 use roverlab::race::{GapDriver, RaceScore};
 use roverlab::world::RobotSpec;
 
-use crate::common::{CommonArgs, Failure, Outcome, Report, Stage, rounded};
+use crate::common::{CommonArgs, Failure, OF_PARTS, Outcome, PartArgs, Report, Stage, portable, rounded};
 use crate::cones::{Course, Judge, Passed, check_campaign, check_race, drawing, judged};
 
 /// Command line of `cone-drive`.
@@ -47,11 +47,15 @@ pub(crate) struct Args {
     #[arg(long, value_name = "TRACKS", conflicts_with = "track", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) campaign: Option<u32>,
 
+    /// The part to do.
+    #[command(flatten)]
+    pub(crate) parts: PartArgs,
+
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }
 
-crate::common::shares_options!(Args, common: CommonArgs);
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [("!campaign", OF_PARTS)]);
 
 /// Result of a drive.
 struct Driven {
@@ -155,30 +159,47 @@ fn lost(course: &Course, pose: Pose) -> bool {
     course.corridor.stations().iter().all(|station| pose.distance_to(station.position) > 25.0)
 }
 
+/// Result of a drive.
+#[derive(Debug, Clone)]
+struct Trial {
+    laps: usize,
+    cones_hit: usize,
+    off_course: usize,
+    /// Distance without a fault (m).
+    metres: f64,
+}
+
+portable!(struct Trial { laps, cones_hit, off_course, metres });
+
 fn campaign(args: &Args, tracks: u32) -> Result<Report, Failure> {
-    let (mut clean, mut laps, mut cones, mut off, mut metres) = (0_u32, 0, 0, 0, 0.0);
     check_campaign(&args.common)?;
-    for seed in (0..u64::from(tracks)).map(|track| args.common.seed.wrapping_add(track)) {
+    let trials = args.parts.share_out(&args.common.origin, "tracks", tracks.into(), None, |track| {
+        let seed = args.common.seed.wrapping_add(track);
         let course = Course::generated(seed)?;
         let scene = course.scene(&[course.start]);
         let stage = Stage::simulated(&scene, options(args, seed), args.common.faults()?)?;
         let driven = drive(&course, args, &stage)?;
         let verdict = &driven.verdict;
-        let done = verdict.lap_times.len() >= usize::from(args.laps);
-        clean += u32::from(done && verdict.cones_hit + verdict.off_course == 0);
-        laps += verdict.lap_times.len();
-        cones += verdict.cones_hit;
-        off += verdict.off_course;
-        metres += driven.clean;
-    }
+        Ok(Trial {
+            laps: verdict.lap_times.len(),
+            cones_hit: verdict.cones_hit,
+            off_course: verdict.off_course,
+            metres: driven.clean,
+        })
+    })?;
+    let is_clean =
+        |trial: &&Trial| trial.laps >= usize::from(args.laps) && trial.cones_hit + trial.off_course == 0;
+    let clean = trials.iter().filter(is_clean).count();
+    let sum = |of: fn(&Trial) -> usize| trials.iter().map(of).sum::<usize>();
+    let metres: f64 = trials.iter().map(|trial| trial.metres).sum();
     let share = |sum: f64| rounded(sum / f64::from(tracks));
     Ok(Report::new(Outcome::verdict("raced"))
         .field("tracks", tracks)
         .field("clean", clean)
-        .field("clean_share", share(f64::from(clean)))
-        .field("laps", laps)
-        .field("cones_hit", cones)
-        .field("off_course", off)
+        .field("clean_share", share(clean as f64))
+        .field("laps", sum(|trial| trial.laps))
+        .field("cones_hit", sum(|trial| trial.cones_hit))
+        .field("off_course", sum(|trial| trial.off_course))
         .field("distance_clean_m", share(metres)))
 }
 

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use roverlab::geometry::{Point, Segment};
 use roverlab::race::{ClosedSpline, Event, EventCourse, TrackFile, parse_track};
 
-use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
+use crate::common::{CommonArgs, Failure, OF_PARTS, Outcome, PartArgs, Report, rounded};
 use crate::cones::{Course, Spoils, check_race, refuse};
 use race::{Ending, Settings};
 use rival::{Contest, Rival};
@@ -115,6 +115,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "TRACKS", conflicts_with = "track", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) campaign: Option<u32>,
 
+    /// The part to do.
+    #[command(flatten)]
+    pub(crate) parts: PartArgs,
+
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }
@@ -134,7 +138,7 @@ impl Args {
     }
 }
 
-crate::common::shares_options!(Args, common: CommonArgs);
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [("!campaign", OF_PARTS)]);
 
 /// Sensors that detect the cones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

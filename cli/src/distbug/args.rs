@@ -1,7 +1,7 @@
 use std::num::NonZero;
 use std::path::PathBuf;
 
-use crate::common::{CommonArgs, parse_noise};
+use crate::common::{CommonArgs, OF_PARTS, PartArgs, parse_noise};
 
 /// Command line of `distbug`.
 #[derive(Debug, clap::Parser)]
@@ -53,8 +53,12 @@ pub(crate) struct Args {
     #[arg(long, value_name = "DIR", requires = "campaign")]
     pub(crate) save: Option<PathBuf>,
 
+    /// The part to do.
+    #[command(flatten)]
+    pub(crate) parts: PartArgs,
+
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }
 
-crate::common::shares_options!(Args, common: CommonArgs);
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [("!campaign", OF_PARTS)]);

@@ -1,6 +1,6 @@
 use super::trial::{Judgement, Trial, trial};
 use super::{Args, save, table};
-use crate::common::{Failure, Outcome, Report, Stopwatch, share_out, threads};
+use crate::common::{Failure, Outcome, Report, Stopwatch};
 
 /// Runs a campaign.
 pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
@@ -31,7 +31,7 @@ pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
 
 /// All trials in the order of their seeds, driven by several threads.
 pub(crate) fn trials(args: &Args) -> Result<Vec<Trial>, Failure> {
-    share_out("courses", args.worlds, threads(args.threads), |index| {
+    args.parts.share_out(&args.common.origin, "courses", args.worlds, args.threads, |index| {
         trial(args.common.seed.wrapping_add(index), &args.levels)
     })
 }

@@ -4,8 +4,9 @@ use roverlab::io::log::GroundTruth;
 use roverlab::io::sim::{RobotTruth, SimOptions};
 use roverlab::io::{self, ErrorKind};
 use roverlab::nav::{BugEvent, BugOutcome, BugParameters, DistBug, WallSide};
+use serde_json::Value;
 
-use crate::common::{Failure, Stage, StageTruth, Trip};
+use crate::common::{Failure, Portable, Stage, StageTruth, Trip, unexpected};
 use crate::driving::Trail;
 
 /// Driving options.
@@ -24,6 +25,24 @@ pub(crate) enum Ending {
     Verdict(BugOutcome),
     /// The robot failed.
     Failed(String),
+}
+
+impl Portable for Ending {
+    fn packed(&self) -> Value {
+        match self {
+            Self::Verdict(outcome) => (Some(*outcome), None),
+            Self::Failed(error) => (None, Some(error.clone())),
+        }
+        .packed()
+    }
+
+    fn unpacked(value: &Value) -> Result<Self, String> {
+        match Portable::unpacked(value)? {
+            (Some(outcome), None) => Ok(Self::Verdict(outcome)),
+            (None, Some(error)) => Ok(Self::Failed(error)),
+            _ => Err(unexpected(value, "either an outcome or an error")),
+        }
+    }
 }
 
 /// An event of a run. Points are in the world.

@@ -4,7 +4,7 @@ use std::path::Path;
 use roverlab::world::formats::sim::{self, SimFile};
 use roverlab::world::formats::wld;
 
-use super::trial::{Run, Trial};
+use super::trial::{Run, Trial, scene};
 use crate::common::Failure;
 
 /// Creates the folder before a long campaign.
@@ -28,8 +28,9 @@ pub(super) fn failures(trials: &[Trial], folder: &Path) -> Result<(), Failure> {
 pub(crate) fn save(trial: &Trial, folder: &Path) -> Result<(), Failure> {
     let name = format!("course-{}", trial.seed);
     let world = format!("{name}.wld");
-    let script = sim::print(&SimFile::for_scene(&trial.trip.scene, &world));
-    write(&folder.join(&world), &wld::print(&trial.trip.scene.world))?;
+    let scene = scene(trial.seed)?;
+    let script = sim::print(&SimFile::for_scene(&scene, &world));
+    write(&folder.join(&world), &wld::print(&scene.world))?;
     write(&folder.join(format!("{name}.sim")), &script)
 }
 

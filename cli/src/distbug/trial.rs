@@ -4,16 +4,17 @@ use roverlab::world::generate::{Course, CourseOptions, obstacle_course};
 use roverlab::world::{Colour, Marker, RobotSpec, Scene};
 
 use super::{Ending, Options, drive, sim_options};
-use crate::common::{Failure, Stage, Trip};
+use crate::common::{Failure, Stage, Trip, portable};
 
 /// One course of a campaign, driven once at every noise level.
 #[derive(Debug, Clone)]
 pub(crate) struct Trial {
     /// Seed of the course and the runs.
     pub(crate) seed: u64,
-    pub(crate) trip: Trip,
     pub(crate) runs: Vec<Run>,
 }
+
+portable!(struct Trial { seed, runs });
 
 /// Result of one run.
 #[derive(Debug, Clone)]
@@ -28,6 +29,8 @@ pub(crate) struct Run {
     /// Simulated time (s).
     pub(crate) sim_time: f64,
 }
+
+portable!(struct Run { ending, judgement, contacts, goal_distance, path_ratio, sim_time });
 
 /// Judgement of a verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -44,6 +47,17 @@ pub(crate) enum Judgement {
     /// The robot failed.
     Failed,
 }
+
+portable!(
+    enum Judgement {
+        Correct,
+        FarFromGoal,
+        NotReached,
+        NotUnreachable,
+        TimedOut,
+        Failed,
+    }
+);
 
 impl Judgement {
     /// Names of the wrong judgements in a table.
@@ -86,10 +100,8 @@ pub(crate) fn tolerance(noise: f64) -> f64 {
 /// Generates the course of a seed and drives an S4 through it at several noise levels.
 pub(crate) fn trial(seed: u64, noises: &[f64]) -> Result<Trial, Failure> {
     let spec = RobotSpec::s4();
-    let radius = spec.footprint.bounding_radius();
-    let options = CourseOptions { robot_radius: radius, ..CourseOptions::default() };
-    let course = obstacle_course(&mut Stream::new(seed), &options).map_err(Failure::run)?;
-    let shortest = shortest_way(&course, radius)?;
+    let course = course(seed, &spec)?;
+    let shortest = shortest_way(&course, spec.footprint.bounding_radius())?;
     let trip = trip(&course, spec);
     let time_limit = trip.generous_time_limit();
     let runs = noises.iter().map(|&noise| {
@@ -108,7 +120,20 @@ pub(crate) fn trial(seed: u64, noises: &[f64]) -> Result<Trial, Failure> {
         })
     });
     let runs = runs.collect::<Result<_, Failure>>()?;
-    Ok(Trial { seed, trip, runs })
+    Ok(Trial { seed, runs })
+}
+
+/// The course of a seed, for a robot.
+fn course(seed: u64, spec: &RobotSpec) -> Result<Course, Failure> {
+    let robot_radius = spec.footprint.bounding_radius();
+    let options = CourseOptions { robot_radius, ..CourseOptions::default() };
+    obstacle_course(&mut Stream::new(seed), &options).map_err(Failure::run)
+}
+
+/// The scene of a seed's course.
+pub(crate) fn scene(seed: u64) -> Result<Scene, Failure> {
+    let spec = RobotSpec::s4();
+    Ok(trip(&course(seed, &spec)?, spec).scene)
 }
 
 /// Length of the shortest way for a robot radius, if there is one (m).

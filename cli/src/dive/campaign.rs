@@ -3,8 +3,8 @@ use roverlab::random::Stream;
 use roverlab::world::Water;
 use serde_json::json;
 
-use super::{Args, Dived, LIMIT, Plan, SETTLING, dive, options, scene};
-use crate::common::{Failure, Report, Stage, campaign_report, rounded, wrong_seeds};
+use super::{Args, LIMIT, Plan, SETTLING, dive, options, scene};
+use crate::common::{Failure, Report, Stage, campaign_report, portable, rounded, wrong_seeds};
 
 /// Depths between which a dive leads (m), and how far.
 const DEPTHS: [f64; 2] = [0.25, 1.45];
@@ -37,23 +37,43 @@ fn plan(args: &Args, seed: u64) -> Plan {
     }
 }
 
+/// What came of a dive.
+#[derive(Debug, Clone)]
+struct Trial {
+    is_good: bool,
+    contacts: u32,
+    settle: Option<f64>,
+    overshoot: f64,
+    within: f64,
+    heading_rms: f64,
+}
+
+portable!(struct Trial { is_good, contacts, settle, overshoot, within, heading_rms });
+
 /// Work of the campaign.
 pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
-    let dives = args.trials.trials("dives", DIVES, args.common.seed, |seed| {
+    let dives = args.trials.trials(&args.common, "dives", DIVES, |seed| {
         let plan = plan(args, seed);
         let scene = scene(&plan);
         let stage = Stage::simulated(&scene, options(&plan, LIMIT), Vec::new())?;
         let done = dive(&plan, &scene, &stage, LIMIT, |_| {})?;
-        Ok(Dived { trail: Vec::new(), ..done })
+        Ok(Trial {
+            is_good: done.is_good(),
+            contacts: done.end.contacts,
+            settle: done.settle,
+            overshoot: done.overshoot,
+            within: done.within,
+            heading_rms: done.heading_rms,
+        })
     })?;
-    let wrong = wrong_seeds(&dives, Dived::is_good);
-    let worst = |of: &dyn Fn(&Dived) -> f64| dives.iter().map(|(_, done)| of(done)).fold(0.0, f64::max);
+    let wrong = wrong_seeds(&dives, |done| done.is_good);
+    let worst = |of: &dyn Fn(&Trial) -> f64| dives.iter().map(|(_, done)| of(done)).fold(0.0, f64::max);
     let latest = worst(&|done| done.settle.unwrap_or(f64::INFINITY));
     let overshoot = worst(&|done| done.overshoot);
     let squares: f64 = dives.iter().map(|(_, done)| done.heading_rms * done.heading_rms).sum();
     let heading = (squares / dives.len().max(1) as f64).sqrt();
     let least = dives.iter().map(|(_, done)| done.within).fold(1.0, f64::min);
-    let contacts: u64 = dives.iter().map(|(_, done)| u64::from(done.end.contacts)).sum();
+    let contacts: u64 = dives.iter().map(|(_, done)| u64::from(done.contacts)).sum();
     let good = dives.len() - wrong.len();
     args.common.tell("dives    good  contacts  latest to settle  overshoot  least within 10 mm  heading");
     args.common.tell(format_args!(

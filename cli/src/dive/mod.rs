@@ -13,7 +13,8 @@ use roverlab::picture::{Mark, Picture, Style};
 use roverlab::world::{Colour, DriveSpec, RobotSpec, Scene, Water, World};
 
 use crate::common::{
-    CampaignArgs, CommonArgs, Failure, OF_ONE_RUN, Outcome, Report, Stage, millimetres, rounded,
+    CampaignArgs, CommonArgs, Failure, OF_A_CAMPAIGN, OF_ONE_RUN, Outcome, Report, Stage, millimetres,
+    rounded,
 };
 use crate::driving::{RESERVE, paced};
 use crate::water::{BOOK, LEVEL, WaterArgs, pool};
@@ -56,7 +57,7 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["world", "robot", "start", "goal"]),
     ("campaign", OF_ONE_RUN),
     ("campaign", &["water", "depth"]),
-    ("!campaign", &["runs", "threads"]),
+    ("!campaign", OF_A_CAMPAIGN),
 ]);
 
 fn parse_depth(text: &str) -> Result<f64, String> {

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use roverlab::vision::network::{Architecture, Network};
 
-use crate::common::{CommonArgs, Failure, OF_ONE_RUN, Report, check_writable, parse_png};
+use crate::common::{CommonArgs, Failure, OF_ONE_RUN, PartArgs, Report, check_writable, parse_png};
 use crate::lane_keeping::{Pilot, Plan, Setting, one, scores};
 
 /// The command line of `end-to-end`.
@@ -136,7 +136,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     }
     let plan = Plan { pilot, speed: args.speed, minutes: args.minutes, attention, common: &args.common };
     if args.campaign {
-        let scores = scores(&plan, args.courses, args.threads)?;
+        let scores = scores(&plan, args.courses, args.threads, &PartArgs::default())?;
         return Ok(scores.report("net", scores.autonomy() >= ENOUGH));
     }
     one(&plan, &Setting::of(&args.common, &args.course, args.light)?)

@@ -1,6 +1,6 @@
 use roverlab::drive::FirstTask;
 
-use crate::common::{CampaignArgs, CommonArgs, OF_ONE_RUN};
+use crate::common::{CampaignArgs, CommonArgs, OF_A_CAMPAIGN, OF_ONE_RUN};
 
 /// Command line of `first-steps`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -38,7 +38,7 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["goal"]),
     ("campaign", OF_ONE_RUN),
     ("campaign", &["task"]),
-    ("!campaign", &["runs", "threads"]),
+    ("!campaign", OF_A_CAMPAIGN),
 ]);
 
 /// A task of section 2.13.

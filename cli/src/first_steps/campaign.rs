@@ -6,7 +6,7 @@ use super::Args;
 use super::args::Task;
 use super::job::{Drive, drive};
 use super::scene::scene;
-use crate::common::{Failure, Report, campaign_report, millimetres, rounded, wrong_seeds};
+use crate::common::{Failure, Report, campaign_report, millimetres, portable, rounded, wrong_seeds};
 use crate::driving::{Conditions, RESERVE};
 
 /// Rooms without `--runs`.
@@ -25,6 +25,8 @@ struct Trial {
     heading_error: f64,
 }
 
+portable!(struct Trial { returned, contacts, position_error, heading_error });
+
 impl Trial {
     fn is_good(&self) -> bool {
         self.returned
@@ -36,7 +38,7 @@ impl Trial {
 
 /// The campaign's work.
 pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
-    let trials = args.trials.trials("rooms", ROOMS, args.common.seed, |seed| both(args, seed))?;
+    let trials = args.trials.trials(&args.common, "rooms", ROOMS, |seed| both(args, seed))?;
     args.common.tell("task    runs  good  position  largest  heading  largest");
     let (mut rows, mut passed) = (Vec::new(), true);
     for (index, task) in Task::ALL.into_iter().enumerate() {

@@ -10,7 +10,9 @@ use std::path::PathBuf;
 
 use roverlab::drive::traffic::{FreeDriveRules, FreeDriveScore};
 
-use crate::common::{CommonArgs, Failure, OF_ONE_RUN, Outcome, Report, millimetres, rounded, write_image};
+use crate::common::{
+    CommonArgs, Failure, OF_ONE_RUN, OF_PARTS, Outcome, PartArgs, Report, millimetres, rounded, write_image,
+};
 use crate::end_to_end::steering;
 pub(crate) use campaign::scores;
 pub(crate) use course::{Setting, course};
@@ -90,6 +92,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) threads: Option<NonZero<usize>>,
 
+    /// The part to do.
+    #[command(flatten)]
+    pub(crate) parts: PartArgs,
+
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }
@@ -99,6 +105,7 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("campaign", OF_ONE_RUN),
     ("campaign", &["course", "light"]),
     ("!campaign", &["courses", "threads"]),
+    ("!campaign", OF_PARTS),
     ("driver!=net", &["weights"]),
 ]);
 
@@ -162,7 +169,7 @@ pub(crate) fn disturbance(text: &str) -> Result<f64, String> {
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let plan = args.plan()?;
     if args.campaign {
-        let scores = scores(&plan, args.courses, args.threads)?;
+        let scores = scores(&plan, args.courses, args.threads, &args.parts)?;
         return Ok(scores.report(plan.pilot.name(), scores.clean_share() >= ENOUGH));
     }
     one(&plan, &Setting::of(&args.common, &args.course, args.light)?)

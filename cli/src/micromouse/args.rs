@@ -1,7 +1,7 @@
 use std::num::NonZero;
 use std::path::PathBuf;
 
-use crate::common::{CommonArgs, OF_ONE_RUN, parse_seconds};
+use crate::common::{CommonArgs, OF_ONE_RUN, OF_PARTS, PartArgs, parse_seconds};
 
 /// Command line of `micromouse`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -103,20 +103,17 @@ pub(crate) struct Args {
     #[arg(long, value_name = "S", value_parser = parse_seconds, default_value = "600", allow_hyphen_values = true)]
     pub(crate) mms_limit: f64,
 
+    /// The part to do.
+    #[command(flatten)]
+    pub(crate) parts: PartArgs,
+
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }
 
-impl Args {
-    /// Number of threads.
-    pub(crate) fn threads(&self) -> usize {
-        let cores = || std::thread::available_parallelism().map_or(1, NonZero::get);
-        self.threads.map_or_else(cores, NonZero::get)
-    }
-}
-
 crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("campaign", OF_ONE_RUN),
+    ("!campaign", OF_PARTS),
     ("plan", &["seed", "noise", "time_limit", "quantised", "realtime", "fault", "supervised", "doubled"]),
     ("mms_run", &["seed", "noise", "time_limit", "quantised", "realtime", "fault", "supervised", "picture", "animation", "doubled"]),
     ("!mms_run", &["patience", "mms_limit"]),

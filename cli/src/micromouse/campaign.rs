@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use super::Args;
 use super::explore::{Told, drive, goal_error, kit, limit, stage};
-use crate::common::{Failure, Outcome, Report, millimetres, rounded, share_out};
+use crate::common::{Failure, Outcome, Report, millimetres, portable, rounded};
 use crate::driving::{Conditions, RESERVE, Run};
 
 /// Result of a run through a maze.
@@ -35,6 +35,10 @@ pub(crate) struct Trial {
     pub(crate) sim_time: f64,
     pub(crate) error: Option<String>,
 }
+
+portable!(struct Trial {
+    maze, side, seed, ideal, proved, contacts, wrong_walls, best_plan, late, goal_error, lost, sim_time, error,
+});
 
 impl Trial {
     /// Maximum relative delay compared with the plan.
@@ -76,7 +80,7 @@ impl Trial {
 pub(crate) fn campaign(args: &Args, folder: &Path) -> Result<Report, Failure> {
     let mazes = mazes(folder)?;
     let count = mazes.len() as u64 * args.runs;
-    let trials = share_out("drives", count, args.threads(), |index| {
+    let trials = args.parts.share_out(&args.common.origin, "drives", count, args.threads, |index| {
         let (name, file) = &mazes[(index / args.runs) as usize];
         trial(args, name, file, args.common.seed.wrapping_add(index % args.runs))
     })?;

@@ -12,7 +12,7 @@ use roverlab::world::{CameraSpec, Scene};
 use super::campaign::wrong;
 use super::watch::{Seen, bearing, show};
 use super::{Args, scene};
-use crate::common::{Failure, Outcome, Report, rounded, share_out, threads, wrong_seeds};
+use crate::common::{Failure, Outcome, Report, portable, rounded, wrong_seeds};
 use crate::driving::{Conditions, Run};
 
 /// Time limit of an approach in a campaign (s).
@@ -87,9 +87,11 @@ struct Trial {
     reached: bool,
 }
 
+portable!(struct Trial { still, found, reached });
+
 /// Many scenes.
 pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
-    let trials = share_out("scenes", args.scenes, threads(None), |index| {
+    let trials = args.parts.share_out(&args.common.origin, "scenes", args.scenes, None, |index| {
         let seed = args.common.seed.wrapping_add(index);
         Ok((seed, trial(args, seed)?))
     })?;

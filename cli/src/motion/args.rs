@@ -1,4 +1,4 @@
-use crate::common::{CommonArgs, OF_ONE_RUN};
+use crate::common::{CommonArgs, OF_ONE_RUN, OF_PARTS, PartArgs};
 
 /// Command line of `motion`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -57,6 +57,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) scenes: u64,
 
+    /// The part to do.
+    #[command(flatten)]
+    pub(crate) parts: PartArgs,
+
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }
@@ -67,7 +71,9 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("campaign", &["time_limit", "still"]),
     ("!campaign", &["pairs", "scenes"]),
     ("approach", &["pairs"]),
+    ("!campaign", OF_PARTS),
     ("!approach", &["scenes"]),
+    ("!approach", OF_PARTS),
 ]);
 
 fn parse_light(text: &str) -> Result<f64, String> {

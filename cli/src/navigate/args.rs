@@ -1,6 +1,6 @@
 use std::num::NonZero;
 
-use crate::common::{CommonArgs, Failure, OF_ONE_RUN};
+use crate::common::{CommonArgs, Failure, OF_A_CAMPAIGN, OF_ONE_RUN, PartArgs};
 use roverlab::geometry::units;
 
 /// Command line of `navigate`.
@@ -56,6 +56,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) threads: Option<NonZero<usize>>,
 
+    /// The part to do.
+    #[command(flatten)]
+    pub(crate) parts: PartArgs,
+
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }
@@ -63,7 +67,7 @@ pub(crate) struct Args {
 crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("campaign", OF_ONE_RUN),
     ("campaign", &["unmapped"]),
-    ("!campaign", &["runs", "threads"]),
+    ("!campaign", OF_A_CAMPAIGN),
 ]);
 
 impl Args {

@@ -4,7 +4,7 @@ use roverlab::nav::NavigatorOutcome;
 use super::Args;
 use super::course;
 use super::drive::{Arrival, drive};
-use crate::common::{Failure, Outcome, Report, rounded, share_out, threads};
+use crate::common::{Failure, Outcome, Report, portable, rounded};
 use crate::driving::{Conditions, RESERVE};
 
 /// A generated world and its result.
@@ -22,6 +22,10 @@ pub(crate) struct Trial {
     pub(crate) sim_time: f64,
     pub(crate) path_length: f64,
 }
+
+portable!(struct Trial {
+    seed, outcome, contacts, goal_distance, unmapped, replans, recoveries, sim_time, path_length,
+});
 
 /// True distance from the goal up to which it counts as reached (m).
 const NEAR: f64 = 0.1;
@@ -75,7 +79,7 @@ pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
 
 /// All trials in the order of their seeds, whatever the number of threads.
 pub(crate) fn trials(args: &Args) -> Result<Vec<Trial>, Failure> {
-    share_out("worlds", args.runs, threads(args.threads), |index| {
+    args.parts.share_out(&args.common.origin, "worlds", args.runs, args.threads, |index| {
         trial(args, args.common.seed.wrapping_add(index))
     })
 }

@@ -10,8 +10,8 @@ use roverlab::world::road::Appearance;
 use serde_json::json;
 
 use crate::common::{
-    CampaignArgs, CommonArgs, Failure, OF_ONE_RUN, Outcome, Report, Stage, campaign_report, millimetres,
-    wrong_seeds,
+    CampaignArgs, CommonArgs, Failure, OF_A_CAMPAIGN, OF_ONE_RUN, Outcome, Report, Stage, campaign_report,
+    millimetres, wrong_seeds,
 };
 use drive::Drive;
 
@@ -51,7 +51,7 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["world", "robot", "start", "goal", "quantised", "robios", "supervised"]),
     ("campaign", OF_ONE_RUN),
     ("campaign", &["kind"]),
-    ("!campaign", &["runs", "threads"]),
+    ("!campaign", OF_A_CAMPAIGN),
 ]);
 
 /// Kind of the parking area.
@@ -131,7 +131,7 @@ fn report(args: &Args, lot: &ParkingLot, drive: &Drive) -> Report {
 type Trial = (bool, bool);
 
 fn campaign(args: &Args) -> Result<Report, Failure> {
-    let trials = args.trials.trials("lots", LOTS, args.common.seed, |seed| trial(args, seed))?;
+    let trials = args.trials.trials(&args.common, "lots", LOTS, |seed| trial(args, seed))?;
     let mut rows = Vec::new();
     args.common.tell("kind            lots  legal  touched");
     for kind in Kind::ALL {

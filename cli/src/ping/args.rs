@@ -1,4 +1,4 @@
-use crate::common::{CampaignArgs, CommonArgs};
+use crate::common::{CampaignArgs, CommonArgs, OF_A_CAMPAIGN};
 
 /// Command line of `ping`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -43,7 +43,7 @@ pub(crate) struct Args {
 crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["world", "robot", "start", "goal", "robios", "quantised", "fault", "supervised"]),
     ("campaign", &["robots", "messages", "loss", "picture", "animation", "realtime"]),
-    ("!campaign", &["runs", "threads"]),
+    ("!campaign", OF_A_CAMPAIGN),
 ]);
 
 fn parse_loss(text: &str) -> Result<f64, String> {

@@ -15,7 +15,7 @@ pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
     let sizes = ROBOTS.count() as u64;
     let first = args.common.seed;
     let robots = |seed: u64| ROBOTS.start() + seed.wrapping_sub(first) % sizes;
-    let trials = args.trials.trials("games", sizes, first, |seed| game(args, seed, robots(seed)))?;
+    let trials = args.trials.trials(&args.common, "games", sizes, |seed| game(args, seed, robots(seed)))?;
     args.common.tell("robots  games  messages  duplicated  missing  joined  left  repeats  per message");
     let mut rows = Vec::new();
     for size in ROBOTS {

@@ -12,6 +12,8 @@ use roverlab::io::{self, FleetIo, RobotIo};
 use roverlab::random::Stream;
 use roverlab::world::{RobotPlacement, RobotSpec, Scene, World};
 
+use crate::common::portable;
+
 /// Half the side of the floor, and radius of the ring of robots on it (m).
 const HALF: f64 = 0.8;
 const RING: f64 = 0.55;
@@ -49,6 +51,8 @@ pub(super) struct Played {
     pub(super) left: usize,
     pub(super) sim_time: f64,
 }
+
+portable!(struct Played { arrivals, repeats, joined, left, sim_time });
 
 impl Game {
     /// The ring of a seed.

@@ -1,4 +1,4 @@
-use crate::common::{CampaignArgs, CommonArgs, OF_ONE_RUN};
+use crate::common::{CampaignArgs, CommonArgs, OF_A_CAMPAIGN, OF_ONE_RUN};
 use crate::water::WaterArgs;
 
 /// Command line of `pool-search`.
@@ -41,7 +41,7 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["goal"]),
     ("campaign", OF_ONE_RUN),
     ("campaign", &["water", "light"]),
-    ("!campaign", &["runs", "threads"]),
+    ("!campaign", OF_A_CAMPAIGN),
 ]);
 
 fn parse_light(text: &str) -> Result<f64, String> {

@@ -5,7 +5,7 @@ use serde_json::json;
 use super::Args;
 use super::hunt::{DEPTH, Hunt, hunt};
 use super::scene::{TURBIDITIES, scene, turbidity};
-use crate::common::{Failure, Report, campaign_report, millimetres, wrong_seeds};
+use crate::common::{Failure, Report, campaign_report, millimetres, portable, wrong_seeds};
 use crate::driving::{Conditions, RESERVE};
 use crate::terrain::percent;
 use crate::water::{Site, limit};
@@ -28,6 +28,8 @@ struct Trial {
     contacts: u32,
 }
 
+portable!(struct Trial { found, is_false, error, contacts });
+
 impl Trial {
     fn is_good(&self) -> bool {
         self.found && !self.is_false && self.contacts == 0 && self.error.is_some_and(|error| error <= PLACE)
@@ -36,7 +38,7 @@ impl Trial {
 
 /// The campaign's work.
 pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
-    let trials = args.trials.trials("pools", POOLS, args.common.seed, |seed| trial(args, seed))?;
+    let trials = args.trials.trials(&args.common, "pools", POOLS, |seed| trial(args, seed))?;
     args.common.tell("turbidity  pools  found  false  contacts  worst place");
     let mut rows = Vec::new();
     for water in TURBIDITIES {

@@ -1,6 +1,6 @@
 use roverlab::geometry::units;
 
-use crate::common::{CampaignArgs, CommonArgs, OF_ONE_RUN};
+use crate::common::{CampaignArgs, CommonArgs, OF_A_CAMPAIGN, OF_ONE_RUN};
 use crate::water::WaterArgs;
 
 /// Command line of `pool-wall`.
@@ -47,7 +47,7 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["goal"]),
     ("campaign", OF_ONE_RUN),
     ("campaign", &["water", "laps", "depth"]),
-    ("!campaign", &["runs", "threads"]),
+    ("!campaign", OF_A_CAMPAIGN),
 ]);
 
 fn parse_depth(text: &str) -> Result<f64, String> {

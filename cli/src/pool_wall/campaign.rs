@@ -6,7 +6,7 @@ use serde_json::json;
 use super::Args;
 use super::job::{generated, kind, limit};
 use super::round::{Errors, round};
-use crate::common::{Failure, Report, campaign_report, millimetres, wrong_seeds};
+use crate::common::{Failure, Report, campaign_report, millimetres, portable, wrong_seeds};
 use crate::driving::{Conditions, RESERVE};
 
 /// Laps of a pool, and the largest root mean square of the error (m).
@@ -23,6 +23,8 @@ struct Trial {
     errors: Errors,
 }
 
+portable!(struct Trial { laps, contacts, errors });
+
 impl Trial {
     fn is_good(&self) -> bool {
         self.laps >= LAPS && self.contacts == 0 && self.errors.rms().is_some_and(|rms| rms <= RMS)
@@ -31,7 +33,7 @@ impl Trial {
 
 /// The campaign's work.
 pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
-    let trials = args.trials.trials("pools", POOLS, args.common.seed, |seed| trial(args, seed))?;
+    let trials = args.trials.trials(&args.common, "pools", POOLS, |seed| trial(args, seed))?;
     let mut rows = Vec::new();
     args.common.tell("pool       pools  laps  contacts  rms error  largest");
     let mut all = Errors::default();

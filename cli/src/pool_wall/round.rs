@@ -2,7 +2,7 @@ use roverlab::drive::marine::{PoolWall, PoolWallOutcome, PoolWallParameters};
 use roverlab::io::control;
 use roverlab::world::Scene;
 
-use crate::common::Failure;
+use crate::common::{Failure, portable};
 use crate::driving::{Conditions, Run};
 use crate::water::Shore;
 
@@ -22,6 +22,8 @@ pub(crate) struct Errors {
     /// Of the depth.
     pub(crate) depth_squares: f64,
 }
+
+portable!(struct Errors { squares, count, largest, depth_squares });
 
 /// Metres around the nearest side in which a corner counts, and seconds after one that do.
 const CORNER: f64 = 1.2;

@@ -4,7 +4,7 @@ use roverlab::nav::RampOutcome;
 use super::Args;
 use super::cross::{Passage, cross, levels};
 use super::job::SECONDS;
-use crate::common::{Failure, Outcome, Report, millimetres, wrong_seeds};
+use crate::common::{Failure, Outcome, Report, millimetres, portable, wrong_seeds};
 use crate::driving::{Conditions, RESERVE};
 use crate::terrain::{Ride, median};
 
@@ -17,6 +17,8 @@ pub(crate) struct Trial {
     pub(crate) edge_distance: f64,
     pub(crate) sim_time: f64,
 }
+
+portable!(struct Trial { crossed, outcome, mishap, edge_distance, sim_time });
 
 impl Trial {
     /// Whether the robot fell or tipped.
@@ -59,7 +61,7 @@ pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
 
 /// All crossings, by seed.
 pub(crate) fn trials(args: &Args) -> Result<Vec<(u64, Trial)>, Failure> {
-    args.trials.trials("levels", LEVELS, args.common.seed, |seed| trial(args, seed))
+    args.trials.trials(&args.common, "levels", LEVELS, |seed| trial(args, seed))
 }
 
 fn trial(args: &Args, seed: u64) -> Result<Trial, Failure> {

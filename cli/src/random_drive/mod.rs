@@ -15,8 +15,8 @@ use roverlab::random::Stream;
 use roverlab::world::{Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
 
 use crate::common::{
-    CampaignArgs, CommonArgs, Failure, FreeFloor, OF_ONE_RUN, Outcome, Report, campaign_report, rounded,
-    wrong_seeds,
+    CampaignArgs, CommonArgs, Failure, FreeFloor, OF_A_CAMPAIGN, OF_ONE_RUN, Outcome, Report,
+    campaign_report, rounded, wrong_seeds,
 };
 use crate::driving::{Conditions, Trail, counted, draw_contacts, paced};
 
@@ -54,7 +54,7 @@ pub(crate) struct Args {
 
 crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("campaign", OF_ONE_RUN),
-    ("!campaign", &["runs", "threads"]),
+    ("!campaign", OF_A_CAMPAIGN),
 ]);
 
 /// Simulated time of a run (s).
@@ -192,13 +192,14 @@ fn campaign(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     let scene = scene(usize::from(args.robots.unwrap_or(2)));
     let seconds = common.time_limit.unwrap_or(SECONDS);
-    let trials = args.trials.trials("drives", SEEDS, common.seed, |seed| {
+    let trials = args.trials.trials(common, "drives", SEEDS, |seed| {
         let mut fleet = Fleet::new(&scene, SimOptions::with_noise(common.noise, seed))?;
-        together(&mut fleet, &scene, (seed, seconds), |_| {})
+        let outing = together(&mut fleet, &scene, (seed, seconds), |_| {})?;
+        Ok((outing.contacts, outing.report.path_length))
     })?;
-    let wrong = wrong_seeds(&trials, |outing| outing.contacts == 0);
-    let contacts: u64 = trials.iter().map(|(_, outing)| outing.contacts).sum();
-    let metres: f64 = trials.iter().filter_map(|(_, outing)| outing.report.path_length).sum();
+    let wrong = wrong_seeds(&trials, |(contacts, _)| *contacts == 0);
+    let contacts: u64 = trials.iter().map(|(_, (contacts, _))| contacts).sum();
+    let metres: f64 = trials.iter().filter_map(|(_, (_, length))| *length).sum();
     let robots = scene.robots.len();
     common.tell(format_args!(
         "{} drives of {}, {seconds:.0} s each: {metres:.0} m of the first ones, {contacts} contacts",

@@ -2,7 +2,7 @@ use roverlab::geometry::units;
 use roverlab::nav::elevation::Climber;
 use roverlab::world::RobotSpec;
 
-use crate::common::{CampaignArgs, CommonArgs, OF_ONE_RUN};
+use crate::common::{CampaignArgs, CommonArgs, OF_A_CAMPAIGN, OF_ONE_RUN, portable};
 
 /// Method of climbing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -14,6 +14,14 @@ pub(crate) enum Method {
     /// Steepest ascent, by distance sensors that point down.
     Psd,
 }
+
+portable!(
+    enum Method {
+        Search,
+        Ascent,
+        Psd,
+    }
+);
 
 impl Method {
     pub(crate) const ALL: [Self; 3] = [Self::Search, Self::Ascent, Self::Psd];
@@ -72,7 +80,7 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["goal"]),
     ("campaign", OF_ONE_RUN),
     ("campaign", &["method"]),
-    ("!campaign", &["runs", "threads"]),
+    ("!campaign", OF_A_CAMPAIGN),
 ]);
 
 impl Args {

@@ -8,7 +8,7 @@ use super::Args;
 use super::args::Method;
 use super::climb::{Arrival, Summit, climb, equipped};
 use super::job::SECONDS;
-use crate::common::{Failure, Outcome, Report, rounded, wrong_seeds};
+use crate::common::{Failure, Outcome, Report, portable, rounded, wrong_seeds};
 use crate::driving::{Conditions, RESERVE};
 use crate::terrain::{Hike, Ride, median};
 
@@ -26,6 +26,10 @@ pub(crate) struct Trial {
     pub(crate) path_ratio: f64,
     pub(crate) sim_time: f64,
 }
+
+portable!(struct Trial {
+    method, reached, claims_top, mishap, distance, below, path_ratio, sim_time,
+});
 
 impl Trial {
     /// Whether the robot tipped, fell or drowned.
@@ -97,7 +101,7 @@ pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
 
 /// All climbs, by seed: each hill by each method.
 pub(crate) fn trials(args: &Args) -> Result<Vec<(u64, Trial)>, Failure> {
-    let hills = args.trials.trials("hills", HILLS, args.common.seed, |seed| {
+    let hills = args.trials.trials(&args.common, "hills", HILLS, |seed| {
         Method::ALL.into_iter().map(|method| trial(args, seed, method)).collect::<Result<Vec<_>, _>>()
     })?;
     let climbs =

@@ -5,7 +5,7 @@ use roverlab::geometry::units;
 use roverlab::world::World;
 
 use super::tour::OFF;
-use crate::common::{CampaignArgs, CommonArgs, OF_ONE_RUN, parse_png};
+use crate::common::{CampaignArgs, CommonArgs, OF_A_CAMPAIGN, OF_ONE_RUN, parse_png};
 use crate::water::WaterArgs;
 
 /// Command line of `survey`.
@@ -72,7 +72,7 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["goal"]),
     ("campaign", OF_ONE_RUN),
     ("campaign", &["water", "map"]),
-    ("!campaign", &["runs", "threads"]),
+    ("!campaign", OF_A_CAMPAIGN),
 ]);
 
 impl Args {

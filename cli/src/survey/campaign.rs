@@ -5,7 +5,7 @@ use serde_json::json;
 use super::Args;
 use super::floor::{Floor, floor, scene};
 use super::tour::{COVERED, Quality, tour};
-use crate::common::{Failure, Report, campaign_report, millimetres, rounded, wrong_seeds};
+use crate::common::{Failure, Report, campaign_report, millimetres, portable, rounded, wrong_seeds};
 use crate::driving::{Conditions, RESERVE};
 use crate::terrain::percent;
 use crate::water::{Site, limit};
@@ -28,6 +28,8 @@ struct Trial {
     quality: Quality,
 }
 
+portable!(struct Trial { contacts, covered, quality });
+
 impl Trial {
     /// Whether it did as it should, apart from what it says of its own errors.
     fn is_good(&self) -> bool {
@@ -44,7 +46,7 @@ impl Trial {
 
 /// The campaign's work.
 pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
-    let trials = args.trials.trials("surveys", FLOORS, args.common.seed, |seed| trial(args, seed))?;
+    let trials = args.trials.trials(&args.common, "surveys", FLOORS, |seed| trial(args, seed))?;
     args.common
         .tell("floor  surveys  good  covered  depth p95  place p95  within 2 sigma  way   altitude rms");
     let mut rows = Vec::new();

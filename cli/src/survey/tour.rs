@@ -3,7 +3,7 @@ use roverlab::geometry::{Aabb, Point, Point3, Vector};
 use roverlab::io::{Psd, TruthInSpace, control};
 use roverlab::world::{Scene, World};
 
-use crate::common::Failure;
+use crate::common::{Failure, portable};
 use crate::driving::{Conditions, Run};
 use crate::water::{Site, ground};
 
@@ -30,6 +30,8 @@ pub(super) struct Quality {
     /// Root mean square error of the altitude (m), where one is held.
     pub(super) altitude: Option<f64>,
 }
+
+portable!(struct Quality { coverage, inside, depth, position, way, by_walls, altitude });
 
 /// The least share of cells with a depth of a floor that is covered.
 pub(super) const COVERED: f64 = 0.99;

@@ -5,7 +5,7 @@ use roverlab::geometry::{Point, Pose, units};
 use roverlab::nav::elevation::{Climber, Objective};
 use roverlab::world::RobotSpec;
 
-use crate::common::{Failure, PlainArgs, parse_point, parse_pose};
+use crate::common::{Failure, OF_A_CAMPAIGN, PartArgs, PlainArgs, parse_point, parse_pose};
 
 /// Planner of the path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -119,6 +119,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) threads: Option<NonZero<usize>>,
 
+    /// The part to do.
+    #[command(flatten)]
+    pub(crate) parts: PartArgs,
+
     #[command(flatten)]
     pub(crate) plain: PlainArgs,
 }
@@ -127,7 +131,7 @@ crate::common::shares_options!(Args, plain: PlainArgs, unheeded: [
     ("always", &["animation"]),
     ("world", &["seed"]),
     ("campaign", &["world", "start", "goal", "cost", "planner", "picture"]),
-    ("!campaign", &["runs", "threads"]),
+    ("!campaign", OF_A_CAMPAIGN),
 ]);
 
 impl Args {

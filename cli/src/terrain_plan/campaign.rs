@@ -7,7 +7,7 @@ use roverlab::world::{GridCell, HeightField};
 use super::Args;
 use super::args::{Cost, Planner, refused};
 use super::job::{plan, surface};
-use crate::common::{Failure, Outcome, Report, Stopwatch, share_out, threads};
+use crate::common::{Failure, Outcome, Report, Stopwatch, portable};
 use crate::terrain::median;
 
 /// Results of the planners on some hills.
@@ -21,6 +21,8 @@ struct Trial {
     time: f64,
 }
 
+portable!(struct Trial { compared, equal, changes, time });
+
 /// Samples along a side for plans by A*, and for the smaller hills that change.
 const SAMPLES: usize = 512;
 const CHANGING: usize = 65;
@@ -29,7 +31,7 @@ const CHANGES: u32 = 20;
 
 /// Runs the campaign.
 pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
-    let trials = share_out("hills", args.runs, threads(args.threads), |index| {
+    let trials = args.parts.share_out(&args.plain.origin, "hills", args.runs, args.threads, |index| {
         trial(args, args.plain.seed.wrapping_add(index))
     })?;
     let sum = |of: fn(&Trial) -> u32| trials.iter().map(of).sum::<u32>();

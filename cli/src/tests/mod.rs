@@ -19,6 +19,7 @@ mod maze_drives;
 mod mazes;
 mod navigate;
 mod parking;
+mod parts;
 mod quadtree;
 mod recordings;
 mod safety;

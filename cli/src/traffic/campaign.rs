@@ -4,7 +4,7 @@ use roverlab::drive::traffic::EvasionScore;
 
 use super::setting::Setting;
 use super::{Args, drive, rows, table};
-use crate::common::{Failure, Report, Stage, campaign_report, rounded, wrong_seeds};
+use crate::common::{Failure, Report, Stage, campaign_report, portable, rounded, wrong_seeds};
 
 /// Number of courses without `--runs`.
 const COURSES: u64 = 100;
@@ -20,9 +20,11 @@ struct Trial {
     possible: f64,
 }
 
+portable!(struct Trial { score, possible });
+
 /// Drives on a number of courses, with consecutive seeds.
 pub(super) fn run(args: &Args) -> Result<Report, Failure> {
-    let trials = args.trials.trials("courses", COURSES, args.common.seed, |seed| trial(args, seed))?;
+    let trials = args.trials.trials(&args.common, "courses", COURSES, |seed| trial(args, seed))?;
     for (seed, Trial { score, possible }) in &trials {
         args.common.tell(format_args!(
             "course {seed}: {:.0} of {possible:.0} points, {} laps in {:.0} s, {} collisions, {} negative, {} departures",

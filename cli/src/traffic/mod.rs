@@ -8,7 +8,7 @@ mod setting;
 use roverlab::drive::traffic::{EvasionElement, EvasionScore};
 use serde_json::{Value, json};
 
-use crate::common::{CampaignArgs, CommonArgs, Failure, OF_ONE_RUN, Outcome, Report, rounded};
+use crate::common::{CampaignArgs, CommonArgs, Failure, OF_A_CAMPAIGN, OF_ONE_RUN, Outcome, Report, rounded};
 use drive::Drive;
 use setting::Setting;
 
@@ -62,7 +62,7 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["world", "robot", "start", "goal", "quantised", "robios", "supervised"]),
     ("campaign", OF_ONE_RUN),
     ("campaign", &["course"]),
-    ("!campaign", &["runs", "threads"]),
+    ("!campaign", OF_A_CAMPAIGN),
 ]);
 
 /// Runs the command.

@@ -1,9 +1,10 @@
 //! The program `roverlab` as a process: its warnings, robots behind the library of RoBIOS, runs that are
-//! killed, and the page.
+//! killed, campaigns in parts, and the page.
 
 #[cfg(feature = "native")]
 mod grade;
 mod killed;
+mod parts;
 mod robios;
 #[cfg(feature = "native")]
 mod tasks;
