@@ -45,7 +45,7 @@ const TOO_STEEP: f64 = 0.1;
 
 impl Drive {
     pub(super) fn along(way: &[Point], pose: Pose, time: f64) -> Self {
-        let ahead = way.iter().find(|point| pose.distance_to(**point) > AHEAD);
+        let ahead = way.iter().find(|point| pose.distance_to(**point) > AHEAD).or(way.last());
         let bearing = ahead.map_or(0.0, |&point| pose.bearing_to(point));
         Self {
             way: way.to_vec(),

@@ -28,6 +28,8 @@ pub(super) struct Explorer {
     first_heading: f64,
     /// Position at the last look.
     looked_from: Point3,
+    /// How much the ground under the robot rises there per metre along both axes.
+    uphill: Vector,
     /// Positions of all looks.
     pub(super) views: Vec<Point>,
     /// Whether each look makes a new map: where the ground is even, nothing tells where a look belongs.
@@ -116,6 +118,10 @@ const NEXT: f64 = 0.7;
 const WIDE_GAP: f64 = 0.35;
 /// The same on levels, where a wider one may be a drop (m): that of beams a degree apart, 1.2 m away.
 const NARROW_GAP: f64 = 0.15;
+/// Cosine of the largest tilt of a robot that stands.
+const UPRIGHT: f64 = 0.5;
+/// Distance that the robot drives straight up (m): its middle stays over ground on which its ends have stood.
+const STEP_UP: f64 = 0.12;
 /// Maximum number of looks.
 const MOST_LOOKS: u32 = 400;
 /// Number of beams of a scan.
@@ -145,6 +151,7 @@ impl Explorer {
             looks: 0,
             first_heading: 0.0,
             looked_from: Point3::origin(),
+            uphill: Vector::zeros(),
             views: Vec::new(),
             forgets,
         })
@@ -269,6 +276,21 @@ impl Explorer {
             self.map.stand(robot.position.xy(), robot.position.z);
         }
         self.looked_from = robot.position;
+        self.uphill = -robot.up().xy() / robot.up().z.max(UPRIGHT);
+    }
+
+    /// The way straight up from where the robot stands, and how much higher half of it may be. `None` if not all of it has
+    /// been seen, or it is unfit.
+    pub(super) fn way_up(&self, chart: &Chart) -> Option<([Point; 2], f64)> {
+        let step = self.uphill.try_normalize(f64::MIN_POSITIVE)? * STEP_UP;
+        let is_fit = |share: f64| {
+            let cell = self.map.cell_at(self.here() + step * share);
+            cell.is_some_and(|cell| {
+                self.map.height(self.map.index_of(cell)).is_some() && chart.elevation.open().is_free(cell)
+            })
+        };
+        let gain = 0.5 * STEP_UP * self.uphill.norm();
+        (is_fit(0.5) && is_fit(1.0)).then_some(([self.here(), self.here() + step], gain))
     }
 
     /// The cell on which the robot stands, or the nearest one from which it can drive; where it stands counts

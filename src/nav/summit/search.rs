@@ -55,6 +55,8 @@ pub struct SummitSearch {
     target: Option<Point>,
     unknown: usize,
     highest: f64,
+    /// Elevation from which it has driven straight up last.
+    climbed_from: f64,
 }
 
 /// How a search ended.
@@ -97,7 +99,14 @@ impl SummitSearch {
     /// If a parameter is out of range.
     pub fn new(parameters: SummitParameters) -> Result<Self> {
         let explorer = Explorer::new(parameters)?;
-        Ok(Self { explorer, approaches: 0, target: None, unknown: 0, highest: 0.0 })
+        Ok(Self {
+            explorer,
+            approaches: 0,
+            target: None,
+            unknown: 0,
+            highest: 0.0,
+            climbed_from: f64::NEG_INFINITY,
+        })
     }
 
     /// What it is doing.
@@ -218,11 +227,26 @@ impl SummitSearch {
         let gain = self.explorer.height(top) - self.explorer.reckoning.elevation;
         // Not by how near it is: on a slope, half a cell is worth several tolerances.
         if gain < self.explorer.parameters.tolerance || self.approaches >= MOST_APPROACHES {
-            return ControlFlow::Break(SummitOutcome::Highest);
+            return self.climb_on(time, chart);
         }
         // Ways that end on the top, not those that lead to it.
         self.approaches += u32::from(length(&way) < self.explorer.parameters.stride);
         ControlFlow::Continue(self.explorer.drive(time, &way))
+    }
+}
+
+impl SummitSearch {
+    /// A robot on the top stands level: what it feels of a slope leads on, whatever the map says, while that takes it higher.
+    fn climb_on(&mut self, time: f64, chart: &Chart) -> ControlFlow<SummitOutcome, Twist> {
+        let (elevation, tolerance) = (self.explorer.reckoning.elevation, self.explorer.parameters.tolerance);
+        let has_risen = elevation > self.climbed_from + tolerance;
+        match self.explorer.way_up(chart).filter(|(_, gain)| has_risen && *gain > tolerance) {
+            Some((way, _)) => {
+                self.climbed_from = elevation;
+                ControlFlow::Continue(self.explorer.drive(time, &way))
+            }
+            None => ControlFlow::Break(SummitOutcome::Highest),
+        }
     }
 }
 
