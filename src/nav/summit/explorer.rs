@@ -43,7 +43,7 @@ pub(super) enum Event {
     Go(Twist),
     /// A look is complete: where to?
     Looked,
-    /// The robot has looked around too often.
+    /// The robot cannot turn, or has looked around too often.
     Stuck,
 }
 
@@ -77,7 +77,7 @@ pub enum SummitPhase {
 enum State {
     Settling { until: Option<f64> },
     Looking(Sweep),
-    Turning { to: f64 },
+    Turning { to: f64, until: Option<f64> },
     Driving(Drive),
     Straight(Straight),
     BackingOff { from: Point, sign: f64 },
@@ -96,6 +96,8 @@ pub struct SummitObservation {
 
 /// Time in which the robot comes to rest (s).
 const REST: f64 = 0.6;
+/// Time after which a robot that has not turned cannot turn (s): a turn takes less than 10.
+const TURNING: f64 = 60.0;
 /// Error of a quarter turn (rad).
 const ALIGNED: f64 = 0.1;
 /// Distance that it backs off (m).
@@ -193,7 +195,7 @@ impl Explorer {
             1 => {
                 self.take_in(sweep);
                 let to = self.reckoning.pose.heading + std::f64::consts::FRAC_PI_2;
-                self.state = State::Turning { to };
+                self.state = State::Turning { to, until: None };
                 self.first_heading = self.reckoning.pose.heading;
                 return Event::Go(Twist::STOP);
             }
@@ -359,7 +361,7 @@ impl Explorer {
 
     /// Starts to turn to a direction.
     pub(super) fn turn(&mut self, towards: Vector) -> Twist {
-        self.state = State::Turning { to: math::atan2(towards.y, towards.x) };
+        self.state = State::Turning { to: math::atan2(towards.y, towards.x), until: None };
         Twist::STOP
     }
 
@@ -394,7 +396,10 @@ impl Explorer {
                 let sweep = sweep.clone();
                 Ok(self.understand(&sweep))
             }
-            State::Turning { to } => {
+            State::Turning { to, until } => {
+                if time > *until.get_or_insert(time + TURNING) {
+                    return Ok(Event::Stuck);
+                }
                 let rest = angle_difference(*to, self.reckoning.pose.heading);
                 if rest.abs() < ALIGNED {
                     return go(self.settle());
