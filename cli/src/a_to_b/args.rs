@@ -2,7 +2,7 @@ use roverlab::drive::Steering;
 use roverlab::geometry::{Point, Twist};
 
 use super::chase::parse_moving;
-use crate::common::{CommonArgs, OF_ONE_RUN, parse_point};
+use crate::common::{CommonArgs, OF_ONE_RUN, OF_PARTS, PartArgs, parse_point};
 use crate::driving::Way;
 
 /// Command line of `a-to-b`.
@@ -71,6 +71,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) runs: u64,
 
+    /// The part to do.
+    #[command(flatten)]
+    pub(crate) parts: PartArgs,
+
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }
@@ -79,6 +83,7 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("campaign", OF_ONE_RUN),
     ("campaign", &["noise", "time_limit", "method", "moving", "ideal_encoders", "landmark"]),
     ("!campaign", &["runs"]),
+    ("!campaign", OF_PARTS),
     ("method=turn,arc,dog", &["scale"]),
     ("method=dog", &["follower"]),
     ("via", &["scale"]),

@@ -8,7 +8,7 @@ use roverlab::world::{RobotSpec, Scene, World};
 use super::drive::drive;
 use super::job::{add_landmarks, heading_error, inside_ellipse, options};
 use super::{Args, table};
-use crate::common::{Failure, Outcome, Progress, Report, Trip};
+use crate::common::{Failure, Outcome, Report, Trip, portable};
 use crate::driving::{Conditions, RESERVE, Way};
 
 /// Conditions of a row.
@@ -106,24 +106,31 @@ pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
     .table("rows", table::json(&rows)))
 }
 
-/// Drives the rows of the table, one after the other.
+/// Drives the rows of the table.
 pub(crate) fn rows(args: &Args) -> Result<Vec<Row>, Failure> {
-    let mut progress = Progress::start();
-    let mut rows = Vec::new();
-    for kind in Kind::ALL {
-        for way in Way::ALL {
-            let runs = if kind == Kind::Odometry { args.runs } else { args.runs.div_ceil(10) };
-            rows.push(row(args, kind, way, runs, &mut progress)?);
-        }
+    let mut rows: Vec<Row> = Kind::ALL
+        .into_iter()
+        .flat_map(|kind| Way::ALL.into_iter().map(move |way| row(args, kind, way)))
+        .collect();
+    let runs: Vec<(Kind, Way, u64)> =
+        rows.iter().flat_map(|row| (0..row.runs).map(|index| (row.kind, row.way, index))).collect();
+    let trials = args.parts.share_out(&args.common.origin, "runs", runs.len() as u64, None, |run| {
+        let (kind, way, index) = runs[run as usize];
+        trial(args, kind, way, args.common.seed.wrapping_add(index))
+    })?;
+    let mut trials = trials.iter();
+    for row in &mut rows {
+        trials.by_ref().take(row.runs as usize).for_each(|trial| row.add(trial));
+        row.mean_position /= row.runs as f64;
     }
     Ok(rows)
 }
 
-fn row(args: &Args, kind: Kind, way: Way, runs: u64, progress: &mut Progress) -> Result<Row, Failure> {
-    let mut row = Row {
+fn row(args: &Args, kind: Kind, way: Way) -> Row {
+    Row {
         kind,
         way,
-        runs,
+        runs: if kind == Kind::Odometry { args.runs } else { args.runs.div_ceil(10) },
         reached: 0,
         contacts: 0,
         worst_position: 0.0,
@@ -131,22 +138,30 @@ fn row(args: &Args, kind: Kind, way: Way, runs: u64, progress: &mut Progress) ->
         worst_heading: 0.0,
         inside: 0,
         sim_time: 0.0,
-    };
-    for index in 0..runs {
-        progress.show(|| format!("{}, {}: {index} of {runs} runs", kind.name(), way.name()));
-        add_run(&mut row, args, args.common.seed.wrapping_add(index))?;
     }
-    row.mean_position /= runs as f64;
-    Ok(row)
 }
 
-fn add_run(row: &mut Row, args: &Args, seed: u64) -> Result<(), Failure> {
-    let args = Args { method: row.way, ..args.clone() };
+/// Result of a run.
+#[derive(Debug, Clone)]
+struct Trial {
+    reached: bool,
+    inside: bool,
+    contacts: u32,
+    /// Position error (m) and heading error (rad).
+    position: f64,
+    heading: f64,
+    sim_time: f64,
+}
+
+portable!(struct Trial { reached, inside, contacts, position, heading, sim_time });
+
+fn trial(args: &Args, kind: Kind, way: Way, seed: u64) -> Result<Trial, Failure> {
+    let args = Args { method: way, ..args.clone() };
     let (mut trip, heading) = trip(seed);
     let conditions = Conditions {
         seed,
-        noise: row.kind.noise(),
-        ideal_encoders: row.kind == Kind::Ideal,
+        noise: kind.noise(),
+        ideal_encoders: kind == Kind::Ideal,
         time_limit: 120.0,
         reserve: RESERVE,
         light: 1.0,
@@ -156,21 +171,31 @@ fn add_run(row: &mut Row, args: &Args, seed: u64) -> Result<(), Failure> {
         common: None,
     };
     let mut options = options(&args, &trip, Some(heading), &conditions);
-    if row.kind == Kind::Landmark {
+    if kind == Kind::Landmark {
         add_landmarks(&args, &mut trip, &mut options)?;
     }
     let run = conditions.run(&trip.scene, |_| {}, |robot, step| drive(robot, &options, step))?;
-    let position = run.truth.pose.distance_to(trip.goal);
-    row.worst_position = row.worst_position.max(position);
-    row.mean_position += position;
-    row.worst_heading = row.worst_heading.max(heading_error(&run, heading));
-    row.contacts += u64::from(run.truth.contacts);
-    row.sim_time += run.sim_time;
-    if let Ok(arrival) = &run.ending {
-        row.reached += u64::from(arrival.outcome == AToBOutcome::Reached);
-        row.inside += u64::from(inside_ellipse(trip.start(), &run, arrival));
+    let arrival = run.ending.as_ref().ok();
+    Ok(Trial {
+        reached: arrival.is_some_and(|arrival| arrival.outcome == AToBOutcome::Reached),
+        inside: arrival.is_some_and(|arrival| inside_ellipse(trip.start(), &run, arrival)),
+        contacts: run.truth.contacts,
+        position: run.truth.pose.distance_to(trip.goal),
+        heading: heading_error(&run, heading),
+        sim_time: run.sim_time,
+    })
+}
+
+impl Row {
+    fn add(&mut self, trial: &Trial) {
+        self.worst_position = self.worst_position.max(trial.position);
+        self.mean_position += trial.position;
+        self.worst_heading = self.worst_heading.max(trial.heading);
+        self.contacts += u64::from(trial.contacts);
+        self.sim_time += trial.sim_time;
+        self.reached += u64::from(trial.reached);
+        self.inside += u64::from(trial.inside);
     }
-    Ok(())
 }
 
 /// A trip of 0.5 to 2 m over an empty floor, with a final heading.

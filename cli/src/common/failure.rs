@@ -73,6 +73,13 @@ impl From<roverlab::ParameterError> for Failure {
     }
 }
 
+#[cfg(feature = "ros2")]
+impl From<roverlab::io::log::LogError> for Failure {
+    fn from(error: roverlab::io::log::LogError) -> Self {
+        Self::input(error)
+    }
+}
+
 impl From<SaveError> for Failure {
     fn from(error: SaveError) -> Self {
         match error {

@@ -5,8 +5,8 @@ use clap::ArgMatches;
 use super::Failure;
 
 /// Options with output files.
-pub(super) const OUTPUTS: [&str; 9] =
-    ["picture", "animation", "record", "output", "lcd", "statistics", "checkpoint", "csv", "out"];
+pub(super) const OUTPUTS: [&str; 10] =
+    ["ros2", "picture", "animation", "record", "output", "lcd", "statistics", "checkpoint", "csv", "out"];
 
 /// Fails if an output file is also an input file, or another option's output.
 pub(super) fn check_outputs(matches: &ArgMatches) -> Result<(), Failure> {

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::rooms::room;
 use super::{Args, ENOUGH, cover};
-use crate::common::{Failure, Outcome, Progress, Report, rounded};
+use crate::common::{Failure, Outcome, Report, portable, rounded};
 use crate::driving::Conditions;
 
 /// Results of many rooms.
@@ -67,29 +67,54 @@ pub(crate) fn row(args: &Args) -> Result<Row, Failure> {
         sim_time: 0.0,
         amiss: Vec::new(),
     };
-    let mut progress = Progress::start();
     let part = 1.0 / args.rooms as f64;
-    for index in 0..args.rooms {
-        progress.show(|| format!("coverage: {index} of {} rooms", args.rooms));
-        let seed = args.common.seed.wrapping_add(index);
-        let done = cover(&room(seed), |limit| conditions(args, seed, limit), |_| {})?;
-        let (share, contacts) = (done.map.share(), u64::from(done.run.truth.contacts));
-        let finished = done.run.ending == Ok(TourOutcome::Finished);
+    let trials = args.parts.share_out(&args.common.origin, "rooms", args.rooms, None, |index| {
+        trial(args, args.common.seed.wrapping_add(index))
+    })?;
+    for Trial { seed, finished, contacts, share, ratio, random, sim_time } in trials {
         row.finished += u64::from(finished);
         row.contacts += contacts;
         row.least = row.least.min(share);
         row.mean += part * share;
-        row.mean_ratio += part * done.ratio;
-        row.largest_ratio = row.largest_ratio.max(done.ratio);
-        row.random_mean += part * done.random;
-        row.random_most = row.random_most.max(done.random);
-        row.sim_time += done.run.sim_time;
-        let good = finished && contacts == 0 && share >= ENOUGH && done.ratio <= RATIO;
+        row.mean_ratio += part * ratio;
+        row.largest_ratio = row.largest_ratio.max(ratio);
+        row.random_mean += part * random;
+        row.random_most = row.random_most.max(random);
+        row.sim_time += sim_time;
+        let good = finished && contacts == 0 && share >= ENOUGH && ratio <= RATIO;
         if !good && row.amiss.len() < LISTED {
             row.amiss.push(seed);
         }
     }
     Ok(row)
+}
+
+/// Result of a room.
+#[derive(Debug, Clone)]
+struct Trial {
+    seed: u64,
+    finished: bool,
+    contacts: u64,
+    /// Covered fraction of the floor; path length divided by area over width; fraction covered at random.
+    share: f64,
+    ratio: f64,
+    random: f64,
+    sim_time: f64,
+}
+
+portable!(struct Trial { seed, finished, contacts, share, ratio, random, sim_time });
+
+fn trial(args: &Args, seed: u64) -> Result<Trial, Failure> {
+    let done = cover(&room(seed), |limit| conditions(args, seed, limit), |_| {})?;
+    Ok(Trial {
+        seed,
+        finished: done.run.ending == Ok(TourOutcome::Finished),
+        contacts: done.run.truth.contacts.into(),
+        share: done.map.share(),
+        ratio: done.ratio,
+        random: done.random,
+        sim_time: done.run.sim_time,
+    })
 }
 
 fn conditions(args: &Args, seed: u64, limit: f64) -> Result<Conditions, Failure> {

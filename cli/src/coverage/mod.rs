@@ -22,7 +22,7 @@ use roverlab::random::Stream;
 use roverlab::scan::{LocalisationMap, Localiser, LocaliserParameters};
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Wall, World};
 
-use crate::common::{CommonArgs, Failure, OF_ONE_RUN, Outcome, Report, rounded};
+use crate::common::{CommonArgs, Failure, OF_ONE_RUN, OF_PARTS, Outcome, PartArgs, Report, rounded};
 use crate::driving::{Conditions, Run, check_lidar, draw_contacts, paced, world_with_others};
 
 /// Command line of `coverage`.
@@ -54,6 +54,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 50, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) rooms: u64,
 
+    /// The part to do.
+    #[command(flatten)]
+    pub(crate) parts: PartArgs,
+
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }
@@ -61,6 +65,7 @@ pub(crate) struct Args {
 crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("campaign", OF_ONE_RUN),
     ("!campaign", &["rooms"]),
+    ("!campaign", OF_PARTS),
 ]);
 
 /// Sufficient fraction of the floor.

@@ -8,7 +8,7 @@ use super::Args;
 use super::job::SECONDS;
 use super::scene::{Mode, Pattern, hall};
 use super::swarm::run;
-use crate::common::{Failure, Outcome, Progress, Report, millimetres};
+use crate::common::{Failure, Outcome, Report, millimetres, portable};
 
 /// Results of many seeds for one kind of swarm.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,48 +68,74 @@ pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
 
 /// A row for each kind of swarm.
 pub(crate) fn rows(args: &Args) -> Result<Vec<Row>, Failure> {
-    let mut progress = Progress::start();
-    SWARMS
-        .iter()
-        .map(|&(mode, pattern, followers, obstacles)| {
-            let mut row = Row {
-                mode,
-                pattern,
-                followers,
-                obstacles,
-                runs: args.runs,
-                lost: 0,
-                contacts: 0,
-                mean_gap: 0.0,
-                largest_gap: 0.0,
-                sim_time: 0.0,
-                amiss: Vec::new(),
-            };
-            for index in 0..args.runs {
-                progress.show(|| format!("{} of {followers}: {index} of {} runs", mode.name(), args.runs));
-                add_run(&mut row, args, args.common.seed.wrapping_add(index))?;
-            }
-            row.mean_gap /= args.runs as f64;
-            Ok(row)
-        })
-        .collect()
+    let row = |&(mode, pattern, followers, obstacles)| Row {
+        mode,
+        pattern,
+        followers,
+        obstacles,
+        runs: args.runs,
+        lost: 0,
+        contacts: 0,
+        mean_gap: 0.0,
+        largest_gap: 0.0,
+        sim_time: 0.0,
+        amiss: Vec::new(),
+    };
+    let mut rows: Vec<Row> = SWARMS.iter().map(row).collect();
+    let runs = args.runs * rows.len() as u64;
+    let trials = args.parts.share_out(&args.common.origin, "drives", runs, None, |index| {
+        let row = &rows[(index / args.runs) as usize];
+        trial(row, args, args.common.seed.wrapping_add(index % args.runs))
+    })?;
+    for (row, trials) in rows.iter_mut().zip(trials.chunks(args.runs as usize)) {
+        for trial in trials {
+            row.add(trial);
+        }
+        row.mean_gap /= args.runs as f64;
+    }
+    Ok(rows)
 }
 
-fn add_run(row: &mut Row, args: &Args, seed: u64) -> Result<(), Failure> {
+/// Result of a drive.
+#[derive(Debug, Clone)]
+struct Trial {
+    seed: u64,
+    lost: u64,
+    contacts: u64,
+    mean_gap: f64,
+    largest_gap: f64,
+    sim_time: f64,
+}
+
+portable!(struct Trial { seed, lost, contacts, mean_gap, largest_gap, sim_time });
+
+fn trial(row: &Row, args: &Args, seed: u64) -> Result<Trial, Failure> {
     let (scene, waypoints) = hall((row.mode, row.pattern), row.followers, row.obstacles, seed);
     let options = SimOptions::with_noise(args.common.noise, seed);
     let seconds = args.common.time_limit.unwrap_or(SECONDS);
     let mut fleet = Fleet::new(&scene, options)?;
     let run = run(&mut fleet, &scene, &waypoints, (row.mode, row.pattern), seconds, |_| {})?;
-    row.lost += run.lost.len() as u64;
-    row.contacts += run.contacts;
-    row.mean_gap += run.mean_gap;
-    row.largest_gap = row.largest_gap.max(run.largest_gap);
-    row.sim_time += run.sim_time;
-    if !(run.lost.is_empty() && run.contacts == 0) && row.amiss.len() < LISTED {
-        row.amiss.push(seed);
+    Ok(Trial {
+        seed,
+        lost: run.lost.len() as u64,
+        contacts: run.contacts,
+        mean_gap: run.mean_gap,
+        largest_gap: run.largest_gap,
+        sim_time: run.sim_time,
+    })
+}
+
+impl Row {
+    fn add(&mut self, trial: &Trial) {
+        self.lost += trial.lost;
+        self.contacts += trial.contacts;
+        self.mean_gap += trial.mean_gap;
+        self.largest_gap = self.largest_gap.max(trial.largest_gap);
+        self.sim_time += trial.sim_time;
+        if trial.lost + trial.contacts > 0 && self.amiss.len() < LISTED {
+            self.amiss.push(trial.seed);
+        }
     }
-    Ok(())
 }
 
 /// The table, without anything that differs between machines.

@@ -10,7 +10,8 @@ use super::campaign;
 use super::scene::{Mode, Pattern, behind, hall};
 use super::swarm::{SwarmRun, run};
 use crate::common::{
-    CommonArgs, Failure, FreeFloor, OF_ONE_RUN, Outcome, Report, StandIn, millimetres, rounded,
+    CommonArgs, Failure, FreeFloor, OF_ONE_RUN, OF_PARTS, Outcome, PartArgs, Report, StandIn, millimetres,
+    rounded,
 };
 use crate::driving::{counted, draw_contacts, paced};
 
@@ -66,6 +67,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) runs: u64,
 
+    /// The part to do.
+    #[command(flatten)]
+    pub(crate) parts: PartArgs,
+
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }
@@ -74,6 +79,7 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("campaign", OF_ONE_RUN),
     ("campaign", &["followers", "mode", "obstacles", "pattern"]),
     ("!campaign", &["runs"]),
+    ("!campaign", OF_PARTS),
 ]);
 
 /// Simulated time of a run (s).

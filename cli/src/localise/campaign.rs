@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use super::job::run;
 use super::worlds::{Place, Starts, worlds};
 use super::{Args, Finding};
-use crate::common::{Failure, Outcome, Progress, Report, millimetres, rounded};
+use crate::common::{Failure, Outcome, Report, millimetres, portable, rounded};
 use crate::driving::Conditions;
 
 /// Results of many starts in one world.
@@ -43,12 +43,14 @@ const NEAR: Error = Error { position: 0.1, deviations: 5.0, heading: 3.0 * std::
 const LISTED: usize = 10;
 
 /// Error of a place: position (m), the same in stated deviations, heading (rad).
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Error {
     position: f64,
     deviations: f64,
     heading: f64,
 }
+
+portable!(struct Error { position, deviations, heading });
 
 impl Error {
     fn of(place: &Hypothesis, truth: &Pose) -> Self {
@@ -88,30 +90,74 @@ impl Row {
         100 * self.right >= self.share * self.starts && self.wrong == 0 && self.contacts == 0
     }
 
-    /// Judges an answer.
-    fn judge(&mut self, finding: Option<&Finding>, truth: &Pose, seed: u64) {
-        let count = finding.map_or(0, |finding| finding.localisation.count());
-        let places = finding.iter().flat_map(|finding| finding.hypotheses.iter().take(count));
-        let errors = places.map(|place| Error::of(place, truth));
-        let nearest = errors.min_by(|a, b| a.position.total_cmp(&b.position));
-        match nearest {
-            None => self.lost += 1,
-            Some(error) if error.is_small() && (count == self.symmetry) => {
+    fn add(&mut self, trial: &Trial) {
+        self.sim_time += trial.sim_time;
+        self.contacts += u64::from(trial.contacts);
+        match trial.verdict {
+            Verdict::Lost => self.lost += 1,
+            Verdict::Several => self.several += 1,
+            Verdict::Right => {
                 self.right += 1;
-                self.worst_position = self.worst_position.max(error.position);
-                self.worst_deviations = self.worst_deviations.max(error.deviations);
-                self.worst_heading = self.worst_heading.max(error.heading);
+                self.worst_position = self.worst_position.max(trial.error.position);
+                self.worst_deviations = self.worst_deviations.max(trial.error.deviations);
+                self.worst_heading = self.worst_heading.max(trial.error.heading);
             }
-            Some(error) if error.is_small() && count > self.symmetry => self.several += 1,
-            Some(_) => {
+            Verdict::Wrong => {
                 self.wrong += 1;
                 if self.amiss.len() < LISTED {
-                    self.amiss.push(seed);
+                    self.amiss.push(trial.seed);
                 }
             }
         }
     }
 }
+
+/// Judgement of an answer; see [`Row`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Verdict {
+    Right,
+    Several,
+    Lost,
+    Wrong,
+}
+
+portable!(
+    enum Verdict {
+        Right,
+        Several,
+        Lost,
+        Wrong,
+    }
+);
+
+impl Verdict {
+    /// Judges an answer in a world with so many places that look the same. With the error of the nearest one.
+    fn of(finding: Option<&Finding>, truth: &Pose, symmetry: usize) -> (Self, Error) {
+        let count = finding.map_or(0, |finding| finding.localisation.count());
+        let places = finding.iter().flat_map(|finding| finding.hypotheses.iter().take(count));
+        let errors = places.map(|place| Error::of(place, truth));
+        let nearest = errors.min_by(|a, b| a.position.total_cmp(&b.position));
+        let verdict = match nearest {
+            None => Self::Lost,
+            Some(error) if error.is_small() && count == symmetry => Self::Right,
+            Some(error) if error.is_small() && count > symmetry => Self::Several,
+            Some(_) => Self::Wrong,
+        };
+        (verdict, nearest.unwrap_or_default())
+    }
+}
+
+/// Result of a start.
+#[derive(Debug, Clone)]
+struct Trial {
+    seed: u64,
+    verdict: Verdict,
+    error: Error,
+    contacts: u32,
+    sim_time: f64,
+}
+
+portable!(struct Trial { seed, verdict, error, contacts, sim_time });
 
 /// Runs the campaign.
 pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
@@ -137,29 +183,37 @@ pub(crate) fn rows(args: &Args) -> Result<Vec<Row>, Failure> {
             vec![Place { name, world: scene.world, symmetry: 1, share: 0 }]
         }
     };
-    let mut progress = Progress::start();
-    places.iter().map(|place| row(place, args, &mut progress)).collect()
+    let mut rows: Vec<Row> = places.iter().map(|place| Row::new(place, starts(args, place))).collect();
+    let free = places.iter().map(|place| {
+        Starts::new(&place.world, RobotSpec::s4().footprint.bounding_radius()).map_err(Failure::input)
+    });
+    let free = free.collect::<Result<Vec<_>, _>>()?;
+    let all: Vec<(usize, u64)> =
+        (0..).zip(&rows).flat_map(|(place, row)| (0..row.starts).map(move |index| (place, index))).collect();
+    let trials = args.parts.share_out(&args.common.origin, "starts", all.len() as u64, None, |index| {
+        let (place, index) = all[index as usize];
+        trial(args, &places[place], &free[place], args.common.seed.wrapping_add(index))
+    })?;
+    for ((place, _), trial) in all.iter().zip(&trials) {
+        rows[*place].add(trial);
+    }
+    Ok(rows)
 }
 
-fn row(place: &Place, args: &Args, progress: &mut Progress) -> Result<Row, Failure> {
-    let starts = if place.symmetry > 1 { args.starts.div_ceil(5) } else { args.starts };
-    let mut row = Row::new(place, starts);
-    let spec = RobotSpec::s4();
-    let free = Starts::new(&place.world, spec.footprint.bounding_radius()).map_err(Failure::input)?;
-    for index in 0..starts {
-        progress.show(|| format!("{}: {index} of {starts} starts", place.name));
-        let seed = args.common.seed.wrapping_add(index);
-        let pose = free.draw(seed);
-        let pose = pose.ok_or_else(|| Failure::run(format!("no free floor in the world {}", place.name)))?;
-        let scene = Scene::with_robot(place.world.clone(), spec.clone(), pose);
-        let conditions =
-            Conditions { seed, common: None, ..Conditions::new(&args.common, args.patience + 30.0)? };
-        let run = run(args, &scene, &conditions, |_| {})?;
-        row.sim_time += run.sim_time;
-        row.contacts += u64::from(run.truth.contacts);
-        row.judge(run.ending.as_ref().ok(), &run.truth.pose, seed);
-    }
-    Ok(row)
+/// Number of starts in a world.
+fn starts(args: &Args, place: &Place) -> u64 {
+    if place.symmetry > 1 { args.starts.div_ceil(5) } else { args.starts }
+}
+
+fn trial(args: &Args, place: &Place, free: &Starts, seed: u64) -> Result<Trial, Failure> {
+    let pose = free.draw(seed);
+    let pose = pose.ok_or_else(|| Failure::run(format!("no free floor in the world {}", place.name)))?;
+    let scene = Scene::with_robot(place.world.clone(), RobotSpec::s4(), pose);
+    let conditions =
+        Conditions { seed, common: None, ..Conditions::new(&args.common, args.patience + 30.0)? };
+    let run = run(args, &scene, &conditions, |_| {})?;
+    let (verdict, error) = Verdict::of(run.ending.as_ref().ok(), &run.truth.pose, place.symmetry);
+    Ok(Trial { seed, verdict, error, contacts: run.truth.contacts, sim_time: run.sim_time })
 }
 
 /// The table, without anything that differs between machines.

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::drive::{Finding, Options, drive};
 use super::{campaign, picture, worlds};
-use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres, rounded};
+use crate::common::{CommonArgs, Failure, OF_PARTS, Outcome, PartArgs, Report, millimetres, rounded};
 use crate::driving::{Conditions, Run, check_lidar, paced, world_with_others};
 
 /// Command line of `localise`.
@@ -46,6 +46,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) starts: u64,
 
+    /// The part to do.
+    #[command(flatten)]
+    pub(crate) parts: PartArgs,
+
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }
@@ -53,6 +57,7 @@ pub(crate) struct Args {
 crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("campaign", &["robot", "start", "goal", "picture", "animation", "robios", "quantised", "realtime", "fault", "supervised"]),
     ("!campaign", &["starts"]),
+    ("!campaign", OF_PARTS),
 ]);
 
 fn parse_patience(text: &str) -> Result<f64, String> {

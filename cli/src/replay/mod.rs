@@ -4,6 +4,8 @@ mod args;
 mod check;
 mod export;
 mod info;
+#[cfg(feature = "ros2")]
+mod ros2;
 
 use std::fs;
 use std::path::Path;
@@ -29,7 +31,19 @@ pub(crate) fn work(args: &Args) -> Result<Printed, Failure> {
         Command::Check { file } => check::check(file),
         Command::Recover { file, out } => recovered(file, out),
         Command::Info { file } => info::info(&read(file)?),
-        Command::Export { file, csv, picture } => {
+        #[cfg(feature = "ros2")]
+        Command::Export { file, ros2: Some(bag), .. } => ros2::export(&read(file)?, bag),
+        #[cfg(feature = "ros2")]
+        Command::Import { ros2, out, scan, odometry, camera, commands } => {
+            let wanted = ros2::Wanted {
+                scan: scan.as_deref(),
+                odometry: odometry.as_deref(),
+                camera: camera.as_deref(),
+                commands: commands.as_deref(),
+            };
+            ros2::import((ros2, &bytes(ros2)?), out, &wanted)
+        }
+        Command::Export { file, csv, picture, .. } => {
             export::export(&read(file)?, csv.as_deref(), picture.as_deref())
         }
     }?;

@@ -25,7 +25,7 @@ mod recordings;
 mod safety;
 mod seeing;
 mod signs;
-mod support;
+pub(crate) mod support;
 mod swarms;
 mod traffic;
 mod wall_following;

@@ -1,6 +1,6 @@
 use roverlab::drive::WallSide;
 
-use crate::common::{CommonArgs, OF_ONE_RUN};
+use crate::common::{CommonArgs, OF_ONE_RUN, OF_PARTS, PartArgs};
 
 /// Command line of `wall-following`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -56,6 +56,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) rooms: u64,
 
+    /// The part to do.
+    #[command(flatten)]
+    pub(crate) parts: PartArgs,
+
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }
@@ -63,6 +67,7 @@ pub(crate) struct Args {
 crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("campaign", OF_ONE_RUN),
     ("!campaign", &["rooms"]),
+    ("!campaign", OF_PARTS),
 ]);
 
 /// Controller by its name on the command line.

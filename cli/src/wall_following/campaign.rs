@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::job::{run, scene, time_limit};
 use super::{Args, Controller, Errors};
-use crate::common::{Failure, Outcome, Progress, Report, millimetres};
+use crate::common::{Failure, Outcome, Report, millimetres, portable};
 use crate::driving::Conditions;
 
 /// Results of many rooms for one controller.
@@ -55,16 +55,23 @@ pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
 /// A row for the requested controller, and one for each other.
 pub(crate) fn rows(args: &Args) -> Result<Vec<Row>, Failure> {
     let others = Controller::ALL.into_iter().filter(|&other| other != args.controller);
-    let mut progress = Progress::start();
-    std::iter::once(args.controller)
-        .chain(others)
-        .map(|controller| row(&Args { controller, ..args.clone() }, &mut progress))
-        .collect()
+    let mut rows: Vec<Row> = std::iter::once(args.controller).chain(others).map(|c| row(args, c)).collect();
+    let runs = args.rooms * rows.len() as u64;
+    let trials = args.parts.share_out(&args.common.origin, "rooms", runs, None, |index| {
+        let controller = rows[(index / args.rooms) as usize].controller;
+        trial(&Args { controller, ..args.clone() }, args.common.seed.wrapping_add(index % args.rooms))
+    })?;
+    for (row, trials) in rows.iter_mut().zip(trials.chunks(args.rooms as usize)) {
+        for trial in trials {
+            row.add(trial);
+        }
+    }
+    Ok(rows)
 }
 
-fn row(args: &Args, progress: &mut Progress) -> Result<Row, Failure> {
-    let mut row = Row {
-        controller: args.controller,
+fn row(args: &Args, controller: Controller) -> Row {
+    Row {
+        controller,
         rooms: args.rooms,
         followed: 0,
         contacts: 0,
@@ -73,31 +80,50 @@ fn row(args: &Args, progress: &mut Progress) -> Result<Row, Failure> {
         everywhere: Errors::default(),
         sim_time: 0.0,
         amiss: Vec::new(),
-    };
-    for index in 0..args.rooms {
-        progress.show(|| format!("{}: {index} of {} rooms", args.controller.name(), args.rooms));
-        add_room(&mut row, args, args.common.seed.wrapping_add(index))?;
     }
-    Ok(row)
 }
 
-fn add_room(row: &mut Row, args: &Args, seed: u64) -> Result<(), Failure> {
+/// Result of a room.
+#[derive(Debug, Clone)]
+struct Trial {
+    seed: u64,
+    followed: bool,
+    contacts: u32,
+    away_from_corners: Errors,
+    everywhere: Errors,
+    sim_time: f64,
+}
+
+portable!(struct Trial { seed, followed, contacts, away_from_corners, everywhere, sim_time });
+
+fn trial(args: &Args, seed: u64) -> Result<Trial, Failure> {
     let scene = scene(seed);
     let limit = time_limit(args, &scene);
     let conditions = Conditions { seed, common: None, ..Conditions::new(&args.common, limit)? };
     let (run, watch) = run(args, &scene, &conditions, |_| {})?;
-    let followed = run.ending.as_ref().is_ok_and(|walk| walk.outcome == WallOutcome::Stopped);
-    row.followed += u64::from(followed);
-    row.contacts += u64::from(run.truth.contacts);
-    row.touched += u64::from(run.truth.contacts > 0);
-    row.away_from_corners.merge(&watch.away_from_corners);
-    row.everywhere.merge(&watch.everywhere);
-    row.sim_time += run.sim_time;
-    let good = followed && run.truth.contacts == 0 && to_mm(watch.away_from_corners.worst) <= WORST;
-    if !good && row.amiss.len() < LISTED {
-        row.amiss.push(seed);
+    Ok(Trial {
+        seed,
+        followed: run.ending.as_ref().is_ok_and(|walk| walk.outcome == WallOutcome::Stopped),
+        contacts: run.truth.contacts,
+        away_from_corners: watch.away_from_corners,
+        everywhere: watch.everywhere,
+        sim_time: run.sim_time,
+    })
+}
+
+impl Row {
+    fn add(&mut self, trial: &Trial) {
+        self.followed += u64::from(trial.followed);
+        self.contacts += u64::from(trial.contacts);
+        self.touched += u64::from(trial.contacts > 0);
+        self.away_from_corners.merge(&trial.away_from_corners);
+        self.everywhere.merge(&trial.everywhere);
+        self.sim_time += trial.sim_time;
+        let is_near = to_mm(trial.away_from_corners.worst) <= WORST;
+        if !(trial.followed && trial.contacts == 0 && is_near) && self.amiss.len() < LISTED {
+            self.amiss.push(trial.seed);
+        }
     }
-    Ok(())
 }
 
 /// The table, without anything that differs between machines.

@@ -18,6 +18,8 @@ pub(crate) struct Errors {
     pub(crate) worst: f64,
 }
 
+crate::common::portable!(struct Errors { sum_of_squares, count, worst });
+
 impl Errors {
     fn add(&mut self, error: f64) {
         self.sum_of_squares += error * error;

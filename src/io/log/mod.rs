@@ -47,6 +47,7 @@
 
 mod answer;
 mod answers;
+mod bag;
 mod call;
 mod determinism;
 mod difference;
@@ -79,6 +80,7 @@ mod viewer;
 mod wire;
 mod writer;
 
+pub use bag::{McapChannel, visit_messages};
 pub use determinism::{Indeterminate, check_determinism};
 pub use difference::Difference;
 pub use entry::Entry;
