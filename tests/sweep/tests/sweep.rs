@@ -43,6 +43,7 @@ const EXCEPTIONS: &[(&str, &str)] = &[
     ("evolve::Gait::walk", ROBOT),
     ("io::control::", ROBOT),
     ("io::log::check_determinism", CLOSURE),
+    ("io::log::visit_messages", CLOSURE),
     ("io::log::LogWriter", ROBOT),
     ("io::log::Recorder", ROBOT),
     ("io::sim::Fleet", ROBOT),
