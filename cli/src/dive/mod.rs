@@ -39,7 +39,7 @@ JSON fields:
 Outcomes: held, not_held, collided, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
-    /// Depth to hold.
+    /// Depth to hold; Mako floats with its sensor about 150 mm deep.
     #[arg(long, value_name = "MM", default_value_t = 1000.0, value_parser = parse_depth, allow_hyphen_values = true)]
     pub(crate) depth: f64,
 

@@ -31,6 +31,9 @@ impl Place {
             Some(first) => (first.spec, first.pose) = (spec, start),
             None => scene.robots.push(RobotPlacement::new(spec, start)),
         }
+        if let Some(found) = scene.robot_misplacement(0) {
+            return Err(Failure::input(format!("{name}: found a start {found}; expected free floor")));
+        }
         let shortest = shortest(&scene, task).ok_or_else(|| {
             Failure::input(format!(
                 "{name}: found no way through the places; expected one for {}",

@@ -24,6 +24,17 @@ fn a_depth_that_is_never_held_has_no_time_and_a_film() {
     assert!(fs::read_to_string(film).unwrap().contains("<animateTransform"));
 }
 
+/// In a current, a craft that holds its depth is carried along.
+#[test]
+fn water_is_an_option() {
+    let ended = run("dive", &["--water", "current 100 0, turbidity 0.3"]);
+    assert_outcome(&ended, "held");
+    // It begins 12.5 m from the pool's side, and drifts for 80 s.
+    assert!((number(&ended.1["pose"], "x_mm") - 20_000.0).abs() < 700.0, "{}", ended.1);
+    let (status, _, err) = run("dive", &["--water", "current 100 0, curent 1"]);
+    assert!(status == 2 && err.contains("found `curent`; expected one of water_density, current"), "{err}");
+}
+
 /// A fault stops its motors, and it comes up by itself.
 #[test]
 fn mako_comes_up_after_a_fault() {

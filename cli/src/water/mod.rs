@@ -21,7 +21,7 @@ const CELLS: usize = 40;
 /// The options of a run in water, flattened into a command's own.
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct WaterArgs {
-    /// Water instead of the world's: lines of a world file with commas between them, such as
+    /// Water instead of all of the world's: lines of a world file with commas between them, such as
     /// "current 100 0, waves 40 2 90, wind 3000 0, turbidity 0.5".
     #[arg(long, value_name = "LINES", value_parser = parse_water)]
     pub(crate) water: Option<Water>,

@@ -97,6 +97,13 @@ fn what_cannot_be_graded_is_refused() {
         let (status, text) = said(&mut roverlab(words));
         assert!(status == 2 && text.contains(expected), "{text}");
     }
+    let folder = folder().join("refused");
+    fs::create_dir_all(&folder).unwrap();
+    rubric(&folder, 1);
+    let text = fs::read_to_string(folder.join("rubric.toml")).unwrap();
+    fs::write(folder.join("rubric.toml"), text.replace("start = [1000", "start = [-1000")).unwrap();
+    let (status, text) = said(roverlab(&["grade", "rubric.toml", "roverlab distbug"]).current_dir(&folder));
+    assert!(status == 2 && text.contains("found a start outside the world"), "{text}");
 }
 
 mod campaigns {
@@ -106,7 +113,7 @@ mod campaigns {
 
     /// Thirty programs with twenty seeds each; asked for were 60 s on two cores.
     #[test]
-    #[ignore = "a campaign: cargo test --release -p roverlab-cli --test processes grade::campaigns -- --ignored --nocapture"]
+    #[ignore = "a campaign: cargo test --release -p roverlab-cli --test processes grade::campaigns -- --ignored"]
     fn thirty_programs_with_twenty_seeds_each() {
         let folder = folder().join("thirty");
         fs::create_dir_all(&folder).unwrap();

@@ -35,7 +35,7 @@ fn assert_untouched(report: &Value, script: &str, seed: u64, least: f64) {
     assert_eq!(report["outcome"], "finished", "{script}, seed {seed}: {report}");
     for robot in report["robots"].as_array().unwrap() {
         let length = robot["path_length_mm"].as_f64().unwrap();
-        assert!(length > least, "{script}, seed {seed}: {robot}");
+        assert!(length > least && robot["collisions"] == 0, "{script}, seed {seed}: {robot}");
     }
 }
 

@@ -281,8 +281,8 @@ impl Explorer {
         self.uphill = -robot.up().xy() / robot.up().z.max(UPRIGHT);
     }
 
-    /// The way straight up from where the robot stands, and how much higher half of it may be. `None` if not all of it has
-    /// been seen, or it is unfit.
+    /// The way straight up from where the robot stands, and how much higher half of it may be. `None` if it has
+    /// not been seen, or is unfit.
     pub(super) fn way_up(&self, chart: &Chart) -> Option<([Point; 2], f64)> {
         let step = self.uphill.try_normalize(f64::MIN_POSITIVE)? * STEP_UP;
         let is_fit = |share: f64| {

@@ -233,10 +233,9 @@ impl SummitSearch {
         self.approaches += u32::from(length(&way) < self.explorer.parameters.stride);
         ControlFlow::Continue(self.explorer.drive(time, &way))
     }
-}
 
-impl SummitSearch {
-    /// A robot on the top stands level: what it feels of a slope leads on, whatever the map says, while that takes it higher.
+    /// A robot on the top stands level: what it feels of a slope leads on, whatever the map says, while that
+    /// takes it higher.
     fn climb_on(&mut self, time: f64, chart: &Chart) -> ControlFlow<SummitOutcome, Twist> {
         let (elevation, tolerance) = (self.explorer.reckoning.elevation, self.explorer.parameters.tolerance);
         let has_risen = elevation > self.climbed_from + tolerance;

@@ -21,7 +21,7 @@ impl FromStr for Water {
     /// let water: Water = "current 100 0\nturbidity 0.5".parse()?;
     /// assert_eq!((water.current[0].1.x, water.turbidity), (0.1, 0.5));
     /// let error = "current fast".parse::<Water>().unwrap_err().to_string();
-    /// assert!(error.starts_with("water:1:9: found `fast`; expected the current's speed along x in mm/s"));
+    /// assert!(error.starts_with("water:1:9: found `fast`; expected the current's speed along x"));
     /// # Ok::<(), roverlab::world::formats::FormatError>(())
     /// ```
     fn from_str(text: &str) -> Result<Self, FormatError> {
