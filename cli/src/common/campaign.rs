@@ -27,7 +27,8 @@ const LISTED: usize = 10;
 
 impl CampaignArgs {
     /// The results of all runs, by seed, of which there are `usual` unless the options say otherwise.
-    /// `things` names them in the progress line. Fails with the report of a part, if only that was to be done.
+    /// `things` names them in the progress line. Fails with the report of a part, if only that was to be
+    /// done.
     pub(crate) fn trials<T: Send + Portable>(
         &self,
         common: &CommonArgs,

@@ -59,8 +59,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME|FILE.toml", default_value = "book")]
     pub(crate) figure: String,
 
-    /// Evolve the body with the gait: lengths of the limbs, up to four times as long or short, and their directions,
-    /// by 30 degrees.
+    /// Evolve the body with the gait: lengths of the limbs, up to four times as long or short, and their
+    /// directions, by up to 30 degrees.
     #[arg(long)]
     pub(crate) body: bool,
 

@@ -109,9 +109,10 @@ fn what_cannot_be_graded_is_refused() {
 mod campaigns {
     use super::*;
 
-    /// The time that the test prints is to be 60 s at most, on two cores.
+    /// The time that the test prints is to be 60 s at most, on two cores:
+    /// `cargo test --release -p roverlab-cli --test processes grade::campaigns -- --ignored`.
     #[test]
-    #[ignore = "a campaign: cargo test --release -p roverlab-cli --test processes grade::campaigns -- --ignored"]
+    #[ignore = "a campaign, by the command above"]
     fn thirty_programs_with_twenty_seeds_each() {
         let folder = folder().join("thirty");
         fs::create_dir_all(&folder).unwrap();

@@ -77,7 +77,15 @@ impl<E: From<LogError>, F: FnMut(&McapChannel, u64, &[u8]) -> Result<(), E>> Vis
                 self.schemas.insert(header.id, header.name);
             }
             Record::Channel(channel) => {
-                let schema = self.schemas.get(&channel.schema_id).cloned().unwrap_or_default();
+                let schema = match channel.schema_id {
+                    0 => String::new(),
+                    id => self.schemas.get(&id).cloned().ok_or_else(|| {
+                        let topic = &channel.topic;
+                        LogError::damaged(format!(
+                            "the channel {topic} has schema {id}, which is not declared"
+                        ))
+                    })?,
+                };
                 let (topic, encoding) = (channel.topic, channel.message_encoding);
                 self.channels.insert(channel.id, Arc::new(McapChannel { topic, encoding, schema }));
             }

@@ -4,7 +4,7 @@ use super::align::{Shift, align};
 use super::drive::{Drive, Step, cut};
 use super::parameters::SummitParameters;
 use super::reckoning::Reckoning;
-use super::sight_map::{Chart, SightMap};
+use super::sight_map::{Chart, MIN_UPRIGHT, SightMap};
 use super::straight::Straight;
 use super::sweep::Sweep;
 use crate::geometry::{Point, Point3, Pose, Twist, Vector, angle_difference, direction, math};
@@ -120,8 +120,6 @@ const NEXT: f64 = 0.7;
 const WIDE_GAP: f64 = 0.35;
 /// The same on levels, where a wider one may be a drop (m): that of beams a degree apart, 1.2 m away.
 const NARROW_GAP: f64 = 0.15;
-/// Cosine of the largest tilt of a robot that stands.
-const UPRIGHT: f64 = 0.5;
 /// Distance that the robot drives straight up (m): its middle stays over ground on which its ends have stood.
 const STEP_UP: f64 = 0.12;
 /// Maximum number of looks.
@@ -278,11 +276,11 @@ impl Explorer {
             self.map.stand(robot.position.xy(), robot.position.z);
         }
         self.looked_from = robot.position;
-        self.uphill = -robot.up().xy() / robot.up().z.max(UPRIGHT);
+        self.uphill = -robot.up().xy() / robot.up().z.max(MIN_UPRIGHT);
     }
 
-    /// The way straight up from where the robot stands, and how much higher half of it may be. `None` if it has
-    /// not been seen, or is unfit.
+    /// The way straight up from where the robot stands, and how much higher half of it may be. `None` if it
+    /// has not been seen, or is unfit.
     pub(super) fn way_up(&self, chart: &Chart) -> Option<([Point; 2], f64)> {
         let step = self.uphill.try_normalize(f64::MIN_POSITIVE)? * STEP_UP;
         let is_fit = |share: f64| {

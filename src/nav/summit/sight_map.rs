@@ -24,7 +24,7 @@ pub(super) struct SightMap {
 }
 
 /// Cosine of the largest tilt of a robot that stands: 60 degrees.
-const MIN_UPRIGHT: f64 = 0.5;
+pub(super) const MIN_UPRIGHT: f64 = 0.5;
 /// The weight of what is between.
 const BETWEEN: f64 = 0.05;
 /// Metres at which a measurement weighs half.

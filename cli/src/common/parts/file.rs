@@ -174,7 +174,6 @@ fn parts<'a>(files: &'a [PathBuf], own: &Header) -> Result<Vec<&'a Path>, Failur
     let mut found: BTreeMap<u64, &Path> = BTreeMap::new();
     let mut all = None;
     for file in files {
-        let lines = Lines::open(file)?;
         let refused = |message: String| refused(file, 1, &message);
         let header = Header::read(file)?;
         own.check_same(&header).map_err(refused)?;
@@ -187,7 +186,7 @@ fn parts<'a>(files: &'a [PathBuf], own: &Header) -> Result<Vec<&'a Path>, Failur
                 files[0].display()
             )));
         }
-        if let Some(other) = found.insert(part.number, lines.file) {
+        if let Some(other) = found.insert(part.number, file) {
             return Err(refused(format!(
                 "found part {part} again; expected another one than in {}",
                 other.display()
