@@ -39,6 +39,11 @@ impl Frame {
         self.corner + Vector::new(point.x - left, top - point.y) * self.scale
     }
 
+    /// The same for a world that is drawn shifted by so many metres.
+    pub(super) fn shifted(&self, shift: Vector) -> Self {
+        Self { corner: self.corner + Vector::new(shift.x, -shift.y) * self.scale, ..*self }
+    }
+
     /// Metres to pixels.
     pub(super) fn length(&self, metres: f64) -> f64 {
         metres * self.scale

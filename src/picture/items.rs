@@ -2,7 +2,7 @@ use std::ops::{Bound, RangeBounds};
 
 use super::colours::series;
 use super::{Mark, Style};
-use crate::geometry::{Aabb, Point, Pose};
+use crate::geometry::{Aabb, Point, Pose, Vector};
 use crate::world::{Footprint, World};
 
 /// A still or animated picture of a world and of the things added to it.
@@ -15,6 +15,8 @@ use crate::world::{Footprint, World};
 #[derive(Debug, Clone)]
 pub struct Picture {
     pub(super) world: World,
+    /// Floors of panels with water or hills, and how far each is shifted.
+    pub(super) grounds: Vec<(World, Vector)>,
     pub(super) title: Option<String>,
     pub(super) caption: Option<String>,
     pub(super) items: Vec<Item>,
@@ -90,6 +92,7 @@ impl Picture {
     pub fn new(world: &World) -> Self {
         Self {
             world: world.clone(),
+            grounds: Vec::new(),
             title: None,
             caption: None,
             items: Vec::new(),

@@ -64,15 +64,19 @@ impl Legend {
         }
         legend.add_marks(picture);
         legend.add_objects(picture);
-        if let Some(terrain) = &picture.world.terrain {
+        let worlds = picture.grounds.iter().map(|(ground, _)| ground).chain([&picture.world]);
+        for terrain in worlds.filter_map(|world| world.terrain.as_ref()) {
             let height = number(terrain.max_elevation);
             match terrain.surface.as_deref() {
                 Some(surface) => {
                     let step = number(contour_step(surface));
                     let line = Style::new(INK).width(0.8).opacity(0.6);
-                    legend.add(Key::Line(line), format!("contour lines {step} m apart, up to {height} m"));
+                    legend.add_once(
+                        Key::Line(line),
+                        &format!("contour lines {step} m apart, up to {height} m"),
+                    );
                 }
-                None => legend.add(Key::Hills, format!("hills up to {height} m")),
+                None => legend.add_once(Key::Hills, &format!("hills up to {height} m")),
             }
         }
         legend

@@ -11,8 +11,7 @@ const MOST_LINES: usize = 8;
 
 impl Picture {
     /// Combines several pictures into one, in rows of `columns` from the upper left, each with its title
-    /// below it, in several lines if necessary. They share scale, legend and time. Water, hills and captions are
-    /// omitted.
+    /// below it, in several lines if necessary. They share scale, legend and time. Captions are omitted.
     pub fn panels(panels: &[Self], columns: usize) -> Self {
         let columns = columns.clamp(1, panels.len().max(1));
         let rows = panels.len().div_ceil(columns);
@@ -40,6 +39,7 @@ impl Picture {
         let (min, max) = (bounds.min + shift, bounds.max + shift);
         let corners = [min, Point::new(max.x, min.y), max, Point::new(min.x, max.y)];
         self.polygon(corners, Style::aid().opacity(0.5));
+        self.take_ground(panel, shift);
         self.world.walls.extend(panel.world.walls.iter().copied().map(|mut wall| {
             wall.line.a += shift;
             wall.line.b += shift;
@@ -61,6 +61,17 @@ impl Picture {
             let middle = Point::new(0.5 * (min.x + max.x), min.y - below);
             self.add(Figure::Mark { mark: None::<Mark>, position: middle, text: Some(line) }, Style::aid());
         }
+    }
+
+    /// Adds the floor of another picture, shifted by `shift`, if it has water or a hill with a surface.
+    fn take_ground(&mut self, panel: &Self, shift: Vector) {
+        let World { floor, water_level, .. } = panel.world;
+        let terrain = panel.world.terrain.clone().filter(|terrain| terrain.surface.is_some());
+        if water_level.is_some() || terrain.is_some() {
+            let ground = World { floor, water_level, terrain, ..World::empty(0.0, 0.0) };
+            self.grounds.push((ground, shift));
+        }
+        self.grounds.extend(panel.grounds.iter().cloned().map(|(ground, moved)| (ground, moved + shift)));
     }
 }
 

@@ -129,9 +129,14 @@ fn plotted(picture: &Picture, frame: &Frame, film: Option<&Film>) -> Group {
         })
     };
     let above = [Layer::Points, Layer::Lines, Layer::FloorMarks, Layer::Robots, Layer::Marks];
+    let floor = scenery::floor(&picture.world, frame, picture.to_scale);
+    let floor = picture
+        .grounds
+        .iter()
+        .fold(floor, |floor, (ground, shift)| floor.add(scenery::ground(ground, &frame.shifted(*shift))));
     let group = Group::new()
         .set("clip-path", format!("url(#{CLIP})"))
-        .add(scenery::floor(&picture.world, frame, picture.to_scale))
+        .add(floor)
         .add(layer(Layer::Areas))
         .add(scenery::solids(&picture.world, frame));
     above.into_iter().fold(group, |group, above| group.add(layer(above)))

@@ -18,18 +18,13 @@ const HATCH: &str = "hills";
 
 /// Floor, water, grid (if to scale), hills, places and marks.
 pub(super) fn floor(world: &World, frame: &Frame, to_scale: bool) -> Group {
-    let colour = if world.water_level.is_some_and(|level| level > 0.0) { WATER } else { FLOOR };
-    let bounds = on_page(world.floor, frame);
-    let mut group = Group::new().add(rectangle(bounds, colour));
-    let surface = world.terrain.as_ref().and_then(|terrain| terrain.surface.as_deref());
-    if let Some(surface) = surface {
-        group = group.add(relief(surface, world.water_level, frame));
-    }
+    let mut group = ground(world, frame);
     if to_scale {
         group = group.add(grid(&world.floor, frame));
     }
-    group = group.add(rectangle(bounds, colour).set("fill", "none").set("stroke", EDGE.to_string()));
-    if let Some(terrain) = world.terrain.as_ref().filter(|_| surface.is_none()) {
+    let edge = rectangle(on_page(world.floor, frame), FLOOR).set("fill", "none");
+    group = group.add(edge.set("stroke", EDGE.to_string()));
+    if let Some(terrain) = world.terrain.as_ref().filter(|terrain| terrain.surface.is_none()) {
         group = group.add(hatch()).add(hills(terrain, world.floor.min, frame));
     }
     for place in &world.places {
@@ -40,6 +35,16 @@ pub(super) fn floor(world: &World, frame: &Frame, to_scale: bool) -> Group {
         group = group.add(disc(frame.at(marker.position), 5.0, marker.colour).set("opacity", opacity));
     }
     group
+}
+
+/// The floor alone, with its water and the hills whose surface is known.
+pub(super) fn ground(world: &World, frame: &Frame) -> Group {
+    let colour = if world.water_level.is_some_and(|level| level > 0.0) { WATER } else { FLOOR };
+    let group = Group::new().add(rectangle(on_page(world.floor, frame), colour));
+    match world.terrain.as_ref().and_then(|terrain| terrain.surface.as_deref()) {
+        Some(surface) => group.add(relief(surface, world.water_level, frame)),
+        None => group,
+    }
 }
 
 /// Objects and walls.

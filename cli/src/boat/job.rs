@@ -9,7 +9,7 @@ use super::lake::{Lake, lake, raft};
 use super::voyage::{Voyage, sail};
 use crate::common::{Failure, Outcome, Report, millimetres, point_in_mm};
 use crate::driving::{Conditions, paced};
-use crate::water::{afloat, ground};
+use crate::water::{Side, afloat, ground};
 
 /// Seconds for a metre of the course, and besides.
 const PACE: f64 = 8.0;
@@ -70,19 +70,21 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
 
 fn picture(scene: &Scene, course: &[Point], voyage: &Voyage) -> Picture {
     let run = &voyage.run;
-    let mut picture = Picture::new(&scene.world);
-    picture.title("Solar raft on its course");
+    let mut above = Picture::new(&scene.world);
+    above.title("From above");
+    let start = scene.robots[0].pose.position();
+    above.line(std::iter::once(start).chain(course.iter().copied()), Style::plan());
+    run.draw(&mut above, &scene.robots[0].spec);
+    for (number, &waypoint) in (1..).zip(course) {
+        above.mark(if number == course.len() { Mark::Goal } else { Mark::Waypoint }, waypoint);
+    }
+    let mut both = Picture::panels(&[above, Side::of(scene, run).picture(scene)], 2);
+    both.title("Solar raft on its course");
     let mm = |value: Option<f64>| value.map_or("no".into(), |value| format!("{:.0} mm", units::to_mm(value)));
     let (wind, current) = (scene.world.water.wind.norm(), scene.world.water.current_at(0.0).norm());
-    picture.caption(format!(
+    both.caption(format!(
         "{} off the legs, {} off the station, {} from a waypoint at most; wind {wind:.1} m/s, current {current:.2} m/s",
         mm(voyage.cross_track), mm(voyage.station), mm(voyage.miss)
     ));
-    let start = scene.robots[0].pose.position();
-    picture.line(std::iter::once(start).chain(course.iter().copied()), Style::plan());
-    run.draw(&mut picture, &scene.robots[0].spec);
-    for (number, &waypoint) in (1..).zip(course) {
-        picture.mark(if number == course.len() { Mark::Goal } else { Mark::Waypoint }, waypoint);
-    }
-    picture
+    both
 }

@@ -16,6 +16,8 @@ pub(super) struct Hunt {
     pub(super) place: Option<Point>,
     /// Metres from there to the nearest red thing.
     pub(super) error: Option<f64>,
+    /// Whether there is anything red.
+    pub(super) is_there: bool,
 }
 
 /// Metres from anything red at which a find is none.
@@ -44,9 +46,11 @@ pub(super) fn hunt(scene: &Scene, conditions: &Conditions, watch: impl FnMut(f64
         control::run(robot, &mut search, conditions.time_limit, |_, _, _| step())
     })?;
     let place = search.place();
-    let red = scene.world.objects.iter().zip(&run.objects).filter(|(object, _)| is_red(object.kind.colour));
-    let error = place.and_then(|place| red.map(|(_, there)| (there - place).norm()).reduce(f64::min));
-    Ok(Hunt { run, place, error })
+    let objects = scene.world.objects.iter().zip(&run.objects);
+    let red: Vec<_> = objects.filter(|(object, _)| is_red(object.kind.colour)).collect();
+    let nearest = |place: Point| red.iter().map(|(_, there)| (*there - place).norm()).reduce(f64::min);
+    let (error, is_there) = (place.and_then(nearest), !red.is_empty());
+    Ok(Hunt { run, place, error, is_there })
 }
 
 fn is_red(Colour { red, green, blue }: Colour) -> bool {

@@ -10,7 +10,7 @@ use super::campaign::campaign;
 use super::round::{Round, round};
 use crate::common::{Failure, Outcome, Report, millimetres};
 use crate::driving::{Conditions, paced};
-use crate::water::{Shore, afloat, surveyor};
+use crate::water::{Shore, Side, afloat, surveyor};
 
 /// Seconds for a metre of the sides, and besides for the way to the wall.
 const PACE: f64 = 5.0;
@@ -62,8 +62,11 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
 
 fn picture(scene: &Scene, done: &Round) -> Picture {
     let Round { run, errors } = done;
-    let mut picture = Picture::new(&scene.world);
-    picture.title("Along the sides of a pool");
+    let mut above = Picture::new(&scene.world);
+    above.title("From above");
+    run.draw(&mut above, &scene.robots[0].spec);
+    let mut both = Picture::panels(&[above, Side::of(scene, run).picture(scene)], 2);
+    both.title("Along the sides of a pool");
     let rms = errors.rms().map_or("never beside a side".into(), |rms| {
         format!(
             "{:.0} mm off in the root mean square, {:.0} mm at most",
@@ -71,9 +74,8 @@ fn picture(scene: &Scene, done: &Round) -> Picture {
             units::to_mm(errors.largest)
         )
     });
-    picture.caption(format!("{:.1} m in {:.0} s, {rms}", run.truth.path_length, run.sim_time));
-    run.draw(&mut picture, &scene.robots[0].spec);
-    picture
+    both.caption(format!("{:.1} m in {:.0} s, {rms}", run.truth.path_length, run.sim_time));
+    both
 }
 
 #[cfg(test)]

@@ -18,8 +18,8 @@ water: a line `water_level MM`. With --altitude, the floor is a ridge with slope
 log, a compass and distance sensors; where the water ends at four straight sides, it localises by these too. It starts where the
 water is widest, unless the world or --start states a start.
 
-Cells are as wide as the spacing of the lanes; only those at least half a metre from the sides count. Where these are narrow,
-the first lanes lead along the sides. The uncertainty of a depth has the noise, place, datum and waves of its soundings in it, and
+Cells are at least half a metre from the sides, and at most as wide as the spacing, so that whole ones fill the narrower side.
+Where lanes are narrow, the first ones lead along the sides. The uncertainty of a depth has the noise, place, datum and waves of its soundings in it, and
 how far the floor around is off a quadratic surface. --map writes a colour
 picture, and beside it the depths as an ESRI grid (.asc) and all cells with their uncertainty as a table (.csv), in mm.
 

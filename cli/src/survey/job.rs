@@ -11,7 +11,7 @@ use super::tour::{COVERED, Tour, tour, true_depth};
 use crate::common::{Failure, Outcome, Report, check_writable, millimetres, rounded};
 use crate::driving::{Conditions, paced};
 use crate::terrain::percent;
-use crate::water::{Site, afloat, limit, surveyor};
+use crate::water::{Side, Site, afloat, limit, surveyor};
 
 /// The work of the command.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
@@ -44,14 +44,15 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         .field("by_walls", quality.by_walls)
         .field("map", &args.map);
     if let Some(file) = &args.map {
-        map::save(&done.map, args.spacing, file)?;
+        map::save(&done.map, done.cell, file)?;
     }
-    report = common.draw(report, "survey.svg", || picture(&scene, args.spacing, &done));
+    report = common.draw(report, "survey.svg", || picture(&scene, &done));
     Ok(report)
 }
 
-/// The way over the pool, the map, and the truth.
-fn picture(scene: &Scene, cell: f64, done: &Tour) -> Picture {
+/// The way over the pool, the map, the truth, and the way from the side.
+fn picture(scene: &Scene, done: &Tour) -> Picture {
+    let cell = done.cell;
     let mut way = Picture::new(&scene.world);
     way.title("Way");
     done.run.draw(&mut way, &scene.robots[0].spec);
@@ -64,7 +65,8 @@ fn picture(scene: &Scene, cell: f64, done: &Tour) -> Picture {
     let there = cells("Truth", &scene.world, &done.map, cell, |column, row| {
         Some((truth(column, row)? - low) / (high - low).max(1e-3))
     });
-    let mut all = Picture::panels(&[way, found, there], 3);
+    let side = Side::of(scene, &done.run).picture(scene);
+    let mut all = Picture::panels(&[way, found, there, side], 4);
     all.title("Survey of a floor");
     let mm =
         |value: Option<f64>| value.map_or("unknown".into(), |value| format!("{:.0} mm", units::to_mm(value)));

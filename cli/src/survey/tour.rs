@@ -12,6 +12,8 @@ use crate::water::{Site, ground};
 pub(super) struct Tour {
     pub(super) run: Run<SurveyOutcome>,
     pub(super) map: DepthMap,
+    /// Width of its cells (m).
+    pub(super) cell: f64,
     pub(super) quality: Quality,
 }
 
@@ -55,8 +57,8 @@ pub(super) fn tour(
     let site = Site::of(&scene.world, parameters.depth);
     let mut survey =
         Survey::new(&robot.spec, robot.pose, site.area, site.by_walls, parameters).map_err(Failure::input)?;
-    let cells = site.area.inflated(-OFF);
-    let mut map = DepthMap::new(cells, parameters.spacing).map_err(Failure::input)?;
+    let (cells, cell) = whole_cells(&site.area.inflated(-OFF), parameters.spacing);
+    let mut map = DepthMap::new(cells, cell).map_err(Failure::input)?;
     let mut beliefs = Vec::new();
     let run = conditions.run(scene, watch, |robot, step| {
         control::run(robot, &mut survey, conditions.time_limit, |_, survey, _| {
@@ -73,9 +75,9 @@ pub(super) fn tour(
         way: run.truth.path_length * parameters.spacing / (size.x * size.y),
         by_walls: site.by_walls,
         altitude: parameters.altitude.and_then(|wanted| altitude_error(scene, wanted, &run)),
-        ..judged(&scene.world, &map, &cells, parameters.spacing)
+        ..judged(&scene.world, &map, cell)
     };
-    Ok(Tour { run, map, quality })
+    Ok(Tour { run, map, cell, quality })
 }
 
 /// The true mean depth of a cell; `None` where it is not all water.
@@ -94,13 +96,24 @@ pub(super) fn true_depth(world: &World, centre: Point, cell: f64) -> Option<f64>
     Some(sum / f64::from(POINTS * POINTS))
 }
 
-/// What of the map is wholly in an area.
-fn judged(world: &World, map: &DepthMap, area: &Aabb, cell: f64) -> Quality {
-    let within = |centre: Point| area.inflated(1e-6 - 0.5 * cell).contains(centre);
+/// The size of cells, as wide as lanes are apart, that fill the narrower side of an area; and the part of it that
+/// whole ones cover, in the middle of the longer side.
+fn whole_cells(area: &Aabb, spacing: f64) -> (Aabb, f64) {
+    let size = area.size();
+    let narrow = size.min();
+    let cell = narrow / (narrow / spacing).ceil().max(1.0);
+    // A hair less, so that rounding begins no further row.
+    let half = (size / cell).map(|cells| 0.5 * cell * (cells + 1e-9).floor() - 1e-9);
+    let middle = area.min + 0.5 * size;
+    (Aabb::new(middle - half, middle + half), cell)
+}
+
+/// What is true of the map.
+fn judged(world: &World, map: &DepthMap, cell: f64) -> Quality {
     let (mut cells, mut inside, mut errors) = (0_u32, 0_u32, Vec::new());
     for (column, row) in (0..map.rows()).flat_map(|row| (0..map.columns()).map(move |column| (column, row))) {
         let centre = map.centre(column, row);
-        let Some(depth) = true_depth(world, centre, cell).filter(|_| within(centre)) else { continue };
+        let Some(depth) = true_depth(world, centre, cell) else { continue };
         cells += 1;
         let Some(measured) = map.cell(column, row) else { continue };
         let error = (measured.depth - depth).abs();

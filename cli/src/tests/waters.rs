@@ -104,10 +104,23 @@ fn a_survey_holds_its_altitude_up_and_down_a_ridge() {
     assert!(error > 0.0 && error < 30.0 && ended.1["collisions"] == 0, "{}", ended.1);
 }
 
+/// All cells that are mapped are judged: whole ones, which fill the narrower side.
 #[test]
-fn a_survey_in_lanes_too_far_apart_covers_nothing() {
-    let (status, report, err) = run("survey", &["--spacing", "100000"]);
-    assert_eq!((status, &report["outcome"]), (1, &"not_covered".into()), "{report} {err}");
+fn a_survey_maps_whole_cells_however_wide() {
+    let map = temporary("wide.png");
+    for (spacing, shape) in [("8000", ["ncols 3", "nrows 6"]), ("100000", ["ncols 1", "nrows 2"])] {
+        let ended = run("survey", &["--spacing", spacing, "--map", map.to_str().unwrap()]);
+        assert_outcome(&ended, "covered");
+        let grid = fs::read_to_string(map.with_extension("asc")).unwrap();
+        let lines: Vec<&str> = grid.lines().collect();
+        assert_eq!(lines[..2], shape, "{grid}");
+        // The middle of the book's pool, which is 25 m wide.
+        let [left, cell] = [lines[2], lines[4]].map(|line| line.split(' ').next_back().unwrap());
+        let (left, cell): (f64, f64) = (left.parse().unwrap(), cell.parse().unwrap());
+        let columns: f64 = shape[0][6..].parse().unwrap();
+        assert!((left + 0.5 * (columns - 1.0) * cell - 12_500.0).abs() < 1.0, "{grid}");
+        assert!((22_000.0..24_000.0).contains(&(columns * cell)), "{grid}");
+    }
 }
 
 /// A pool of a world's file, with walls of so many mm, in the middle of which a craft starts.
@@ -150,6 +163,9 @@ fn something_red_is_found_in_turbid_water_and_only_there() {
     let ended = run("pool_search", &["--world", &world]);
     assert_outcome(&ended, "not_found");
     assert!(ended.1["found"] == false && ended.1["position_error_mm"].is_null(), "{}", ended.1);
+    // In the dark, what is there is missed.
+    let (status, report, err) = run("pool_search", &["--seed", "5", "--light", "0"]);
+    assert_eq!((status, &report["outcome"]), (1, &"not_found".into()), "{report} {err}");
 }
 
 #[test]

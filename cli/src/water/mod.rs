@@ -1,7 +1,8 @@
-//! Shared by the commands in water: the world with a craft in it, and its shores.
+//! Shared by the commands in water: the world with a craft in it, its shores, and how it looks from the side.
 
 mod pool;
 mod shore;
+mod side;
 mod site;
 
 use std::sync::Arc;
@@ -13,6 +14,7 @@ use crate::common::{CommonArgs, Failure, StandIn};
 
 pub(crate) use pool::{BOOK, LEVEL, pool};
 pub(crate) use shore::Shore;
+pub(crate) use side::Side;
 pub(crate) use site::{Site, limit, surveyor};
 
 /// Cells along a side of the grid on which a start is looked for.

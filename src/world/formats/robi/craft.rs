@@ -8,7 +8,7 @@ use super::super::lexer::{Line, quote};
 use super::super::limits::MAX_PARTS;
 use super::super::number::{self, millimetres};
 use crate::geometry::{Point3, Vector3};
-use crate::kinematics::marine::{CraftSpec, HullPart, MAX_THRUSTERS, Thruster};
+use crate::kinematics::marine::{Craft, CraftSpec, HullPart, MAX_THRUSTERS, Thruster};
 use crate::world::{Body, Collider, RobotSpec};
 
 /// The properties of a craft stated in a file.
@@ -118,8 +118,10 @@ impl CraftLines {
         for thruster in &mut craft.thrusters {
             thruster.lag = spec.motor.time_constant;
         }
-        craft.validate().map_err(|error| {
-            FormatError::new(notes.file, Location::START, error.to_string(), "a craft that could be")
+        // Fails for an inertia that no body has too; the steps of a simulation are of no account.
+        Craft::new(&craft, 0.01).map_err(|error| {
+            let found = format!("a {} of {}", error.name(), number::print(error.value(), 0));
+            FormatError::new(notes.file, Location::START, found, error.expected())
         })?;
         Ok(craft)
     }

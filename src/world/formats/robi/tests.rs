@@ -231,6 +231,16 @@ fn a_stranger_of_an_unknown_drive_without_wheels_floats() {
     assert!(Craft::new(craft, 0.01).unwrap().reserve(1000.0) > 0.0 && craft.thrusters.len() == 4);
 }
 
+/// Not only once it is put into a world.
+#[test]
+fn a_craft_that_cannot_be_is_refused_at_once() {
+    for lines in ["mass 0.000001 0 0 0\ncollider box 134 46 64 0 23 0", "mass 30 0 0 0\ninertia 0 1 1 0 0 0"]
+    {
+        let error = parse(&format!("drive AUV_DRIVE\n{lines}\n"), "mako.robi").unwrap_err().to_string();
+        assert!(error.contains("found a least principal inertia of "), "{error}");
+    }
+}
+
 #[test]
 fn built_in_robots_survive() {
     let named = RobotSpec::PREDEFINED.map(|name| RobotSpec::predefined(name).unwrap());
