@@ -77,14 +77,22 @@ struct Noted {
 /// A part of a cell, or of one beside it.
 #[derive(Debug, Clone, Copy)]
 struct Part {
-    /// Row and column, from the corner of the cell before.
-    place: [usize; 2],
     /// How much deeper than the surface its soundings are in the mean (m).
     off: f64,
     /// How much it counts: all in the middle of the cell.
     weight: f64,
     /// Number of its soundings.
     count: f64,
+}
+
+/// Parts by row and column, from the corner of the cell before.
+type Parts = BTreeMap<[usize; 2], Part>;
+
+/// A quadratic surface through soundings: what their weighted sums are multiplied by, and its coefficients.
+#[derive(Debug, Clone, Copy)]
+struct Surface {
+    inverse: Matrix6<f64>,
+    coefficients: Vector6<f64>,
 }
 
 /// The most cells.
@@ -161,26 +169,24 @@ impl DepthMap {
         let surface = self.surface(column, row)?;
         let noise = self.noise(column, row)?;
         let parts = self.parts(column, row, &surface);
-        let is_own = |part: &&Part| part.place.iter().all(|index| (PARTS..2 * PARTS).contains(index));
-        let own_parts = || parts.iter().filter(is_own);
+        let own_parts = || parts.iter().filter(|(place, _)| is_own(place)).map(|(_, part)| part);
         let known = own_parts().count() as f64;
         let off = own_parts().map(|part| part.off).sum::<f64>() / known;
-        let random = own_parts().map(|part| noise / part.count).sum::<f64>() / (known * known);
+        let random = noise * self.squares(column, row, &surface, &parts);
         // What parts are off besides the noise, and more than by chance: those measured are a sample of all.
         let swell = own.iter().map(|noted| noted.sounding.swell).fold(0.0, f64::max);
         let known_off = |part: &Part| noise / part.count + swell * swell;
-        let weight: f64 = parts.iter().map(|part| part.weight).sum();
+        let weight: f64 = parts.values().map(|part| part.weight).sum();
         let mean_of = |square: &dyn Fn(&Part) -> f64| {
-            parts.iter().map(|part| part.weight * square(part)).sum::<f64>() / weight
+            parts.values().map(|part| part.weight * square(part)).sum::<f64>() / weight
         };
         let by_noise = mean_of(&known_off) * (1.0 + (2.0 / parts.len() as f64).sqrt());
         let rough = (mean_of(&|part| part.off * part.off) - by_noise).max(0.0);
         let unknown = rough / known * (1.0 - known / (PARTS * PARTS) as f64);
         let place: Vector = own.iter().map(|noted| noted.sounding.sigma / own.len() as f64).sum();
         let datum = own.iter().map(|noted| noted.sounding.datum).fold(0.0, f64::max);
-        // The mean of the squares over a cell is a twelfth.
-        let mean = surface[0] + (surface[3] + surface[5]) / 12.0;
-        let slope = Vector::new(surface[1], surface[2]) / self.cell;
+        let mean = surface.coefficients.dot(&cell_mean());
+        let slope = Vector::new(surface.coefficients[1], surface.coefficients[2]) / self.cell;
         let placed = slope.component_mul(&place).norm_squared();
         // The mean of a wave over a phase; where several waves pass, of their envelope.
         let phase: f64 = own.iter().map(|noted| noted.sounding.phase).sum();
@@ -190,25 +196,48 @@ impl DepthMap {
     }
 
     /// The measured parts of a cell and of those beside it.
-    fn parts(&self, column: usize, row: usize, surface: &Vector6<f64>) -> Vec<Part> {
+    fn parts(&self, column: usize, row: usize, surface: &Surface) -> Parts {
         let centre = self.centre(column, row);
-        let mut parts: BTreeMap<[usize; 2], (f64, f64, f64)> = BTreeMap::new();
+        let mut parts = Parts::new();
         for Noted { sounding, .. } in self.around(column, row) {
             let powers = self.powers(centre, sounding);
-            let place = [powers[2], powers[1]].map(|off| ((off + 1.5) * PARTS as f64).max(0.0) as usize);
-            let (sum, weight, count) = parts.entry(place).or_default();
-            *sum += sounding.depth - surface.dot(&powers);
-            *weight += self.weight(centre, sounding);
-            *count += 1.0;
+            let part = parts.entry(part_of(&powers)).or_insert(Part { off: 0.0, weight: 0.0, count: 0.0 });
+            part.off += sounding.depth - surface.coefficients.dot(&powers);
+            part.weight += self.weight(centre, sounding);
+            part.count += 1.0;
         }
-        let part =
-            |(place, (sum, weight, count))| Part { place, off: sum / count, weight: weight / count, count };
-        parts.into_iter().map(part).collect()
+        for part in parts.values_mut() {
+            part.off /= part.count;
+            part.weight /= part.count;
+        }
+        parts
+    }
+
+    /// A cell's depth is the sum of the soundings around, each times a factor: the sum of these factors' squares.
+    /// Its own soundings count by their parts; all count by the surface, as far as this is not the same in the mean
+    /// of these parts and of the cell.
+    fn squares(&self, column: usize, row: usize, surface: &Surface, parts: &Parts) -> f64 {
+        let centre = self.centre(column, row);
+        let known = parts.keys().filter(|place| is_own(place)).count() as f64;
+        let soundings = || {
+            self.around(column, row).map(|Noted { sounding, .. }| {
+                let powers = self.powers(centre, sounding);
+                let place = part_of(&powers);
+                let own = if is_own(&place) { 1.0 / (known * parts[&place].count) } else { 0.0 };
+                (powers, own, self.weight(centre, sounding))
+            })
+        };
+        let differs = soundings().fold(cell_mean(), |mean, (powers, own, _)| mean - powers * own);
+        let by_surface = surface.inverse * differs;
+        soundings()
+            .map(|(powers, own, weight)| own + weight * by_surface.dot(&powers))
+            .map(|factor| factor * factor)
+            .sum()
     }
 
     /// The quadratic surface through the soundings of a cell and of those beside it, by least squares; what
     /// is farther off counts less.
-    fn surface(&self, column: usize, row: usize) -> Option<Vector6<f64>> {
+    fn surface(&self, column: usize, row: usize) -> Option<Surface> {
         let centre = self.centre(column, row);
         let (mut square, mut right, mut count) = (Matrix6::zeros(), Vector6::zeros(), 0);
         for Noted { sounding, .. } in self.around(column, row) {
@@ -225,7 +254,8 @@ impl DepthMap {
         }
         // A lane alone does not say how the ground goes on across it: little is better than anything.
         let slack = Vector6::new(0.0, 1.0, 1.0, 1.0, 1.0, 1.0) * (SLACK * square[(0, 0)]);
-        Some((square + Matrix6::from_diagonal(&slack)).try_inverse()? * right)
+        let inverse = (square + Matrix6::from_diagonal(&slack)).try_inverse()?;
+        Some(Surface { inverse, coefficients: inverse * right })
     }
 
     /// The variance of the sensor's noise: from the median of ripples, to which steps of the ground do not
@@ -258,6 +288,21 @@ impl DepthMap {
 
 /// What keeps coefficients small that soundings do not determine, as a share of the soundings' weight.
 const SLACK: f64 = 1e-4;
+
+/// The means of the surface's functions over a cell: of squares, a twelfth.
+fn cell_mean() -> Vector6<f64> {
+    Vector6::new(1.0, 0.0, 0.0, 1.0 / 12.0, 0.0, 1.0 / 12.0)
+}
+
+/// The part that a place is in, by the surface's functions there.
+fn part_of(powers: &Vector6<f64>) -> [usize; 2] {
+    [powers[2], powers[1]].map(|off| ((off + 1.5) * PARTS as f64).max(0.0) as usize)
+}
+
+/// Whether a part is one of the cell itself.
+fn is_own(place: &[usize; 2]) -> bool {
+    place.iter().all(|index| (PARTS..2 * PARTS).contains(index))
+}
 
 #[cfg(test)]
 mod tests {
