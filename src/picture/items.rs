@@ -17,6 +17,8 @@ pub struct Picture {
     pub(super) world: World,
     /// Floors of panels with water or hills, and how far each is shifted.
     pub(super) grounds: Vec<(World, Vector)>,
+    /// Of panels, the first one that is to scale.
+    pub(super) first_plan: Option<Box<Picture>>,
     pub(super) title: Option<String>,
     pub(super) caption: Option<String>,
     pub(super) items: Vec<Item>,
@@ -93,6 +95,7 @@ impl Picture {
         Self {
             world: world.clone(),
             grounds: Vec::new(),
+            first_plan: None,
             title: None,
             caption: None,
             items: Vec::new(),
@@ -123,9 +126,10 @@ impl Picture {
         self
     }
 
-    /// Whether lengths are metres of a world: `true` unless it is [without a scale](Self::without_scale).
-    pub fn is_to_scale(&self) -> bool {
-        self.to_scale
+    /// The part whose coordinates are those of the world: the picture itself, or of [`panels`](Self::panels) the
+    /// first such panel. `None` if all is [without a scale](Self::without_scale).
+    pub fn plan(&self) -> Option<&Self> {
+        self.first_plan.as_deref().or_else(|| self.to_scale.then_some(self))
     }
 
     /// Sets the time interval in which later additions are visible in an animated picture, `2.0..3.5` or

@@ -22,6 +22,7 @@ impl Picture {
         let size = Vector::new(step.x * columns as f64, step.y * rows as f64);
         let mut all = Self::new(&World::empty(size.x, size.y));
         all.to_scale = panels.iter().all(|panel| panel.to_scale);
+        all.first_plan = panels.iter().find_map(Self::plan).cloned().map(Box::new);
         for (index, panel) in panels.iter().enumerate() {
             let (column, row) = (index % columns, rows - 1 - index / columns);
             let corner = Vector::new(column as f64 * step.x, row as f64 * step.y);
@@ -144,14 +145,39 @@ impl Figure {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::{HeightField, Terrain};
+
+    fn titled(title: &str) -> Picture {
+        let mut picture = Picture::new(&World::empty(2.0, 1.0));
+        picture.title(title);
+        picture
+    }
+
+    #[test]
+    fn the_plan_is_the_first_panel_in_the_world_s_coordinates() {
+        let (plan, mut chart) = (titled("plan"), titled("chart"));
+        chart.without_scale();
+        let title =
+            |panels: &[Picture]| Picture::panels(panels, 1).plan().and_then(|plan| plan.title.clone());
+        assert_eq!(title(&[chart.clone(), plan.clone(), titled("another")]).as_deref(), Some("plan"));
+        assert_eq!(title(&[Picture::panels(&[plan], 1), chart.clone()]).as_deref(), Some("plan"));
+        assert_eq!(title(&[chart]), None);
+    }
+
+    #[test]
+    fn panels_keep_their_water_and_hills() {
+        let area = Aabb::new(Point::origin(), Point::new(2.0, 2.0));
+        let hill = HeightField::from_fn(5, 5, area, |at| 0.1 * at.x).unwrap();
+        let terrain = Some(Terrain::new("hill", hill));
+        let world = World { terrain, water_level: Some(0.1), ..World::empty(2.0, 2.0) };
+        let panels = [Picture::new(&world), Picture::new(&world)];
+        let contours = |picture: &Picture| picture.to_svg().matches("stroke-opacity=\"0.45\"").count();
+        assert_eq!(contours(&Picture::panels(&panels, 2)), 2 * contours(&panels[0]));
+        assert!(Picture::panels(&panels, 2).to_svg().matches("contour lines").count() == 1);
+    }
 
     #[test]
     fn long_titles_of_panels_have_several_lines_and_lose_nothing() {
-        let titled = |title: &str| {
-            let mut picture = Picture::new(&World::empty(2.0, 1.0));
-            picture.title(title);
-            picture
-        };
         let long = ["searched"; 9].join(" ");
         let text = Picture::panels(&[titled("short"), titled(&long), titled(&long)], 3).to_svg();
         assert_eq!((text.matches("short").count(), text.matches("searched").count()), (1, 18));

@@ -47,8 +47,8 @@ impl Onlooker for Page {
     }
 
     fn picture(&mut self, picture: &Picture) {
-        if picture.is_to_scale() {
-            self.mouth.say(Message::Overlay, overlay_json(picture).to_string().as_bytes());
+        if let Some(plan) = picture.plan() {
+            self.mouth.say(Message::Overlay, overlay_json(plan).to_string().as_bytes());
         }
         self.mouth.say(Message::Picture, picture.to_svg().as_bytes());
     }

@@ -280,7 +280,7 @@ fn judged(
 /// The way from above, and the depth over time.
 fn picture(plan: &Plan, done: &Dived) -> Picture {
     let mut above = Picture::new(&World::empty(6.0, 3.0));
-    above.title("From above: 6 m of the pool");
+    above.title("From above: 6 m of the pool").without_scale();
     let origin = Vector::new(12.5 - 2.0, 25.0 - 1.5);
     let place = |pose: &Pose| Point::new(pose.x - origin.x, pose.y - origin.y);
     let moved = |&(time, _, pose): &(f64, f64, Pose)| {
@@ -294,14 +294,13 @@ fn picture(plan: &Plan, done: &Dived) -> Picture {
     above.mark(Mark::Start, Point::new(2.0, 1.5));
     let mut side = Picture::new(&World::empty(6.0, 3.0));
     // Twenty seconds are 1.4 m, and the pool's depth 2.4 m.
-    side.title("From the side, over 80 s");
+    side.title("From the side, over 80 s").without_scale();
     let at = |time: f64, depth: f64| Point::new(0.2 + 5.6 * time / 80.0, 2.7 - 2.4 * depth / LEVEL);
     side.line([at(0.0, 0.0), at(80.0, 0.0)], Style::new(Colour::from_hex(0x70_c0_d8)).labelled("surface"));
     side.line([at(0.0, LEVEL), at(80.0, LEVEL)], Style::new(Colour::from_hex(0x60_50_40)).labelled("floor"));
     side.line([at(0.0, plan.depth), at(80.0, plan.depth)], Style::plan());
     side.trace(done.trail.iter().map(|(time, depth, _)| (*time, at(*time, *depth))), Style::true_path());
     let mut both = Picture::panels(&[above, side], 1);
-    both.without_scale();
     both.title(format!("Dive to {:.0} mm", units::to_mm(plan.depth)));
     let settle =
         done.settle.map_or("never settled".into(), |seconds| format!("settled after {seconds:.1} s"));

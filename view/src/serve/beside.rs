@@ -100,8 +100,8 @@ impl Beside {
 
     /// The picture of the run.
     pub fn picture(&self, picture: &Picture) {
-        if picture.is_to_scale() {
-            self.say(Message::Overlay, overlay_json(picture).to_string().as_bytes(), 1);
+        if let Some(plan) = picture.plan() {
+            self.say(Message::Overlay, overlay_json(plan).to_string().as_bytes(), 1);
         }
         self.say(Message::Picture, picture.to_svg().as_bytes(), 1);
     }
