@@ -106,8 +106,8 @@ fn reached_is_reached_beside_walls() {
     assert!(wrong.is_empty() && runs > 60, "{} of {runs}: {wrong:#?}", wrong.len());
 }
 
-/// A passage of one and a half robot widths beside the place where an obstacle is met: the boundary through it
-/// and the one past it are near each other, and only one of them is the loop.
+/// A passage of one and a half robot widths beside the place where an obstacle is met: the boundary through
+/// it and the one past it are near each other, and only one of them is the loop.
 #[test]
 fn a_passage_beside_the_end_of_a_lap_is_entered() {
     let mut world = World::walled(2.118, 2.378);

@@ -30,7 +30,7 @@ pub(crate) struct Setting {
 /// Cell size of the grid for shortest ways (m).
 const RESOLUTION: f64 = 0.010;
 /// Least cell size (m) and approximate maximum number of cells of the grid for the ground truth of verdicts.
-const TRUTH: (f64, f64) = (0.005, 2e7);
+const TRUTH: (f64, f64) = (0.005, 4e6);
 /// Time limit as a multiple of a generous one for DistBug: some algorithms see nothing ahead.
 const PATIENCE: f64 = 4.0;
 
