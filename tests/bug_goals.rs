@@ -106,6 +106,26 @@ fn reached_is_reached_beside_walls() {
     assert!(wrong.is_empty() && runs > 60, "{} of {runs}: {wrong:#?}", wrong.len());
 }
 
+/// A passage of one and a half robot widths beside the place where an obstacle is met: the boundary through
+/// it and the one past it are near each other, and only one of them is the loop.
+#[test]
+fn a_passage_beside_the_end_of_a_lap_is_entered() {
+    let mut world = World::walled(2.118, 2.378);
+    for (from, to) in [(0.0, 1.25), (1.435, 2.378)] {
+        world.walls.push(Wall::new(Point::new(1.059, from), Point::new(1.059, to)));
+    }
+    let (start, goal) = (Pose::new(0.754, 2.189, 1.27), Point::new(1.438, 0.463));
+    let scene = Scene::with_robot(world, RobotSpec::s4(), start);
+    for kind in BugKind::ALL {
+        let simulation = Simulation::new(&scene, SimOptions::with_noise(0.0, 1)).unwrap();
+        let parameters = BugParameters { match_scans: false, ..BugParameters::default() };
+        let mut bug = kind.with(start.to_local(goal), parameters).unwrap();
+        let mut robot = simulation.robot(0).unwrap();
+        let outcome = control::run(&mut robot, bug.as_mut(), 600.0, |_, _, _| {}).unwrap();
+        assert_eq!(outcome, BugOutcome::Reached, "{kind}");
+    }
+}
+
 mod campaigns {
     use super::*;
 

@@ -20,6 +20,9 @@ const ON_THEIR_SIDE: f64 = 0.85;
 const GAP_IN_BEND: (f64, f64) = (2.5, 0.6);
 /// A length (m), and a turn over it that no track makes (rad): such a path turns back between cones.
 const TURNING_BACK: (f64, f64) = (4.0, 2.4);
+/// Length over which an edge of a loop may run against its direction (m). In the tightest bends of published
+/// tracks it is a tenth of a metre, where a whole bend has lost its cones several metres.
+const BACKWARDS: f64 = 0.5;
 
 impl CentreLine {
     /// The closed track of coloured cones, such as those of a file: ground truth for a referee.
@@ -37,8 +40,15 @@ impl CentreLine {
                 Self::from_cones(cones, start, &CentreLineParameters { colour, ..Default::default() })?;
             check(&line.corridor, cones)?;
             line.corridor = centred(&line.corridor)?;
-            check_bends(&line.left)?;
-            check_bends(&line.right)?;
+            // Centring moves stations by as much as the edges are apart, which false edges may be anywhere.
+            check_shape(&line.corridor)?;
+            if let Some(at) = folded(&line.corridor) {
+                return Err(LineError::TurnsBack { x: at.x.round(), y: at.y.round() });
+            }
+            for edge in [&line.left, &line.right] {
+                check_bends(edge)?;
+            }
+            check_edges(&line)?;
             Ok(line)
         };
         let strict: Result<Self, LineError> = by_colour(f64::INFINITY);
@@ -69,10 +79,30 @@ fn check(corridor: &Corridor, cones: &[Cone]) -> Result<(), LineError> {
     if (right as f64) < ON_THEIR_SIDE * f64::from(passed) {
         return Err(LineError::WrongSide { right, all: passed });
     }
+    check_shape(corridor)
+}
+
+/// Rejects a loop that turns back or crosses itself.
+fn check_shape(corridor: &Corridor) -> Result<(), LineError> {
     if let Some(at) = turning_back(corridor) {
         return Err(LineError::TurnsBack { x: at.x.round(), y: at.y.round() });
     }
-    near.crossing().map_or(Ok(()), |at| Err(LineError::Crosses { x: at.x.round(), y: at.y.round() }))
+    let crossing = Near::new(corridor.stations()).crossing();
+    crossing.map_or(Ok(()), |at| Err(LineError::Crosses { x: at.x.round(), y: at.y.round() }))
+}
+
+/// Rejects a loop whose edges, from cone to cone, cross themselves or each other.
+fn check_edges(line: &CentreLine) -> Result<(), LineError> {
+    let pieces: Vec<Segment> = [&line.left, &line.right].into_iter().flat_map(|edge| around(edge)).collect();
+    let crossed = pieces.iter().enumerate().find_map(|(k, piece)| {
+        pieces[k + 1..].iter().any(|other| cross_each_other(piece, other)).then_some(piece.a)
+    });
+    crossed.map_or(Ok(()), |at| Err(LineError::Crosses { x: at.x.round(), y: at.y.round() }))
+}
+
+/// The lines from point to point of a closed edge.
+fn around(edge: &[Point]) -> impl Iterator<Item = Segment> + '_ {
+    edge.iter().zip(edge.iter().cycle().skip(1)).map(|(&a, &b)| Segment::new(a, b))
 }
 
 /// Puts the stations of a loop, which smoothing draws inwards in bends, midway between its edges.
@@ -116,6 +146,22 @@ fn turning_back(corridor: &Corridor) -> Option<Point> {
         from.dot(&to) < math::cos(radians)
     };
     (0..n).find(turns_back).map(|k| stations[k].position)
+}
+
+/// Point at which an edge of a loop runs against its direction.
+fn folded(corridor: &Corridor) -> Option<Point> {
+    let stations = corridor.stations();
+    let n = stations.len();
+    [true, false].into_iter().find_map(|left| {
+        let edge = corridor.edge(left);
+        let mut backwards = 0.0_f64;
+        (0..2 * n).map(|k| k % n).find_map(|k| {
+            // The normal is to the left, so this is the part of the step along the loop.
+            let along = cross(edge[(k + 1) % n] - edge[k], stations[k].normal);
+            backwards = (backwards - along).max(0.0);
+            (backwards > BACKWARDS).then_some(edge[k])
+        })
+    })
 }
 
 /// Stations of a loop, indexed by position.
@@ -232,6 +278,25 @@ mod tests {
     fn a_track_without_some_cones_is_read_right_or_refused() {
         let (read, all, wrong) = read(0..12);
         assert!(wrong.is_empty() && 5 * read > 2 * all, "{read} of {all}: {wrong:#?}");
+    }
+
+    fn of_file(file: &str) -> Result<f64, LineError> {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/cones");
+        let text = std::fs::read_to_string(format!("{folder}/{file}")).unwrap();
+        let track = parse_eufs(&text, file).unwrap();
+        let found = CentreLine::round_track(&track.cones, track.start_pose().unwrap());
+        found.map(|line| line.corridor.length())
+    }
+
+    /// A bend without its inner cones, where the loop's edge would fold and cut 4 % off, and a straight on
+    /// which three cones have the other edge's colour: the first loop there is 28 % too long, and its edges
+    /// cross.
+    #[test]
+    fn loops_with_folded_edges_are_refused() {
+        let error = of_file("blind_bend.csv").unwrap_err().to_string();
+        assert!(error.contains("turns back"), "{error}");
+        let length = of_file("swapped_colours.csv").unwrap();
+        assert!((length / 123.3 - 1.0).abs() < 0.03, "{length}");
     }
 
     mod campaigns {

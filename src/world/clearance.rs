@@ -160,9 +160,13 @@ impl Clearance {
     ///
     /// The run time is proportional to the number of cells plus the cells within the limit of each solid.
     pub fn new(world: &World, resolution: f64, limit: f64) -> Result<Self, ParameterError> {
-        require_positive("clearance limit", limit)?;
         let thickest = world.walls.iter().map(|wall| 0.5 * wall.thickness).fold(0.0, f64::max);
-        let bounds = world.site().inflated(limit + thickest + 2.0 * resolution);
+        Self::over(world, world.site().inflated(limit + thickest + 2.0 * resolution), resolution, limit)
+    }
+
+    /// The same on a raster over a part of the world; solids beyond it count as well.
+    pub fn over(world: &World, bounds: Aabb, resolution: f64, limit: f64) -> Result<Self, ParameterError> {
+        require_positive("clearance limit", limit)?;
         let raster = Raster::over(bounds, resolution)?;
         let distances = vec![limit; raster.cells()];
         let mut field = Self { raster, limit, distances };

@@ -25,6 +25,8 @@ JSON fields:
   rows               list of {bug, family, runs, correct, contacts, and over correct runs: mean_path_mm, path_ci_mm,
                      mean_ratio and ratio_ci (to the shortest path, null if there is none), mean_hits}
   runs               list of {bug, family, seed, outcome, reachable, correct, contacts, path_mm, shortest_mm, hits}
+                     reachable: whether a way leads to within 25 mm of the goal for a disc of 1.2 robot radii, the
+                     passages that the algorithms count as open; null if some millimetres decide
   picture            file name, or null
 and with --campaign, instead of rows and runs:
   bugs               list of {bug, complete, runs, correct, contacts, wrong_seeds, contact_seeds, bounds_checked,

@@ -76,7 +76,7 @@ pub(crate) fn check(args: &Args, seed: u64) -> Result<Vec<Checked>, Failure> {
             kind,
             seed,
             complete: ride.guarantee.complete,
-            correct: ride.is_correct(setting.is_reachable(), args.common.noise),
+            correct: ride.is_correct(setting.reachable, args.common.noise),
             contacts: ride.contacts,
             sim_time: ride.sim_time,
             of_bound: traced

@@ -1,14 +1,15 @@
 use std::panic::resume_unwind;
 use std::thread;
 
-use roverlab::geometry::Point;
+use roverlab::ParameterError;
+use roverlab::geometry::{Point, Vector};
 use roverlab::nav::grid::{AnyAngle, GridPlanner};
-use roverlab::nav::{BugKind, Reachability};
+use roverlab::nav::{BugKind, BugParameters, Reachability};
 use roverlab::random::Stream;
 use roverlab::world::generate::{Course, CourseFamily, CourseOptions, obstacle_course};
 use roverlab::world::{BitGrid, BitGridError, GridCell, RobotSpec, Scene};
 
-use super::ride::{Conditions, Ride, ride, ride_with};
+use super::ride::{Conditions, Ride, parameters, ride, ride_with};
 use super::{Args, job};
 use crate::common::{Driven, Failure, StageTruth, Trip, onlooker, share_out, threads};
 
@@ -19,12 +20,17 @@ pub(crate) struct Setting {
     pub(crate) family: String,
     pub(crate) seed: u64,
     pub(crate) trip: Trip,
-    /// Length of the shortest way, if there is one (m).
+    /// Length of the shortest way of the robot's outline to the goal itself, if there is one (m).
     pub(crate) shortest: Option<f64>,
+    /// Whether a way leads to within the goal's tolerance for the disc of the algorithms: the outline with
+    /// the least clearance. `None` if a cell decides.
+    pub(crate) reachable: Option<bool>,
 }
 
-/// Cell size of the ground truth's grid (m).
+/// Cell size of the grid for shortest ways (m).
 const RESOLUTION: f64 = 0.010;
+/// Least cell size (m) and approximate maximum number of cells of the grid for the ground truth of verdicts.
+const TRUTH: (f64, f64) = (0.005, 4e6);
 /// Time limit as a multiple of a generous one for DistBug: some algorithms see nothing ahead.
 const PATIENCE: f64 = 4.0;
 
@@ -33,7 +39,8 @@ impl Setting {
         let radius = trip.spec().footprint.bounding_radius();
         let ways = Reachability::new(&trip.scene.world, radius, RESOLUTION).map_err(Failure::run)?;
         let shortest = shortest_way(&ways, trip.start().position(), trip.goal).map_err(Failure::run)?;
-        Ok(Self { family: family.to_owned(), seed, trip, shortest })
+        let reachable = reachable(&trip).map_err(Failure::run)?;
+        Ok(Self { family: family.to_owned(), seed, trip, shortest, reachable })
     }
 
     /// A generated course.
@@ -42,15 +49,41 @@ impl Setting {
         Self::new(family, seed, Trip { scene, goal: course.goal })
     }
 
-    pub(crate) fn is_reachable(&self) -> bool {
-        self.shortest.is_some()
-    }
-
     /// Driving conditions.
     pub(crate) fn conditions(&self, args: &Args) -> Conditions {
         let time_limit = args.common.time_limit.unwrap_or_else(|| PATIENCE * self.trip.generous_time_limit());
         Conditions { seed: self.seed, noise: args.common.noise, time_limit }
     }
+}
+
+/// Whether a way leads to the goal; `None` if cells are too coarse to tell.
+fn reachable(trip: &Trip) -> Result<Option<bool>, ParameterError> {
+    let BugParameters { robot_radius, least_clearance, goal_tolerance, .. } = parameters(trip, 0.0);
+    let world = &trip.scene.world;
+    let (finest, cells) = TRUTH;
+    let size = world.site().size();
+    let cell = finest.max((size.x * size.y / cells).sqrt());
+    let start = trip.start().position();
+    // The answers on a grid are those for a radius that differs by less than a cell.
+    let by = |difference: f64| {
+        let ways = Reachability::new(world, robot_radius + least_clearance + difference, cell)?;
+        let tolerance = goal_tolerance - difference;
+        let is_joined = |from: Point| around(trip.goal, tolerance, cell).any(|to| ways.connected(from, to));
+        // A robot too close to something backs off first.
+        Ok(around(start, goal_tolerance, cell).any(is_joined))
+    };
+    let (wider, narrower) = (by(cell)?, by(-cell)?);
+    Ok((wider == narrower).then_some(wider))
+}
+
+/// A point and others within a distance of it, on a square grid (m).
+fn around(centre: Point, far: f64, step: f64) -> impl Iterator<Item = Point> {
+    let steps = (far / step).floor().max(0.0) as i32;
+    let offsets = (-steps..=steps).flat_map(move |row| (-steps..=steps).map(move |column| (column, row)));
+    offsets
+        .map(move |(column, row)| Vector::new(f64::from(column), f64::from(row)) * step)
+        .filter(move |offset| offset.norm() <= far.max(0.0))
+        .map(move |offset| centre + offset)
 }
 
 /// Length of the shortest any-angle way between two places, if there is one (m).

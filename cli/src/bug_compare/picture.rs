@@ -16,7 +16,9 @@ pub(super) fn of(setting: &Setting, rides: &[Ride], conditions: Conditions) -> P
     };
     let panels: Vec<Picture> = rides.iter().enumerate().map(panel).collect();
     let mut picture = Picture::panels(&panels, 4);
-    let way = setting.shortest.map_or("no way to the goal".into(), |way| format!("shortest way {way:.1} m"));
+    let none =
+        if setting.reachable == Some(false) { "no way to the goal" } else { "a way to beside the goal" };
+    let way = setting.shortest.map_or(none.into(), |way| format!("shortest way {way:.1} m"));
     picture
         .title(format!("The bug family: {}", setting.family))
         .caption(format!("{way}, noise {}, seed {}", conditions.noise, conditions.seed));

@@ -59,13 +59,16 @@ pub(crate) struct Ride {
 }
 
 impl Ride {
-    /// Whether the verdict is true: `reached` requires the robot's true position to be at the goal.
-    pub(crate) fn is_correct(&self, reachable: bool, noise: f64) -> bool {
+    /// Whether the verdict is true: `reached` requires the robot's true position to be at the goal. Where
+    /// nobody can tell whether the goal can be reached, either verdict may be.
+    pub(crate) fn is_correct(&self, reachable: Option<bool>, noise: f64) -> bool {
         // With noise, odometry errors allow a larger distance.
         let tolerance = if noise == 0.0 { 0.050 } else { 0.250 };
         match self.ending {
-            Ending::Verdict(BugOutcome::Reached) => reachable && self.goal_distance <= tolerance,
-            Ending::Verdict(BugOutcome::Unreachable | BugOutcome::NoRoom) => !reachable,
+            Ending::Verdict(BugOutcome::Reached) => {
+                reachable != Some(false) && self.goal_distance <= tolerance
+            }
+            Ending::Verdict(BugOutcome::Unreachable | BugOutcome::NoRoom) => reachable != Some(true),
             _ => false,
         }
     }

@@ -20,7 +20,7 @@ pub(super) fn rows(entries: &[Entry], noise: f64) -> Vec<Row<'_>> {
     let mut rows: Vec<Row<'_>> = Vec::new();
     for Entry { setting, rides } in entries {
         for ride in rides {
-            let run = (setting, ride, ride.is_correct(setting.is_reachable(), noise));
+            let run = (setting, ride, ride.is_correct(setting.reachable, noise));
             let same = |row: &&mut Row<'_>| row.kind == ride.kind && row.family == setting.family;
             match rows.iter_mut().find(same) {
                 Some(row) => row.runs.push(run),
@@ -130,7 +130,7 @@ pub(super) fn json_runs(rows: &[Row<'_>]) -> Value {
             "family": row.family,
             "seed": setting.seed,
             "outcome": ride.ending.word(),
-            "reachable": setting.is_reachable(),
+            "reachable": setting.reachable,
             "correct": correct,
             "contacts": ride.contacts,
             "path_mm": millimetres(ride.path_length),

@@ -97,6 +97,31 @@ fn goals_that_nobody_can_reach_are_told() {
     }
 }
 
+/// The truth is that of the algorithms' own disc: a gap of the robot's width is closed, and a goal is reached
+/// from beside it if a wall is too near to it.
+#[test]
+fn verdicts_are_compared_with_the_truth_for_the_same_disc() {
+    let folder = temporary("bug_compare_disc");
+    fs::create_dir_all(&folder).unwrap();
+    let file = folder.join("gap.wld");
+    let run = |gap: u32, goal: &str| {
+        let edges = (1000 - gap / 2, 1000 + gap / 2);
+        let wall = format!("1000 0 1000 {} 10 500\n1000 {} 1000 2000 10 500\n", edges.0, edges.1);
+        let border = "0 0 2000 0\n2000 0 2000 2000\n2000 2000 0 2000\n0 2000 0 0\n";
+        fs::write(&file, format!("floor 2000 2000\n{border}{wall}")).unwrap();
+        let world = ["--world", file.to_str().unwrap(), "--start", "400,400,0", "--goal", goal];
+        let report = report(&[&world[..], &["--noise", "0", "--runs", "1"]].concat());
+        for run in report["runs"].as_array().unwrap() {
+            assert_eq!(run["correct"], true, "{gap} {run}");
+        }
+        report["runs"][0]["reachable"].clone()
+    };
+    assert_eq!(run(125, "1600,1500"), false);
+    assert_eq!(run(145, "1600,1500"), Value::Null, "some millimetres decide");
+    assert_eq!(run(300, "1600,1500"), true);
+    assert_eq!(run(300, "1600,1935"), true, "within the tolerance of a place with room");
+}
+
 #[test]
 fn the_campaign_checks_verdicts_and_bounds() {
     let report = report(&["--campaign", "--noise", "0", "--runs", "3", "--bugs", "bug1,bug2,class1"]);

@@ -185,7 +185,12 @@ impl Saving<'_> {
     fn add(&mut self, record: &Framed<'_>) -> Result<(), LogError> {
         let written = match record.parse()? {
             Record::Metadata(metadata) => {
-                self.header |= metadata.name == METADATA;
+                let is_header = metadata.name == METADATA;
+                if is_header && self.header {
+                    // The beginning of another recording in the file is damaged, and it was not counted.
+                    return Err(LogError::SeveralRuns { runs: 2 });
+                }
+                self.header |= is_header;
                 self.file.write_metadata(&metadata)
             }
             Record::Attachment { header, data, .. } => self.file.attach(&mcap::Attachment {

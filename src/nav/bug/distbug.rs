@@ -55,9 +55,9 @@ impl Strategy for DistRule {
         false
     }
 
-    /// Free ranges show the last piece of a boundary beforehand.
+    /// Free ranges show the way out of a spiral before the robot has unwound.
     fn laps(&self) -> LapRule {
-        LapRule { lost_turns: 2.0, to_the_end: false }
+        LapRule { lost_turns: 2.0 }
     }
 
     /// Records how near to the goal the boundary of a new obstacle begins. If the last leave did not bring

@@ -31,8 +31,6 @@ pub(super) struct LapRule {
     /// Full turns after which the loop's start should have been found; otherwise its estimate was wrong, and
     /// the loop begins anew.
     pub(super) lost_turns: f64,
-    /// Whether the loop is followed to its very end, rather than until the end is near.
-    pub(super) to_the_end: bool,
 }
 
 /// Result of the latest step.
@@ -118,11 +116,7 @@ impl LoopProgress {
             return Lap::Open;
         }
         let there = near && same_way && been_away && all_round;
-        if self.is_over(there, pose.distance_to(begin.position())) {
-            Lap::Closed(self.travelled)
-        } else {
-            Lap::Open
-        }
+        if self.is_over(there, &pose, &begin) { Lap::Closed(self.travelled) } else { Lap::Open }
     }
 
     /// Rotation of the boundary as the robot turns. In a dead end the boundary turns away from the wall by
@@ -141,13 +135,17 @@ impl LoopProgress {
     }
 
     /// Whether the loop is over for a robot that is, or is not, practically at its start.
-    fn is_over(&mut self, there: bool, distance: f64) -> bool {
-        if !self.rule.to_the_end {
-            return there;
-        }
+    ///
+    /// Beside a passage, two boundaries are near each other: one along the wall, the other one through the
+    /// passage. So the robot must pass the start itself. If it turns off before that twice, the start was not
+    /// on the boundary, and the nearest place counts.
+    fn is_over(&mut self, there: bool, pose: &Pose, begin: &Pose) -> bool {
+        let distance = pose.distance_to(begin.position());
         let before = self.closing;
         self.closing = there.then_some(distance);
-        before.is_some_and(|before| !there || distance >= before)
+        let has_passed = there && begin.to_local(pose.position()).x >= 0.0;
+        let turns_off = before.is_some_and(|before| !there || distance >= before);
+        has_passed || turns_off && self.returns >= CERTAIN_RETURNS
     }
 }
 
@@ -163,7 +161,7 @@ mod tests {
             let ((x, y), (ahead_x, ahead_y)) = (place(t), place(t + 1e-3));
             Pose::new(x, y, math::atan2(ahead_y - y, ahead_x - x))
         };
-        let rule = LapRule { lost_turns: 1.6, to_the_end: false };
+        let rule = LapRule { lost_turns: 1.6 };
         let mut progress = LoopProgress::new(at(0.0), WallSide::Right, rule);
         let steps = (0..5000).map(|step| f64::from(step) * 0.01);
         let mut laps = steps.map(|t| (t, progress.update(at(t), Some(0.0), 0.06)));
@@ -182,7 +180,7 @@ mod tests {
     fn a_dead_end_is_left_whichever_way_the_robot_turns_round() {
         for (side, towards_the_wall) in [(WallSide::Right, -PI), (WallSide::Left, PI), (WallSide::Right, PI)]
         {
-            let rule = LapRule { lost_turns: 1.6, to_the_end: false };
+            let rule = LapRule { lost_turns: 1.6 };
             let mut progress = LoopProgress::new(Pose::default(), side, rule);
             let mut lap = |pose: Pose| progress.update(pose, Some(0.0), 0.06) != Lap::Open;
             let step = |i: u32| 0.01 * f64::from(i);

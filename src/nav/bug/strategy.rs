@@ -17,7 +17,7 @@ pub(super) trait Strategy {
     /// Criterion for having gone round a boundary. Along a spiral the robot turns several times before it
     /// unwinds, and the leave point may lie right before the end.
     fn laps(&self) -> LapRule {
-        LapRule { lost_turns: 4.0, to_the_end: true }
+        LapRule { lost_turns: 4.0 }
     }
 
     /// Another heading than straight to the goal, if the strategy has one.

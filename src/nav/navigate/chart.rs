@@ -1,5 +1,6 @@
 use super::parameters::NavigatorParameters;
-use crate::geometry::Point;
+use crate::ParameterError;
+use crate::geometry::{Aabb, Point};
 use crate::io::{Error, ErrorKind, Result};
 use crate::world::{BitGrid, Clearance, GridCell, World};
 
@@ -16,6 +17,8 @@ pub(super) struct Chart {
     /// Number of times an unknown obstacle was seen in each cell.
     evidence: Vec<u8>,
     marks: Vec<GridCell>,
+    /// Whether the cells are larger than wished.
+    is_coarse: bool,
 }
 
 /// A clearance, and the distance it requires at the centre of a cell.
@@ -34,22 +37,87 @@ pub(super) const MAX_STRAY: f64 = 0.2;
 /// Number of detections after which a cell counts as occupied.
 const ENOUGH: u8 = 3;
 
+/// Clearance of a level (m).
+fn clearance_at(parameters: &NavigatorParameters, level: usize) -> f64 {
+    let (wished, least) = (parameters.clearance, parameters.least_clearance);
+    wished + (least - wished) * level as f64 / (LEVELS - 1) as f64
+}
+
+/// Maximum distance of a place from the centre of its cell (m).
+fn inexact(resolution: f64) -> f64 {
+    resolution * std::f64::consts::FRAC_1_SQRT_2
+}
+
+/// Distance up to which clearances are needed (m).
+fn limit(parameters: &NavigatorParameters, resolution: f64) -> f64 {
+    let room = parameters.radius() + clearance_at(parameters, 0) + inexact(resolution);
+    room.max(MAX_STRAY) + resolution
+}
+
+/// Cell size for a box: the finest one with which the box has few enough cells (m).
+fn resolution_of(bounds: &Aabb, finest: f64) -> f64 {
+    let size = bounds.size();
+    finest.max((size.x * size.y / MAX_CELLS).sqrt())
+}
+
+/// Bounding box of all places that a robot may reach from a start, as far as coarse cells can tell.
+fn within_reach(
+    world: &World,
+    start: Point,
+    parameters: &NavigatorParameters,
+    resolution: f64,
+) -> std::result::Result<Aabb, ParameterError> {
+    // The robot may start closer to something than it plans to be.
+    let least = parameters.radius() - inexact(resolution);
+    let far = limit(parameters, resolution);
+    let clearance = Clearance::new(world, resolution, far)?;
+    let raster = clearance.raster();
+    let regions = raster.regions(|cell| clearance.at(cell) > least);
+    let own = raster.cell_at(start).and_then(|cell| regions[cell]);
+    let cells = (0..raster.cells()).filter(|&cell| own.is_some() && regions[cell] == own);
+    let places = Aabb::around(cells.map(|cell| raster.centre(cell)));
+    Ok(places.map_or_else(|| world.site(), |places| places.inflated(far + resolution)))
+}
+
+fn refused(error: ParameterError) -> Error {
+    Error::new(ErrorKind::InvalidInput, format!("the world cannot be planned in: {error}"))
+}
+
 impl Chart {
-    pub(super) fn new(world: &World, parameters: &NavigatorParameters) -> Result<Self> {
-        let size = world.site().size();
-        let resolution = parameters.resolution.max((size.x * size.y / MAX_CELLS).sqrt());
-        let inexact = resolution * std::f64::consts::FRAC_1_SQRT_2;
-        let (wished, least) = (parameters.clearance, parameters.least_clearance);
+    /// The chart of what a robot can reach from a start.
+    pub(super) fn new(world: &World, start: Point, parameters: &NavigatorParameters) -> Result<Self> {
+        let finest = parameters.resolution;
+        let whole = world.site();
+        let resolution = resolution_of(&whole, finest);
+        let clearance = if resolution > finest {
+            // A world may be large because of what lies far from the robot's own rooms.
+            let part = within_reach(world, start, parameters, resolution).map_err(refused)?;
+            let resolution = resolution_of(&part, finest);
+            Clearance::over(world, part, resolution, limit(parameters, resolution))
+        } else {
+            Clearance::new(world, resolution, limit(parameters, resolution))
+        };
+        let clearance = clearance.map_err(refused)?;
+        let resolution = clearance.raster().resolution();
         let levels = std::array::from_fn(|level| {
-            let clearance = wished + (least - wished) * level as f64 / (LEVELS - 1) as f64;
-            Level { clearance, room: parameters.radius() + clearance + inexact }
+            let clearance = clearance_at(parameters, level);
+            Level { clearance, room: parameters.radius() + clearance + inexact(resolution) }
         });
-        let limit = levels[0].room.max(MAX_STRAY) + resolution;
-        let clearance = Clearance::new(world, resolution, limit).map_err(|error| {
-            Error::new(ErrorKind::InvalidInput, format!("the world cannot be planned in: {error}"))
-        })?;
         let evidence = vec![0; clearance.raster().cells()];
-        Ok(Self { clearance, levels, evidence, marks: Vec::new() })
+        Ok(Self { clearance, levels, evidence, marks: Vec::new(), is_coarse: resolution > finest })
+    }
+
+    /// Whether cells larger than wished may close a way that exists between two points.
+    pub(super) fn may_hide_a_way(&self, robot: Point, goal: Point) -> bool {
+        let raster = self.clearance.raster();
+        let (Some(from), Some(to)) = (raster.cell_at(robot), raster.cell_at(goal)) else { return false };
+        if !self.is_coarse {
+            return false;
+        }
+        // Cells in which the robot may have room somewhere.
+        let room = self.levels[LEVELS - 1].room - 2.0 * inexact(self.resolution());
+        let regions = raster.regions(|cell| self.clearance.at(cell) > room);
+        regions[from].is_some() && regions[from] == regions[to]
     }
 
     /// Cell size (m).

@@ -6,10 +6,10 @@ use super::parameters::NavigatorParameters;
 use super::report::{NavigatorEvent, NavigatorOutcome, NavigatorPhase};
 use super::route::Route;
 use super::steering::Steering;
-use crate::geometry::{Point, Pose, Twist, angle_difference};
+use crate::geometry::{Point, Pose, Twist, angle_difference, units};
 use crate::io::control::{Behaviour, Decision, Halt, LidarObservation, Senses};
 use crate::io::reading::{check_pose, check_scan, point_in_words, pose_in_words};
-use crate::io::{Error, Lidar, Odometry, Result};
+use crate::io::{Error, ErrorKind, Lidar, Odometry, Result};
 use crate::kinematics::OUTLIER;
 use crate::nav::surroundings::Surroundings;
 use crate::scan::ScanFilter;
@@ -125,7 +125,7 @@ impl Navigator {
             return Err(Error::invalid_input("goal", point_in_words(goal), "finite numbers"));
         }
         let mut this = Self {
-            chart: Chart::new(world, &parameters)?,
+            chart: Chart::new(world, start.position(), &parameters)?,
             parameters,
             goal,
             phase: NavigatorPhase::Looking,
@@ -152,9 +152,21 @@ impl Navigator {
             widened_at: start.position(),
         };
         if !this.chart.is_open(start.position()) || !this.plan(LEVELS) {
+            if this.chart.may_hide_a_way(start.position(), goal) {
+                return Err(this.too_coarse());
+            }
             this.end(NavigatorOutcome::Unreachable);
         }
         Ok(this)
+    }
+
+    fn too_coarse(&self) -> Error {
+        let [cells, wished] = [self.chart.resolution(), self.parameters.resolution].map(units::to_mm);
+        let found = format!("a world so large that cells of {cells:.0} mm may close a way to the goal");
+        Error::new(
+            ErrorKind::InvalidInput,
+            format!("found {found}; expected one for cells of {wished:.0} mm"),
+        )
     }
 
     /// Current phase.

@@ -1,7 +1,7 @@
 use std::ops::ControlFlow;
 
 use super::*;
-use crate::geometry::{Point, Pose};
+use crate::geometry::{Point, Pose, Vector};
 use crate::io::control::{Behaviour, LidarObservation};
 use crate::world::{Wall, World};
 
@@ -53,6 +53,35 @@ fn starts_in_walls_or_outside_lead_nowhere() {
         let navigator = Navigator::new(&rooms(0.5), start, goal, NavigatorParameters::default()).unwrap();
         assert_eq!(navigator.phase(), NavigatorPhase::Ended(NavigatorOutcome::Unreachable), "{start:?}");
     }
+}
+
+/// A wall far from the rooms makes the world 100 times as large, but not what the robot can reach.
+#[test]
+fn a_way_is_found_whatever_lies_far_off() {
+    for far in [Point::new(-30.0, 50.0), Point::new(80.0, 60.0)] {
+        let mut world = rooms(0.165);
+        world.walls.push(Wall::new(far, far + Vector::new(0.0, 1.0)));
+        let (start, goal) = (Pose::new(0.3, 0.3, 0.0), Point::new(1.7, 0.7));
+        let mut navigator = Navigator::new(&world, start, goal, NavigatorParameters::default()).unwrap();
+        assert_eq!(navigator.phase(), NavigatorPhase::Looking, "{far}");
+        assert!((clearance_of(&mut navigator) - 0.012).abs() < 1e-9);
+    }
+}
+
+/// Cells of 50 mm may close a door of 165 mm: nobody can say that no way exists.
+#[test]
+fn what_is_too_large_for_its_doors_is_refused() {
+    let hall = |door: f64| {
+        let mut world = World::walled(100.0, 100.0);
+        world.walls.push(Wall::new(Point::new(1.0, 0.0), Point::new(1.0, 50.0 - 0.5 * door)));
+        world.walls.push(Wall::new(Point::new(1.0, 50.0 + 0.5 * door), Point::new(1.0, 100.0)));
+        let (start, goal) = (Pose::new(0.5, 0.5, 0.0), Point::new(9.0, 9.0));
+        Navigator::new(&world, start, goal, NavigatorParameters::default())
+    };
+    let error = hall(0.165).unwrap_err().to_string();
+    assert!(error.contains("cells of 50 mm may close a way"), "{error}");
+    assert_eq!(hall(0.5).unwrap().phase(), NavigatorPhase::Looking);
+    assert_eq!(hall(0.0).unwrap().phase(), NavigatorPhase::Ended(NavigatorOutcome::Unreachable));
 }
 
 #[test]

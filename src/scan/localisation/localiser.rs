@@ -4,7 +4,7 @@ use super::hypothesis::Bench;
 use super::map::scanner_of;
 use super::search::search;
 use super::{Hypothesis, LocalisationMap, LocaliserParameters};
-use crate::geometry::{Pose, angle_difference, math};
+use crate::geometry::{Pose, angle_difference, math, normalize_angle};
 use crate::io::{Error, LidarScan, Result};
 
 /// Result of a [`Localiser`].
@@ -103,6 +103,10 @@ const SHARES: [f64; 4] = [0.92, 0.8, 0.7, EXPLAINED];
 /// Fraction of beams by which a pose may explain less than the best one and still count; beyond that, the
 /// next scans leave it no probability.
 const AS_WELL: f64 = 0.06;
+/// Turns from which each pose found is matched again (rad).
+const TURNS: [f64; 6] = [-0.12, -0.08, -0.04, 0.04, 0.08, 0.12];
+/// Logarithm of a likelihood by which another pose must be better to take the place of one found.
+const BETTER: f64 = 0.01;
 /// Motion after which a failed search is repeated (m, rad).
 const LOOK_AGAIN: (f64, f64) = (0.5, 0.5);
 /// Minimum probability of a hypothesis, relative to the best one.
@@ -236,6 +240,10 @@ impl Localiser {
         for share in SHARES {
             let Some(poses) = search(&self.map, scan, &self.parameters, share) else { break };
             self.try_poses(poses, share, scan, bench);
+            self.unite();
+            if self.hypotheses.len() <= MOST {
+                self.try_turned(share, scan, bench);
+            }
             let best = self.hypotheses.iter().map(|other| other.explained).fold(0.0, f64::max);
             if best - AS_WELL >= share || share == EXPLAINED {
                 self.hypotheses.retain(|other| other.explained >= best - AS_WELL);
@@ -259,6 +267,28 @@ impl Localiser {
                 hypothesis.match_scan(&self.map, scan, bench, &self.parameters, SEARCH_STEPS);
             if hypothesis.explained >= share && self.is_possible(&hypothesis) {
                 self.hypotheses.push(hypothesis);
+            }
+        }
+    }
+
+    /// Matches the scan again from headings around those found. Where walls consist of short pieces, as in a
+    /// round room, a pose turned by half a piece fits its surroundings best, but not as well as the true one.
+    fn try_turned(&mut self, share: f64, scan: &LidarScan, bench: &mut Bench) {
+        for index in 0..self.hypotheses.len() {
+            let Pose { x, y, heading } = self.hypotheses[index].pose;
+            for turn in TURNS {
+                let mut turned =
+                    Hypothesis::new(Pose::new(x, y, normalize_angle(heading + turn)), CANDIDATE_SPREAD);
+                turned.log_weight = turned.match_scan(&self.map, scan, bench, &self.parameters, SEARCH_STEPS);
+                let is_known = |other: &Hypothesis| {
+                    other.is_same(&turned) && other.log_weight + BETTER >= turned.log_weight
+                };
+                if turned.explained >= share
+                    && self.is_possible(&turned)
+                    && !self.hypotheses.iter().any(is_known)
+                {
+                    self.hypotheses.push(turned);
+                }
             }
         }
     }

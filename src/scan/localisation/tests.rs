@@ -7,6 +7,7 @@ use crate::geometry::{Point, Pose, angle_difference, direction};
 use crate::io::sim::{SimOptions, Simulation};
 use crate::io::{Lidar, LidarScan, Manoeuvres, Odometry};
 use crate::random::Stream;
+use crate::world::generate::{CourseOptions, obstacle_course};
 use crate::world::{RobotSpec, Scene, Wall, World};
 
 /// A room without symmetries.
@@ -67,6 +68,23 @@ fn a_place_is_found_wherever_it_is() {
             assert_found(&localiser, simulation.truth().pose(0).unwrap());
         }
     }
+}
+
+/// In a round room of straight pieces, poses turned by half a piece fit their surroundings best.
+#[test]
+fn a_pose_between_two_turned_ones_is_found() {
+    let options = CourseOptions { unreachable_share: 0.0, ..CourseOptions::default() };
+    let world = obstacle_course(&mut Stream::new(7), &options).unwrap().world;
+    let start = Pose::new(2.822_376_9, 2.247_382_8, 2.471_942_98);
+    let simulation = simulation(&world, start, 1.0, 55);
+    let mut localiser = localiser(&world);
+    let mut robot = simulation.robot(0).unwrap();
+    localiser.update(robot.pose().unwrap(), &robot.scan().unwrap()).unwrap();
+    let found = localiser.hypotheses().iter().any(|place| {
+        let turn = angle_difference(place.pose.heading, start.heading).abs();
+        place.pose.distance_to(start.position()) < 0.02 && turn < 0.03
+    });
+    assert!(found, "{:?}", localiser.hypotheses());
 }
 
 /// A round room of straight pieces with a door: rotated by one piece, it looks nearly the same.

@@ -36,6 +36,10 @@ fn several_runs_and_newer_schemas_are_named() {
         assert!(matches!(Log::read(two.clone()), Err(LogError::SeveralRuns { runs: 2 })));
         assert!(matches!(recover(&two), Err(LogError::SeveralRuns { runs: 2 })));
     }
+    // The first one is cut off, and a bit of the second one's first byte is wrong.
+    let mut two = [&run[..run.len() / 2], &run].concat();
+    two[run.len() / 2] ^= 1;
+    assert!(matches!(recover(&two), Err(LogError::SeveralRuns { runs: 2 })));
 }
 
 /// Cuts a file at many lengths, or at all of them.
