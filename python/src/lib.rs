@@ -12,6 +12,7 @@ mod batch;
 mod behaviour;
 mod bug;
 mod errors;
+mod follower;
 mod image;
 mod maze;
 mod planner;
@@ -37,6 +38,8 @@ mod _native {
     use crate::bug::Bug;
     #[pymodule_export]
     use crate::errors::{FileFormatError, NoPathError, RobotError, UnsupportedError};
+    #[pymodule_export]
+    use crate::follower::Follower;
     #[pymodule_export]
     use crate::maze::{Maze, Route};
     #[pymodule_export]
