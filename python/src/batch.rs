@@ -4,13 +4,14 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use roverlab::geometry::Point;
-use roverlab::io::sim::TICK;
+use roverlab::io::sim::{SimOptions, TICK};
 use roverlab::world;
 
 use crate::arrays::{self, Natural, state};
 use crate::errors::{Failure, Outcome};
 use crate::scene::Scene;
 use crate::simulation::{Simulation, options};
+use crate::way::{COLUMNS, CentreLine, Way};
 use crate::worlds::{Cell, Part, Rows, Shape, sensors, step_all};
 
 /// Many robots that are stepped in one call, with their state in arrays of one row per robot.
@@ -35,13 +36,15 @@ use crate::worlds::{Cell, Part, Rows, Shape, sensors, step_all};
 ///     Whether each step takes a scan of each robot.
 /// walls : bool
 ///     Whether each step finds the wall that is nearest to each robot, for `walls`.
+/// ahead : sequence of float, optional
+///     Distances along the scene's `centre_line` of the points that each step finds for `lanes`, at least 0 (m).
 /// trail_interval : float, optional
 ///     Interval between the points of each robot's trail (s), at least 0.01; no trail without it.
 ///
 /// Raises
 /// ------
 /// ValueError
-///     If there is no robot, or the robots differ in their numbers of beams or distance sensors.
+///     If there is no robot, a scene has no centre line for `ahead`, or the robots differ in their numbers of beams or distance sensors.
 #[pyclass(frozen, module = "roverlab.sim")]
 #[derive(Debug)]
 pub(crate) struct Batch {
@@ -50,6 +53,7 @@ pub(crate) struct Batch {
     copies: usize,
     noise: f64,
     trail: Option<f64>,
+    ahead: Option<Vec<f64>>,
     threads: usize,
     shape: Shape,
     arrays: Arrays,
@@ -60,11 +64,28 @@ pub(crate) struct Batch {
 struct Start {
     scene: Arc<world::Scene>,
     goal: Option<Point>,
+    line: Option<CentreLine>,
 }
 
 impl Start {
     fn of(scene: &Scene) -> Self {
-        Self { scene: Arc::new(scene.content.clone()), goal: scene.goal_point() }
+        let line = scene.centre_line.clone();
+        Self { scene: Arc::new(scene.content.clone()), goal: scene.goal_point(), line }
+    }
+
+    /// A world that begins so.
+    fn cell(&self, ahead: Option<&[f64]>, options: SimOptions) -> Outcome<Cell> {
+        let way = match ahead {
+            None => None,
+            Some(ahead) => {
+                let line = self.line.as_ref();
+                let way = line.and_then(|line| Way::new(line, &self.scene.robots, ahead));
+                Some(way.ok_or_else(|| {
+                    Failure::value("centre line of a scene", "None", "one, as `Scene.track` has, for `ahead`")
+                })?)
+            }
+        };
+        Cell::new(Arc::clone(&self.scene), self.goal, way, options)
     }
 }
 
@@ -79,10 +100,15 @@ struct Arrays {
     true_poses: Py<PyArray2<f64>>,
     contacts: Py<PyArray1<u32>>,
     walls: Py<PyArray2<f64>>,
+    lanes: Py<PyArray2<f64>>,
 }
 
-/// The shape of the arrays; fails if robots differ.
-fn shape_of(scenes: &[Start], copies: usize, (scan, walls): (bool, bool)) -> Outcome<Shape> {
+/// The shape of the arrays; fails if robots differ. `scan`, `walls` and `ahead` say which columns there are.
+fn shape_of(
+    scenes: &[Start],
+    copies: usize,
+    (scan, walls, ahead): (bool, bool, Option<usize>),
+) -> Outcome<Shape> {
     let mut specs = scenes.iter().flat_map(|start| &start.scene.robots).map(|robot| &robot.spec);
     let Some(first) = specs.next() else {
         return Err(Failure::value("number of robots", 0, "at least one"));
@@ -100,7 +126,8 @@ fn shape_of(scenes: &[Start], copies: usize, (scan, walls): (bool, bool)) -> Out
     }
     let robots = copies * scenes.iter().map(|start| start.scene.robots.len()).sum::<usize>();
     let beams = if scan { beams(first) } else { 0 };
-    Ok(Shape { robots, beams, sensors: first.psds.len(), walls: if walls { 3 } else { 0 } })
+    let (walls, lane) = (if walls { 3 } else { 0 }, ahead.map_or(0, |points| COLUMNS + 2 * points));
+    Ok(Shape { robots, beams, sensors: first.psds.len(), walls, lane })
 }
 
 impl Arrays {
@@ -115,6 +142,7 @@ impl Arrays {
             true_poses: matrix(3),
             contacts: PyArray1::zeros(py, shape.robots, false).unbind(),
             walls: matrix(shape.walls),
+            lanes: matrix(shape.lane),
         }
     }
 
@@ -127,7 +155,7 @@ impl Arrays {
                 })?;
             )+};
         }
-        borrowed!(ranges, distances, poses, speeds, stalled, true_poses, contacts, walls);
+        borrowed!(ranges, distances, poses, speeds, stalled, true_poses, contacts, walls, lanes);
         macro_rules! slice {
             ($array:ident) => {
                 $array.as_slice_mut().map_err(PyErr::from)?
@@ -142,6 +170,7 @@ impl Arrays {
             true_poses: slice!(true_poses),
             contacts: slice!(contacts),
             walls: slice!(walls),
+            lanes: slice!(lanes),
         })
     }
 }
@@ -153,10 +182,11 @@ impl Batch {
     }
 
     /// Reads the sensors of a world that has just begun.
-    fn read_world(&self, py: Python<'_>, worlds: &[Cell], world: usize) -> Outcome<()> {
+    fn read_world(&self, py: Python<'_>, worlds: &mut [Cell], world: usize) -> Outcome<()> {
         let before = worlds[..world].iter().map(Cell::robots).sum();
-        let cell = &worlds[world];
-        let mut state = cell.shared.lock(py);
+        let cell = &mut worlds[world];
+        let shared = Arc::clone(&cell.shared);
+        let mut state = shared.lock(py);
         self.arrays.with_rows(py, |rows| {
             let (_, mut rows) = rows.split(before, self.shape);
             Ok(cell.read(&mut state, &mut rows, self.shape)?)
@@ -179,10 +209,10 @@ impl Batch {
     #[pyo3(
         signature = (
             scenes, *, copies = Natural::ONE, seed = Natural::ONE, noise = 1.0, threads = Natural::ONE,
-            scan = true, walls = false, trail_interval = None
+            scan = true, walls = false, ahead = None, trail_interval = None
         ),
         text_signature = "(scenes, *, copies=1, seed=1, noise=1.0, threads=1, scan=True, walls=False, \
-            trail_interval=None)"
+            ahead=None, trail_interval=None)"
     )]
     #[allow(clippy::too_many_arguments, reason = "keywords of Python")]
     fn new(
@@ -194,22 +224,25 @@ impl Batch {
         threads: Natural,
         scan: bool,
         walls: bool,
+        ahead: Option<Vec<f64>>,
         trail_interval: Option<f64>,
     ) -> Outcome<Self> {
         let seed = seed.named("seed")?;
         let (copies, threads) = (at_least_one("copies", copies)?, at_least_one("threads", threads)?);
         let scenes = scenes_of(scenes)?;
-        let shape = shape_of(&scenes, copies, (scan, walls))?;
+        if let Some(wrong) = ahead.iter().flatten().find(|metres| !(0.0..=1e6).contains(*metres)) {
+            return Err(Failure::value("ahead", wrong, "distances of 0 to 1000000 m"));
+        }
+        let shape = shape_of(&scenes, copies, (scan, walls, ahead.as_ref().map(Vec::len)))?;
         let cell = |world: usize| {
-            let Start { scene, goal } = &scenes[world / copies];
             let options = options(seed.wrapping_add(world as u64), noise, false, trail_interval)?;
-            Cell::new(Arc::clone(scene), *goal, options)
+            scenes[world / copies].cell(ahead.as_deref(), options)
         };
-        let worlds = (0..copies * scenes.len()).map(cell).collect::<Outcome<Vec<_>>>()?;
+        let mut worlds = (0..copies * scenes.len()).map(cell).collect::<Outcome<Vec<_>>>()?;
         let (arrays, trail) = (Arrays::new(py, shape), trail_interval);
-        let batch =
-            Self { worlds: Mutex::new(Vec::new()), scenes, copies, noise, trail, threads, shape, arrays };
-        (0..worlds.len()).try_for_each(|world| batch.read_world(py, &worlds, world))?;
+        let none = Mutex::new(Vec::new());
+        let batch = Self { worlds: none, scenes, copies, noise, trail, ahead, threads, shape, arrays };
+        (0..worlds.len()).try_for_each(|world| batch.read_world(py, &mut worlds, world))?;
         *batch.worlds.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner) = worlds;
         Ok(batch)
     }
@@ -282,15 +315,16 @@ impl Batch {
         let mut worlds = self.worlds.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
         let (world, cell) = self.world(&mut worlds, world)?;
         let start = scene.as_ref().map_or_else(|| self.start(world).clone(), |scene| Start::of(scene));
-        let columns = (self.shape.beams > 0, self.shape.walls > 0);
+        let ahead = self.ahead.as_deref();
+        let columns = (self.shape.beams > 0, self.shape.walls > 0, ahead.map(<[f64]>::len));
         let shape = shape_of(std::slice::from_ref(&start), 1, columns)?;
         if shape != (Shape { robots: cell.robots(), ..self.shape }) {
             let found = format!("{} robots of {} beams", shape.robots, shape.beams);
             let expected = format!("{} robots of {} beams", cell.robots(), self.shape.beams);
             return Err(Failure::value("scene", found, &expected));
         }
-        *cell = Cell::new(start.scene, start.goal, options(seed, self.noise, false, self.trail)?)?;
-        self.read_world(py, &worlds, world)
+        *cell = start.cell(ahead, options(seed, self.noise, false, self.trail)?)?;
+        self.read_world(py, &mut worlds, world)
     }
 
     /// A world as a `Simulation`: its robots one by one, its truth and its picture.
@@ -356,6 +390,15 @@ impl Batch {
     #[getter]
     fn walls(&self, py: Python<'_>) -> Py<PyArray2<f64>> {
         self.arrays.walls.clone_ref(py)
+    }
+
+    /// Ground truth: the robots on the centre lines of their scenes, of shape (robots, 5 + 2 points). Distance
+    /// along the line and length of the line (m), distance to the left of it (m), turn from its direction (rad),
+    /// distance from the nearer edge, negative outside (m), all of the middle of the robot's outline; then for each
+    /// point ahead its distances ahead of the robot and to the left (m). No columns without the option `ahead`.
+    #[getter]
+    fn lanes(&self, py: Python<'_>) -> Py<PyArray2<f64>> {
+        self.arrays.lanes.clone_ref(py)
     }
 
     /// Number of worlds.

@@ -14,8 +14,10 @@ mod bug;
 mod errors;
 mod follower;
 mod image;
+mod lane_keeper;
 mod maze;
 mod planner;
+mod racer;
 mod robot;
 mod robot_spec;
 mod scene;
@@ -23,6 +25,7 @@ mod simulation;
 mod truth;
 mod vision;
 mod wall_follower;
+mod way;
 mod worlds;
 
 /// Native part of the package; import `roverlab.sim`, `drive`, `nav`, `maze` or `vision` instead.
@@ -41,9 +44,13 @@ mod _native {
     #[pymodule_export]
     use crate::follower::Follower;
     #[pymodule_export]
+    use crate::lane_keeper::LaneKeeper;
+    #[pymodule_export]
     use crate::maze::{Maze, Route};
     #[pymodule_export]
     use crate::planner::{DStarLite, Path, Planner, distance_field, inflate};
+    #[pymodule_export]
+    use crate::racer::Racer;
     #[pymodule_export]
     use crate::robot::Robot;
     #[pymodule_export]

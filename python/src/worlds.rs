@@ -9,21 +9,24 @@ use roverlab::world::{self, Wall};
 
 use crate::errors::Outcome;
 use crate::simulation::{Shared, State};
+use crate::way::Way;
 
 /// A world of a batch.
 #[derive(Debug)]
 pub(crate) struct Cell {
     pub(crate) shared: Arc<Shared>,
     sensors: Vec<Psd>,
+    way: Option<Way>,
 }
 
-/// Numbers of robots, and of columns for beams, distance sensors and the nearest wall of each.
+/// Numbers of robots, and of columns for beams, distance sensors, the nearest wall and the lane of each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Shape {
     pub(crate) robots: usize,
     pub(crate) beams: usize,
     pub(crate) sensors: usize,
     pub(crate) walls: usize,
+    pub(crate) lane: usize,
 }
 
 /// The rows of some robots.
@@ -36,6 +39,7 @@ pub(crate) struct Rows<'a> {
     pub(crate) true_poses: &'a mut [f64],
     pub(crate) contacts: &'a mut [u32],
     pub(crate) walls: &'a mut [f64],
+    pub(crate) lanes: &'a mut [f64],
 }
 
 impl Rows<'_> {
@@ -49,7 +53,8 @@ impl Rows<'_> {
         let (true_poses, more_true_poses) = self.true_poses.split_at_mut(3 * robots);
         let (contacts, more_contacts) = self.contacts.split_at_mut(robots);
         let (walls, more_walls) = self.walls.split_at_mut(robots * shape.walls);
-        let first = Rows { ranges, distances, poses, speeds, stalled, true_poses, contacts, walls };
+        let (lanes, more_lanes) = self.lanes.split_at_mut(robots * shape.lane);
+        let first = Rows { ranges, distances, poses, speeds, stalled, true_poses, contacts, walls, lanes };
         let others = Rows {
             ranges: more_ranges,
             distances: more_distances,
@@ -59,15 +64,21 @@ impl Rows<'_> {
             true_poses: more_true_poses,
             contacts: more_contacts,
             walls: more_walls,
+            lanes: more_lanes,
         };
         (first, others)
     }
 }
 
 impl Cell {
-    pub(crate) fn new(scene: Arc<world::Scene>, goal: Option<Point>, options: SimOptions) -> Outcome<Self> {
+    pub(crate) fn new(
+        scene: Arc<world::Scene>,
+        goal: Option<Point>,
+        way: Option<Way>,
+        options: SimOptions,
+    ) -> Outcome<Self> {
         let sensors = scene.robots.first().map_or(Vec::new(), |robot| sensors(&robot.spec));
-        Ok(Self { shared: Arc::new(Shared::new(scene, goal, options)?), sensors })
+        Ok(Self { shared: Arc::new(Shared::new(scene, goal, options)?), sensors, way })
     }
 
     /// Number of robots.
@@ -77,8 +88,9 @@ impl Cell {
 
     /// Commands all robots at the beginning of a step, lets time pass, and reads all sensors at its end. For
     /// a thread that runs no Python.
-    fn step(&self, commands: &[f64], part: Part, rows: &mut Rows<'_>, shape: Shape) -> Result<()> {
-        let mut state = self.shared.free_lock();
+    fn step(&mut self, commands: &[f64], part: Part, rows: &mut Rows<'_>, shape: Shape) -> Result<()> {
+        let shared = Arc::clone(&self.shared);
+        let mut state = shared.free_lock();
         if part.begins {
             for (robot, command) in commands.chunks_exact(2).enumerate() {
                 state.world.robot(robot)?.set_speed(Twist::new(command[0], command[1]))?;
@@ -89,7 +101,7 @@ impl Cell {
     }
 
     /// Reads all sensors of the world's robots, and the truth about them.
-    pub(crate) fn read(&self, state: &mut State, rows: &mut Rows<'_>, shape: Shape) -> Result<()> {
+    pub(crate) fn read(&mut self, state: &mut State, rows: &mut Rows<'_>, shape: Shape) -> Result<()> {
         let State { world, scan } = state;
         for index in 0..self.robots() {
             let mut robot = world.robot(index)?;
@@ -110,6 +122,9 @@ impl Cell {
             if shape.walls > 0 {
                 let nearest = nearest_wall(&self.shared.scene.world.walls, truth.position());
                 rows.walls[3 * index..][..3].copy_from_slice(&nearest);
+            }
+            if let Some(way) = &mut self.way {
+                way.look(index, truth, &mut rows.lanes[index * shape.lane..][..shape.lane]);
             }
         }
         Ok(())

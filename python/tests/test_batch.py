@@ -152,3 +152,24 @@ def test_the_nearest_walls() -> None:
     open_floor = Scene.empty(1.0, 1.0)
     open_floor.add_robot("S4", (0.5, 0.5, 0.0))
     assert Batch(open_floor, walls=True).walls.tolist() == [[np.inf, 0.0, 0.0]]
+
+
+def test_robots_on_centre_lines() -> None:
+    road = Scene.road(2, None)
+    line = road.centre_line
+    assert line is not None
+    x, y, heading = line[10, :3]
+    road.add_robot("S4", (x - 0.02 * np.sin(heading), y + 0.02 * np.cos(heading), heading + 0.1))
+    batch = Batch(road, noise=0.0, scan=False, ahead=(0.0, 0.5))
+    spacing = np.hypot(*(np.roll(line[:, :2], -1, axis=0) - line[:, :2]).T).mean()
+    along, length, left, turn, edge, *points = batch.lanes[0]
+    assert [along, length] == pytest.approx([10 * spacing, len(line) * spacing])
+    assert [left, turn, edge] == pytest.approx([0.02, 0.1, line[10, 4] - 0.02])
+    assert points[:2] == pytest.approx([-0.02 * np.sin(0.1), -0.02 * np.cos(0.1)]) and 0.3 < points[2] < 0.55
+    batch.step(np.array([[0.5, 0.0]]), 0.5)
+    assert batch.lanes[0, 0] - along == pytest.approx(0.2, abs=0.06)
+    assert Batch(road, scan=False).lanes.shape == (1, 0)
+    with pytest.raises(ValueError, match="centre line of a scene is None; expected one"):
+        Batch(crowd(), ahead=())
+    with pytest.raises(ValueError, match="ahead is -1; expected distances of 0 to 1000000 m"):
+        Batch(road, ahead=[1.0, -1.0])

@@ -14,7 +14,7 @@ from roverlab import envs  # noqa: E402
 from roverlab.sim import Scene  # noqa: E402
 
 NAMES = list(envs.ENVIRONMENTS)
-WALL, GOAL, MAZE, SWARM = NAMES
+WALL, GOAL, MAZE, SWARM, RACE, LANE = NAMES
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -44,15 +44,23 @@ def test_a_seed_determines_an_episode(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "good", "mean"), [(WALL, 18, 6.0), (GOAL, 20, 11.0), (MAZE, 20, 33.0), (SWARM, 20, 500.0)]
+    ("name", "episodes", "good", "mean"),
+    [
+        (WALL, 20, 18, 6.0),
+        (GOAL, 20, 20, 11.0),
+        (MAZE, 20, 20, 33.0),
+        (SWARM, 20, 20, 500.0),
+        (RACE, 10, 10, 300.0),
+        (LANE, 5, 5, 120.0),
+    ],
 )
-def test_the_baselines_score(name: str, good: int, mean: float) -> None:
-    scores = envs.score(gymnasium.make(name), range(20))
+def test_the_baselines_score(name: str, episodes: int, good: int, mean: float) -> None:
+    scores = envs.score(gymnasium.make(name), range(episodes))
     assert (scores > 0.0).sum() >= good and scores.mean() > mean
     random = np.random.default_rng(1)
-    chance = envs.score(
-        gymnasium.make(name), range(5), lambda _: random.uniform([0.0, -2.0], [0.3, 2.0]).astype(np.float32)
-    )
+    env = gymnasium.make(name)
+    space = env.action_space
+    chance = envs.score(env, range(5), lambda _: random.uniform(space.low, space.high).astype(np.float32))
     assert chance.mean() < 0.2 * mean
 
 
@@ -145,6 +153,35 @@ def test_a_leader_can_be_lost() -> None:
         lonely = Scene.walled(2.0, 2.0)
         lonely.add_robot("S4", (1.0, 1.0, 0.0))
         env.reset(options={"scene": lonely})
+
+
+@pytest.mark.parametrize(("name", "width"), [(RACE, 0.7), (LANE, 0.17)])
+def test_ways_along_tracks(name: str, width: float) -> None:
+    env = gymnasium.make(name, noise=0.0)
+    observation, _ = env.reset(seed=1)
+    line = env.unwrapped.scene.centre_line
+    assert abs(observation[2]) < 0.3 and abs(observation[3]) < 0.1 and observation[4] > observation[5]
+    total, over, before = 0.0, False, env.unwrapped.simulation.truth.pose()
+    while not over:
+        # Straight on, off the track at a bend.
+        observation, reward, over, _, facts = env.step(np.array([1.0, 0.0], np.float32))
+        total += float(reward)
+        if not over:
+            gone = float(np.hypot(facts["pose"][0] - before[0], facts["pose"][1] - before[1]))
+            assert total == pytest.approx(gone, rel=0.15, abs=0.1)
+    assert reward == -10.0 and abs(observation[2]) > width and len(line) > 100
+    scene = Scene.walled(5.0, 5.0)
+    scene.add_robot("RaceCar" if name == RACE else "RoadCar", (2.0, 2.0, 0.0))
+    with pytest.raises(ValueError, match="centre line of a scene is None; expected one, as"):
+        env.reset(options={"scene": scene})
+
+
+def test_a_lane_is_seen_by_the_camera_only_where_one_is() -> None:
+    seen, unseen = envs.LaneKeeping(), envs.LaneKeeping(camera=False)
+    first, _ = seen.reset(seed=4)
+    second, _ = unseen.reset(seed=4)
+    assert np.array_equal(first, second)
+    assert seen.image().max() > 200 and seen.image()[200:].std() > 2.0 * unseen.image()[200:].std()
 
 
 def test_wrong_arguments_are_named() -> None:

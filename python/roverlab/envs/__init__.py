@@ -16,14 +16,18 @@ import gymnasium as _gymnasium
 from ._base import RobotEnvironment
 from ._score import score
 from ._vector import RobotVectorEnvironment
+from .cone_racing import ConeRacing
 from .goal_reaching import GoalReaching
+from .lane_keeping import LaneKeeping
 from .maze_exploration import MazeExploration
 from .swarm_following import SwarmFollowing
 from .wall_following import WallFollowing
 
 __all__ = [
     "ENVIRONMENTS",
+    "ConeRacing",
     "GoalReaching",
+    "LaneKeeping",
     "MazeExploration",
     "RobotEnvironment",
     "RobotVectorEnvironment",
@@ -37,6 +41,8 @@ ENVIRONMENTS: dict[str, tuple[type[RobotEnvironment], int]] = {
     "roverlab/GoalReaching-v0": (GoalReaching, 3000),
     "roverlab/MazeExploration-v0": (MazeExploration, 2400),
     "roverlab/SwarmFollowing-v0": (SwarmFollowing, 600),
+    "roverlab/ConeRacing-v0": (ConeRacing, 1200),
+    "roverlab/LaneKeeping-v0": (LaneKeeping, 2000),
 }
 """Ids, with the class of the environment and the number of steps after which an episode is truncated."""
 

@@ -70,7 +70,7 @@ class RobotEnvironment(gymnasium.Env[Observation, Action]):
 
     def render(self) -> str | None:
         """Picture of the world and the way so far, as the text of an SVG file."""
-        return self.simulation.to_svg() if self.render_mode == "svg" else None
+        return picture(self.simulation, self.scene) if self.render_mode == "svg" else None
 
     def _observe(self) -> Observation:
         self.task.observe(self._seen)
@@ -92,6 +92,12 @@ def checked(render_mode: str | None, period: float) -> float:
     return period
 
 
+def picture(simulation: Simulation, scene: Scene) -> str:
+    """A world with its robots, and the middle of its track."""
+    line = scene.centre_line
+    return simulation.to_svg(path=None if line is None else line[:, :2])
+
+
 def speeds(task: Task) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Lowest and highest speeds of an action."""
     return task.slowest.astype(np.float32), task.fastest.astype(np.float32)
@@ -100,7 +106,8 @@ def speeds(task: Task) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
 def batch_options(task: Task, render_mode: str | None, noise: float) -> dict[str, Any]:
     """Options of the batch of a task."""
     trail = 0.1 if render_mode else None
-    return {"noise": noise, "scan": task.SCAN, "walls": task.WALLS, "trail_interval": trail}
+    found = {"scan": task.SCAN, "walls": task.WALLS, "ahead": task.AHEAD}
+    return {"noise": noise, "trail_interval": trail, **found}
 
 
 def next_scene(task: Task, random: np.random.Generator, options: dict[str, Any] | None) -> tuple[Scene, int]:

@@ -36,6 +36,9 @@ class Task(ABC):
     WALLS: ClassVar[bool] = False
     """Whether each step finds the nearest walls."""
 
+    AHEAD: ClassVar[Sequence[float] | None] = None
+    """Distances along the centre line of the points that each step finds (m)."""
+
     batch: Batch
     scenes: list[Scene]
     seeds: list[int]
@@ -74,6 +77,7 @@ class Task(ABC):
         self.speeds: Floats = self._own(batch.speeds)  # type: ignore[assignment]
         self.true_poses: Floats = self._own(batch.true_poses)  # type: ignore[assignment]
         self.walls: Floats = self._own(batch.walls)  # type: ignore[assignment]
+        self.lanes: Floats = self._own(batch.lanes)  # type: ignore[assignment]
         self.contacts: NDArray[np.uint32] = self._own(batch.contacts)  # type: ignore[assignment]
 
     @abstractmethod

@@ -13,7 +13,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from ..sim import Batch, Simulation
-from ._base import RobotEnvironment, batch_options, checked, next_scene, speeds
+from ._base import RobotEnvironment, batch_options, checked, next_scene, picture, speeds
 
 Observations = NDArray[np.float32]
 Actions = NDArray[np.float32]
@@ -146,7 +146,7 @@ class RobotVectorEnvironment(gymnasium.vector.VectorEnv[Observations, Actions, N
         """Pictures of the worlds, as the texts of SVG files."""
         if self.render_mode is None:
             return None
-        return tuple(self.simulation(world).to_svg() for world in range(self.num_envs))
+        return tuple(picture(self.simulation(world), scene) for world, scene in enumerate(self.task.scenes))
 
     def simulation(self, world: int) -> Simulation:
         """A world until its next episode, with its robots and their truth."""
