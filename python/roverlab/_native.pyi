@@ -1,8 +1,8 @@
 """Types of the native part of the package."""
 
 import os
-from collections.abc import Mapping, Sequence
-from typing import Literal, SupportsFloat, SupportsIndex, final
+from collections.abc import Callable, Mapping, Sequence
+from typing import Literal, SupportsFloat, SupportsIndex, TypedDict, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 __all__ = [
     "Batch",
     "Bug",
+    "CmaEs",
     "DStarLite",
     "FileFormatError",
     "Follower",
@@ -19,6 +20,7 @@ __all__ = [
     "Path",
     "Planner",
     "Racer",
+    "Recording",
     "Robot",
     "RobotError",
     "RobotSpec",
@@ -231,6 +233,67 @@ class Batch:
     @property
     def times(self) -> list[float]: ...
 
+class _Poses(TypedDict):
+    time: _Floats
+    x: _Floats
+    y: _Floats
+    heading: _Floats
+
+class _Scans(TypedDict):
+    time: _Floats
+    angle_min: _Floats
+    angle_increment: _Floats
+    beams: NDArray[np.int64]
+    ranges: _Floats
+
+class _Images(TypedDict):
+    time: _Floats
+    image: list[_Bytes]
+
+class _Distances(TypedDict):
+    time: _Floats
+    sensor: NDArray[np.int64]
+    distance: _Floats
+
+class _Calls(TypedDict):
+    time: _Floats
+    truth: NDArray[np.bool_]
+    method: list[str]
+    arguments: list[str]
+    result: list[str]
+    error: list[str]
+
+@final
+class Recording:
+    @staticmethod
+    def load(path: _File) -> Recording: ...
+    @staticmethod
+    def read(data: bytes) -> Recording: ...
+    def scans(self, robot: int = 0) -> _Scans: ...
+    def images(self, robot: int = 0, display: bool = False) -> _Images: ...
+    def odometry(self, robot: int = 0) -> _Poses: ...
+    def truth(self, robot: int = 0) -> _Poses: ...
+    def distances(self, robot: int = 0) -> _Distances: ...
+    def calls(self, robot: int = 0) -> _Calls: ...
+    def scene(self) -> Scene | None: ...
+    def start(self, robot: int = 0) -> _Pose | None: ...
+    @property
+    def program(self) -> str: ...
+    @property
+    def options(self) -> list[str]: ...
+    @property
+    def seed(self) -> int | None: ...
+    @property
+    def version(self) -> str: ...
+    @property
+    def robots(self) -> int: ...
+    @property
+    def span(self) -> tuple[float, float] | None: ...
+    @property
+    def topics(self) -> dict[str, int]: ...
+    @property
+    def attachments(self) -> dict[str, bytes]: ...
+
 @final
 class WallFollower:
     def __new__(
@@ -282,6 +345,21 @@ class Bug:
     def outcome(self) -> str | None: ...
     @property
     def period(self) -> float: ...
+
+@final
+class CmaEs:
+    def __new__(
+        cls, mean: _Numbers, sigma: float, individuals: int | None = None, seed: int = 1
+    ) -> CmaEs: ...
+    def step(self, fitness: Callable[[_Floats], Sequence[float] | _Floats]) -> None: ...
+    @property
+    def best(self) -> tuple[_Floats, float] | None: ...
+    @property
+    def mean(self) -> _Floats: ...
+    @property
+    def sigma(self) -> float: ...
+    @property
+    def history(self) -> _Floats: ...
 
 @final
 class Path:

@@ -11,6 +11,7 @@ mod arrays;
 mod batch;
 mod behaviour;
 mod bug;
+mod cma_es;
 mod errors;
 mod follower;
 mod image;
@@ -18,6 +19,7 @@ mod lane_keeper;
 mod maze;
 mod planner;
 mod racer;
+mod recording;
 mod robot;
 mod robot_spec;
 mod scene;
@@ -40,6 +42,8 @@ mod _native {
     #[pymodule_export]
     use crate::bug::Bug;
     #[pymodule_export]
+    use crate::cma_es::CmaEs;
+    #[pymodule_export]
     use crate::errors::{FileFormatError, NoPathError, RobotError, UnsupportedError};
     #[pymodule_export]
     use crate::follower::Follower;
@@ -51,6 +55,8 @@ mod _native {
     use crate::planner::{DStarLite, Path, Planner, distance_field, inflate};
     #[pymodule_export]
     use crate::racer::Racer;
+    #[pymodule_export]
+    use crate::recording::Recording;
     #[pymodule_export]
     use crate::robot::Robot;
     #[pymodule_export]

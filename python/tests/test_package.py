@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import roverlab
-from roverlab import drive, maze, nav, sim, vision
+from roverlab import drive, evolve, log, maze, nav, sim, vision
 from roverlab.drive import WallFollower
 from roverlab.sim import Scene, Simulation
 
@@ -51,7 +51,7 @@ def test_types_are_consistent() -> None:
 
 
 def test_everything_is_documented() -> None:
-    for module in (roverlab, drive, maze, nav, sim, vision):
+    for module in (roverlab, drive, evolve, log, maze, nav, sim, vision):
         assert module.__doc__
         for name in module.__all__:
             thing = getattr(module, name)
