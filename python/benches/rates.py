@@ -16,7 +16,7 @@ from collections.abc import Callable
 import numpy as np
 
 from roverlab import vision
-from roverlab.envs import WallFollowing
+from roverlab.envs import ENVIRONMENTS, RobotVectorEnvironment, WallFollowing
 from roverlab.nav import Planner
 from roverlab.sim import Batch, RobotSpec, Scene, Simulation
 
@@ -79,6 +79,20 @@ def environment() -> float:
     return 1 / seconds(lambda: env.step(action), 5000)
 
 
+def vector(name: str, count: int = 1000) -> tuple[float, float]:
+    """Rate of an environment's worlds, and that of their batch alone. No episode ends meanwhile."""
+    env = RobotVectorEnvironment(ENVIRONMENTS[name][0], count)
+    env.reset(seed=1)
+    actions = np.tile(np.array([0.0, 0.3], np.float32), (count, 1))
+    commands = np.tile([0.0, 0.3], (len(env.batch), 1))
+    rounds = []
+    for _ in range(7):
+        alone = seconds(lambda: env.batch.step(commands, env.period), 5)
+        rounds.append((seconds(lambda: env.step(actions), 5), alone))
+    steps, alone = (statistics.median(column) for column in zip(*rounds, strict=True))
+    return count / steps, count / alone
+
+
 def importing() -> float:
     program = "import numpy, time; t = time.perf_counter(); import roverlab; print(time.perf_counter() - t)"
     command = [sys.executable, "-c", program]
@@ -135,6 +149,9 @@ def main() -> None:
     for method in ("astar", "jps", "any_angle"):
         print(f"{method} on 1024 x 1024: {planner(method):.2f} ms")
     print(f"WallFollowing, one environment: {environment():,.0f} steps/s")
+    for name in ENVIRONMENTS:
+        rate, alone = vector(name)
+        print(f"{name}, 1,000 in a vector: {rate:,.0f} steps/s, {alone / rate - 1:+.0%} of the time of their batch")
     print(f"import, after numpy: {importing():.1f} ms")
 
 

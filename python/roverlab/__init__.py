@@ -10,6 +10,10 @@ maze
     Mazes, flood fill and shortest routes.
 vision
     Kernels on images of uint8.
+evolve
+    Evolution of vectors of real numbers.
+log
+    Recordings as arrays and tables.
 envs
     Environments for Gymnasium, which ``pip install roverlab[envs]`` brings.
 
@@ -17,7 +21,7 @@ Units are metres, seconds and radians: x ahead, y to the left, angles counter-cl
 ``ValueError`` and wrong types ``TypeError``; the message says what was found and what is expected.
 """
 
-from . import drive, maze, nav, sim, vision
+from . import drive, evolve, log, maze, nav, sim, vision
 from ._native import FileFormatError, NoPathError, RobotError, UnsupportedError, __version__
 
 __all__ = [
@@ -27,6 +31,8 @@ __all__ = [
     "UnsupportedError",
     "__version__",
     "drive",
+    "evolve",
+    "log",
     "maze",
     "nav",
     "sim",

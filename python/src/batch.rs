@@ -1,14 +1,17 @@
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
-use roverlab::io::sim::TICK;
+use roverlab::geometry::Point;
+use roverlab::io::sim::{SimOptions, TICK};
 use roverlab::world;
 
 use crate::arrays::{self, Natural, state};
 use crate::errors::{Failure, Outcome};
 use crate::scene::Scene;
+use crate::simulation::{Simulation, options};
+use crate::way::{COLUMNS, CentreLine, Way};
 use crate::worlds::{Cell, Part, Rows, Shape, sensors, step_all};
 
 /// Many robots that are stepped in one call, with their state in arrays of one row per robot.
@@ -31,21 +34,59 @@ use crate::worlds::{Cell, Part, Rows, Shape, sensors, step_all};
 ///     Number of threads among which the worlds are divided.
 /// scan : bool
 ///     Whether each step takes a scan of each robot.
+/// walls : bool
+///     Whether each step finds the wall that is nearest to each robot, for `walls`.
+/// ahead : sequence of float, optional
+///     Distances along the scene's `centre_line` of the points that each step finds for `lanes`, at least 0 (m).
+/// trail_interval : float, optional
+///     Interval between the points of each robot's trail (s), at least 0.01; no trail without it.
 ///
 /// Raises
 /// ------
 /// ValueError
-///     If there is no robot, or the robots differ in their numbers of beams or distance sensors.
+///     If there is no robot, a scene has no centre line for `ahead`, or the robots differ in their numbers of beams or distance sensors.
 #[pyclass(frozen, module = "roverlab.sim")]
 #[derive(Debug)]
 pub(crate) struct Batch {
     worlds: Mutex<Vec<Cell>>,
-    scenes: Vec<world::Scene>,
+    scenes: Vec<Start>,
     copies: usize,
     noise: f64,
+    trail: Option<f64>,
+    ahead: Option<Vec<f64>>,
     threads: usize,
     shape: Shape,
     arrays: Arrays,
+}
+
+/// How a world begins.
+#[derive(Debug, Clone)]
+struct Start {
+    scene: Arc<world::Scene>,
+    goal: Option<Point>,
+    line: Option<CentreLine>,
+}
+
+impl Start {
+    fn of(scene: &Scene) -> Self {
+        let line = scene.centre_line.clone();
+        Self { scene: Arc::new(scene.content.clone()), goal: scene.goal_point(), line }
+    }
+
+    /// A world that begins so.
+    fn cell(&self, ahead: Option<&[f64]>, options: SimOptions) -> Outcome<Cell> {
+        let way = match ahead {
+            None => None,
+            Some(ahead) => {
+                let line = self.line.as_ref();
+                let way = line.and_then(|line| Way::new(line, &self.scene.robots, ahead));
+                Some(way.ok_or_else(|| {
+                    Failure::value("centre line of a scene", "None", "one, as `Scene.track` has, for `ahead`")
+                })?)
+            }
+        };
+        Cell::new(Arc::clone(&self.scene), self.goal, way, options)
+    }
 }
 
 /// What is known of all robots, a row for each.
@@ -58,11 +99,17 @@ struct Arrays {
     stalled: Py<PyArray1<bool>>,
     true_poses: Py<PyArray2<f64>>,
     contacts: Py<PyArray1<u32>>,
+    walls: Py<PyArray2<f64>>,
+    lanes: Py<PyArray2<f64>>,
 }
 
-/// The shape of the arrays; fails if robots differ.
-fn shape_of(scenes: &[world::Scene], copies: usize, scan: bool) -> Outcome<Shape> {
-    let mut specs = scenes.iter().flat_map(|scene| &scene.robots).map(|robot| &robot.spec);
+/// The shape of the arrays; fails if robots differ. `scan`, `walls` and `ahead` say which columns there are.
+fn shape_of(
+    scenes: &[Start],
+    copies: usize,
+    (scan, walls, ahead): (bool, bool, Option<usize>),
+) -> Outcome<Shape> {
+    let mut specs = scenes.iter().flat_map(|start| &start.scene.robots).map(|robot| &robot.spec);
     let Some(first) = specs.next() else {
         return Err(Failure::value("number of robots", 0, "at least one"));
     };
@@ -77,8 +124,10 @@ fn shape_of(scenes: &[world::Scene], copies: usize, scan: bool) -> Outcome<Shape
             return Err(Failure::value("distance sensors of a robot", found, "those of the first robot"));
         }
     }
-    let robots = copies * scenes.iter().map(|scene| scene.robots.len()).sum::<usize>();
-    Ok(Shape { robots, beams: if scan { beams(first) } else { 0 }, sensors: first.psds.len() })
+    let robots = copies * scenes.iter().map(|start| start.scene.robots.len()).sum::<usize>();
+    let beams = if scan { beams(first) } else { 0 };
+    let (walls, lane) = (if walls { 3 } else { 0 }, ahead.map_or(0, |points| COLUMNS + 2 * points));
+    Ok(Shape { robots, beams, sensors: first.psds.len(), walls, lane })
 }
 
 impl Arrays {
@@ -92,6 +141,8 @@ impl Arrays {
             stalled: PyArray1::zeros(py, shape.robots, false).unbind(),
             true_poses: matrix(3),
             contacts: PyArray1::zeros(py, shape.robots, false).unbind(),
+            walls: matrix(shape.walls),
+            lanes: matrix(shape.lane),
         }
     }
 
@@ -104,7 +155,7 @@ impl Arrays {
                 })?;
             )+};
         }
-        borrowed!(ranges, distances, poses, speeds, stalled, true_poses, contacts);
+        borrowed!(ranges, distances, poses, speeds, stalled, true_poses, contacts, walls, lanes);
         macro_rules! slice {
             ($array:ident) => {
                 $array.as_slice_mut().map_err(PyErr::from)?
@@ -118,23 +169,37 @@ impl Arrays {
             stalled: slice!(stalled),
             true_poses: slice!(true_poses),
             contacts: slice!(contacts),
+            walls: slice!(walls),
+            lanes: slice!(lanes),
         })
     }
 }
 
 impl Batch {
-    /// Scene of a world.
-    fn scene(&self, world: usize) -> &world::Scene {
+    /// How a world begins.
+    fn start(&self, world: usize) -> &Start {
         &self.scenes[world / self.copies]
     }
 
     /// Reads the sensors of a world that has just begun.
     fn read_world(&self, py: Python<'_>, worlds: &mut [Cell], world: usize) -> Outcome<()> {
-        let before = worlds[..world].iter().map(|cell| cell.world.robots()).sum();
+        let before = worlds[..world].iter().map(Cell::robots).sum();
+        let cell = &mut worlds[world];
+        let shared = Arc::clone(&cell.shared);
+        let mut state = shared.lock(py);
         self.arrays.with_rows(py, |rows| {
             let (_, mut rows) = rows.split(before, self.shape);
-            Ok(worlds[world].read(&mut rows, self.shape)?)
+            Ok(cell.read(&mut state, &mut rows, self.shape)?)
         })
+    }
+
+    /// A world by its index.
+    fn world<'a>(&self, worlds: &'a mut [Cell], world: Natural) -> Outcome<(usize, &'a mut Cell)> {
+        let (world, count) = (world.index("world")?, worlds.len());
+        let cell = worlds.get_mut(world).ok_or_else(|| {
+            Failure::value("world", world, &format!("an index below {count}, the number of worlds"))
+        })?;
+        Ok((world, cell))
     }
 }
 
@@ -144,10 +209,12 @@ impl Batch {
     #[pyo3(
         signature = (
             scenes, *, copies = Natural::ONE, seed = Natural::ONE, noise = 1.0, threads = Natural::ONE,
-            scan = true
+            scan = true, walls = false, ahead = None, trail_interval = None
         ),
-        text_signature = "(scenes, *, copies=1, seed=1, noise=1.0, threads=1, scan=True)"
+        text_signature = "(scenes, *, copies=1, seed=1, noise=1.0, threads=1, scan=True, walls=False, \
+            ahead=None, trail_interval=None)"
     )]
+    #[allow(clippy::too_many_arguments, reason = "keywords of Python")]
     fn new(
         py: Python<'_>,
         scenes: &Bound<'_, PyAny>,
@@ -156,20 +223,27 @@ impl Batch {
         noise: f64,
         threads: Natural,
         scan: bool,
+        walls: bool,
+        ahead: Option<Vec<f64>>,
+        trail_interval: Option<f64>,
     ) -> Outcome<Self> {
         let seed = seed.named("seed")?;
         let (copies, threads) = (at_least_one("copies", copies)?, at_least_one("threads", threads)?);
         let scenes = scenes_of(scenes)?;
-        let shape = shape_of(&scenes, copies, scan)?;
-        let starts = (0..copies * scenes.len())
-            .map(|world| (&scenes[world / copies], seed.wrapping_add(world as u64)));
-        let worlds =
-            starts.map(|(scene, seed)| Cell::new(scene, seed, noise)).collect::<Outcome<Vec<_>>>()?;
-        let arrays = Arrays::new(py, shape);
-        let batch = Self { worlds: Mutex::new(worlds), scenes, copies, noise, threads, shape, arrays };
-        let mut worlds = batch.worlds.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(wrong) = ahead.iter().flatten().find(|metres| !(0.0..=1e6).contains(*metres)) {
+            return Err(Failure::value("ahead", wrong, "distances of 0 to 1000000 m"));
+        }
+        let shape = shape_of(&scenes, copies, (scan, walls, ahead.as_ref().map(Vec::len)))?;
+        let cell = |world: usize| {
+            let options = options(seed.wrapping_add(world as u64), noise, false, trail_interval)?;
+            scenes[world / copies].cell(ahead.as_deref(), options)
+        };
+        let mut worlds = (0..copies * scenes.len()).map(cell).collect::<Outcome<Vec<_>>>()?;
+        let (arrays, trail) = (Arrays::new(py, shape), trail_interval);
+        let none = Mutex::new(Vec::new());
+        let batch = Self { worlds: none, scenes, copies, noise, trail, ahead, threads, shape, arrays };
         (0..worlds.len()).try_for_each(|world| batch.read_world(py, &mut worlds, world))?;
-        drop(worlds);
+        *batch.worlds.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner) = worlds;
         Ok(batch)
     }
 
@@ -237,21 +311,35 @@ impl Batch {
         seed: Natural,
         scene: Option<PyRef<'_, Scene>>,
     ) -> Outcome<()> {
-        let (world, seed) = (world.index("world")?, seed.named("seed")?);
+        let seed = seed.named("seed")?;
         let mut worlds = self.worlds.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
-        if world >= worlds.len() {
-            let expected = format!("an index below {}, the number of worlds", worlds.len());
-            return Err(Failure::value("world", world, &expected));
-        }
-        let scene = scene.as_ref().map_or_else(|| self.scene(world), |scene| &scene.content);
-        let shape = shape_of(std::slice::from_ref(scene), 1, self.shape.beams > 0)?;
-        if shape != (Shape { robots: worlds[world].world.robots(), ..self.shape }) {
+        let (world, cell) = self.world(&mut worlds, world)?;
+        let start = scene.as_ref().map_or_else(|| self.start(world).clone(), |scene| Start::of(scene));
+        let ahead = self.ahead.as_deref();
+        let columns = (self.shape.beams > 0, self.shape.walls > 0, ahead.map(<[f64]>::len));
+        let shape = shape_of(std::slice::from_ref(&start), 1, columns)?;
+        if shape != (Shape { robots: cell.robots(), ..self.shape }) {
             let found = format!("{} robots of {} beams", shape.robots, shape.beams);
-            let expected = format!("{} robots of {} beams", worlds[world].world.robots(), self.shape.beams);
+            let expected = format!("{} robots of {} beams", cell.robots(), self.shape.beams);
             return Err(Failure::value("scene", found, &expected));
         }
-        worlds[world] = Cell::new(scene, seed, self.noise)?;
+        *cell = start.cell(ahead, options(seed, self.noise, false, self.trail)?)?;
         self.read_world(py, &mut worlds, world)
+    }
+
+    /// A world as a `Simulation`: its robots one by one, its truth and its picture.
+    ///
+    /// It is the same world until `reset` begins that again. What its robots are told, and time that passes
+    /// in it, counts in the batch too; the arrays show it after the next step.
+    ///
+    /// Parameters
+    /// ----------
+    /// world : int
+    ///     Index of the world.
+    #[pyo3(signature = (world = Natural::ZERO), text_signature = "($self, world=0)")]
+    fn simulation(&self, py: Python<'_>, world: Natural) -> Outcome<Simulation> {
+        let mut worlds = self.worlds.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
+        Ok(Simulation::of(Arc::clone(&self.world(&mut worlds, world)?.1.shared)))
     }
 
     /// Ranges of the lidars (m), of shape (robots, beams); inf without a return. No columns without scans.
@@ -297,6 +385,22 @@ impl Batch {
         self.arrays.contacts.clone_ref(py)
     }
 
+    /// Ground truth: the nearest walls, of shape (robots, 3): distance from the wall's surface (m), and x and
+    /// y of the unit vector towards it; inf and zeros without walls. No columns without the option `walls`.
+    #[getter]
+    fn walls(&self, py: Python<'_>) -> Py<PyArray2<f64>> {
+        self.arrays.walls.clone_ref(py)
+    }
+
+    /// Ground truth: the robots on the centre lines of their scenes, of shape (robots, 5 + 2 points). Distance
+    /// along the line and length of the line (m), distance to the left of it (m), turn from its direction (rad),
+    /// distance from the nearer edge, negative outside (m), all of the middle of the robot's outline; then for each
+    /// point ahead its distances ahead of the robot and to the left (m). No columns without the option `ahead`.
+    #[getter]
+    fn lanes(&self, py: Python<'_>) -> Py<PyArray2<f64>> {
+        self.arrays.lanes.clone_ref(py)
+    }
+
     /// Number of worlds.
     #[getter]
     fn worlds(&self) -> usize {
@@ -307,7 +411,7 @@ impl Batch {
     #[getter]
     fn times(&self, py: Python<'_>) -> Vec<f64> {
         let worlds = self.worlds.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
-        worlds.iter().map(|cell| cell.world.time()).collect()
+        worlds.iter().map(|cell| cell.shared.lock(py).world.time()).collect()
     }
 
     fn __len__(&self) -> usize {
@@ -347,12 +451,12 @@ fn at_least_one(name: &str, count: Natural) -> Outcome<usize> {
 }
 
 /// One scene, or each of a sequence.
-fn scenes_of(scenes: &Bound<'_, PyAny>) -> Outcome<Vec<world::Scene>> {
+fn scenes_of(scenes: &Bound<'_, PyAny>) -> Outcome<Vec<Start>> {
     let taken = |object: &Bound<'_, PyAny>| {
         let scene = object.cast::<Scene>();
         let scene =
             scene.map_err(|_| Failure::kind("scenes", object.get_type(), "Scene or a sequence of them"))?;
-        Ok(scene.try_borrow().map_err(PyErr::from)?.content.clone())
+        Ok(Start::of(&*scene.try_borrow().map_err(PyErr::from)?))
     };
     if scenes.is_instance_of::<Scene>() {
         return Ok(vec![taken(scenes)?]);

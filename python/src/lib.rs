@@ -11,10 +11,15 @@ mod arrays;
 mod batch;
 mod behaviour;
 mod bug;
+mod cma_es;
 mod errors;
+mod follower;
 mod image;
+mod lane_keeper;
 mod maze;
 mod planner;
+mod racer;
+mod recording;
 mod robot;
 mod robot_spec;
 mod scene;
@@ -22,6 +27,7 @@ mod simulation;
 mod truth;
 mod vision;
 mod wall_follower;
+mod way;
 mod worlds;
 
 /// Native part of the package; import `roverlab.sim`, `drive`, `nav`, `maze` or `vision` instead.
@@ -36,11 +42,21 @@ mod _native {
     #[pymodule_export]
     use crate::bug::Bug;
     #[pymodule_export]
+    use crate::cma_es::CmaEs;
+    #[pymodule_export]
     use crate::errors::{FileFormatError, NoPathError, RobotError, UnsupportedError};
+    #[pymodule_export]
+    use crate::follower::Follower;
+    #[pymodule_export]
+    use crate::lane_keeper::LaneKeeper;
     #[pymodule_export]
     use crate::maze::{Maze, Route};
     #[pymodule_export]
     use crate::planner::{DStarLite, Path, Planner, distance_field, inflate};
+    #[pymodule_export]
+    use crate::racer::Racer;
+    #[pymodule_export]
+    use crate::recording::Recording;
     #[pymodule_export]
     use crate::robot::Robot;
     #[pymodule_export]

@@ -25,6 +25,9 @@ pub(crate) struct RobotSpec {
     pub(crate) spec: Arc<world::RobotSpec>,
 }
 
+/// Name of the racing car, which scripts of scenes do not know.
+const RACE_CAR: &str = "RaceCar";
+
 impl RobotSpec {
     fn of(spec: world::RobotSpec) -> Self {
         Self { spec: Arc::new(spec) }
@@ -35,9 +38,13 @@ impl RobotSpec {
 impl RobotSpec {
     #[new]
     pub(crate) fn new(name: &str) -> Outcome<Self> {
-        let spec = world::RobotSpec::predefined(name);
+        let spec = if name.eq_ignore_ascii_case(RACE_CAR) {
+            Some(world::RobotSpec::race_car())
+        } else {
+            world::RobotSpec::predefined(name)
+        };
         spec.map(Self::of).ok_or_else(|| {
-            let expected = format!("one of {}", world::RobotSpec::PREDEFINED.join(", "));
+            let expected = format!("one of {}", Self::names().join(", "));
             Failure::value("name", format!("{name:?}"), &expected)
         })
     }
@@ -45,7 +52,7 @@ impl RobotSpec {
     /// Names of the built-in robots.
     #[staticmethod]
     fn names() -> Vec<&'static str> {
-        world::RobotSpec::PREDEFINED.to_vec()
+        world::RobotSpec::PREDEFINED.into_iter().chain([RACE_CAR]).collect()
     }
 
     /// Reads EyeSim's description of a robot, a file ``.robi``.

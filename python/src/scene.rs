@@ -4,39 +4,45 @@ use std::sync::Arc;
 
 use numpy::PyArray2;
 use pyo3::prelude::*;
-use roverlab::geometry::Point;
+use roverlab::geometry::{Point, math};
 use roverlab::picture::{Mark, Picture};
+use roverlab::race::{self, TrackOptions};
 use roverlab::random::Stream;
 use roverlab::world;
 use roverlab::world::formats::{DiskFiles, MemoryFiles, Parsed, load_scene, parse_scene};
 use roverlab::world::generate::{CourseOptions, RoomOptions, obstacle_course, room};
+use roverlab::world::road::{self, Appearance, CourseError, RoadCourseOptions};
 use roverlab::world::{Clearance, Object, ObjectKind, RobotPlacement, Wall, World};
 
 use crate::arrays::{self, Natural};
 use crate::errors::{Failure, Outcome};
 use crate::robot_spec::RobotSpec;
+use crate::way::CentreLine;
 
 /// A world with robots: the start of a simulation.
 ///
-/// Made by `load`, `parse`, `empty`, `walled`, `built_in`, `room` or `course`; walls, objects and robots can
-/// be added. Lengths are in metres, angles in radians counter-clockwise from x.
+/// Made by `load`, `parse`, `empty`, `walled`, `built_in`, `room`, `course`, `track` or `road`; walls, objects
+/// and robots can be added. Lengths are in metres, angles in radians counter-clockwise from x.
 #[pyclass(module = "roverlab.sim")]
 #[derive(Debug, Clone)]
 pub(crate) struct Scene {
     pub(crate) content: world::Scene,
     goal: Option<Point>,
     reachable: Option<bool>,
+    pub(crate) centre_line: Option<CentreLine>,
     warnings: Vec<String>,
 }
 
 impl Scene {
     pub(crate) fn of(world: World) -> Self {
-        Self { content: world::Scene::new(world), goal: None, reachable: None, warnings: Vec::new() }
+        let content = world::Scene::new(world);
+        Self { content, goal: None, reachable: None, centre_line: None, warnings: Vec::new() }
     }
 
     fn read(parsed: Parsed<world::Scene>) -> Self {
         let warnings = parsed.warnings.iter().map(ToString::to_string).collect();
-        Self { content: parsed.value, goal: None, reachable: None, warnings }
+        let (goal, reachable, centre_line) = (None, None, None);
+        Self { content: parsed.value, goal, reachable, centre_line, warnings }
     }
 
     /// A picture of the world; robots are left to the caller.
@@ -172,6 +178,63 @@ impl Scene {
         };
         let course = obstacle_course(&mut stream, &options)?;
         Ok(Self { goal: Some(course.goal), reachable: Some(course.reachable), ..Self::of(course.world) })
+    }
+
+    /// A random closed track of cones, blue on the left and yellow on the right; `start` is before its start
+    /// line.
+    ///
+    /// Parameters
+    /// ----------
+    /// seed : int
+    ///     Equal seeds give equal tracks on every platform.
+    #[staticmethod]
+    fn track(seed: Natural) -> Outcome<Self> {
+        let seed = seed.named("seed")?;
+        let drawn = race::generate(seed, &TrackOptions::drawn(seed))
+            .map_err(|error| Failure::value("seed", seed, &format!("one of a track: {error}")))?;
+        let mut scene = Self::of(drawn.track.scene(&[]).world);
+        scene.content.world.start = drawn.track.start_pose();
+        let stations = drawn.corridor.stations().iter();
+        let sections = stations.map(|station| {
+            let along = math::atan2(-station.normal.x, station.normal.y);
+            [station.position.x, station.position.y, along, station.left, station.right]
+        });
+        scene.centre_line = Some(sections.collect());
+        Ok(scene)
+    }
+
+    /// A random closed road for model cars, with two lanes and their markings on the floor; `start` is in the
+    /// right lane.
+    ///
+    /// Parameters
+    /// ----------
+    /// seed : int
+    ///     Equal seeds give equal roads on every platform.
+    /// pixel : float, optional
+    ///     Size of a pixel of the floor's picture (m); with None, nothing is on the floor.
+    #[staticmethod]
+    #[pyo3(signature = (seed, pixel = Some(0.004)), text_signature = "(seed, pixel=0.004)")]
+    fn road(py: Python<'_>, seed: Natural, pixel: Option<f64>) -> Outcome<Self> {
+        let seed = seed.named("seed")?;
+        let wrong = |error: CourseError| Failure::value("seed", seed, &format!("one of a road: {error}"));
+        let course = road::generate(seed, &RoadCourseOptions::default()).map_err(wrong)?;
+        let world = match pixel {
+            Some(pixel) => {
+                if !(0.001..=0.1).contains(&pixel) {
+                    return Err(Failure::value("pixel", pixel, "0.001 to 0.1 m"));
+                }
+                let appearance = Appearance { pixel, seed, ..Appearance::default() };
+                py.detach(|| course.world(&appearance)).map_err(wrong)?
+            }
+            None => World { floor: course.floor(), start: Some(course.start()), ..World::empty(1.0, 1.0) },
+        };
+        let half = 0.5 * course.lane_width;
+        let count = (course.line.length() / LANE_STATIONS).ceil();
+        let sections = (0..count as usize).map(|station| {
+            let pose = course.pose(station as f64 * course.line.length() / count, 0.0);
+            [pose.x, pose.y, pose.heading, half, half]
+        });
+        Ok(Self { centre_line: Some(sections.collect()), ..Self::of(world) })
     }
 
     /// Another scene with the same content.
@@ -341,6 +404,14 @@ impl Scene {
         Ok(())
     }
 
+    /// Centre line of a `track` or of the right lane of a `road`: an array of shape (stations, 5) with x, y,
+    /// heading (rad), and the widths to the left and to the right (m). None for other scenes.
+    #[getter]
+    fn centre_line<'py>(&self, py: Python<'py>) -> Outcome<Option<Bound<'py, PyArray2<f64>>>> {
+        let Some(line) = &self.centre_line else { return Ok(None) };
+        arrays::matrix(py, line.concat(), [line.len(), 5]).map(Some)
+    }
+
     /// Whether the goal of a `course` can be reached; None for other scenes.
     #[getter]
     fn reachable(&self) -> Option<bool> {
@@ -366,6 +437,9 @@ impl Scene {
         format!("<Scene: {walls} walls, {objects} objects, {robots} robots>")
     }
 }
+
+/// Largest distance between two stations of a lane's centre line (m).
+const LANE_STATIONS: f64 = 0.1;
 
 type FreeCells<'py> = (Bound<'py, PyArray2<bool>>, (f64, f64));
 

@@ -47,7 +47,7 @@ pub(crate) struct Simulation {
 #[derive(Debug)]
 pub(crate) struct Shared {
     state: Mutex<State>,
-    pub(crate) scene: world::Scene,
+    pub(crate) scene: Arc<world::Scene>,
     goal: Option<Point>,
 }
 
@@ -66,6 +66,12 @@ const PART: usize = 20_000;
 const PATH: &str = "an array of float64 of shape (points, 2)";
 
 impl Shared {
+    /// A world at its start.
+    pub(crate) fn new(scene: Arc<world::Scene>, goal: Option<Point>, options: SimOptions) -> Outcome<Self> {
+        let state = State { world: Stepped::new(&scene, options)?, scan: LidarScan::default() };
+        Ok(Self { state: Mutex::new(state), scene, goal })
+    }
+
     /// The world, once no other thread uses it.
     pub(crate) fn lock(&self, py: Python<'_>) -> MutexGuard<'_, State> {
         self.state.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
@@ -89,7 +95,7 @@ impl Shared {
     }
 
     /// The world, for a thread that runs no Python.
-    fn free_lock(&self) -> MutexGuard<'_, State> {
+    pub(crate) fn free_lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -101,6 +107,12 @@ pub(crate) fn options(seed: u64, noise: f64, pushing: bool, trail: Option<f64>) 
     }
     let noise = NoiseModel::real().scaled(noise);
     Ok(SimOptions { seed, noise, pushing, trail_interval: trail, ..SimOptions::default() })
+}
+
+impl Simulation {
+    pub(crate) fn of(shared: Arc<Shared>) -> Self {
+        Self { shared }
+    }
 }
 
 #[pymethods]
@@ -118,10 +130,8 @@ impl Simulation {
         trail_interval: Option<f64>,
     ) -> Outcome<Self> {
         let options = options(seed.named("seed")?, noise, pushing, trail_interval)?;
-        let state = State { world: Stepped::new(&scene.content, options)?, scan: LidarScan::default() };
-        let shared =
-            Shared { state: Mutex::new(state), scene: scene.content.clone(), goal: scene.goal_point() };
-        Ok(Self { shared: Arc::new(shared) })
+        let shared = Shared::new(Arc::new(scene.content.clone()), scene.goal_point(), options)?;
+        Ok(Self::of(Arc::new(shared)))
     }
 
     /// Lets time pass for all robots.

@@ -1,29 +1,32 @@
 //! The worlds of a batch, and the rows of its arrays.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
-use roverlab::geometry::Twist;
-use roverlab::io::sim::{Stepped, TICK};
-use roverlab::io::{DistanceSensors, Drive, Lidar, LidarScan, Odometry, Psd, Result, StallDetector};
-use roverlab::world;
+use roverlab::geometry::{Point, Twist};
+use roverlab::io::sim::{SimOptions, TICK};
+use roverlab::io::{DistanceSensors, Drive, Lidar, Odometry, Psd, Result, StallDetector};
+use roverlab::world::{self, Wall};
 
 use crate::errors::Outcome;
-use crate::simulation::options;
+use crate::simulation::{Shared, State};
+use crate::way::Way;
 
 /// A world of a batch.
 #[derive(Debug)]
 pub(crate) struct Cell {
-    pub(crate) world: Stepped,
-    scan: LidarScan,
+    pub(crate) shared: Arc<Shared>,
     sensors: Vec<Psd>,
+    way: Option<Way>,
 }
 
-/// Numbers of robots, of beams of each, and of distance sensors of each.
+/// Numbers of robots, and of columns for beams, distance sensors, the nearest wall and the lane of each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Shape {
     pub(crate) robots: usize,
     pub(crate) beams: usize,
     pub(crate) sensors: usize,
+    pub(crate) walls: usize,
+    pub(crate) lane: usize,
 }
 
 /// The rows of some robots.
@@ -35,6 +38,8 @@ pub(crate) struct Rows<'a> {
     pub(crate) stalled: &'a mut [bool],
     pub(crate) true_poses: &'a mut [f64],
     pub(crate) contacts: &'a mut [u32],
+    pub(crate) walls: &'a mut [f64],
+    pub(crate) lanes: &'a mut [f64],
 }
 
 impl Rows<'_> {
@@ -47,7 +52,9 @@ impl Rows<'_> {
         let (stalled, more_stalled) = self.stalled.split_at_mut(robots);
         let (true_poses, more_true_poses) = self.true_poses.split_at_mut(3 * robots);
         let (contacts, more_contacts) = self.contacts.split_at_mut(robots);
-        let first = Rows { ranges, distances, poses, speeds, stalled, true_poses, contacts };
+        let (walls, more_walls) = self.walls.split_at_mut(robots * shape.walls);
+        let (lanes, more_lanes) = self.lanes.split_at_mut(robots * shape.lane);
+        let first = Rows { ranges, distances, poses, speeds, stalled, true_poses, contacts, walls, lanes };
         let others = Rows {
             ranges: more_ranges,
             distances: more_distances,
@@ -56,35 +63,51 @@ impl Rows<'_> {
             stalled: more_stalled,
             true_poses: more_true_poses,
             contacts: more_contacts,
+            walls: more_walls,
+            lanes: more_lanes,
         };
         (first, others)
     }
 }
 
 impl Cell {
-    pub(crate) fn new(scene: &world::Scene, seed: u64, noise: f64) -> Outcome<Self> {
+    pub(crate) fn new(
+        scene: Arc<world::Scene>,
+        goal: Option<Point>,
+        way: Option<Way>,
+        options: SimOptions,
+    ) -> Outcome<Self> {
         let sensors = scene.robots.first().map_or(Vec::new(), |robot| sensors(&robot.spec));
-        let world = Stepped::new(scene, options(seed, noise, false, None)?)?;
-        Ok(Self { world, scan: LidarScan::default(), sensors })
+        Ok(Self { shared: Arc::new(Shared::new(scene, goal, options)?), sensors, way })
     }
 
-    /// Commands all robots at the beginning of a step, lets time pass, and reads all sensors at its end.
+    /// Number of robots.
+    pub(crate) fn robots(&self) -> usize {
+        self.shared.scene.robots.len()
+    }
+
+    /// Commands all robots at the beginning of a step, lets time pass, and reads all sensors at its end. For
+    /// a thread that runs no Python.
     fn step(&mut self, commands: &[f64], part: Part, rows: &mut Rows<'_>, shape: Shape) -> Result<()> {
+        let shared = Arc::clone(&self.shared);
+        let mut state = shared.free_lock();
         if part.begins {
             for (robot, command) in commands.chunks_exact(2).enumerate() {
-                self.world.robot(robot)?.set_speed(Twist::new(command[0], command[1]))?;
+                state.world.robot(robot)?.set_speed(Twist::new(command[0], command[1]))?;
             }
         }
-        self.world.run_for(part.ticks as f64 * TICK)?;
-        if part.ends { self.read(rows, shape) } else { Ok(()) }
+        state.world.run_for(part.ticks as f64 * TICK)?;
+        if part.ends { self.read(&mut state, rows, shape) } else { Ok(()) }
     }
 
-    pub(crate) fn read(&mut self, rows: &mut Rows<'_>, shape: Shape) -> Result<()> {
-        for index in 0..self.world.robots() {
-            let mut robot = self.world.robot(index)?;
+    /// Reads all sensors of the world's robots, and the truth about them.
+    pub(crate) fn read(&mut self, state: &mut State, rows: &mut Rows<'_>, shape: Shape) -> Result<()> {
+        let State { world, scan } = state;
+        for index in 0..self.robots() {
+            let mut robot = world.robot(index)?;
             if shape.beams > 0 {
-                robot.scan_into(&mut self.scan)?;
-                rows.ranges[index * shape.beams..][..shape.beams].copy_from_slice(&self.scan.ranges);
+                robot.scan_into(scan)?;
+                rows.ranges[index * shape.beams..][..shape.beams].copy_from_slice(&scan.ranges);
             }
             for (range, sensor) in rows.distances[index * shape.sensors..].iter_mut().zip(&self.sensors) {
                 *range = robot.distance(*sensor)?;
@@ -93,12 +116,38 @@ impl Cell {
             rows.poses[3 * index..][..3].copy_from_slice(&[pose.x, pose.y, pose.heading]);
             rows.speeds[2 * index..][..2].copy_from_slice(&[speed.linear, speed.angular]);
             rows.stalled[index] = robot.is_stalled()?;
-            let truth = self.world.pose(index)?;
+            let truth = world.pose(index)?;
             rows.true_poses[3 * index..][..3].copy_from_slice(&[truth.x, truth.y, truth.heading]);
-            rows.contacts[index] = self.world.contacts(index)?;
+            rows.contacts[index] = world.contacts(index)?;
+            if shape.walls > 0 {
+                let nearest = nearest_wall(&self.shared.scene.world.walls, truth.position());
+                rows.walls[3 * index..][..3].copy_from_slice(&nearest);
+            }
+            if let Some(way) = &mut self.way {
+                way.look(index, truth, &mut rows.lanes[index * shape.lane..][..shape.lane]);
+            }
         }
         Ok(())
     }
+}
+
+/// Distance from the surface of the nearest wall, and the unit vector towards it; `inf` and no direction
+/// without walls, and no direction within a wall.
+fn nearest_wall(walls: &[Wall], place: Point) -> [f64; 3] {
+    let mut nearest = [f64::INFINITY, 0.0, 0.0];
+    for wall in walls {
+        let (start, along) = (wall.line.a - place, wall.line.b - wall.line.a);
+        let length = along.norm_squared();
+        let part = if length > 0.0 { (-start.dot(&along) / length).clamp(0.0, 1.0) } else { 0.0 };
+        let away = start + along * part;
+        let from_line = away.norm();
+        let distance = (from_line - 0.5 * wall.thickness).max(0.0);
+        if distance < nearest[0] {
+            let direction = if from_line > 0.0 { away / from_line } else { away };
+            nearest = [distance, direction.x, direction.y];
+        }
+    }
+    nearest
 }
 
 /// The distance sensors of a robot.
@@ -128,7 +177,7 @@ impl<'a> Share<'a> {
     /// Splits off the first worlds.
     fn split(self, worlds: usize, shape: Shape) -> (Self, Self) {
         let (first, others) = self.worlds.split_at_mut(worlds);
-        let robots = first.iter().map(|cell| cell.world.robots()).sum::<usize>();
+        let robots = first.iter().map(Cell::robots).sum::<usize>();
         let (rows, other_rows) = self.rows.split(robots, shape);
         let (commands, other_commands) = self.commands.split_at(2 * robots);
         let rest = Share { worlds: others, commands: other_commands, rows: other_rows };

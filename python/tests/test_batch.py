@@ -125,3 +125,51 @@ def test_wrong_arguments_are_named() -> None:
     batch.ranges.flags.writeable = False
     with pytest.raises(ValueError, match="ranges is read-only"):
         batch.step(np.zeros((4, 2)), 0.1)
+
+
+def test_a_world_of_a_batch_is_a_simulation() -> None:
+    batch = Batch(crowd(), copies=2, seed=7, trail_interval=0.1)
+    world = batch.simulation(1)
+    batch.step(np.full((8, 2), 0.2), 1.0)
+    assert world.time == 1.0 and world.truth.pose(2) == tuple(batch.true_poses[6])
+    assert len(world.truth.trail(2)) == 10 and world.to_svg().startswith("<svg")
+    world.run(0.5)
+    assert batch.times == [1.0, 1.5]
+    batch.reset(1, 8)
+    assert world.time == 1.5 and batch.simulation(1).time == 0.0
+    with pytest.raises(ValueError, match="world is 2; expected an index below 2"):
+        batch.simulation(2)
+
+
+def test_the_nearest_walls() -> None:
+    scene = Scene.walled(2.0, 3.0)
+    scene.add_robot("S4", (0.5, 1.0, 0.0))
+    batch = Batch([scene, Scene.copy(scene)], walls=True)
+    assert batch.walls == pytest.approx(np.array([[0.495, -1.0, 0.0]] * 2))
+    batch.step(np.tile([0.2, 0.0], (2, 1)), 4.0)
+    assert batch.walls[0] == pytest.approx([1.995 - batch.true_poses[0, 0], 1.0, 0.0], abs=1e-9)
+    assert Batch(scene).walls.shape == (1, 0)
+    open_floor = Scene.empty(1.0, 1.0)
+    open_floor.add_robot("S4", (0.5, 0.5, 0.0))
+    assert Batch(open_floor, walls=True).walls.tolist() == [[np.inf, 0.0, 0.0]]
+
+
+def test_robots_on_centre_lines() -> None:
+    road = Scene.road(2, None)
+    line = road.centre_line
+    assert line is not None
+    x, y, heading = line[10, :3]
+    road.add_robot("S4", (x - 0.02 * np.sin(heading), y + 0.02 * np.cos(heading), heading + 0.1))
+    batch = Batch(road, noise=0.0, scan=False, ahead=(0.0, 0.5))
+    spacing = np.hypot(*(np.roll(line[:, :2], -1, axis=0) - line[:, :2]).T).mean()
+    along, length, left, turn, edge, *points = batch.lanes[0]
+    assert [along, length] == pytest.approx([10 * spacing, len(line) * spacing])
+    assert [left, turn, edge] == pytest.approx([0.02, 0.1, line[10, 4] - 0.02])
+    assert points[:2] == pytest.approx([-0.02 * np.sin(0.1), -0.02 * np.cos(0.1)]) and 0.3 < points[2] < 0.55
+    batch.step(np.array([[0.5, 0.0]]), 0.5)
+    assert batch.lanes[0, 0] - along == pytest.approx(0.2, abs=0.06)
+    assert Batch(road, scan=False).lanes.shape == (1, 0)
+    with pytest.raises(ValueError, match="centre line of a scene is None; expected one"):
+        Batch(crowd(), ahead=())
+    with pytest.raises(ValueError, match="ahead is -1; expected distances of 0 to 1000000 m"):
+        Batch(road, ahead=[1.0, -1.0])

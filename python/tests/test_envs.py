@@ -8,11 +8,13 @@ import pytest
 gymnasium = pytest.importorskip("gymnasium")
 
 from gymnasium.utils.env_checker import check_env  # noqa: E402
+from gymnasium.vector import AutoresetMode, SyncVectorEnv  # noqa: E402
 
 from roverlab import envs  # noqa: E402
 from roverlab.sim import Scene  # noqa: E402
 
-NAMES = ["roverlab/WallFollowing-v0", "roverlab/GoalReaching-v0"]
+NAMES = list(envs.ENVIRONMENTS)
+WALL, GOAL, MAZE, SWARM, RACE, LANE = NAMES
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -41,18 +43,28 @@ def test_a_seed_determines_an_episode(name: str) -> None:
     assert episode(3) == episode(3) != episode(4)
 
 
-@pytest.mark.parametrize(("name", "good", "mean"), [(NAMES[0], 18, 6.0), (NAMES[1], 20, 11.0)])
-def test_the_baselines_score(name: str, good: int, mean: float) -> None:
-    scores = envs.score(gymnasium.make(name), range(20))
+@pytest.mark.parametrize(
+    ("name", "episodes", "good", "mean"),
+    [
+        (WALL, 20, 18, 6.0),
+        (GOAL, 20, 20, 11.0),
+        (MAZE, 20, 20, 33.0),
+        (SWARM, 20, 20, 500.0),
+        (RACE, 10, 10, 300.0),
+        (LANE, 5, 5, 120.0),
+    ],
+)
+def test_the_baselines_score(name: str, episodes: int, good: int, mean: float) -> None:
+    scores = envs.score(gymnasium.make(name), range(episodes))
     assert (scores > 0.0).sum() >= good and scores.mean() > mean
     random = np.random.default_rng(1)
-    chance = envs.score(
-        gymnasium.make(name), range(5), lambda _: random.uniform([0.0, -2.0], [0.3, 2.0]).astype(np.float32)
-    )
-    assert chance.mean() < 1.0
+    env = gymnasium.make(name)
+    space = env.action_space
+    chance = envs.score(env, range(5), lambda _: random.uniform(space.low, space.high).astype(np.float32))
+    assert chance.mean() < 0.2 * mean
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", [WALL, GOAL])
 def test_pictures_and_own_scenes(name: str) -> None:
     env = gymnasium.make(name, render_mode="svg", noise=0.0)
     scene = Scene.walled(3.0, 3.0)
@@ -66,7 +78,7 @@ def test_pictures_and_own_scenes(name: str) -> None:
 
 
 def test_the_goal_ends_an_episode() -> None:
-    env = gymnasium.make(NAMES[1])
+    env = gymnasium.make(GOAL)
     scene = Scene.walled(3.0, 3.0)
     scene.add_robot("S4", (1.0, 1.0, 0.0))
     scene.goal = (1.5, 1.0)
@@ -80,6 +92,98 @@ def test_the_goal_ends_an_episode() -> None:
     assert total == pytest.approx(10.4, abs=0.03) and facts["contacts"] == 0
 
 
+@pytest.mark.parametrize("name", NAMES)
+def test_worlds_of_a_vector_run_as_environments_do(name: str) -> None:
+    vector = gymnasium.make_vec(name, num_envs=4, threads=2, max_episode_steps=30, render_mode="svg")
+    single = SyncVectorEnv([lambda: gymnasium.make(name, max_episode_steps=30)] * 4)
+    assert vector.metadata["autoreset_mode"] == AutoresetMode.NEXT_STEP
+    vector.action_space.seed(1)
+    for reset in ({"seed": 5}, {"seed": [9, 8, 7, 6]}, {}):
+        observation, facts = vector.reset(**reset)
+        assert observation in vector.observation_space and facts["pose"].shape == (4, 3)
+        assert np.array_equal(observation, single.reset(**reset)[0])
+        ended = 0
+        for _ in range(80):
+            actions = vector.action_space.sample()
+            done, expected = vector.step(actions), single.step(actions)
+            for found, wanted in zip(done[:4], expected[:4], strict=True):
+                assert np.array_equal(found, wanted)
+            ended += int((done[2] | done[3]).sum())
+        assert ended >= 8
+    pictures = vector.render()
+    assert pictures is not None and len(pictures) == 4 and all(text.startswith("<svg") for text in pictures)
+
+
+def test_a_vector_without_copies_writes_into_the_same_array() -> None:
+    vector = gymnasium.make_vec(WALL, num_envs=2, copy=False)
+    first, _ = vector.reset(seed=1)
+    assert vector.step(vector.action_space.sample())[0] is first
+    copying = gymnasium.make_vec(WALL, num_envs=2)
+    first, _ = copying.reset(seed=1)
+    assert copying.step(vector.action_space.sample())[0] is not first
+
+
+def test_each_cell_of_a_maze_counts_once() -> None:
+    env = gymnasium.make(MAZE, noise=0.0)
+    scene = Scene.walled(1.2, 0.4)
+    scene.add_robot("S4", (0.2, 0.2, 0.0))
+    observation, _ = env.reset(seed=1, options={"scene": scene})
+    # Behind and on both sides there is no cell.
+    assert observation[6:].tolist() == [0.0, 1.0, 1.0, 1.0]
+    rewards, over = [], False
+    while not over:
+        _, reward, over, _, facts = env.step(np.array([0.2, 0.0], np.float32))
+        rewards.append(float(reward))
+    assert [reward for reward in rewards if reward] == [1.0, 11.0] and facts["time"] == pytest.approx(3.0, abs=0.3)
+    far = Scene.walled(40.0, 1.0)
+    far.add_robot("S4", (0.2, 0.2, 0.0))
+    with pytest.raises(ValueError, match="the scene's bounds are .*; expected cells of 0.4 m"):
+        env.reset(options={"scene": far})
+
+
+def test_a_leader_can_be_lost() -> None:
+    env = gymnasium.make(SWARM)
+    env.reset(seed=1)
+    rewards, over = [], False
+    while not over:
+        _, reward, over, _, _ = env.step(np.array([0.0, 0.0], np.float32))
+        rewards.append(float(reward))
+    assert rewards[0] > 0.9 and rewards[-2] == 0.0 and rewards[-1] == -10.0
+    with pytest.raises(ValueError, match="the scene has 1 robots; expected a leader and a follower"):
+        lonely = Scene.walled(2.0, 2.0)
+        lonely.add_robot("S4", (1.0, 1.0, 0.0))
+        env.reset(options={"scene": lonely})
+
+
+@pytest.mark.parametrize(("name", "width"), [(RACE, 0.7), (LANE, 0.17)])
+def test_ways_along_tracks(name: str, width: float) -> None:
+    env = gymnasium.make(name, noise=0.0)
+    observation, _ = env.reset(seed=1)
+    line = env.unwrapped.scene.centre_line
+    assert abs(observation[2]) < 0.3 and abs(observation[3]) < 0.1 and observation[4] > observation[5]
+    total, over, before = 0.0, False, env.unwrapped.simulation.truth.pose()
+    while not over:
+        # Straight on, off the track at a bend.
+        observation, reward, over, _, facts = env.step(np.array([1.0, 0.0], np.float32))
+        total += float(reward)
+        if not over:
+            gone = float(np.hypot(facts["pose"][0] - before[0], facts["pose"][1] - before[1]))
+            assert total == pytest.approx(gone, rel=0.15, abs=0.1)
+    assert reward == -10.0 and abs(observation[2]) > width and len(line) > 100
+    scene = Scene.walled(5.0, 5.0)
+    scene.add_robot("RaceCar" if name == RACE else "RoadCar", (2.0, 2.0, 0.0))
+    with pytest.raises(ValueError, match="centre line of a scene is None; expected one, as"):
+        env.reset(options={"scene": scene})
+
+
+def test_a_lane_is_seen_by_the_camera_only_where_one_is() -> None:
+    seen, unseen = envs.LaneKeeping(), envs.LaneKeeping(camera=False)
+    first, _ = seen.reset(seed=4)
+    second, _ = unseen.reset(seed=4)
+    assert np.array_equal(first, second)
+    assert seen.image().max() > 200 and seen.image()[200:].std() > 2.0 * unseen.image()[200:].std()
+
+
 def test_wrong_arguments_are_named() -> None:
     with pytest.raises(ValueError, match="render_mode is 'rgb_array'; expected None or 'svg'"):
         envs.WallFollowing(render_mode="rgb_array")
@@ -87,3 +191,11 @@ def test_wrong_arguments_are_named() -> None:
         envs.GoalReaching(period=0)
     with pytest.raises(ValueError, match="the scene has no goal"):
         envs.GoalReaching().reset(options={"scene": Scene.room(1)})
+    with pytest.raises(ValueError, match="num_envs is 0; expected at least 1"):
+        gymnasium.make_vec(WALL, num_envs=0)
+    vector = gymnasium.make_vec(WALL, num_envs=2)
+    with pytest.raises(ValueError, match="seed has 1 numbers; expected 2"):
+        vector.reset(seed=[1])
+    vector.reset(seed=1)
+    with pytest.raises(ValueError, match=r"actions is an array of shape \(2,\); expected shape \(2, 2\)"):
+        vector.step(np.zeros(2, np.float32))

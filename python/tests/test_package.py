@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import roverlab
-from roverlab import drive, maze, nav, sim, vision
+from roverlab import drive, evolve, log, maze, nav, sim, vision
 from roverlab.drive import WallFollower
 from roverlab.sim import Scene, Simulation
 
@@ -51,7 +51,7 @@ def test_types_are_consistent() -> None:
 
 
 def test_everything_is_documented() -> None:
-    for module in (roverlab, drive, maze, nav, sim, vision):
+    for module in (roverlab, drive, evolve, log, maze, nav, sim, vision):
         assert module.__doc__
         for name in module.__all__:
             thing = getattr(module, name)
@@ -72,6 +72,21 @@ def test_the_readme_s_program_runs() -> None:
     text = (PROJECT / "README.md").read_text()
     program = text.split("```python\n")[1].split("```")[0]
     assert len(run("-c", program).split()) == 6
+
+
+def test_a_robot_is_followed() -> None:
+    scene = Scene.walled(4.0, 2.0)
+    scene.add_robot("S4", (1.0, 1.0, 0.0))
+    scene.add_robot("S4", (0.5, 1.0, 0.0))
+    simulation = Simulation(scene)
+    leader, robot = simulation.robots
+    leader.set_speed(0.15)
+    follower = drive.Follower(gap=0.4)
+    follower.run(robot, 15.0)
+    (x, _, _), (behind, _, _) = simulation.truth.pose(0), simulation.truth.pose(1)
+    assert x > 3.0 and x - behind == pytest.approx(0.4, abs=0.05) and follower.period == 0.1
+    with pytest.raises(ValueError, match="gap is 0.1; expected at least"):
+        drive.Follower(gap=0.1)
 
 
 def test_a_wall_is_followed() -> None:

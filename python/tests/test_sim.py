@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import roverlab
+from roverlab.drive import LaneKeeper, Racer
 from roverlab.sim import RobotSpec, Scene, Simulation
 
 WORLD = "floor 2000 1000\n0 0 2000 0\n0 1000 2000 1000\n"
@@ -299,3 +300,34 @@ def test_no_memory_is_lost(square: Scene) -> None:
 
     before = work(5_000)
     assert work(50_000) - before < 8_000
+
+
+def test_tracks_and_roads() -> None:
+    track, road = Scene.track(3), Scene.road(3)
+    for scene, names, width in ((track, {"cone-blue", "cone-yellow"}, (1.4, 3.0)), (road, set(), (0.17, 0.23))):
+        line = scene.centre_line
+        assert line is not None and scene.start is not None and line.shape[1] == 5
+        assert names <= {name for name, _ in scene.objects}
+        assert ((width[0] < line[:, 3:]) & (line[:, 3:] < width[1])).all()
+        steps = np.roll(line[:, :2], -1, axis=0) - line[:, :2]
+        angles = np.arctan2(steps[:, 1], steps[:, 0]) - line[:, 2]
+        assert np.abs((angles + np.pi) % (2 * np.pi) - np.pi).max() < 0.3
+    assert Scene.walled(1.0, 1.0).centre_line is None
+    with pytest.raises(ValueError, match="pixel is 0; expected 0.001 to 0.1 m"):
+        Scene.road(1, 0.0)
+
+
+def test_cars_drive_by_their_behaviours() -> None:
+    race, road = Scene.track(1), Scene.road(1)
+    race.add_robot("RaceCar")
+    road.add_robot("RoadCar")
+    racing, keeping = Simulation(race), Simulation(road)
+    racer, keeper = Racer(1), LaneKeeper(1.5)
+    assert racer.run(racing.robot(), 120.0) == "the race is finished" == racer.outcome
+    assert racing.truth.contacts() == 0 and racing.truth.path_length() > 200.0 and racer.period == 0.05
+    keeper.run(keeping.robot(), 10.0)
+    assert keeping.truth.path_length() > 10.0 and keeper.period == 0.03
+    with pytest.raises(ValueError, match="speed is 0; expected a positive"):
+        LaneKeeper(0.0)
+    with pytest.raises(roverlab.UnsupportedError):
+        Racer().decide(keeping.robot())

@@ -2,25 +2,17 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
-from typing import Any
+from typing import Any, ClassVar
 
 import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
-from ..sim import Robot, Scene, Simulation
+from ..sim import Batch, Robot, Scene, Simulation
+from ._task import Task
 
 Observation = NDArray[np.float32]
 Action = NDArray[np.float32]
-
-FARTHEST = 10.0
-"""Distance that stands for a range without a return (m)."""
-
-LOWEST = np.array([0.0, -2.0], np.float32)
-"""Lowest linear (m/s) and angular speed (rad/s) of an action."""
-HIGHEST = np.array([0.3, 2.0], np.float32)
-"""Highest linear (m/s) and angular speed (rad/s) of an action."""
 
 
 class RobotEnvironment(gymnasium.Env[Observation, Action]):
@@ -28,31 +20,23 @@ class RobotEnvironment(gymnasium.Env[Observation, Action]):
 
     metadata = {"render_modes": ["svg"], "render_fps": 10}
 
+    TASK: ClassVar[type[Task]]
+    """What is observed and rewarded."""
+    PERIOD: ClassVar[float] = 0.1
+    """Usual duration of a step (s)."""
+
+    scene: Scene
     simulation: Simulation
     robot: Robot
-    scene: Scene
 
-    def __init__(self, render_mode: str | None, noise: float, period: float) -> None:
-        if render_mode not in (None, "svg"):
-            raise ValueError(f"render_mode is {render_mode!r}; expected None or 'svg'")
-        if not 0.01 <= period <= 1.0:
-            raise ValueError(f"period is {period}; expected 0.01 to 1 s")
+    def __init__(self, render_mode: str | None = None, noise: float = 1.0, period: float | None = None) -> None:
+        self.task = self.TASK()
         self.render_mode = render_mode
         self.noise = noise
-        self.period = period
-        self.action_space = gymnasium.spaces.Box(LOWEST, HIGHEST)
-
-    @abstractmethod
-    def _draw_scene(self, seed: int) -> Scene:
-        """A random world with a start."""
-
-    @abstractmethod
-    def _observe(self) -> Observation:
-        """What the robot senses now."""
-
-    @abstractmethod
-    def _judge(self) -> tuple[float, bool]:
-        """Reward of the last step, and whether the episode is over."""
+        self.period = checked(render_mode, self.PERIOD if period is None else period)
+        self.observation_space = gymnasium.spaces.Box(self.task.low, self.task.high)
+        self.action_space = gymnasium.spaces.Box(*speeds(self.task))
+        self._seen = np.zeros((1, len(self.task.low)), np.float32)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -67,33 +51,69 @@ class RobotEnvironment(gymnasium.Env[Observation, Action]):
             ``scene``: a `Scene` to take instead of a random world. Its `start` is the robot's.
         """
         super().reset(seed=seed)
-        drawn = int(self.np_random.integers(2**32))
-        given = (options or {}).get("scene")
-        self.scene = self._draw_scene(drawn) if given is None else given.copy()
-        if not self.scene.robots:
-            self.scene.add_robot("S4")
-        trail = 0.1 if self.render_mode else None
-        self.simulation = Simulation(self.scene, seed=drawn, noise=self.noise, trail_interval=trail)
-        self.robot = self.simulation.robot()
-        self._begin()
+        self.scene, drawn = next_scene(self.task, self.np_random, options)
+        batch = Batch(self.scene, seed=drawn, **batch_options(self.task, self.render_mode, self.noise))
+        self._commands = np.zeros((len(batch), 2))
+        self.task.attach([self.scene], [drawn], batch)
+        self.simulation = batch.simulation()
+        self.robot = self.simulation.robot(self.task.ROBOT)
         return self._observe(), self._facts()
-
-    @abstractmethod
-    def _begin(self) -> None:
-        """Sets what the reward of the first step is relative to."""
 
     def step(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Drives at the action's linear (m/s) and angular speed (rad/s) for one period."""
-        linear, angular = np.clip(action, LOWEST, HIGHEST)
-        self.robot.set_speed(linear, angular)
-        self.robot.wait(self.period)
-        reward, terminated = self._judge()
-        return self._observe(), reward, terminated, False, self._facts()
+        task = self.task
+        wanted = np.asarray(action, np.float64)[None]
+        task.command(np.clip(wanted, task.slowest, task.fastest), self._commands)
+        task.batch.step(self._commands, self.period)
+        rewards, over = task.judge()
+        return self._observe(), float(rewards[0]), bool(over[0]), False, self._facts()
 
     def render(self) -> str | None:
         """Picture of the world and the way so far, as the text of an SVG file."""
-        return self.simulation.to_svg() if self.render_mode == "svg" else None
+        return picture(self.simulation, self.scene) if self.render_mode == "svg" else None
+
+    def _observe(self) -> Observation:
+        self.task.observe(self._seen)
+        seen: Observation = self._seen[0].copy()
+        return seen
 
     def _facts(self) -> dict[str, Any]:
         truth = self.simulation.truth
-        return {"pose": truth.pose(), "contacts": truth.contacts(), "time": self.simulation.time}
+        robot = self.task.ROBOT
+        return {"pose": truth.pose(robot), "contacts": truth.contacts(robot), "time": self.simulation.time}
+
+
+def checked(render_mode: str | None, period: float) -> float:
+    """The period; fails if it or the mode of pictures is not one that there is."""
+    if render_mode not in (None, "svg"):
+        raise ValueError(f"render_mode is {render_mode!r}; expected None or 'svg'")
+    if not 0.01 <= period <= 1.0:
+        raise ValueError(f"period is {period}; expected 0.01 to 1 s")
+    return period
+
+
+def picture(simulation: Simulation, scene: Scene) -> str:
+    """A world with its robots, and the middle of its track."""
+    line = scene.centre_line
+    return simulation.to_svg(path=None if line is None else line[:, :2])
+
+
+def speeds(task: Task) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Lowest and highest speeds of an action."""
+    return task.slowest.astype(np.float32), task.fastest.astype(np.float32)
+
+
+def batch_options(task: Task, render_mode: str | None, noise: float) -> dict[str, Any]:
+    """Options of the batch of a task."""
+    trail = 0.1 if render_mode else None
+    found = {"scan": task.SCAN, "walls": task.WALLS, "ahead": task.AHEAD}
+    return {"noise": noise, "trail_interval": trail, **found}
+
+
+def next_scene(task: Task, random: np.random.Generator, options: dict[str, Any] | None) -> tuple[Scene, int]:
+    """The next world of a sequence of episodes, and its seed."""
+    drawn = int(random.integers(2**32))
+    given = (options or {}).get("scene")
+    scene = task.draw(drawn) if given is None else given.copy()
+    task.place(scene)
+    return scene, drawn

@@ -2,14 +2,59 @@
 
 from __future__ import annotations
 
-import math
-
-import gymnasium
 import numpy as np
+from numpy.typing import NDArray
 
 from ..nav import Bug
 from ..sim import Scene
-from ._base import FARTHEST, Action, Observation, RobotEnvironment
+from ._base import Action, Observation, RobotEnvironment
+from ._task import FARTHEST, Bools, Floats, Task, require_beams, sectors, turned
+
+_SECTORS = 36
+_BEAMS = 360
+
+
+class _GoalTask(Task):
+    LOW = (0.0, -np.pi, -2.0, -20.0, *[0.0] * _SECTORS)
+    HIGH = (100.0, np.pi, 2.0, 20.0, *[FARTHEST] * _SECTORS)
+    SCAN = True
+
+    def draw(self, seed: int) -> Scene:
+        return Scene.course(seed)
+
+    def _prepare(self, worlds: int) -> None:
+        super()._prepare(worlds)
+        require_beams(self.ranges, _BEAMS)
+        self._goals, self._distances = np.zeros((worlds, 2)), np.zeros(worlds)
+        self.local_goals = np.zeros((worlds, 2))
+
+    def begin(self, world: int) -> None:
+        goal = self.scenes[world].goal
+        if goal is None:
+            raise ValueError("the scene has no goal; expected one whose goal is set")
+        self._goals[world] = goal
+        x, y, heading = self.true_poses[world]
+        dx, dy = goal[0] - x, goal[1] - y
+        cos, sin = np.cos(heading), np.sin(heading)
+        self.local_goals[world] = (cos * dx + sin * dy, cos * dy - sin * dx)
+        self._distances[world] = np.hypot(dx, dy)
+
+    def judge(self) -> tuple[Floats, Bools]:
+        away = self._goals - self.true_poses[:, :2]
+        distances = np.hypot(away[:, 0], away[:, 1])
+        reached, touched = distances < GoalReaching.REACHED, self.contacts > 0
+        rewards = self._distances - distances + 10.0 * reached
+        self._distances[:] = distances
+        rewards[touched] = -1.0
+        return rewards, reached | touched
+
+    def observe(self, out: NDArray[np.float32]) -> None:
+        away = self.local_goals - self.poses[:, :2]
+        out[:, 0] = np.hypot(away[:, 0], away[:, 1])
+        out[:, 1] = turned(np.arctan2(away[:, 1], away[:, 0]) - self.poses[:, 2])
+        out[:, 2:4] = self.speeds
+        out[:, 4:] = sectors(self.ranges, _SECTORS)
+        np.clip(out, self.low, self.high, out=out)
 
 
 class GoalReaching(RobotEnvironment):
@@ -34,21 +79,15 @@ class GoalReaching(RobotEnvironment):
         With ``svg``, `render` returns a picture as text.
     noise : float
         Errors of drives and sensors as a multiple of those of the real robot.
-    period : float
-        Duration of a step (s).
+    period : float, optional
+        Duration of a step, otherwise 0.1 (s).
     """
 
-    SECTORS = 36
+    TASK = _GoalTask
+    SECTORS = _SECTORS
     """Number of sectors of a scan."""
     REACHED = 0.1
     """Distance from the goal that counts as reached (m)."""
-
-    def __init__(self, render_mode: str | None = None, noise: float = 1.0, period: float = 0.1) -> None:
-        super().__init__(render_mode, noise, period)
-        self._low = np.array([0.0, -math.pi, -2.0, -20.0, *[0.0] * self.SECTORS], np.float32)
-        self._high = np.array([100.0, math.pi, 2.0, 20.0, *[FARTHEST] * self.SECTORS], np.float32)
-        self.observation_space = gymnasium.spaces.Box(self._low, self._high)
-        self._scan = np.empty(360)
 
     def baseline(self) -> BugPolicy:
         """The library's DistBug."""
@@ -56,38 +95,9 @@ class GoalReaching(RobotEnvironment):
 
     def goal(self) -> tuple[float, float]:
         """The goal relative to the robot's start: ahead and to the left (m)."""
-        return self._goal
-
-    def _draw_scene(self, seed: int) -> Scene:
-        return Scene.course(seed)
-
-    def _begin(self) -> None:
-        if self.scene.goal is None:
-            raise ValueError("the scene has no goal; expected one whose goal is set")
-        if len(self.robot.beam_angles()) != len(self._scan):
-            raise ValueError(f"the robot's lidar has {len(self.robot.beam_angles())} beams; expected 360")
-        x, y, heading = self.simulation.truth.pose()
-        dx, dy = self.scene.goal[0] - x, self.scene.goal[1] - y
-        cos, sin = math.cos(heading), math.sin(heading)
-        self._goal = (cos * dx + sin * dy, cos * dy - sin * dx)
-        self._distance = math.hypot(dx, dy)
-
-    def _observe(self) -> Observation:
-        x, y, heading = self.robot.pose()
-        dx, dy = self._goal[0] - x, self._goal[1] - y
-        bearing = math.remainder(math.atan2(dy, dx) - heading, math.tau)
-        sectors = self.robot.scan(self._scan).reshape(self.SECTORS, -1).min(axis=1)
-        seen = np.array([math.hypot(dx, dy), bearing, *self.robot.speed(), *sectors], np.float32)
-        return np.clip(seen, self._low, self._high)
-
-    def _judge(self) -> tuple[float, bool]:
-        if self.simulation.truth.contacts():
-            return -1.0, True
-        x, y, _ = self.simulation.truth.pose()
-        assert self.scene.goal is not None
-        before, self._distance = self._distance, math.hypot(self.scene.goal[0] - x, self.scene.goal[1] - y)
-        reached = self._distance < self.REACHED
-        return before - self._distance + (10.0 if reached else 0.0), reached
+        assert isinstance(self.task, _GoalTask)
+        ahead, left = self.task.local_goals[0].tolist()
+        return ahead, left
 
 
 class BugPolicy:

@@ -2,13 +2,45 @@
 
 from __future__ import annotations
 
-import gymnasium
 import numpy as np
+from numpy.typing import NDArray
 
 from ..drive import WallFollower
 from ..sim import Scene
-from ._base import FARTHEST, Action, Observation, RobotEnvironment
-from ._walls import Walls
+from ._base import Action, Observation, RobotEnvironment
+from ._task import FARTHEST, Bools, Floats, Task, require_sensors
+
+
+class _WallTask(Task):
+    LOW = (0.0, 0.0, 0.0, -2.0, -20.0)
+    HIGH = (FARTHEST, FARTHEST, FARTHEST, 2.0, 20.0)
+    WALLS = True
+
+    def draw(self, seed: int) -> Scene:
+        return Scene.room(seed, WallFollowing.DISTANCE)
+
+    def _prepare(self, worlds: int) -> None:
+        super()._prepare(worlds)
+        require_sensors(self.distances, 3)
+        self._places = np.zeros((worlds, 2))
+
+    def begin(self, world: int) -> None:
+        self._places[world] = self.true_poses[world, :2]
+
+    def judge(self) -> tuple[Floats, Bools]:
+        moved = self.true_poses[:, :2] - self._places
+        self._places[:] = self.true_poses[:, :2]
+        errors = np.abs(self.walls[:, 0] - WallFollowing.DISTANCE)
+        weights = np.maximum(1.0 - errors / WallFollowing.TOLERANCE, 0.0)
+        rewards = (moved[:, 0] * self.walls[:, 2] - moved[:, 1] * self.walls[:, 1]) * weights
+        touched = self.contacts > 0
+        rewards[touched] = -1.0
+        return rewards, touched
+
+    def observe(self, out: NDArray[np.float32]) -> None:
+        out[:, :3] = self.distances[:, :3]
+        out[:, 3:] = self.speeds
+        np.clip(out, self.low, self.high, out=out)
 
 
 class WallFollowing(RobotEnvironment):
@@ -32,54 +64,28 @@ class WallFollowing(RobotEnvironment):
         With ``svg``, `render` returns a picture as text.
     noise : float
         Errors of drives and sensors as a multiple of those of the real robot.
-    period : float
-        Duration of a step (s).
+    period : float, optional
+        Duration of a step, otherwise 0.05 (s).
     """
 
+    TASK = _WallTask
+    PERIOD = 0.05
     DISTANCE = 0.2
     """Distance to keep from the wall (m)."""
     TOLERANCE = 0.1
     """Error of the distance at which no reward is left (m)."""
 
-    def __init__(self, render_mode: str | None = None, noise: float = 1.0, period: float = 0.05) -> None:
-        super().__init__(render_mode, noise, period)
-        self._low = np.array([0.0, 0.0, 0.0, -2.0, -20.0], np.float32)
-        self._high = np.array([FARTHEST, FARTHEST, FARTHEST, 2.0, 20.0], np.float32)
-        self.observation_space = gymnasium.spaces.Box(self._low, self._high)
-
     def baseline(self) -> WallPolicy:
         """The library's PID controller on the left distance sensor."""
-        return WallPolicy(self)
-
-    def _draw_scene(self, seed: int) -> Scene:
-        return Scene.room(seed, self.DISTANCE)
-
-    def _begin(self) -> None:
-        self._walls = Walls(self.scene)
-        self._place = self.simulation.truth.pose()[:2]
-
-    def _observe(self) -> Observation:
-        robot = self.robot
-        ranges = [robot.distance(name) for name in ("front", "left", "right")]
-        seen = np.array([*np.minimum(ranges, FARTHEST), *robot.speed()], np.float32)
-        return np.clip(seen, self._low, self._high)
-
-    def _judge(self) -> tuple[float, bool]:
-        if self.simulation.truth.contacts():
-            return -1.0, True
-        before, self._place = self._place, self.simulation.truth.pose()[:2]
-        distance, (nx, ny) = self._walls.nearest(self._place)
-        weight = max(0.0, 1.0 - abs(distance - self.DISTANCE) / self.TOLERANCE)
-        along = (self._place[0] - before[0]) * ny - (self._place[1] - before[1]) * nx
-        return along * weight, False
+        return WallPolicy(self, self.DISTANCE)
 
 
 class WallPolicy:
     """A policy that is the library's wall follower on the robot of an environment."""
 
-    def __init__(self, environment: WallFollowing) -> None:
+    def __init__(self, environment: RobotEnvironment, distance: float) -> None:
         self._environment = environment
-        self._follower = WallFollower("left", environment.DISTANCE)
+        self._follower = WallFollower("left", distance)
 
     def __call__(self, observation: Observation) -> Action:
         """The action for now; the robot's own sensors are read, not the observation."""

@@ -1,0 +1,111 @@
+"""Exploring a random maze."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..maze import Maze
+from ..sim import Scene
+from ._base import RobotEnvironment
+from ._task import FARTHEST, Bools, Floats, Task, require_sensors
+from .wall_following import WallPolicy
+
+_SIDE = 5
+_CELL = 0.4
+_MOST = 32
+"""Largest number of rows and of columns of a maze."""
+
+_WIDTH = _MOST + 2
+_AROUND = np.array([np.roll((1, _WIDTH, -1, -_WIDTH), -quarter) for quarter in range(4)])
+"""Steps in an array of cells to the one ahead and on, counter-clockwise, for a robot that looks east and on."""
+
+
+class _MazeTask(Task):
+    LOW = (0.0, 0.0, 0.0, 0.0, -2.0, -20.0, 0.0, 0.0, 0.0, 0.0)
+    HIGH = (FARTHEST, FARTHEST, FARTHEST, FARTHEST, 2.0, 20.0, 1.0, 1.0, 1.0, 1.0)
+
+    def draw(self, seed: int) -> Scene:
+        return Maze.braided(_SIDE, _SIDE, 0.0, seed).to_scene(_CELL)
+
+    def _prepare(self, worlds: int) -> None:
+        super()._prepare(worlds)
+        require_sensors(self.distances, 4)
+        # A border of cells all round, so that those of the outer ones have neighbours too.
+        self._visited = np.zeros((worlds, _WIDTH, _WIDTH), np.bool_)
+        self._flat = self._visited.reshape(-1)
+        self._first = np.arange(worlds) * _WIDTH**2
+        self._at = self._first.copy()
+        self._left = np.zeros(worlds, np.int64)
+
+    def begin(self, world: int) -> None:
+        x0, y0, x1, y1 = self.scenes[world].bounds
+        columns, rows = round(x1 / _CELL), round(y1 / _CELL)
+        if not (1 <= columns <= _MOST and 1 <= rows <= _MOST and x0 > -_CELL and y0 > -_CELL):
+            expected = f"cells of {_CELL} m from (0, 0) on, at most {_MOST} in a row"
+            raise ValueError(f"the scene's bounds are {(x0, y0, x1, y1)}; expected {expected}")
+        self._visited[world] = True
+        self._visited[world, 1 : rows + 1, 1 : columns + 1] = False
+        self._left[world] = rows * columns
+        self._visit(slice(world, world + 1))
+
+    def _visit(self, worlds: slice) -> Bools:
+        """Marks the cells of robots. Returns which of them are new."""
+        places = np.clip(self.true_poses[worlds, :2] / _CELL, 0.0, _MOST - 1.0).astype(np.int64)
+        at = self._first[worlds] + (places[:, 1] + 1) * _WIDTH + places[:, 0] + 1
+        new: Bools = ~self._flat[at]
+        self._flat[at] = True
+        self._left[worlds] -= new
+        self._at[worlds] = at
+        return new
+
+    def judge(self) -> tuple[Floats, Bools]:
+        rewards = self._visit(slice(None)).astype(np.float64)
+        done, touched = self._left == 0, self.contacts > 0
+        rewards[done] += MazeExploration.BONUS
+        rewards[touched] = -1.0
+        return rewards, done | touched
+
+    def observe(self, out: NDArray[np.float32]) -> None:
+        out[:, :4] = self.distances[:, :4]
+        out[:, 4:6] = self.speeds
+        quarters = np.rint(self.true_poses[:, 2] * (2.0 / np.pi)).astype(np.int64) % 4
+        out[:, 6:] = self._flat[self._at[:, None] + _AROUND[quarters]]
+        np.clip(out, self.low, self.high, out=out)
+
+
+class MazeExploration(RobotEnvironment):
+    """Visit all cells of a random maze of 5 x 5 cells of 0.4 m, without touching a wall.
+
+    Each episode has another maze without loops. The robot begins in a corner.
+
+    Observation
+        Distances ahead, to the left, to the right and behind (m, 10 without a return), linear speed (m/s), angular
+        speed (rad/s), and for the cells ahead, to the left, behind and to the right whether they have been visited or
+        are outside the maze (0 or 1). Walls do not count for these: the robot may not be able to go there.
+    Action
+        Linear speed, 0 to 0.3 m/s, and angular speed, -2 to 2 rad/s.
+    Reward
+        1 for each cell that is entered for the first time, and 10 more for the last one, which ends the episode. A
+        contact costs 1 and ends it too.
+
+    Parameters
+    ----------
+    render_mode : {None, "svg"}
+        With ``svg``, `render` returns a picture as text.
+    noise : float
+        Errors of drives and sensors as a multiple of those of the real robot.
+    period : float, optional
+        Duration of a step, otherwise 0.05 (s).
+    """
+
+    TASK = _MazeTask
+    PERIOD = 0.05
+    CELL = _CELL
+    """Size of a cell (m)."""
+    BONUS = 10.0
+    """Reward of the last cell."""
+
+    def baseline(self) -> WallPolicy:
+        """The library's wall follower, in the middle of the corridors."""
+        return WallPolicy(self, 0.467 * self.CELL)

@@ -1,0 +1,5 @@
+"""Evolution of vectors of real numbers."""
+
+from ._native import CmaEs
+
+__all__ = ["CmaEs"]
