@@ -117,7 +117,7 @@ impl<G: Genome> Evaluator<G> for Processes {
         let (start, patience) = (&self.start, self.patience);
         let pieces = Pieces::new(genomes.len(), self.piece, self.workers.len());
         // Any idle worker takes the next piece; the index determines where the fitness goes.
-        let work = |mut worker: Worker| -> Result<(Option<Worker>, Vec<(usize, f64)>)> {
+        let work = |mut worker: Worker| -> Result<Worked> {
             let mut found = Vec::new();
             let (mut losses, mut kept) = (0, None);
             while let Some(mut piece) = kept.take().or_else(|| pieces.take()) {
@@ -168,6 +168,9 @@ impl<G: Genome> Evaluator<G> for Processes {
         Ok(fitness)
     }
 }
+
+/// A worker, unless it was given up, and the fitness of the individuals that it was asked for.
+type Worked = (Option<Worker>, Vec<(usize, f64)>);
 
 /// Individuals that one process is asked for at once.
 #[derive(Debug)]
