@@ -80,10 +80,10 @@ def test_an_evolution_is_that_of_one_machine(cluster: Any) -> None:
 
 def test_an_evolution_survives_a_node(cluster: Any) -> None:
     def kill() -> None:
-        time.sleep(4.0)
+        time.sleep(6.0)
         cluster.remove_node(cluster.second, allow_graceful=False)
 
-    longer = ["starman", "--population", "100", "--generations", "60", "--seed", "3"]
+    longer = ["starman", "--population", "60", "--generations", "25", "--seed", "3"]
     killer = threading.Thread(target=kill)
     killer.start()
     report = rover_ray.evolve(longer)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import select
 import sys
+import time
 from collections.abc import Iterator
 from importlib import import_module
 from typing import Any
@@ -16,6 +17,8 @@ from ._worker import answered
 
 PIECE = 0.05
 """Time that a piece should take (s): many times what a call of Ray costs, and short beside a generation."""
+ATTEMPTS = 20
+"""Number of attempts to connect to the cluster."""
 
 
 def batches() -> Iterator[list[bytes]]:
@@ -53,7 +56,16 @@ def main(address: str, words: tuple[str, ...]) -> None:
 
 def _connected_to(address: str) -> Any:
     ray = import_module("ray")
-    ray.init(address=address, log_to_driver=False, logging_level="ERROR")
+    # For some seconds Ray may lead to a node of this machine that has just been lost.
+    for left in reversed(range(ATTEMPTS)):
+        try:
+            ray.init(address=address, log_to_driver=False, logging_level="ERROR")
+            break
+        except Exception:
+            ray.shutdown()
+            if left == 0:
+                raise
+            time.sleep(1.0)
     return ray
 
 
