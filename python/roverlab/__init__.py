@@ -14,6 +14,8 @@ evolve
     Evolution of vectors of real numbers.
 log
     Recordings as arrays and tables.
+ray
+    Campaigns and evolution on a Ray cluster, with ``pip install roverlab[ray]``.
 envs
     Environments for Gymnasium, which ``pip install roverlab[envs]`` brings.
 

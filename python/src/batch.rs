@@ -37,14 +37,16 @@ use crate::worlds::{Cell, Part, Rows, Shape, sensors, step_all};
 /// walls : bool
 ///     Whether each step finds the wall that is nearest to each robot, for `walls`.
 /// ahead : sequence of float, optional
-///     Distances along the scene's `centre_line` of the points that each step finds for `lanes`, at least 0 (m).
+///     Distances along the scene's `centre_line` of the points that each step finds for `lanes`, at least 0
+///     (m).
 /// trail_interval : float, optional
 ///     Interval between the points of each robot's trail (s), at least 0.01; no trail without it.
 ///
 /// Raises
 /// ------
 /// ValueError
-///     If there is no robot, a scene has no centre line for `ahead`, or the robots differ in their numbers of beams or distance sensors.
+///     If there is no robot, a scene has no centre line for `ahead`, or the robots differ in their numbers of
+///     beams or distance sensors.
 #[pyclass(frozen, module = "roverlab.sim")]
 #[derive(Debug)]
 pub(crate) struct Batch {
@@ -192,15 +194,15 @@ impl Batch {
             Ok(cell.read(&mut state, &mut rows, self.shape)?)
         })
     }
+}
 
-    /// A world by its index.
-    fn world<'a>(&self, worlds: &'a mut [Cell], world: Natural) -> Outcome<(usize, &'a mut Cell)> {
-        let (world, count) = (world.index("world")?, worlds.len());
-        let cell = worlds.get_mut(world).ok_or_else(|| {
-            Failure::value("world", world, &format!("an index below {count}, the number of worlds"))
-        })?;
-        Ok((world, cell))
-    }
+/// A world by its index.
+fn world_of(worlds: &mut [Cell], world: Natural) -> Outcome<(usize, &mut Cell)> {
+    let (world, count) = (world.index("world")?, worlds.len());
+    let cell = worlds.get_mut(world).ok_or_else(|| {
+        Failure::value("world", world, &format!("an index below {count}, the number of worlds"))
+    })?;
+    Ok((world, cell))
 }
 
 #[pymethods]
@@ -313,7 +315,7 @@ impl Batch {
     ) -> Outcome<()> {
         let seed = seed.named("seed")?;
         let mut worlds = self.worlds.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
-        let (world, cell) = self.world(&mut worlds, world)?;
+        let (world, cell) = world_of(&mut worlds, world)?;
         let start = scene.as_ref().map_or_else(|| self.start(world).clone(), |scene| Start::of(scene));
         let ahead = self.ahead.as_deref();
         let columns = (self.shape.beams > 0, self.shape.walls > 0, ahead.map(<[f64]>::len));
@@ -339,7 +341,7 @@ impl Batch {
     #[pyo3(signature = (world = Natural::ZERO), text_signature = "($self, world=0)")]
     fn simulation(&self, py: Python<'_>, world: Natural) -> Outcome<Simulation> {
         let mut worlds = self.worlds.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
-        Ok(Simulation::of(Arc::clone(&self.world(&mut worlds, world)?.1.shared)))
+        Ok(Simulation::of(Arc::clone(&world_of(&mut worlds, world)?.1.shared)))
     }
 
     /// Ranges of the lidars (m), of shape (robots, beams); inf without a return. No columns without scans.
@@ -392,10 +394,11 @@ impl Batch {
         self.arrays.walls.clone_ref(py)
     }
 
-    /// Ground truth: the robots on the centre lines of their scenes, of shape (robots, 5 + 2 points). Distance
-    /// along the line and length of the line (m), distance to the left of it (m), turn from its direction (rad),
-    /// distance from the nearer edge, negative outside (m), all of the middle of the robot's outline; then for each
-    /// point ahead its distances ahead of the robot and to the left (m). No columns without the option `ahead`.
+    /// Ground truth: the robots on the centre lines of their scenes, of shape (robots, 5 + 2 points).
+    /// Distance along the line and length of the line (m), distance to the left of it (m), turn from its
+    /// direction (rad), distance from the nearer edge, negative outside (m), all of the middle of the robot's
+    /// outline; then for each point ahead its distances ahead of the robot and to the left (m). No columns
+    /// without the option `ahead`.
     #[getter]
     fn lanes(&self, py: Python<'_>) -> Py<PyArray2<f64>> {
         self.arrays.lanes.clone_ref(py)

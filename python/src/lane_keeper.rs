@@ -73,6 +73,7 @@ impl LaneKeeper {
 
     /// Time between two decisions (s).
     #[getter]
+    #[allow(clippy::unused_self, reason = "a property of Python")]
     fn period(&self) -> f64 {
         PERIOD
     }

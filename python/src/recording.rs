@@ -15,7 +15,8 @@ use crate::scene::Scene;
 
 /// A recording of a run: an MCAP file that a command's ``--record`` or the library has written.
 ///
-/// Made by `load` or `read`. Its tables are dicts of columns: arrays, or lists of texts, of equal length, in the
+/// Made by `load` or `read`. Its tables are dicts of columns: arrays, or lists of texts, of equal length, in
+/// the
 /// order of the recording. Robots are given by their index, from 0 on.
 #[pyclass(frozen, module = "roverlab.log")]
 #[derive(Debug)]
@@ -59,17 +60,17 @@ impl Recording {
             own.filter_map(|seen| Some((seen.time, take(seen.sight)?))).collect()
         })
     }
+}
 
-    /// A table of poses.
-    fn poses<'py>(&self, py: Python<'py>, poses: Vec<(f64, Pose)>) -> Outcome<Bound<'py, PyDict>> {
-        let column = |value: fn(&(f64, Pose)) -> f64| PyArray1::from_iter(py, poses.iter().map(value));
-        let table = PyDict::new(py);
-        table.set_item("time", column(|row| row.0))?;
-        table.set_item("x", column(|row| row.1.x))?;
-        table.set_item("y", column(|row| row.1.y))?;
-        table.set_item("heading", column(|row| row.1.heading))?;
-        Ok(table)
-    }
+/// A table of poses.
+fn poses_of<'py>(py: Python<'py>, poses: &[(f64, Pose)]) -> Outcome<Bound<'py, PyDict>> {
+    let column = |value: fn(&(f64, Pose)) -> f64| PyArray1::from_iter(py, poses.iter().map(value));
+    let table = PyDict::new(py);
+    table.set_item("time", column(|row| row.0))?;
+    table.set_item("x", column(|row| row.1.x))?;
+    table.set_item("y", column(|row| row.1.y))?;
+    table.set_item("heading", column(|row| row.1.heading))?;
+    Ok(table)
 }
 
 #[pymethods]
@@ -101,7 +102,8 @@ impl Recording {
     /// Returns
     /// -------
     /// dict
-    ///     ``time`` (s), ``angle_min`` and ``angle_increment`` (rad), ``beams``, each of shape (scans,), and ``ranges``
+    ///     ``time`` (s), ``angle_min`` and ``angle_increment`` (rad), ``beams``, each of shape (scans,), and
+    ///     ``ranges``
     ///     (m) of shape (scans, most beams): inf without a return, nan after a scan's last beam.
     #[pyo3(signature = (robot = Natural::ZERO), text_signature = "($self, robot=0)")]
     fn scans<'py>(&self, py: Python<'py>, robot: Natural) -> Outcome<Bound<'py, PyDict>> {
@@ -139,7 +141,8 @@ impl Recording {
     /// Returns
     /// -------
     /// dict
-    ///     ``time`` (s) of shape (images,), and ``image``: a list of arrays of uint8 of shape (height, width, 3).
+    ///     ``time`` (s) of shape (images,), and ``image``: a list of arrays of uint8 of shape (height, width,
+    ///     3).
     #[pyo3(signature = (robot = Natural::ZERO, display = false), text_signature = "($self, robot=0, display=False)")]
     fn images<'py>(&self, py: Python<'py>, robot: Natural, display: bool) -> Outcome<Bound<'py, PyDict>> {
         let robot = self.check(robot)?;
@@ -173,7 +176,7 @@ impl Recording {
             Sight::Odometry(pose) => Some(pose),
             _ => None,
         });
-        self.poses(py, poses)
+        poses_of(py, &poses)
     }
 
     /// True poses of a robot in the world, as far as the run asked for them.
@@ -189,7 +192,7 @@ impl Recording {
             Sight::Truth(pose) => Some(pose),
             _ => None,
         });
-        self.poses(py, poses)
+        poses_of(py, &poses)
     }
 
     /// Readings of a robot's distance sensors.
@@ -223,7 +226,8 @@ impl Recording {
     /// Returns
     /// -------
     /// dict
-    ///     ``time`` (s) and ``truth``, whether it asked for the ground truth: arrays of shape (calls,); ``method``,
+    ///     ``time`` (s) and ``truth``, whether it asked for the ground truth: arrays of shape (calls,);
+    ///     ``method``,
     ///     ``arguments``, ``result`` and ``error``: lists of texts, empty where there is none.
     #[pyo3(signature = (robot = Natural::ZERO), text_signature = "($self, robot=0)")]
     fn calls<'py>(&self, py: Python<'py>, robot: Natural) -> Outcome<Bound<'py, PyDict>> {

@@ -21,7 +21,8 @@ use crate::way::CentreLine;
 
 /// A world with robots: the start of a simulation.
 ///
-/// Made by `load`, `parse`, `empty`, `walled`, `built_in`, `room`, `course`, `track` or `road`; walls, objects
+/// Made by `load`, `parse`, `empty`, `walled`, `built_in`, `room`, `course`, `track` or `road`; walls,
+/// objects
 /// and robots can be added. Lengths are in metres, angles in radians counter-clockwise from x.
 #[pyclass(module = "roverlab.sim")]
 #[derive(Debug, Clone)]

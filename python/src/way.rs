@@ -5,7 +5,8 @@ use std::sync::Arc;
 use roverlab::geometry::{Point, Pose, angle_difference, math};
 use roverlab::world::{Footprint, RobotPlacement};
 
-/// Cross-sections of a closed track or lane: x, y and heading of its centre line, and its widths to the left and
+/// Cross-sections of a closed track or lane: x, y and heading of its centre line, and its widths to the left
+/// and
 /// right.
 pub(crate) type CentreLine = Arc<[[f64; 5]]>;
 
@@ -51,7 +52,8 @@ impl Way {
         Some(Self { line: Arc::clone(line), spacing, length, ahead, robots })
     }
 
-    /// Finds a robot near its last station, and writes distance along the line, length of the line, distance to
+    /// Finds a robot near its last station, and writes distance along the line, length of the line, distance
+    /// to
     /// the left, turn from the line's direction, distance from the nearer edge, and the points ahead.
     pub(crate) fn look(&mut self, robot: usize, pose: Pose, row: &mut [f64]) {
         let stations = self.line.len();

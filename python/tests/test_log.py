@@ -87,9 +87,7 @@ def test_a_file_for_rerun(recording: Recording, tmp_path: Path) -> None:
     assert file.stat().st_size > 10_000
 
 
-def test_without_rerun_an_error_says_what_to_install(
-    recording: Recording, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_without_rerun_an_error_says_what_to_install(recording: Recording, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(log, "_find_spec", lambda _: None)
     with pytest.raises(ModuleNotFoundError, match=r"expected: pip install roverlab\[rerun\]"):
         log.to_rerun(recording)

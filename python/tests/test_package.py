@@ -1,6 +1,8 @@
 """The package as a whole: its types, documentation and examples."""
 
 import inspect
+import json
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -25,14 +27,35 @@ def run(*command: str) -> str:
     return done.stdout
 
 
+NEEDED = {"cluster": "ray", "train_wall_follower": "gymnasium"}
+"""Extras that an example needs."""
+
+
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
 def test_examples_run_and_are_short(example: Path, tmp_path: Path) -> None:
     assert len(example.read_text().splitlines()) <= 60
+    pytest.importorskip(NEEDED.get(example.stem, "roverlab"))
+    if example.stem == "cluster" and shutil.which("roverlab") is None:
+        pytest.skip("the program roverlab is not in PATH")
     assert run(str(example), str(tmp_path))
 
 
+def test_the_notebook_shows_pictures() -> None:
+    pytest.importorskip("gymnasium")
+    book = json.loads((PROJECT / "examples" / "pictures.ipynb").read_text())
+    names: dict[str, object] = {}
+    pictures = 0
+    for cell in book["cells"]:
+        if cell["cell_type"] == "code":
+            assert not cell["outputs"]
+            *lines, last = "".join(cell["source"]).splitlines()
+            exec("\n".join(lines), names)
+            pictures += eval(last, names)._repr_svg_().startswith("<svg")
+    assert pictures == 4
+
+
 def test_there_are_examples() -> None:
-    assert len(EXAMPLES) >= 3
+    assert len(EXAMPLES) >= 6
 
 
 def test_stubs_are_those_of_the_package() -> None:

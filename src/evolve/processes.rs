@@ -1,7 +1,10 @@
+use std::collections::VecDeque;
+use std::fmt;
 use std::io::{self, BufRead, BufReader, Read, Write};
+use std::ops::Range;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use super::evaluator::{Evaluator, Round, Trial};
@@ -9,48 +12,77 @@ use super::genome::Genome;
 use crate::io::{Error, ErrorKind, Result};
 use crate::parameter::require_up_to;
 
+#[cfg(test)]
+mod tests;
+
 /// Evaluates individuals in other processes, possibly on other machines.
 ///
 /// A process receives one individual per line on standard input: seed, generation, index, and the genome's
 /// bytes in hexadecimal. It answers each with a line: the index and the bits of the fitness in hexadecimal,
-/// or `error` and a message. [`serve`] implements such a process.
+/// or `error` and a message. [`serve`] implements such a process. A [piece](Self::with_piece) of several
+/// individuals is sent at once; it is answered in order.
 ///
-/// A process that takes longer for an individual than the [time limit](Self::with_time_limit), ten minutes by
-/// default, is killed, and the evaluation fails.
-#[derive(Debug)]
+/// A process that ends, or takes longer for an individual than the [time limit](Self::with_time_limit), ten
+/// minutes by default, is lost. It is started anew, and its piece is asked again: as the fitness depends on
+/// seed, generation and index only, the result is the same. A process that is lost twice in a row, or cannot
+/// be started anew, is given up, and its piece goes to another one. The evaluation fails without processes,
+/// or if a piece is lost six times.
 pub struct Processes {
     workers: Vec<Worker>,
+    start: Mutex<Start>,
     patience: Duration,
+    piece: usize,
 }
+
+/// The command of a new process.
+type Start = Box<dyn FnMut() -> Command + Send>;
 
 /// A process, and the thread that talks with it. That thread waits as long as somebody holds the other end of
 /// the pipes, which may be a child of the process; nobody waits for it.
 #[derive(Debug)]
 struct Worker {
     child: Child,
-    questions: Sender<String>,
+    /// Lines of questions, and their number.
+    questions: Sender<(String, usize)>,
     answers: Receiver<io::Result<Option<String>>>,
 }
 
 /// Default time limit of an individual (s).
 const PATIENCE: f64 = 600.0;
+/// Number of losses after which a piece fails.
+const PIECE_LOSSES: u32 = 6;
+/// Number of losses in a row after which a process is given up.
+const PROCESS_LOSSES: u32 = 2;
 /// Maximum length of an answer, whose longest part is an error message (bytes).
 const LONGEST_ANSWER: usize = 1 << 12;
 /// Maximum length of a question, which holds a genome (bytes).
 const LONGEST_QUESTION: usize = 1 << 24;
 
+impl fmt::Debug for Processes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { workers, patience, piece, .. } = self;
+        f.debug_struct("Processes")
+            .field("workers", workers)
+            .field("patience", patience)
+            .field("piece", piece)
+            .finish_non_exhaustive()
+    }
+}
+
 impl Processes {
-    /// Starts `count` processes of a command.
+    /// Starts `count` processes of a command; it is asked for again when a process is lost.
     ///
     /// # Errors
     ///
     /// If `count` is 0 or a process cannot be started.
-    pub fn start(count: usize, mut command: impl FnMut() -> Command) -> Result<Self> {
+    pub fn start(count: usize, command: impl FnMut() -> Command + Send + 'static) -> Result<Self> {
         if count == 0 {
             return Err(Error::invalid_input("processes", count, "at least 1"));
         }
+        let mut command: Start = Box::new(command);
         let workers = (0..count).map(|_| Worker::start(command())).collect::<Result<_>>()?;
-        Ok(Self { workers, patience: Duration::from_secs_f64(PATIENCE) })
+        let patience = Duration::from_secs_f64(PATIENCE);
+        Ok(Self { workers, start: Mutex::new(command), patience, piece: 1 })
     }
 
     /// Changes the time limit of an individual, in seconds of the machine's clock.
@@ -62,23 +94,64 @@ impl Processes {
         require_up_to("time limit", seconds, 86_400.0)?;
         Ok(Self { patience: Duration::from_secs_f64(seconds), ..self })
     }
+
+    /// Changes the number of individuals that a process is sent at once, which is 1 at first. Larger pieces
+    /// hide the time that messages take; what a lost process has been sent is asked again.
+    ///
+    /// # Errors
+    ///
+    /// If it is 0.
+    pub fn with_piece(self, individuals: usize) -> Result<Self> {
+        if individuals == 0 {
+            return Err(Error::invalid_input("piece", individuals, "at least 1"));
+        }
+        Ok(Self { piece: individuals, ..self })
+    }
 }
 
 impl<G: Genome> Evaluator<G> for Processes {
     fn evaluate(&mut self, genomes: &[G], round: Round) -> Result<Vec<f64>> {
-        let (next, patience) = (AtomicUsize::new(0), self.patience);
-        // Any idle worker takes the next individual; the index determines where the fitness goes.
-        let work = |worker: &mut Worker| -> Result<Vec<(usize, f64)>> {
+        if self.workers.is_empty() {
+            return Err(Error::new(ErrorKind::Disconnected, "no process of the evaluation is left"));
+        }
+        let (start, patience) = (&self.start, self.patience);
+        let pieces = Pieces::new(genomes.len(), self.piece, self.workers.len());
+        // Any idle worker takes the next piece; the index determines where the fitness goes.
+        let work = |mut worker: Worker| -> Result<Worked> {
             let mut found = Vec::new();
-            loop {
-                let index = next.fetch_add(1, Ordering::Relaxed);
-                let Some(genome) = genomes.get(index) else { return Ok(found) };
-                found.push((index, worker.ask(genome, round.trial(index), patience)?));
+            let (mut losses, mut kept) = (0, None);
+            while let Some(mut piece) = kept.take().or_else(|| pieces.take()) {
+                let lost = match worker.ask(genomes, round, piece.individuals.clone(), patience) {
+                    Ok(fitness) => {
+                        found.extend(piece.individuals.zip(fitness));
+                        pieces.done();
+                        losses = 0;
+                        continue;
+                    }
+                    Err(lost) => lost,
+                };
+                piece.losses += 1;
+                losses += 1;
+                let is_lost = matches!(lost.kind(), ErrorKind::Disconnected | ErrorKind::TimedOut);
+                if !is_lost || piece.losses == PIECE_LOSSES {
+                    pieces.stop();
+                    return Err(lost);
+                }
+                let command = || start.lock().unwrap_or_else(PoisonError::into_inner)();
+                let anew = if losses < PROCESS_LOSSES { Worker::start(command()) } else { Err(lost) };
+                match anew {
+                    Ok(another) => (worker, kept) = (another, Some(piece)),
+                    Err(error) => {
+                        pieces.again(piece);
+                        return if pieces.leave() { Err(error) } else { Ok((None, found)) };
+                    }
+                }
             }
+            Ok((Some(worker), found))
         };
+        let workers = std::mem::take(&mut self.workers);
         let answers = std::thread::scope(|scope| {
-            let threads: Vec<_> =
-                self.workers.iter_mut().map(|worker| scope.spawn(|| work(worker))).collect();
+            let threads: Vec<_> = workers.into_iter().map(|worker| scope.spawn(|| work(worker))).collect();
             let crashed = |_| Err(Error::new(ErrorKind::Other, "an evaluation thread panicked"));
             threads
                 .into_iter()
@@ -86,10 +159,86 @@ impl<G: Genome> Evaluator<G> for Processes {
                 .collect::<Result<Vec<_>>>()
         })?;
         let mut fitness = vec![f64::NAN; genomes.len()];
-        for (index, value) in answers.into_iter().flatten() {
-            fitness[index] = value;
+        for (worker, found) in answers {
+            self.workers.extend(worker);
+            for (index, value) in found {
+                fitness[index] = value;
+            }
         }
         Ok(fitness)
+    }
+}
+
+/// A worker, unless it was given up, and the fitness of the individuals that it was asked for.
+type Worked = (Option<Worker>, Vec<(usize, f64)>);
+
+/// Individuals that one process is asked for at once.
+#[derive(Debug)]
+struct Piece {
+    individuals: Range<usize>,
+    /// How often a process has been lost with it.
+    losses: u32,
+}
+
+/// The pieces of a generation that wait for a process.
+struct Pieces {
+    state: Mutex<Waiting>,
+    changed: Condvar,
+}
+
+struct Waiting {
+    pieces: VecDeque<Piece>,
+    /// Number of pieces that are not done.
+    left: usize,
+    workers: usize,
+    stopped: bool,
+}
+
+impl Pieces {
+    fn new(individuals: usize, size: usize, workers: usize) -> Self {
+        let starts = (0..individuals).step_by(size);
+        let pieces: VecDeque<Piece> = starts
+            .map(|start| Piece { individuals: start..individuals.min(start.saturating_add(size)), losses: 0 })
+            .collect();
+        let left = pieces.len();
+        let state = Mutex::new(Waiting { pieces, left, workers, stopped: false });
+        Self { state, changed: Condvar::new() }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Waiting> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The next piece, as soon as there is one; `None` once all are done. A piece that another worker has may
+    /// still be lost.
+    fn take(&self) -> Option<Piece> {
+        let is_waiting = |state: &mut Waiting| state.pieces.is_empty() && state.left > 0 && !state.stopped;
+        let state = self.changed.wait_while(self.lock(), is_waiting);
+        let mut state = state.unwrap_or_else(PoisonError::into_inner);
+        if state.stopped { None } else { state.pieces.pop_front() }
+    }
+
+    fn done(&self) {
+        self.lock().left -= 1;
+        self.changed.notify_all();
+    }
+
+    fn again(&self, piece: Piece) {
+        self.lock().pieces.push_back(piece);
+        self.changed.notify_all();
+    }
+
+    /// Ends all work.
+    fn stop(&self) {
+        self.lock().stopped = true;
+        self.changed.notify_all();
+    }
+
+    /// Counts a worker out. Returns whether it was the last one.
+    fn leave(&self) -> bool {
+        let mut state = self.lock();
+        state.workers -= 1;
+        state.workers == 0
     }
 }
 
@@ -108,20 +257,33 @@ impl Worker {
         Ok(Self { child, questions, answers })
     }
 
-    /// Asks the process for the fitness.
-    fn ask<G: Genome>(&mut self, genome: &G, trial: Trial, patience: Duration) -> Result<f64> {
-        if self.questions.send(question(genome, trial)).is_err() {
+    /// Asks the process for the fitness of some individuals.
+    fn ask<G: Genome>(
+        &mut self,
+        genomes: &[G],
+        round: Round,
+        individuals: Range<usize>,
+        patience: Duration,
+    ) -> Result<Vec<f64>> {
+        let questions: String =
+            individuals.clone().map(|index| question(&genomes[index], round.trial(index))).collect();
+        if self.questions.send((questions, individuals.len())).is_err() {
             return Err(self.lost(None));
         }
+        individuals.map(|index| self.answer(index, patience)).collect()
+    }
+
+    /// The process's next answer.
+    fn answer(&mut self, index: usize, patience: Duration) -> Result<f64> {
         match self.answers.recv_timeout(patience) {
-            Ok(Ok(Some(answer))) => parse_answer(answer.trim_end(), trial.index),
+            Ok(Ok(Some(answer))) => parse_answer(answer.trim_end(), index),
             Ok(Err(error)) if error.kind() == io::ErrorKind::InvalidData => Err(Error::caused_by(error)),
             Ok(Err(error)) => Err(self.lost(Some(error))),
             Ok(Ok(None)) | Err(RecvTimeoutError::Disconnected) => Err(self.lost(None)),
             Err(RecvTimeoutError::Timeout) => {
                 // It must not answer the next question with this one's answer.
                 let _ = self.child.kill();
-                let (index, most) = (trial.index, patience.as_secs_f64());
+                let most = patience.as_secs_f64();
                 let message = format!("individual {index}: no answer of a process in {most} s; it is killed");
                 Err(Error::new(ErrorKind::TimedOut, message))
             }
@@ -144,14 +306,24 @@ impl Worker {
 fn talk(
     mut input: ChildStdin,
     mut output: BufReader<ChildStdout>,
-    questions: &Receiver<String>,
+    questions: &Receiver<(String, usize)>,
     answers: &Sender<io::Result<Option<String>>>,
 ) {
-    for question in questions {
-        let asked = input.write_all(question.as_bytes()).and_then(|()| input.flush());
-        let answer = asked.and_then(|()| read_line(&mut output, LONGEST_ANSWER));
-        let goes_on = matches!(answer, Ok(Some(_)));
-        if answers.send(answer).is_err() || !goes_on {
+    for (text, count) in questions {
+        // Beside the answers, as a process that answers while it is asked may wait for its answers to be read.
+        let ended = std::thread::scope(|scope| {
+            let input = &mut input;
+            let asked = scope.spawn(move || input.write_all(text.as_bytes()).and_then(|()| input.flush()));
+            for _ in 0..count {
+                let answer = read_line(&mut output, LONGEST_ANSWER);
+                let goes_on = matches!(answer, Ok(Some(_)));
+                if answers.send(answer).is_err() || !goes_on {
+                    return true;
+                }
+            }
+            !matches!(asked.join(), Ok(Ok(())))
+        });
+        if ended {
             return;
         }
     }
@@ -238,88 +410,4 @@ fn parse_answer(line: &str, index: usize) -> Result<f64> {
         let expected = format!("{index} and the fitness in hexadecimal digits");
         Error::invalid_input("answer of a process of the evaluation", format!("`{line}`"), &expected)
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn trial(index: usize) -> Trial {
-        Round { seed: 7, generation: 3 }.trial(index)
-    }
-
-    #[test]
-    fn questions_are_answered() {
-        let questions = [question(&vec![1_u8, 255], trial(0)), question(&vec![2_u8], trial(9))].concat();
-        let mut answers = Vec::new();
-        serve(questions.as_bytes(), &mut answers, |genome: &Vec<u8>, asked| {
-            assert_eq!(asked.round, trial(0).round);
-            Ok(f64::from(genome[0]) + 0.1)
-        })
-        .unwrap();
-        let answers = String::from_utf8(answers).unwrap();
-        let found: Vec<f64> =
-            answers.lines().zip([0, 9]).map(|(line, index)| parse_answer(line, index).unwrap()).collect();
-        assert_eq!(found, [1.1, 2.1]);
-    }
-
-    #[test]
-    fn nonsense_is_named() {
-        let text = |line| parse_question::<Vec<u8>>(line).unwrap_err().to_string();
-        let expected = "expected seed, generation, index and the genome's bytes in hexadecimal digits";
-        assert_eq!(text("1 2"), format!("question is `1 2`; {expected}"));
-        assert_eq!(text("1 2 3 0g"), format!("question is `1 2 3 0g`; {expected}"));
-        let text = |line| parse_answer(line, 4).unwrap_err().to_string();
-        assert_eq!(text("4 error no ground"), "individual 4 cannot be evaluated: no ground");
-        assert!(text("5 00").starts_with("answer of a process of the evaluation is `5 00`; expected 4 and"));
-    }
-
-    /// What comes of one individual in a process that runs a line of the shell.
-    #[cfg(unix)]
-    fn asked(line: &str) -> String {
-        let shell = || {
-            let mut command = Command::new("sh");
-            command.args(["-c", line]);
-            command
-        };
-        let mut processes = Processes::start(1, shell).unwrap().with_time_limit(0.5).unwrap();
-        processes.evaluate(&[vec![1_u8]], trial(0).round).unwrap_err().to_string()
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn processes_that_never_answer_or_never_end_a_line_are_ended() {
-        let late = "individual 0: no answer of a process in 0.5 s; it is killed";
-        // The second one's child keeps the pipes open.
-        for line in ["exec sleep 60", "sleep 5 & wait"] {
-            assert_eq!(asked(line), late, "{line}");
-        }
-        assert_eq!(asked("yes | tr -d '\\n'"), "a line of the evaluation has more than 4096 bytes");
-        assert!(Processes::start(1, || Command::new("true")).unwrap().with_time_limit(f64::NAN).is_err());
-    }
-
-    #[test]
-    fn a_question_without_an_end_is_refused() {
-        let endless = io::BufReader::new(io::repeat(b'1'));
-        let served = serve::<Vec<u8>>(endless, Vec::new(), |_, _| Ok(0.0));
-        let error = std::error::Error::source(&served.unwrap_err()).map(ToString::to_string);
-        assert_eq!(error.as_deref(), Some("a line of the evaluation has more than 16777216 bytes"));
-    }
-
-    #[test]
-    fn processes_that_end_or_cannot_start_are_errors() {
-        let error = Processes::start(1, || Command::new("/no/such/program")).unwrap_err();
-        assert_eq!(error.to_string(), "a process of the evaluation cannot be started");
-        // The test binary, run with a test name that does not exist, ends without an answer.
-        let idle = || {
-            let mut command = Command::new(std::env::current_exe().unwrap());
-            command.args(["--exact", "no such test"]);
-            command
-        };
-        assert!(Processes::start(2, idle).unwrap().evaluate(&[vec![1_u8]], trial(0).round).is_err());
-        assert_eq!(
-            Processes::start(0, || Command::new("x")).unwrap_err().to_string(),
-            "processes is 0; expected at least 1"
-        );
-    }
 }

@@ -12,7 +12,7 @@ use super::outputs::{OUTPUTS, check_outputs};
 use super::{CommonArgs, Failure, Heeds, OF_PARTS, PlainArgs, Unheeded, heed, parser, stage};
 
 /// Options that do not affect a run.
-const NOT_RECORDED: [&str; 17] = [
+const NOT_RECORDED: [&str; 19] = [
     "record",
     "force",
     "fsync",
@@ -30,6 +30,8 @@ const NOT_RECORDED: [&str; 17] = [
     // How a run is computed, and where intermediate results are stored.
     "threads",
     "processes",
+    "worker_command",
+    "worker_piece",
     "checkpoint",
 ];
 

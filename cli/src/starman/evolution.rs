@@ -139,19 +139,25 @@ fn evaluator(args: &Args, trials: &Trials) -> std::result::Result<Workers, Failu
         let count = threads.threads();
         return Ok((Box::new(threads), count));
     };
-    let program =
-        std::env::current_exe().map_err(|error| Failure::run(format!("this program's file: {error}")))?;
+    let own = || {
+        let program = std::env::current_exe();
+        program.map_err(|error| Failure::run(format!("this program's file: {error}")))
+    };
+    let (program, first): (OsString, &[String]) = match &args.worker_command {
+        Some(command) => ((&command.program).into(), &command.arguments),
+        None => (own()?.into(), &[]),
+    };
     let numbers = [trials.seconds.to_string(), trials.leading.to_string(), trials.evolves.to_string()];
-    let figure = args.figure.clone();
-    let words = [WORKER.to_owned()].into_iter().chain(numbers).chain([figure]).map(OsString::from);
-    let words: Vec<OsString> = words.collect();
-    let start = || {
+    let arguments = [WORKER.to_owned()].into_iter().chain(numbers).chain([args.figure.clone()]);
+    let words: Vec<String> = first.iter().cloned().chain(arguments).collect();
+    let start = move || {
         let mut command = Command::new(&program);
         command.args(&words);
         command
     };
-    let processes = usize::from(processes);
-    Ok((Box::new(Processes::start(processes, start).map_err(Failure::input)?), processes))
+    let (processes, piece) = (usize::from(processes), args.worker_piece.unwrap_or(1) as usize);
+    let started = Processes::start(processes, start).and_then(|started| started.with_piece(piece));
+    Ok((Box::new(started.map_err(Failure::input)?), processes))
 }
 
 /// Evolves a gait from a seed.

@@ -54,6 +54,15 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", conflicts_with = "threads", value_parser = clap::value_parser!(u16).range(1..=512))]
     pub(crate) processes: Option<u16>,
 
+    /// Command that starts each of the processes, such as `ssh node roverlab`; the words of a worker follow it.
+    /// It is split at spaces; quotation marks keep words together.
+    #[arg(long, value_name = "CMD", requires = "processes", value_parser = Words::parse)]
+    pub(crate) worker_command: Option<Words>,
+
+    /// Number of individuals that a process is sent at once [default: 1].
+    #[arg(long, value_name = "N", requires = "processes", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) worker_piece: Option<u32>,
+
     /// The robot: the book's, the planar figure it is based on, or a body of limbs: biped, hexapod, star,
     /// worm, or a file like those in cli/figures.
     #[arg(long, value_name = "NAME|FILE.toml", default_value = "book")]
@@ -96,7 +105,7 @@ pub(crate) struct Args {
     #[arg(
         long,
         value_name = "SEEDS",
-        conflicts_with_all = ["steps", "init", "checkpoint", "animation", "statistics", "picture", "processes", "record", "replay"],
+        conflicts_with_all = ["steps", "init", "checkpoint", "animation", "statistics", "picture", "processes", "worker_command", "worker_piece", "record", "replay"],
         value_parser = clap::value_parser!(u32).range(1..=10_000)
     )]
     pub(crate) compare: Option<u32>,
@@ -104,12 +113,44 @@ pub(crate) struct Args {
     /// Print how much the distance of --population gaits changes when the time step is halved.
     #[arg(
         long,
-        conflicts_with_all = ["leading", "checkpoint", "animation", "statistics", "picture", "processes", "record", "replay"]
+        conflicts_with_all = ["leading", "checkpoint", "animation", "statistics", "picture", "processes", "worker_command", "worker_piece", "record", "replay"]
     )]
     pub(crate) steps: bool,
 
     #[command(flatten)]
     pub(crate) common: CommonArgs,
+}
+
+/// The words of a command.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Words {
+    pub(super) program: String,
+    pub(super) arguments: Vec<String>,
+}
+
+impl Words {
+    /// Splits a command at its spaces, but for those between quotation marks.
+    fn parse(text: &str) -> Result<Self, String> {
+        let (mut words, mut word, mut quoted) = (Vec::new(), None::<String>, false);
+        for letter in text.chars() {
+            match letter {
+                '"' => {
+                    quoted = !quoted;
+                    word.get_or_insert_default();
+                }
+                ' ' if !quoted => words.extend(word.take()),
+                letter => word.get_or_insert_default().push(letter),
+            }
+        }
+        words.extend(word);
+        if quoted {
+            return Err("expected another quotation mark".into());
+        }
+        let mut words = words.into_iter();
+        let program = words.next().filter(|program| !program.is_empty());
+        let program = program.ok_or("expected the name of a program")?;
+        Ok(Self { program, arguments: words.collect() })
+    }
 }
 
 /// Initialisation of the first generation.
