@@ -69,7 +69,7 @@ impl Picture {
         let World { floor, water_level, .. } = panel.world;
         let terrain = panel.world.terrain.clone().filter(|terrain| terrain.surface.is_some());
         if water_level.is_some() || terrain.is_some() {
-            let ground = World { floor, water_level, terrain, ..World::empty(0.0, 0.0) };
+            let ground = World { floor, terrain, water_level, ..World::empty(0.0, 0.0) };
             self.grounds.push((ground, shift));
         }
         self.grounds.extend(panel.grounds.iter().cloned().map(|(ground, moved)| (ground, moved + shift)));

@@ -79,7 +79,7 @@ fn within_reach(
     Ok(places.map_or_else(|| world.site(), |places| places.inflated(far + resolution)))
 }
 
-fn refused(error: ParameterError) -> Error {
+fn refused(error: &ParameterError) -> Error {
     Error::new(ErrorKind::InvalidInput, format!("the world cannot be planned in: {error}"))
 }
 
@@ -91,13 +91,13 @@ impl Chart {
         let resolution = resolution_of(&whole, finest);
         let clearance = if resolution > finest {
             // A world may be large because of what lies far from the robot's own rooms.
-            let part = within_reach(world, start, parameters, resolution).map_err(refused)?;
+            let part = within_reach(world, start, parameters, resolution).map_err(|error| refused(&error))?;
             let resolution = resolution_of(&part, finest);
             Clearance::over(world, part, resolution, limit(parameters, resolution))
         } else {
             Clearance::new(world, resolution, limit(parameters, resolution))
         };
-        let clearance = clearance.map_err(refused)?;
+        let clearance = clearance.map_err(|error| refused(&error))?;
         let resolution = clearance.raster().resolution();
         let levels = std::array::from_fn(|level| {
             let clearance = clearance_at(parameters, level);
