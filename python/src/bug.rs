@@ -1,4 +1,3 @@
-use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
 use pyo3::prelude::*;
@@ -64,10 +63,7 @@ impl Bug {
         let (bug, seen) = &mut *guard;
         decide(py, robot, &self.ended, |time, robot| {
             seen.read(robot)?;
-            Ok(match bug.step(time, seen)? {
-                ControlFlow::Continue(twist) => ControlFlow::Continue(twist),
-                ControlFlow::Break(outcome) => ControlFlow::Break(outcome.to_string()),
-            })
+            Ok(bug.step(time, seen)?.map_break(|outcome| outcome.to_string()))
         })
     }
 

@@ -1,4 +1,3 @@
-use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
 use pyo3::prelude::*;
@@ -57,10 +56,7 @@ impl LaneKeeper {
         let (keeper, seen) = &mut *guard;
         decide(py, robot, &self.ended, |time, robot| {
             keeper.sense(robot, time, seen)?;
-            Ok(match keeper.step(time, seen)? {
-                ControlFlow::Continue(twist) => ControlFlow::Continue(twist),
-                ControlFlow::Break(outcome) => ControlFlow::Break(outcome.to_string()),
-            })
+            Ok(keeper.step(time, seen)?.map_break(|outcome| outcome.to_string()))
         })
     }
 

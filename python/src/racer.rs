@@ -1,4 +1,3 @@
-use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
 use pyo3::prelude::*;
@@ -45,10 +44,7 @@ impl Racer {
         let (racer, seen) = &mut *guard;
         decide(py, robot, &self.ended, |time, robot| {
             racer.sense(robot, time, seen)?;
-            Ok(match Behaviour::step(racer, time, seen)? {
-                ControlFlow::Continue(twist) => ControlFlow::Continue(twist),
-                ControlFlow::Break(outcome) => ControlFlow::Break(outcome.to_string()),
-            })
+            Ok(Behaviour::step(racer, time, seen)?.map_break(|outcome| outcome.to_string()))
         })
     }
 

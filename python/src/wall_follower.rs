@@ -1,4 +1,3 @@
-use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
 use pyo3::prelude::*;
@@ -63,10 +62,7 @@ impl WallFollower {
         let (drive, seen) = &mut *guard;
         decide(py, robot, &self.ended, |time, robot| {
             drive.sense(robot, time, seen)?;
-            Ok(match drive.step(time, seen)? {
-                ControlFlow::Continue(twist) => ControlFlow::Continue(twist),
-                ControlFlow::Break(outcome) => ControlFlow::Break(outcome.to_string()),
-            })
+            Ok(drive.step(time, seen)?.map_break(|outcome| outcome.to_string()))
         })
     }
 

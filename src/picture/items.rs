@@ -126,8 +126,8 @@ impl Picture {
         self
     }
 
-    /// The part whose coordinates are those of the world: the picture itself, or of [`panels`](Self::panels) the
-    /// first such panel. `None` if all is [without a scale](Self::without_scale).
+    /// The part whose coordinates are those of the world: the picture itself, or of [`panels`](Self::panels)
+    /// the first such panel. `None` if all is [without a scale](Self::without_scale).
     pub fn plan(&self) -> Option<&Self> {
         self.first_plan.as_deref().or_else(|| self.to_scale.then_some(self))
     }

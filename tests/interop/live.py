@@ -1,5 +1,5 @@
-"""Looks at a run through its port, as an app that speaks Foxglove's protocol does, with the published client of WebSocket and
-the published schemas' own decoders, and compares what it is sent with a recording of the same run.
+"""Looks at a run through its port, as an app that speaks Foxglove's protocol does, with the published client of
+WebSocket and the published schemas' own decoders, and compares what it is sent with a recording of the same run.
 
 Usage: live.py ROVERLAB FILE.mcap, a recording of `roverlab distbug`. Ends with status 0 if all agree.
 """
@@ -56,7 +56,8 @@ def main():
         scans = [decoder(schema.name).FromString(message.data)
                  for schema, _, message in make_reader(source).iter_messages(topics=["/robot1/lidar"])]
 
-    run = subprocess.Popen([roverlab, "distbug", "--view"], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    command = [roverlab, "distbug", "--view"]
+    run = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     address = run.stderr.readline().strip().removeprefix("view: http:")
     seen = look(f"ws:{address}")
     run.stderr.close()
@@ -70,7 +71,8 @@ def main():
     # The run may begin before all channels are subscribed to; from then on nothing is missing or another one.
     live = [message for topic, _, message in seen if topic == "/robot1/lidar"]
     for number, (found, expected) in enumerate(zip(reversed(live), reversed(scans))):
-        if found.ranges != expected.ranges or (found.start_angle, found.end_angle) != (expected.start_angle, expected.end_angle):
+        same_angles = (found.start_angle, found.end_angle) == (expected.start_angle, expected.end_angle)
+        if not same_angles or found.ranges != expected.ranges:
             fail(f"scan {number} from the end: found {found}; expected {expected}")
     if len(live) < len(scans) / 2:
         fail(f"found {len(live)} of {len(scans)} scans")

@@ -96,8 +96,8 @@ pub(super) fn true_depth(world: &World, centre: Point, cell: f64) -> Option<f64>
     Some(sum / f64::from(POINTS * POINTS))
 }
 
-/// The size of cells, as wide as lanes are apart, that fill the narrower side of an area; and the part of it that
-/// whole ones cover, in the middle of the longer side.
+/// The size of cells, as wide as lanes are apart, that fill the narrower side of an area; and the part of it
+/// that whole ones cover, in the middle of the longer side.
 fn whole_cells(area: &Aabb, spacing: f64) -> (Aabb, f64) {
     let size = area.size();
     let narrow = size.min();

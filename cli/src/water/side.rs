@@ -15,8 +15,8 @@ pub(crate) struct Side {
 
 /// Length of the way in the picture relative to its width, so that the craft has room at its end.
 const LONG: f64 = 0.9;
-/// Height of the water in the picture relative to its width, and of what is drawn below and above it relative to
-/// the water's.
+/// Height of the water in the picture relative to its width, and of what is drawn below and above it relative
+/// to the water's.
 const HIGH: f64 = 0.35;
 const BELOW: f64 = 0.1;
 const ABOVE: f64 = 0.25;

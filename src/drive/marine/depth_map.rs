@@ -213,9 +213,9 @@ impl DepthMap {
         parts
     }
 
-    /// A cell's depth is the sum of the soundings around, each times a factor: the sum of these factors' squares.
-    /// Its own soundings count by their parts; all count by the surface, as far as this is not the same in the mean
-    /// of these parts and of the cell.
+    /// A cell's depth is the sum of the soundings around, each times a factor: the sum of these factors'
+    /// squares. Its own soundings count by their parts; all count by the surface, as far as this is not the
+    /// same in the mean of these parts and of the cell.
     fn squares(&self, column: usize, row: usize, surface: &Surface, parts: &Parts) -> f64 {
         let centre = self.centre(column, row);
         let known = parts.keys().filter(|place| is_own(place)).count() as f64;

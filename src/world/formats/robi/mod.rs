@@ -50,9 +50,9 @@
 //! thrusters as Mako has them (1 left, 2 front, 3 right, 4 back), a boat two at its stern (1 left, 2 right),
 //! each with a force of 0.7 N/kg.
 //!
-//! Odometry, such as `VWGetPosition`, is dead reckoning: the way through the water, along the heading from the
-//! turn rate. A current therefore does not show in it, unless the craft has a Doppler log (`dvl`) that sees the
-//! ground.
+//! Odometry, such as `VWGetPosition`, is dead reckoning: the way through the water, along the heading from
+//! the turn rate. A current therefore does not show in it, unless the craft has a Doppler log (`dvl`) that
+//! sees the ground.
 //!
 //! # Lines of our own
 //!
