@@ -5,15 +5,18 @@ use std::hash::{DefaultHasher, Hasher};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-/// Source folders of library and runner.
-const SOURCES: [&str; 2] = ["src", "../src"];
+/// Source folders of library and runner, from the folders of `robios` and of `robios-runner`.
+const SOURCES: [[&str; 2]; 2] = [["src", "../src"], ["../src", "../../src"]];
 
 fn main() -> io::Result<()> {
-    if std::env::var_os("CARGO_CFG_TARGET_FAMILY").is_none_or(|family| family != "wasm") {
-        cc::Build::new().file("src/shim.c").warnings(true).compile("eyesim_shim");
+    let for_page = std::env::var_os("CARGO_CFG_TARGET_FAMILY").is_some_and(|family| family == "wasm");
+    let [own, above] = SOURCES;
+    let sources = if Path::new(own[0]).is_dir() { own } else { above };
+    if std::env::var_os("CARGO_FEATURE_C").is_some() && !for_page {
+        cc::Build::new().file(format!("{}/shim.c", sources[0])).warnings(true).compile("eyesim_shim");
     }
     let mut files = BTreeSet::new();
-    for folder in SOURCES {
+    for folder in sources {
         println!("cargo:rerun-if-changed={folder}");
         list(Path::new(folder), &mut files)?;
     }

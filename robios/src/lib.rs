@@ -47,9 +47,11 @@
 //! `collisions_after_end`.
 
 #![cfg_attr(target_family = "wasm", allow(dead_code, reason = "a page has neither threads nor processes"))]
+#![cfg_attr(not(feature = "c"), allow(dead_code, reason = "a runner without the C functions needs less"))]
 
 pub mod ask;
 pub mod costs;
+#[cfg(feature = "c")]
 mod ffi;
 pub mod identity;
 #[cfg(not(target_family = "wasm"))]
@@ -58,7 +60,7 @@ pub mod keys;
 pub mod link;
 #[cfg_attr(target_family = "wasm", path = "memory_of_page.rs")]
 pub mod memory;
-#[cfg(target_family = "wasm")]
+#[cfg(all(target_family = "wasm", feature = "c"))]
 pub mod page;
 pub mod plan;
 #[cfg(not(target_family = "wasm"))]
@@ -67,6 +69,8 @@ pub mod process;
 pub mod remote;
 pub mod report;
 pub mod robios;
+#[cfg(not(target_family = "wasm"))]
+pub mod runner;
 pub mod screen;
 pub mod seat;
 pub mod showing;

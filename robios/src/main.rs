@@ -1,8 +1,5 @@
-//! Runs programs written for RoBIOS in simulated worlds: C and C++ as executables or as source text, and
-//! Python.
-
-mod runner;
+//! The program `robios`, a wrapper of its library.
 
 fn main() -> std::process::ExitCode {
-    runner::main()
+    eyesim::runner::main()
 }

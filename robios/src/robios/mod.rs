@@ -30,6 +30,7 @@ use crate::report::{NOTES, Report, ReportFile, Stage};
 use crate::screen::Screen;
 use crate::showing::Showing;
 
+#[cfg(feature = "c")]
 pub(crate) use system::Callback;
 
 /// One robot and its devices from a program's perspective.

@@ -11,16 +11,17 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use eyesim::memory::Memory;
-use eyesim::plan::{BUILD, Plan, names};
-use eyesim::process;
-use eyesim::report::{Report, Stage};
-use eyesim::verdict::{Ending, Truth, Verdict};
+use crate::memory::Memory;
+use crate::plan::{BUILD, Plan, names};
+use crate::process;
+use crate::report::{Report, Stage};
+use crate::verdict::{Ending, Truth, Verdict};
 use roverlab::world::Scene;
 
 use super::options::{Options, whole};
 use super::panels::Panels;
-use super::programs::{Program, home, is_python, library};
+use super::place::{home, library};
+use super::programs::{Program, is_python};
 use super::stopwatch::Stopwatch;
 use super::work_folder::WorkFolder;
 

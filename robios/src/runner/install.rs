@@ -1,7 +1,7 @@
 use std::fs;
 use std::path::Path;
 
-use super::programs::{home, library};
+use super::place::{home, library, program};
 
 /// Copies the library under both names, headers, scripts, Python modules and the runner to a folder.
 pub(super) fn install(folder: &Path) -> Result<(), String> {
@@ -25,7 +25,7 @@ pub(super) fn install(folder: &Path) -> Result<(), String> {
         let target = lib.join(name);
         fs::copy(&library, &target).map_err(|error| failed(&target, &error))?;
     }
-    let program = std::env::current_exe().map_err(|error| error.to_string())?;
+    let program = program()?;
     let target = folder.join("bin/robios");
     fs::copy(&program, &target).map_err(|error| failed(&target, &error))?;
     Ok(())

@@ -6,37 +6,51 @@ mod install;
 mod options;
 mod panels;
 mod picture;
+mod place;
 mod programs;
 mod stopwatch;
 mod work_folder;
 
+use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;
 
 use clap::Parser;
 
-use eyesim::verdict::{self, Summary, Verdict};
+use crate::verdict::{self, Summary, Verdict};
 use options::{Command, Options};
+pub use place::Place;
 use roverlab_view::serve::{Beside, Opening};
 use stopwatch::Stopwatch;
 
 /// Exit status for a wrong command line or input file.
 const WRONG: u8 = 2;
 
-/// Parses the command line, runs the programs and prints the report. Exit status 0: every program ended
-/// properly; 1: one did not, or touched something; 2: the command line or a file is wrong.
-pub(crate) fn main() -> ExitCode {
+/// The program `robios`: runs the command line of this process.
+pub fn main() -> ExitCode {
+    ExitCode::from(main_of(std::env::args_os().collect()))
+}
+
+/// The same within another program, from a place of its own. Returns the exit status.
+pub fn main_at(place: Place, words: Vec<OsString>) -> u8 {
+    place::set(place);
+    main_of(words)
+}
+
+/// Parses a command line, of which the first word is the program's name, runs the programs and prints the
+/// report. Exit status 0: every program ended properly; 1: one did not, or touched something; 2: the command
+/// line or a file is wrong.
+fn main_of(words: Vec<OsString>) -> u8 {
     let mut warnings = Vec::new();
-    let options = match Options::try_parse() {
+    let wants_json = words.iter().any(|word| word == "--json");
+    let options = match Options::try_parse_from(words) {
         Ok(options) => options,
         Err(error) if !error.use_stderr() => {
             let _ = write!(std::io::stdout(), "{}", error.render());
-            return ExitCode::SUCCESS;
+            return 0;
         }
         // What cannot be parsed still says whether JSON is wanted.
-        Err(error) => {
-            return refuse(std::env::args_os().any(|word| word == "--json"), &in_one_line(&error), &[]);
-        }
+        Err(error) => return refuse(wants_json, &in_one_line(&error), &[]),
     };
     let done = match options.command() {
         Command::Install(folder) => install::install(&folder).map(|()| None),
@@ -44,26 +58,26 @@ pub(crate) fn main() -> ExitCode {
         Command::Run => run(&options, &mut warnings).map(Some),
     };
     match done {
-        Ok(None) => ExitCode::SUCCESS,
+        Ok(None) => 0,
         Ok(Some(summary)) => {
             let text = if options.json { summary.json() } else { summary.words() };
             // A reader that has closed the pipe is not a failure.
             let _ = writeln!(std::io::stdout(), "{text}");
-            ExitCode::from(summary.status())
+            summary.status()
         }
         Err(message) => refuse(options.json, &message, &warnings),
     }
 }
 
 /// Reports what could not start, with --json as an object too.
-fn refuse(json: bool, message: &str, warnings: &[String]) -> ExitCode {
+fn refuse(json: bool, message: &str, warnings: &[String]) -> u8 {
     if json {
         // A reader that has closed the pipe is told by the status.
         let _ = writeln!(std::io::stdout(), "{}", verdict::refusal(message, warnings));
     }
     // Without standard error nobody can be informed; the status remains.
     let _ = writeln!(std::io::stderr(), "{message}");
-    ExitCode::from(WRONG)
+    WRONG
 }
 
 /// The error of a command line in one line.

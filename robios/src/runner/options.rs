@@ -2,9 +2,9 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::ArgPredicate;
 
-use eyesim::costs::Costs;
-use eyesim::keys::KeyPlan;
-use eyesim::plan::{FRAME_RATE, Plan, parse_pose};
+use crate::costs::Costs;
+use crate::keys::KeyPlan;
+use crate::plan::{FRAME_RATE, Plan, parse_pose};
 use roverlab::geometry::Pose;
 use roverlab::io::sim::TICK;
 use roverlab::picture::FileType;

@@ -4,7 +4,7 @@ use std::os::unix::net::UnixStream;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
-use eyesim::showing;
+use crate::showing;
 use roverlab::io::Key;
 use roverlab_view::Face;
 use roverlab_view::serve::Devices;

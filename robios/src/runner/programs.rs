@@ -7,6 +7,7 @@ use roverlab::world::Scene;
 use roverlab::world::formats::in_any_case;
 
 use super::options::{Options, ends_in, whole};
+use super::place::{home, library};
 use super::work_folder::WorkFolder;
 
 /// A program and the robot it drives.
@@ -241,30 +242,4 @@ fn companions(file: &Path, found: &mut Vec<PathBuf>, depth: usize) {
             companions(&header, found, depth - 1);
         }
     }
-}
-
-/// Headers, scripts and Python modules: beside this program's folder, or in the project's.
-pub(crate) fn home() -> Result<PathBuf, String> {
-    let installed = std::env::current_exe().ok().and_then(|file| Some(file.parent()?.parent()?.to_owned()));
-    let built = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
-    let mut places = installed.into_iter().chain([built]);
-    let found =
-        places.find(|place| place.join("include/eyebot.h").is_file() && place.join("bin/gccsim").is_file());
-    found.ok_or_else(|| {
-        "no folder with include/eyebot.h and bin/gccsim; expected one above this program's".into()
-    })
-}
-
-/// The library: beside this program, in the project or in an installation. The newest one is used: `cargo
-/// test` builds one without replacing that of `cargo build`.
-pub(crate) fn library() -> Result<PathBuf, String> {
-    let name = if cfg!(target_os = "macos") { "libeyesim.dylib" } else { "libeyesim.so" };
-    let program = std::env::current_exe().map_err(|error| error.to_string())?;
-    let folder = program.parent().unwrap_or(Path::new("."));
-    let places = [folder.to_owned(), folder.join("deps"), folder.join("../lib"), folder.join("..")];
-    let files = places.iter().map(|place| place.join(name));
-    let built = files.filter_map(|file| Some((file.metadata().ok()?.modified().ok()?, file)));
-    built.max().map(|(_, file)| file).ok_or_else(|| {
-        format!("no {name} beside {}; expected one from `cargo build -p robios`", program.display())
-    })
 }
