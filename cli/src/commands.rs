@@ -3,11 +3,15 @@
 
 use std::ffi::OsString;
 use std::io::{self, Write};
+#[cfg(feature = "native")]
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::CommandFactory;
 use serde_json::{Value, json};
 
+#[cfg(feature = "native")]
+use crate::common::set_own_program;
 use crate::common::{
     Failure, Onlooker, onlooker, parser, refused, run, run_again, run_plain, run_printing, written,
 };
@@ -171,15 +175,27 @@ pub(crate) fn named(name: &str) -> Option<&'static Command> {
 /// Main function of the program.
 #[must_use]
 pub fn main() -> ExitCode {
-    let words: Vec<OsString> = std::env::args_os().collect();
+    ExitCode::from(main_of(std::env::args_os().collect()))
+}
+
+/// The same within another program, in which `program` starts it. The first word is the program's name.
+/// Returns the exit status.
+#[cfg(feature = "native")]
+#[must_use]
+pub fn main_at(program: PathBuf, words: Vec<OsString>) -> u8 {
+    set_own_program(program);
+    main_of(words)
+}
+
+/// Runs a command line.
+fn main_of(words: Vec<OsString>) -> u8 {
     #[cfg(feature = "native")]
     let for_another = starman::work_for_another(&words);
     #[cfg(not(feature = "native"))]
     let for_another = None;
-    let status = for_another
+    for_another
         .or_else(|| micromouse::mms::drive_for_another(&words))
-        .unwrap_or_else(|| dispatch(words, &mut io::stdout(), &mut io::stderr()));
-    ExitCode::from(status)
+        .unwrap_or_else(|| dispatch(words, &mut io::stdout(), &mut io::stderr()))
 }
 
 /// Result of a command.

@@ -61,5 +61,7 @@ mod view;
 mod wall_following;
 mod water;
 
+#[cfg(feature = "native")]
+pub use commands::main_at;
 pub use commands::{Ended, main, options, run_words};
 pub use common::Onlooker;

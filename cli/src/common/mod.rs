@@ -76,6 +76,8 @@ mod library;
 pub(crate) mod onlooker;
 mod origin;
 mod outputs;
+#[cfg(feature = "native")]
+mod own_program;
 mod parts;
 mod report;
 mod run;
@@ -102,6 +104,8 @@ pub(crate) use images::write_image;
 pub use onlooker::Onlooker;
 pub(crate) use origin::{Facts, Origin};
 pub(crate) use outputs::is_same_file;
+#[cfg(feature = "native")]
+pub(crate) use own_program::{own_program, set_own_program};
 pub(crate) use parts::{Header, OF_PARTS, PartArgs, Portable, field, fields, portable, unexpected};
 pub(crate) use report::{Outcome, Report, millimetres, point_in_mm, rounded};
 pub(crate) use run::{Printed, parser, refused, run, run_again, run_plain, run_printing, written};

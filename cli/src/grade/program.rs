@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use super::workplace::Workplace;
-use crate::common::Failure;
+use crate::common::{Failure, own_program};
 
 /// A program to grade.
 #[derive(Debug, Clone)]
@@ -67,7 +67,7 @@ fn is_source(file: &Path) -> bool {
 
 /// The runner of programs for RoBIOS: beside this program, or in the folder above, as that of tests.
 pub(super) fn runner() -> Result<PathBuf, String> {
-    let own = std::env::current_exe().map_err(|error| error.to_string())?;
+    let own = own_program().map_err(|error| error.to_string())?;
     let name = format!("robios{}", std::env::consts::EXE_SUFFIX);
     let found = own.ancestors().skip(1).take(2).map(|folder| folder.join(&name)).find(|file| file.is_file());
     found.ok_or_else(|| {

@@ -11,6 +11,7 @@ use super::place::Place;
 use super::program::{Kind, Program, runner};
 use super::rubric::Rubric;
 use super::workplace::Workplace;
+use crate::common::own_program;
 use crate::replay::true_path;
 
 /// Result of one run of a program.
@@ -142,7 +143,7 @@ fn lab(words: &[String], folder: &Workplace, terms: &Terms<'_>) -> Result<Ran, S
         ("--time-limit", rubric.time_limit.to_string().into()),
         ("--record", log.clone().into()),
     ];
-    let own = std::env::current_exe().map_err(|error| error.to_string())?;
+    let own = own_program().map_err(|error| error.to_string())?;
     let mut command = Command::new(own);
     command.args(words).arg("--json");
     command.args(options.iter().flat_map(|(name, value)| [OsString::from(name), value.clone()]));

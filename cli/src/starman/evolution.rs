@@ -14,7 +14,7 @@ use roverlab::world::{Scene, World};
 use super::WORKER;
 use super::figure::Figure;
 use super::options::{Args, Init};
-use crate::common::{Failure, Progress, Stopwatch};
+use crate::common::{Failure, Progress, Stopwatch, own_program};
 
 /// Number of control points of the cycle.
 const CYCLE: usize = 10;
@@ -139,10 +139,7 @@ fn evaluator(args: &Args, trials: &Trials) -> std::result::Result<Workers, Failu
         let count = threads.threads();
         return Ok((Box::new(threads), count));
     };
-    let own = || {
-        let program = std::env::current_exe();
-        program.map_err(|error| Failure::run(format!("this program's file: {error}")))
-    };
+    let own = || own_program().map_err(|error| Failure::run(format!("this program's file: {error}")));
     let (program, first): (OsString, &[String]) = match &args.worker_command {
         Some(command) => ((&command.program).into(), &command.arguments),
         None => (own()?.into(), &[]),

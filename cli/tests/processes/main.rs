@@ -1,5 +1,5 @@
 //! The program `roverlab` as a process: its warnings, robots behind the library of RoBIOS, runs that are
-//! killed, campaigns in parts, and the page.
+//! killed, campaigns in parts, workers of evolution, and the page.
 
 #[cfg(feature = "native")]
 mod grade;
@@ -10,6 +10,8 @@ mod robios;
 mod tasks;
 #[cfg(feature = "view")]
 mod view;
+#[cfg(feature = "native")]
+mod workers;
 
 use std::path::Path;
 use std::process::Command;
