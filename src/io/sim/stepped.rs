@@ -6,7 +6,7 @@ use super::options::ticks_in;
 use super::truth::robot_truth;
 use super::{SimOptions, Watcher};
 use crate::geometry::Pose;
-use crate::io::{Key, Result, RobotTruth};
+use crate::io::{Key, Result, RobotTruth, TruthInSpace};
 use crate::world::Scene;
 
 /// A world that its caller steps: commands to any of its robots, then time, then readings.
@@ -89,6 +89,13 @@ impl Stepped {
     /// Number of a robot's contacts with walls, objects and robots so far.
     pub fn contacts(&self, robot: usize) -> Result<u32> {
         Ok(self.engine.body(robot)?.touch.contacts)
+    }
+
+    /// Pose of a robot in space, and its mishap, if any. Fails if there is no such robot.
+    pub fn in_space(&self, robot: usize) -> Result<TruthInSpace> {
+        let hills = self.engine.hills.as_ref();
+        let mishap = hills.and_then(|hills| hills.mishap(robot));
+        Ok(TruthInSpace { pose: self.engine.pose_in_space(robot)?, mishap })
     }
 
     /// Complete ground truth of a robot.
