@@ -1,5 +1,5 @@
 """Behaviours that drive a robot of a simulation."""
 
-from ._native import Follower, LaneKeeper, Racer, WallFollower
+from ._native import Ascent, Dive, Follower, LaneKeeper, Racer, WallFollower
 
-__all__ = ["Follower", "LaneKeeper", "Racer", "WallFollower"]
+__all__ = ["Ascent", "Dive", "Follower", "LaneKeeper", "Racer", "WallFollower"]

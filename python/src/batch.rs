@@ -12,7 +12,7 @@ use crate::errors::{Failure, Outcome};
 use crate::scene::Scene;
 use crate::simulation::{Simulation, options};
 use crate::way::{COLUMNS, CentreLine, Way};
-use crate::worlds::{Cell, Part, Rows, Shape, sensors, step_all};
+use crate::worlds::{Cell, Part, Rows, SPACE, Shape, sensors, step_all};
 
 /// Many robots that are stepped in one call, with their state in arrays of one row per robot.
 ///
@@ -39,6 +39,10 @@ use crate::worlds::{Cell, Part, Rows, Shape, sensors, step_all};
 /// ahead : sequence of float, optional
 ///     Distances along the scene's `centre_line` of the points that each step finds for `lanes`, at least 0
 ///     (m).
+/// space : bool
+///     Whether each step reads each robot's inertial unit and depth sensor, for `space`.
+/// thrusters : bool
+///     Whether commands are those of the thrusters of craft.
 /// trail_interval : float, optional
 ///     Interval between the points of each robot's trail (s), at least 0.01; no trail without it.
 ///
@@ -56,6 +60,7 @@ pub(crate) struct Batch {
     noise: f64,
     trail: Option<f64>,
     ahead: Option<Vec<f64>>,
+    thrusters: bool,
     threads: usize,
     shape: Shape,
     arrays: Arrays,
@@ -76,7 +81,7 @@ impl Start {
     }
 
     /// A world that begins so.
-    fn cell(&self, ahead: Option<&[f64]>, options: SimOptions) -> Outcome<Cell> {
+    fn cell(&self, ahead: Option<&[f64]>, thrusters: bool, options: SimOptions) -> Outcome<Cell> {
         let way = match ahead {
             None => None,
             Some(ahead) => {
@@ -87,7 +92,7 @@ impl Start {
                 })?)
             }
         };
-        Cell::new(Arc::clone(&self.scene), self.goal, way, options)
+        Cell::new(Arc::clone(&self.scene), self.goal, way, thrusters, options)
     }
 }
 
@@ -103,18 +108,37 @@ struct Arrays {
     contacts: Py<PyArray1<u32>>,
     walls: Py<PyArray2<f64>>,
     lanes: Py<PyArray2<f64>>,
+    space: Py<PyArray2<f64>>,
 }
 
-/// The shape of the arrays; fails if robots differ. `scan`, `walls` and `ahead` say which columns there are.
-fn shape_of(
-    scenes: &[Start],
-    copies: usize,
-    (scan, walls, ahead): (bool, bool, Option<usize>),
-) -> Outcome<Shape> {
+/// Which columns the arrays of a batch have.
+#[derive(Debug, Clone, Copy)]
+struct Columns {
+    scan: bool,
+    walls: bool,
+    /// Number of points ahead.
+    ahead: Option<usize>,
+    space: bool,
+    thrusters: bool,
+}
+
+/// Number of columns of a robot's commands.
+fn commands(spec: &world::RobotSpec, thrusters: bool) -> Outcome<usize> {
+    match &spec.drive {
+        _ if !thrusters => Ok(2),
+        world::DriveSpec::Craft(craft) => Ok(craft.thrusters.len()),
+        _ => Err(Failure::value("robot", format!("{:?}", spec.name), "a craft, for `thrusters`")),
+    }
+}
+
+/// The shape of the arrays; fails if robots differ.
+fn shape_of(scenes: &[Start], copies: usize, wanted: Columns) -> Outcome<Shape> {
+    let Columns { scan, walls, ahead, space, thrusters } = wanted;
     let mut specs = scenes.iter().flat_map(|start| &start.scene.robots).map(|robot| &robot.spec);
     let Some(first) = specs.next() else {
         return Err(Failure::value("number of robots", 0, "at least one"));
     };
+    let columns = commands(first, thrusters)?;
     let beams = |spec: &world::RobotSpec| spec.lidar.map_or(0, |lidar| lidar.points);
     for spec in specs {
         if beams(spec) != beams(first) && scan {
@@ -125,11 +149,16 @@ fn shape_of(
             let found = format!("{:?}", sensors(spec).iter().map(|psd| psd.0).collect::<Vec<_>>());
             return Err(Failure::value("distance sensors of a robot", found, "those of the first robot"));
         }
+        if commands(spec, thrusters)? != columns {
+            let expected = format!("{columns}, as the first robot has");
+            return Err(Failure::value("number of thrusters of a robot", commands(spec, true)?, &expected));
+        }
     }
     let robots = copies * scenes.iter().map(|start| start.scene.robots.len()).sum::<usize>();
     let beams = if scan { beams(first) } else { 0 };
     let (walls, lane) = (if walls { 3 } else { 0 }, ahead.map_or(0, |points| COLUMNS + 2 * points));
-    Ok(Shape { robots, beams, sensors: first.psds.len(), walls, lane })
+    let space = if space { SPACE } else { 0 };
+    Ok(Shape { robots, beams, sensors: first.psds.len(), walls, lane, space, commands: columns })
 }
 
 impl Arrays {
@@ -145,6 +174,7 @@ impl Arrays {
             contacts: PyArray1::zeros(py, shape.robots, false).unbind(),
             walls: matrix(shape.walls),
             lanes: matrix(shape.lane),
+            space: matrix(shape.space),
         }
     }
 
@@ -157,7 +187,7 @@ impl Arrays {
                 })?;
             )+};
         }
-        borrowed!(ranges, distances, poses, speeds, stalled, true_poses, contacts, walls, lanes);
+        borrowed!(ranges, distances, poses, speeds, stalled, true_poses, contacts, walls, lanes, space);
         macro_rules! slice {
             ($array:ident) => {
                 $array.as_slice_mut().map_err(PyErr::from)?
@@ -173,6 +203,7 @@ impl Arrays {
             contacts: slice!(contacts),
             walls: slice!(walls),
             lanes: slice!(lanes),
+            space: slice!(space),
         })
     }
 }
@@ -211,12 +242,12 @@ impl Batch {
     #[pyo3(
         signature = (
             scenes, *, copies = Natural::ONE, seed = Natural::ONE, noise = 1.0, threads = Natural::ONE,
-            scan = true, walls = false, ahead = None, trail_interval = None
+            scan = true, walls = false, ahead = None, space = false, thrusters = false, trail_interval = None
         ),
         text_signature = "(scenes, *, copies=1, seed=1, noise=1.0, threads=1, scan=True, walls=False, \
-            ahead=None, trail_interval=None)"
+            ahead=None, space=False, thrusters=False, trail_interval=None)"
     )]
-    #[allow(clippy::too_many_arguments, reason = "keywords of Python")]
+    #[allow(clippy::too_many_arguments, clippy::fn_params_excessive_bools, reason = "keywords of Python")]
     fn new(
         py: Python<'_>,
         scenes: &Bound<'_, PyAny>,
@@ -227,6 +258,8 @@ impl Batch {
         scan: bool,
         walls: bool,
         ahead: Option<Vec<f64>>,
+        space: bool,
+        thrusters: bool,
         trail_interval: Option<f64>,
     ) -> Outcome<Self> {
         let seed = seed.named("seed")?;
@@ -235,15 +268,17 @@ impl Batch {
         if let Some(wrong) = ahead.iter().flatten().find(|metres| !(0.0..=1e6).contains(*metres)) {
             return Err(Failure::value("ahead", wrong, "distances of 0 to 1000000 m"));
         }
-        let shape = shape_of(&scenes, copies, (scan, walls, ahead.as_ref().map(Vec::len)))?;
+        let columns = Columns { scan, walls, ahead: ahead.as_ref().map(Vec::len), space, thrusters };
+        let shape = shape_of(&scenes, copies, columns)?;
         let cell = |world: usize| {
             let options = options(seed.wrapping_add(world as u64), noise, false, trail_interval)?;
-            scenes[world / copies].cell(ahead.as_deref(), options)
+            scenes[world / copies].cell(ahead.as_deref(), thrusters, options)
         };
         let mut worlds = (0..copies * scenes.len()).map(cell).collect::<Outcome<Vec<_>>>()?;
         let (arrays, trail) = (Arrays::new(py, shape), trail_interval);
         let none = Mutex::new(Vec::new());
-        let batch = Self { worlds: none, scenes, copies, noise, trail, ahead, threads, shape, arrays };
+        let batch =
+            Self { worlds: none, scenes, copies, noise, trail, ahead, thrusters, threads, shape, arrays };
         (0..worlds.len()).try_for_each(|world| batch.read_world(py, &mut worlds, world))?;
         *batch.worlds.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner) = worlds;
         Ok(batch)
@@ -254,18 +289,17 @@ impl Batch {
     /// Parameters
     /// ----------
     /// commands : ndarray of float64, shape (robots, 2)
-    ///     Linear (m/s) and angular speed (rad/s) of each robot.
+    ///     Linear (m/s) and angular speed (rad/s) of each robot. With the option `thrusters`, of shape
+    ///     (robots, thrusters), the command of each thruster as a fraction of its full speed, -1 to 1.
     /// seconds : float
     ///     Duration (s), rounded to ticks of 10 ms.
     fn step(&self, py: Python<'_>, commands: &Bound<'_, PyAny>, seconds: f64) -> Outcome<()> {
-        let expected = "an array of float64 of shape (robots, 2)";
+        let columns = self.shape.commands;
+        let expected = &format!("an array of float64 of shape (robots, {columns})");
         let commands = arrays::readable::<f64, numpy::Ix2>("commands", commands, expected)?;
-        if commands.shape() != [self.shape.robots, 2] {
-            return Err(arrays::wrong_shape(
-                "commands",
-                commands.shape(),
-                &arrays::shown(&[self.shape.robots, 2]),
-            ));
+        let shape = [self.shape.robots, columns];
+        if commands.shape() != shape {
+            return Err(arrays::wrong_shape("commands", commands.shape(), &arrays::shown(&shape)));
         }
         let ordered: Vec<f64>;
         // Contiguous by columns is contiguous as well, but in another order.
@@ -275,7 +309,7 @@ impl Batch {
             ordered = commands.as_array().iter().copied().collect();
             &ordered
         };
-        check_commands(commands)?;
+        check_commands(commands, columns)?;
         let mut worlds = self.worlds.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
         let ticks = ticks_of(seconds)?;
         let most = (PART / self.shape.robots as u64).max(1);
@@ -318,14 +352,20 @@ impl Batch {
         let (world, cell) = world_of(&mut worlds, world)?;
         let start = scene.as_ref().map_or_else(|| self.start(world).clone(), |scene| Start::of(scene));
         let ahead = self.ahead.as_deref();
-        let columns = (self.shape.beams > 0, self.shape.walls > 0, ahead.map(<[f64]>::len));
+        let columns = Columns {
+            scan: self.shape.beams > 0,
+            walls: self.shape.walls > 0,
+            ahead: ahead.map(<[f64]>::len),
+            space: self.shape.space > 0,
+            thrusters: self.thrusters,
+        };
         let shape = shape_of(std::slice::from_ref(&start), 1, columns)?;
         if shape != (Shape { robots: cell.robots(), ..self.shape }) {
             let found = format!("{} robots of {} beams", shape.robots, shape.beams);
             let expected = format!("{} robots of {} beams", cell.robots(), self.shape.beams);
             return Err(Failure::value("scene", found, &expected));
         }
-        *cell = start.cell(ahead, options(seed, self.noise, false, self.trail)?)?;
+        *cell = start.cell(ahead, self.thrusters, options(seed, self.noise, false, self.trail)?)?;
         self.read_world(py, &mut worlds, world)
     }
 
@@ -404,6 +444,15 @@ impl Batch {
         self.arrays.lanes.clone_ref(py)
     }
 
+    /// The robots in space, of shape (robots, 9). Measured: roll, pitch and yaw (rad), turn rates about the
+    /// axes ahead, to the left and upwards (rad/s), and depth of the sensor below the surface (m), 0 without
+    /// a sensor. Ground truth: height above the world's origin (m), and 1 if the robot has tipped, fallen or
+    /// drowned, otherwise 0. No columns without the option `space`.
+    #[getter]
+    fn space(&self, py: Python<'_>) -> Py<PyArray2<f64>> {
+        self.arrays.space.clone_ref(py)
+    }
+
     /// Number of worlds.
     #[getter]
     fn worlds(&self) -> usize {
@@ -438,10 +487,10 @@ fn ticks_of(seconds: f64) -> Outcome<u64> {
 }
 
 /// Checks all commands before any robot is told.
-fn check_commands(commands: &[f64]) -> Outcome<()> {
+fn check_commands(commands: &[f64], columns: usize) -> Outcome<()> {
     let wrong = commands.iter().position(|speed| speed.is_nan() || speed.abs() > 1e6);
     wrong.map_or(Ok(()), |at| {
-        let name = format!("commands[{}, {}]", at / 2, at % 2);
+        let name = format!("commands[{}, {}]", at / columns, at % columns);
         Err(Failure::value(&name, commands[at], "a finite number of at most 1e6 either way"))
     })
 }

@@ -5,8 +5,8 @@ use pyo3::prelude::*;
 use roverlab::geometry::Twist;
 use roverlab::io::sim::{FleetRobot, TICK};
 use roverlab::io::{
-    Camera, DistanceSensors, Drive, Encoders, Lidar, LidarSettings, Manoeuvres, Motors, Odometry, Resolution,
-    Result, Servos, StallDetector,
+    Camera, DepthSensor, DistanceSensors, Drive, Encoders, Inertial, Lidar, LidarSettings, Manoeuvres,
+    Motors, Odometry, Resolution, Result, Servos, StallDetector,
 };
 
 use crate::arrays;
@@ -249,6 +249,39 @@ impl Robot {
     /// Ticks that the encoder of a motor, from 1, has counted.
     fn encoder(&self, py: Python<'_>, motor: u8) -> Outcome<i64> {
         self.call(py, |robot| robot.encoder(motor))
+    }
+
+    /// Attitude by the inertial unit: roll, pitch and yaw (rad). A positive pitch lowers the nose, a positive
+    /// roll lifts the left side; yaw is counter-clockwise from the world's x axis.
+    ///
+    /// Raises
+    /// ------
+    /// UnsupportedError
+    ///     If the robot's unit does not measure it.
+    fn attitude(&self, py: Python<'_>) -> Outcome<(f64, f64, f64)> {
+        let attitude = self.call(py, |robot| robot.attitude())?;
+        Ok((attitude.roll, attitude.pitch, attitude.yaw))
+    }
+
+    /// Turn rates by the inertial unit about the axes ahead, to the left and upwards (rad/s).
+    ///
+    /// Raises
+    /// ------
+    /// UnsupportedError
+    ///     If the robot's unit does not measure them.
+    fn turn_rates(&self, py: Python<'_>) -> Outcome<(f64, f64, f64)> {
+        let rates = self.call(py, |robot| robot.turn_rates())?;
+        Ok((rates.x, rates.y, rates.z))
+    }
+
+    /// Depth of the depth sensor below the surface (m); 0 above it.
+    ///
+    /// Raises
+    /// ------
+    /// UnsupportedError
+    ///     If the robot has no such sensor.
+    fn depth(&self, py: Python<'_>) -> Outcome<f64> {
+        self.call(py, |robot| robot.depth())
     }
 
     fn __repr__(&self) -> String {

@@ -2,6 +2,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use pyo3::prelude::*;
+use roverlab::drive::terrain::SlopeSensor;
 use roverlab::io::{LidarSettings, Psd};
 use roverlab::world;
 use roverlab::world::formats::{load_robot_tolerantly, parse_robot};
@@ -96,6 +97,12 @@ impl RobotSpec {
         spec.lidar = Some(world::LidarSpec { field_of_view, points: beams, max_range, ..old });
         spec.validate()?;
         Ok(Self::of(spec))
+    }
+
+    /// The same robot with eight distance sensors more, 11 to 18, at its top: they point outwards, each 45
+    /// degrees counter-clockwise from the one before, and down by 45 degrees.
+    fn with_slope_sensors(&self) -> Self {
+        Self::of(SlopeSensor::equip(world::RobotSpec::clone(&self.spec)))
     }
 
     /// Name of the robot.

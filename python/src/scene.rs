@@ -10,7 +10,9 @@ use roverlab::race::{self, TrackOptions};
 use roverlab::random::Stream;
 use roverlab::world;
 use roverlab::world::formats::{DiskFiles, MemoryFiles, Parsed, load_scene, parse_scene};
-use roverlab::world::generate::{CourseOptions, RoomOptions, obstacle_course, room};
+use roverlab::world::generate::{
+    CourseOptions, PoolKind, ReliefKind, ReliefOptions, RoomOptions, obstacle_course, pool, relief, room,
+};
 use roverlab::world::road::{self, Appearance, CourseError, RoadCourseOptions};
 use roverlab::world::{Clearance, Object, ObjectKind, RobotPlacement, Wall, World};
 
@@ -21,9 +23,8 @@ use crate::way::CentreLine;
 
 /// A world with robots: the start of a simulation.
 ///
-/// Made by `load`, `parse`, `empty`, `walled`, `built_in`, `room`, `course`, `track` or `road`; walls,
-/// objects
-/// and robots can be added. Lengths are in metres, angles in radians counter-clockwise from x.
+/// Made by `load`, `parse`, `empty`, `walled`, `built_in`, `room`, `course`, `track`, `road`, `hills` or
+/// `pool`; walls, objects and robots can be added. Lengths are in metres, angles in radians counter-clockwise from x.
 #[pyclass(module = "roverlab.sim")]
 #[derive(Debug, Clone)]
 pub(crate) struct Scene {
@@ -238,6 +239,44 @@ impl Scene {
         Ok(Self { centre_line: Some(sections.collect()), ..Self::of(world) })
     }
 
+    /// Random hills, and a `start` on gentle ground near their border.
+    ///
+    /// Parameters
+    /// ----------
+    /// seed : int
+    ///     Equal seeds give equal hills on every platform.
+    /// kind : str
+    ///     ``range``: hills and mesas on 5 m x 5 m, up to 0.5 m high, some too steep; ``crater``: a ring around
+    ///     water; ``ramp``: a ramp up, a bank and a ramp down, on 4 m x 4 m, up to 0.2 m high; ``steps``:
+    ///     terraces with a ramp up to each.
+    #[staticmethod]
+    #[pyo3(signature = (seed, kind = "range"))]
+    fn hills(seed: Natural, kind: &str) -> Outcome<Self> {
+        let name = |known: &ReliefKind| format!("{known:?}").to_lowercase();
+        let found = ReliefKind::ALL.into_iter().find(|known| name(known) == kind).ok_or_else(|| {
+            let expected = ReliefKind::ALL.iter().map(name).collect::<Vec<_>>().join(", ");
+            Failure::value("kind", format!("{kind:?}"), &format!("one of {expected}"))
+        })?;
+        let mut stream = Stream::new(seed.named("seed")?);
+        let drawn = relief(&mut stream, &ReliefOptions::of(found))?;
+        Ok(Self::of(World { start: Some(drawn.start), ..drawn.world }))
+    }
+
+    /// A random pool of 6 to 16 m and at most 2.4 m depth, a rectangle, an L or a kidney; `start` is far from
+    /// its sides.
+    ///
+    /// Parameters
+    /// ----------
+    /// seed : int
+    ///     Equal seeds give equal pools on every platform.
+    #[staticmethod]
+    fn pool(seed: Natural) -> Outcome<Self> {
+        let mut stream = Stream::new(seed.named("seed")?);
+        let kind = PoolKind::ALL[stream.below(PoolKind::ALL.len())];
+        let drawn = pool(&mut stream, kind)?;
+        Ok(Self::of(World { start: Some(drawn.start), ..drawn.world }))
+    }
+
     /// Another scene with the same content.
     fn copy(&self) -> Self {
         self.clone()
@@ -387,6 +426,12 @@ impl Scene {
     #[getter]
     fn start(&self) -> Option<(f64, f64, f64)> {
         self.content.world.start.map(arrays::triple)
+    }
+
+    /// Height of the water above the floor (m), if there is any.
+    #[getter]
+    fn water_level(&self) -> Option<f64> {
+        self.content.world.water_level
     }
 
     /// Goal of a `course`; may be set.

@@ -28,6 +28,23 @@ impl Truth {
         pose_of(&self.shared, py, robot.index("robot")?)
     }
 
+    /// True x, y and height (m) of a robot's origin in space, with roll, pitch and yaw (rad) as
+    /// `Robot.attitude` has them.
+    #[pyo3(signature = (robot = Natural::ZERO), text_signature = "($self, robot=0)")]
+    fn pose_in_space(&self, py: Python<'_>, robot: Natural) -> Outcome<[f64; 6]> {
+        let pose = self.shared.lock(py).world.in_space(robot.index("robot")?)?.pose;
+        let [roll, pitch, yaw] = pose.roll_pitch_yaw();
+        Ok([pose.position.x, pose.position.y, pose.position.z, roll, pitch, yaw])
+    }
+
+    /// Why a robot no longer drives, or makes no progress, such as ``"tipped over"``; None if nothing has
+    /// happened.
+    #[pyo3(signature = (robot = Natural::ZERO), text_signature = "($self, robot=0)")]
+    fn mishap(&self, py: Python<'_>, robot: Natural) -> Outcome<Option<String>> {
+        let truth = self.shared.lock(py).world.in_space(robot.index("robot")?)?;
+        Ok(truth.mishap.map(|mishap| mishap.to_string()))
+    }
+
     /// Number of a robot's contacts with walls, objects and robots so far.
     #[pyo3(signature = (robot = Natural::ZERO), text_signature = "($self, robot=0)")]
     fn contacts(&self, py: Python<'_>, robot: Natural) -> Outcome<u32> {

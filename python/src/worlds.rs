@@ -3,8 +3,11 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use roverlab::geometry::{Point, Twist};
-use roverlab::io::sim::{SimOptions, TICK};
-use roverlab::io::{DistanceSensors, Drive, Lidar, Odometry, Psd, Result, StallDetector};
+use roverlab::io::sim::{FleetRobot, SimOptions, Stepped, TICK};
+use roverlab::io::{
+    Attitude, DepthSensor, DistanceSensors, Drive, ErrorKind, Inertial, Lidar, Mishap, Motors, Odometry, Psd,
+    Result, StallDetector,
+};
 use roverlab::world::{self, Wall};
 
 use crate::errors::Outcome;
@@ -17,9 +20,12 @@ pub(crate) struct Cell {
     pub(crate) shared: Arc<Shared>,
     sensors: Vec<Psd>,
     way: Option<Way>,
+    /// Whether commands are those of thrusters.
+    thrusters: bool,
 }
 
-/// Numbers of robots, and of columns for beams, distance sensors, the nearest wall and the lane of each.
+/// Numbers of robots, and of columns for beams, distance sensors, the nearest wall, the lane, the state in
+/// space and the commands of each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Shape {
     pub(crate) robots: usize,
@@ -27,7 +33,12 @@ pub(crate) struct Shape {
     pub(crate) sensors: usize,
     pub(crate) walls: usize,
     pub(crate) lane: usize,
+    pub(crate) space: usize,
+    pub(crate) commands: usize,
 }
+
+/// Columns of robots in space.
+pub(crate) const SPACE: usize = 9;
 
 /// The rows of some robots.
 pub(crate) struct Rows<'a> {
@@ -40,6 +51,7 @@ pub(crate) struct Rows<'a> {
     pub(crate) contacts: &'a mut [u32],
     pub(crate) walls: &'a mut [f64],
     pub(crate) lanes: &'a mut [f64],
+    pub(crate) space: &'a mut [f64],
 }
 
 impl Rows<'_> {
@@ -54,7 +66,9 @@ impl Rows<'_> {
         let (contacts, more_contacts) = self.contacts.split_at_mut(robots);
         let (walls, more_walls) = self.walls.split_at_mut(robots * shape.walls);
         let (lanes, more_lanes) = self.lanes.split_at_mut(robots * shape.lane);
-        let first = Rows { ranges, distances, poses, speeds, stalled, true_poses, contacts, walls, lanes };
+        let (space, more_space) = self.space.split_at_mut(robots * shape.space);
+        let first =
+            Rows { ranges, distances, poses, speeds, stalled, true_poses, contacts, walls, lanes, space };
         let others = Rows {
             ranges: more_ranges,
             distances: more_distances,
@@ -65,6 +79,7 @@ impl Rows<'_> {
             contacts: more_contacts,
             walls: more_walls,
             lanes: more_lanes,
+            space: more_space,
         };
         (first, others)
     }
@@ -75,10 +90,11 @@ impl Cell {
         scene: Arc<world::Scene>,
         goal: Option<Point>,
         way: Option<Way>,
+        thrusters: bool,
         options: SimOptions,
     ) -> Outcome<Self> {
         let sensors = scene.robots.first().map_or(Vec::new(), |robot| sensors(&robot.spec));
-        Ok(Self { shared: Arc::new(Shared::new(scene, goal, options)?), sensors, way })
+        Ok(Self { shared: Arc::new(Shared::new(scene, goal, options)?), sensors, way, thrusters })
     }
 
     /// Number of robots.
@@ -92,12 +108,20 @@ impl Cell {
         let shared = Arc::clone(&self.shared);
         let mut state = shared.free_lock();
         if part.begins {
-            for (robot, command) in commands.chunks_exact(2).enumerate() {
-                state.world.robot(robot)?.set_speed(Twist::new(command[0], command[1]))?;
+            for (robot, command) in commands.chunks_exact(shape.commands).enumerate() {
+                self.command(&mut state.world.robot(robot)?, command)?;
             }
         }
         state.world.run_for(part.ticks as f64 * TICK)?;
         if part.ends { self.read(&mut state, rows, shape) } else { Ok(()) }
+    }
+
+    /// Commands a robot.
+    fn command(&self, robot: &mut FleetRobot<'_>, command: &[f64]) -> Result<()> {
+        if self.thrusters {
+            return (1..).zip(command).try_for_each(|(motor, &part)| robot.set_motor(motor, part));
+        }
+        robot.set_speed(Twist::new(command[0], command[1]))
     }
 
     /// Reads all sensors of the world's robots, and the truth about them.
@@ -123,12 +147,31 @@ impl Cell {
                 let nearest = nearest_wall(&self.shared.scene.world.walls, truth.position());
                 rows.walls[3 * index..][..3].copy_from_slice(&nearest);
             }
+            if shape.space > 0 {
+                let seen = in_space(world, index)?;
+                rows.space[SPACE * index..][..SPACE].copy_from_slice(&seen);
+            }
             if let Some(way) = &mut self.way {
                 way.look(index, truth, &mut rows.lanes[index * shape.lane..][..shape.lane]);
             }
         }
         Ok(())
     }
+}
+
+/// A robot in space: attitude, turn rates and depth by its sensors; true height, and whether it is lost.
+fn in_space(world: &mut Stepped, index: usize) -> Result<[f64; SPACE]> {
+    let mut robot = world.robot(index)?;
+    let (attitude, rates) = (robot.attitude()?, robot.turn_rates()?);
+    let depth = match robot.depth() {
+        Err(error) if error.kind() == ErrorKind::Unsupported => 0.0,
+        depth => depth?,
+    };
+    let truth = world.in_space(index)?;
+    let lost = truth.mishap.is_some_and(|mishap| mishap != Mishap::Stuck);
+    let Attitude { roll, pitch, yaw } = attitude;
+    let height = truth.pose.position.z;
+    Ok([roll, pitch, yaw, rates.x, rates.y, rates.z, depth, height, f64::from(u8::from(lost))])
 }
 
 /// Distance from the surface of the nearest wall, and the unit vector towards it; `inf` and no direction
@@ -179,7 +222,7 @@ impl<'a> Share<'a> {
         let (first, others) = self.worlds.split_at_mut(worlds);
         let robots = first.iter().map(Cell::robots).sum::<usize>();
         let (rows, other_rows) = self.rows.split(robots, shape);
-        let (commands, other_commands) = self.commands.split_at(2 * robots);
+        let (commands, other_commands) = self.commands.split_at(shape.commands * robots);
         let rest = Share { worlds: others, commands: other_commands, rows: other_rows };
         (Share { worlds: first, commands, rows }, rest)
     }
