@@ -14,7 +14,7 @@ from roverlab import envs  # noqa: E402
 from roverlab.sim import Scene  # noqa: E402
 
 NAMES = list(envs.ENVIRONMENTS)
-WALL, GOAL, MAZE, SWARM, RACE, LANE = NAMES
+WALL, GOAL, MAZE, SWARM, RACE, LANE, HILL, DIVE = NAMES
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -52,6 +52,8 @@ def test_a_seed_determines_an_episode(name: str) -> None:
         (SWARM, 20, 20, 500.0),
         (RACE, 10, 10, 300.0),
         (LANE, 5, 5, 120.0),
+        (HILL, 20, 18, 0.15),
+        (DIVE, 10, 10, 450.0),
     ],
 )
 def test_the_baselines_score(name: str, episodes: int, good: int, mean: float) -> None:
@@ -174,6 +176,51 @@ def test_ways_along_tracks(name: str, width: float) -> None:
     scene.add_robot("RaceCar" if name == RACE else "RoadCar", (2.0, 2.0, 0.0))
     with pytest.raises(ValueError, match="centre line of a scene is None; expected one, as"):
         env.reset(options={"scene": scene})
+
+
+def test_a_hill_is_climbed_and_its_edge_is_left_at_a_cost() -> None:
+    env = gymnasium.make(HILL)
+    observation, facts = env.reset(seed=3)
+    truth = env.unwrapped.simulation.truth
+    start = truth.pose_in_space()[2]
+    assert (observation[:8] > 0.1).all() and (observation[:8] < 0.6).all()
+    total, over = 0.0, False
+    while not over:
+        # Straight on, until it falls off the border or rolls over.
+        _, reward, over, truncated, _ = env.step(np.array([0.2, 0.0], np.float32))
+        total += float(reward)
+        if not over:
+            assert total == pytest.approx(truth.pose_in_space()[2] - start, abs=1e-9)
+        assert not truncated
+    assert reward == -1.0 and truth.mishap() in ("tipped over", "fell")
+    with pytest.raises(ValueError, match="distance sensors; expected at least 8"):
+        env.reset(options={"scene": with_robot(Scene.hills(1), "Blizzard")})
+
+
+def test_a_depth_is_drawn_and_held() -> None:
+    env = gymnasium.make(DIVE, noise=0.0)
+    observation, _ = env.reset(seed=2)
+    inner = env.unwrapped
+    wanted, policy = inner.task.depths[0], inner.baseline()
+    assert 0.4 <= wanted <= 1.1 and observation[0] < -0.2
+    for step in range(400):
+        observation, reward, *_ = env.step(policy(observation))
+        truth = inner.simulation.truth.pose_in_space()
+        depth = inner.scene.water_level - truth[2] - 0.26
+        off = max(1.0 - abs(depth - wanted) / 0.1, 0.0)
+        assert step > 100 or float(reward) <= off + 1e-9
+    assert observation[0] == pytest.approx(depth - wanted, abs=0.01) and abs(depth - wanted) < 0.02 and reward > 0.8
+    # Without thrust it comes up.
+    for _ in range(200):
+        observation, reward, *_ = env.step(np.zeros(4, np.float32))
+    assert observation[0] < -0.2 and reward == 0.0
+    with pytest.raises(ValueError, match="the scene has no water"):
+        env.reset(options={"scene": Scene.walled(2.0, 2.0)})
+
+
+def with_robot(scene: Scene, name: str) -> Scene:
+    scene.add_robot(name)
+    return scene
 
 
 def test_a_lane_is_seen_by_the_camera_only_where_one_is() -> None:

@@ -17,7 +17,9 @@ from ._base import RobotEnvironment
 from ._score import score
 from ._vector import RobotVectorEnvironment
 from .cone_racing import ConeRacing
+from .depth_holding import DepthHolding
 from .goal_reaching import GoalReaching
+from .hill_climbing import HillClimbing
 from .lane_keeping import LaneKeeping
 from .maze_exploration import MazeExploration
 from .swarm_following import SwarmFollowing
@@ -26,7 +28,9 @@ from .wall_following import WallFollowing
 __all__ = [
     "ENVIRONMENTS",
     "ConeRacing",
+    "DepthHolding",
     "GoalReaching",
+    "HillClimbing",
     "LaneKeeping",
     "MazeExploration",
     "RobotEnvironment",
@@ -43,6 +47,8 @@ ENVIRONMENTS: dict[str, tuple[type[RobotEnvironment], int]] = {
     "roverlab/SwarmFollowing-v0": (SwarmFollowing, 600),
     "roverlab/ConeRacing-v0": (ConeRacing, 1200),
     "roverlab/LaneKeeping-v0": (LaneKeeping, 2000),
+    "roverlab/HillClimbing-v0": (HillClimbing, 900),
+    "roverlab/DepthHolding-v0": (DepthHolding, 600),
 }
 """Ids, with the class of the environment and the number of steps after which an episode is truncated."""
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from collections.abc import Callable, Sequence
+from typing import Any, ClassVar, Protocol
 
 import gymnasium
 import numpy as np
@@ -15,8 +16,42 @@ Observation = NDArray[np.float32]
 Action = NDArray[np.float32]
 
 
+class Behaviour(Protocol):
+    """A behaviour of the library."""
+
+    def decide(self, robot: Robot) -> Sequence[float]:
+        """Reads the robot's sensors and decides."""
+
+
+class BehaviourPolicy:
+    """A policy that is a behaviour of the library on the robot of an environment.
+
+    Parameters
+    ----------
+    environment : RobotEnvironment
+        The environment.
+    behaviour : Behaviour
+        The behaviour.
+    action : callable, optional
+        Function from the behaviour's decision to an action.
+    """
+
+    def __init__(
+        self,
+        environment: RobotEnvironment,
+        behaviour: Behaviour,
+        action: Callable[[Sequence[float]], Sequence[float]] | None = None,
+    ) -> None:
+        self._environment, self._behaviour, self._action = environment, behaviour, action
+
+    def __call__(self, observation: Observation) -> Action:
+        """The action for now; the robot's own sensors are read, not the observation."""
+        decision = self._behaviour.decide(self._environment.robot)
+        return np.array(decision if self._action is None else self._action(decision), np.float32)
+
+
 class RobotEnvironment(gymnasium.Env[Observation, Action]):
-    """An S4 in a random world, commanded by linear and angular speed."""
+    """A robot in a random world."""
 
     metadata = {"render_modes": ["svg"], "render_fps": 10}
 
@@ -53,14 +88,14 @@ class RobotEnvironment(gymnasium.Env[Observation, Action]):
         super().reset(seed=seed)
         self.scene, drawn = next_scene(self.task, self.np_random, options)
         batch = Batch(self.scene, seed=drawn, **batch_options(self.task, self.render_mode, self.noise))
-        self._commands = np.zeros((len(batch), 2))
+        self._commands = np.zeros((len(batch), len(self.task.slowest)))
         self.task.attach([self.scene], [drawn], batch)
         self.simulation = batch.simulation()
         self.robot = self.simulation.robot(self.task.ROBOT)
         return self._observe(), self._facts()
 
     def step(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        """Drives at the action's linear (m/s) and angular speed (rad/s) for one period."""
+        """Drives as the action says for one period."""
         task = self.task
         wanted = np.asarray(action, np.float64)[None]
         task.command(np.clip(wanted, task.slowest, task.fastest), self._commands)
@@ -99,15 +134,15 @@ def picture(simulation: Simulation, scene: Scene) -> str:
 
 
 def speeds(task: Task) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Lowest and highest speeds of an action."""
+    """Lowest and highest speeds or thrusts of an action."""
     return task.slowest.astype(np.float32), task.fastest.astype(np.float32)
 
 
 def batch_options(task: Task, render_mode: str | None, noise: float) -> dict[str, Any]:
     """Options of the batch of a task."""
     trail = 0.1 if render_mode else None
-    found = {"scan": task.SCAN, "walls": task.WALLS, "ahead": task.AHEAD}
-    return {"noise": noise, "trail_interval": trail, **found}
+    found = {"scan": task.SCAN, "walls": task.WALLS, "ahead": task.AHEAD, "space": task.SPACE}
+    return {"noise": noise, "trail_interval": trail, "thrusters": task.THRUSTERS, **found}
 
 
 def next_scene(task: Task, random: np.random.Generator, options: dict[str, Any] | None) -> tuple[Scene, int]:

@@ -26,16 +26,19 @@ class Task(ABC):
     HIGH: ClassVar[Sequence[float]]
     """Largest values of an observation."""
     SLOWEST: ClassVar[Sequence[float]] = (0.0, -2.0)
-    """Lowest linear (m/s) and angular speed (rad/s) of an action."""
+    """Lowest linear (m/s) and angular speed (rad/s), or thrusts, of an action."""
     FASTEST: ClassVar[Sequence[float]] = (0.3, 2.0)
-    """Highest linear (m/s) and angular speed (rad/s) of an action."""
+    """Highest linear (m/s) and angular speed (rad/s), or thrusts, of an action."""
     ROBOT: ClassVar[int] = 0
     """Index of the robot in its scene."""
     SCAN: ClassVar[bool] = False
     """Whether each step takes scans."""
     WALLS: ClassVar[bool] = False
     """Whether each step finds the nearest walls."""
-
+    SPACE: ClassVar[bool] = False
+    """Whether each step reads the robot's attitude and depth."""
+    THRUSTERS: ClassVar[bool] = False
+    """Whether actions are commands of thrusters instead of speeds."""
     AHEAD: ClassVar[Sequence[float] | None] = None
     """Distances along the centre line of the points that each step finds (m)."""
 
@@ -71,6 +74,8 @@ class Task(ABC):
     def _prepare(self, worlds: int) -> None:
         """Allocates what is remembered of each world, and takes views of the batch's arrays."""
         batch = self.batch
+        # A bound for each value: numpy repeats short rows slowly.
+        self._lows, self._highs = (np.tile(row, (worlds, 1)) for row in (self.low, self.high))
         self.distances: Floats = self._own(batch.distances)  # type: ignore[assignment]
         self.ranges: Floats = self._own(batch.ranges)  # type: ignore[assignment]
         self.poses: Floats = self._own(batch.poses)  # type: ignore[assignment]
@@ -78,7 +83,13 @@ class Task(ABC):
         self.true_poses: Floats = self._own(batch.true_poses)  # type: ignore[assignment]
         self.walls: Floats = self._own(batch.walls)  # type: ignore[assignment]
         self.lanes: Floats = self._own(batch.lanes)  # type: ignore[assignment]
+        self.space: Floats = self._own(batch.space)  # type: ignore[assignment]
         self.contacts: NDArray[np.uint32] = self._own(batch.contacts)  # type: ignore[assignment]
+
+    def bound(self, out: NDArray[np.float32]) -> None:
+        """Brings observations between the smallest and the largest values."""
+        np.maximum(out, self._lows, out=out)
+        np.minimum(out, self._highs, out=out)
 
     @abstractmethod
     def begin(self, world: int) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import ClassVar
 
 import numpy as np
@@ -48,4 +49,10 @@ class TrackTask(Task):
         out[:, :2] = self.speeds
         out[:, 2:4] = self.lanes[:, 2:4]
         out[:, 4:] = self.lanes[:, 5:]
-        np.clip(out, self.low, self.high, out=out)
+        self.bound(out)
+
+
+def driven(speeds: Sequence[float]) -> tuple[float, float]:
+    """The action of a linear (m/s) and an angular speed (rad/s)."""
+    linear, angular = speeds
+    return linear, angular / linear if linear > 1e-6 else 0.0

@@ -75,7 +75,9 @@ class RobotVectorEnvironment(gymnasium.vector.VectorEnv[Observations, Actions, N
         self._randoms: list[Any] = [None] * num_envs
         self._steps = np.zeros(num_envs, np.int64)
         self._over = np.zeros(num_envs, np.bool_)
-        self._actions = np.zeros((num_envs, 2))
+        self._actions = np.zeros((num_envs, len(self.task.slowest)))
+        # A bound for each value: numpy repeats short rows slowly.
+        self._slowest, self._fastest = (np.tile(row, (num_envs, 1)) for row in (self.task.slowest, self.task.fastest))
         self._seen = np.zeros((num_envs, len(self.task.low)), np.float32)
         self._everywhere = np.ones(num_envs, np.bool_)
 
@@ -107,7 +109,7 @@ class RobotVectorEnvironment(gymnasium.vector.VectorEnv[Observations, Actions, N
         self.batch = Batch(scenes, **self._options)
         for world, own in enumerate(drawn):
             self.batch.reset(world, own)
-        self._commands = np.zeros((len(self.batch), 2))
+        self._commands = np.zeros((len(self.batch), self._actions.shape[1]))
         self.task.attach(scenes, drawn, self.batch)
         self._steps[:] = 0
         self._over[:] = False
@@ -120,14 +122,15 @@ class RobotVectorEnvironment(gymnasium.vector.VectorEnv[Observations, Actions, N
 
         Parameters
         ----------
-        actions : ndarray, shape (num_envs, 2)
-            Linear (m/s) and angular speed (rad/s) of each robot.
+        actions : ndarray, shape (num_envs, numbers of an action)
+            The action of each robot.
         """
         task, steps = self.task, self._steps
         given = np.asarray(actions)
         if given.shape != self._actions.shape:
             raise ValueError(f"actions is an array of shape {given.shape}; expected shape {self._actions.shape}")
-        np.clip(given, task.slowest, task.fastest, out=self._actions)
+        np.maximum(given, self._slowest, out=self._actions)
+        np.minimum(self._actions, self._fastest, out=self._actions)
         task.command(self._actions, self._commands)
         self.batch.step(self._commands, self.period)
         rewards, terminated = task.judge()

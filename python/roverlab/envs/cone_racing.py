@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from ..drive import Racer
 from ..sim import Scene
-from ._base import Action, Observation, RobotEnvironment
-from ._track import TrackTask
+from ._base import BehaviourPolicy, RobotEnvironment
+from ._track import TrackTask, driven
 
 
 class _RaceTask(TrackTask):
@@ -52,24 +50,6 @@ class ConeRacing(RobotEnvironment):
     TASK = _RaceTask
     PERIOD = 0.05
 
-    def baseline(self) -> RacerPolicy:
+    def baseline(self) -> BehaviourPolicy:
         """The library's racer, which maps the track with the lidar in the first lap and then takes a racing line."""
-        return RacerPolicy(self)
-
-
-class RacerPolicy:
-    """A policy that is the library's racer on the car of an environment."""
-
-    def __init__(self, environment: ConeRacing) -> None:
-        self._environment = environment
-        self._racer = Racer(1000)
-
-    def __call__(self, observation: Observation) -> Action:
-        """The action for now; the car's own sensors are read, not the observation."""
-        return driven(self._racer.decide(self._environment.robot))
-
-
-def driven(speeds: tuple[float, float]) -> Action:
-    """The action of a linear (m/s) and an angular speed (rad/s)."""
-    linear, angular = speeds
-    return np.array([linear, angular / linear if linear > 1e-6 else 0.0], np.float32)
+        return BehaviourPolicy(self, Racer(1000), driven)

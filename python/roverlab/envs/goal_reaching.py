@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..nav import Bug
 from ..sim import Scene
-from ._base import Action, Observation, RobotEnvironment
+from ._base import BehaviourPolicy, RobotEnvironment
 from ._task import FARTHEST, Bools, Floats, Task, require_beams, sectors, turned
 
 _SECTORS = 36
@@ -54,7 +54,7 @@ class _GoalTask(Task):
         out[:, 1] = turned(np.arctan2(away[:, 1], away[:, 0]) - self.poses[:, 2])
         out[:, 2:4] = self.speeds
         out[:, 4:] = sectors(self.ranges, _SECTORS)
-        np.clip(out, self.low, self.high, out=out)
+        self.bound(out)
 
 
 class GoalReaching(RobotEnvironment):
@@ -89,24 +89,12 @@ class GoalReaching(RobotEnvironment):
     REACHED = 0.1
     """Distance from the goal that counts as reached (m)."""
 
-    def baseline(self) -> BugPolicy:
+    def baseline(self) -> BehaviourPolicy:
         """The library's DistBug."""
-        return BugPolicy(self)
+        return BehaviourPolicy(self, Bug(self.goal()))
 
     def goal(self) -> tuple[float, float]:
         """The goal relative to the robot's start: ahead and to the left (m)."""
         assert isinstance(self.task, _GoalTask)
         ahead, left = self.task.local_goals[0].tolist()
         return ahead, left
-
-
-class BugPolicy:
-    """A policy that is the library's DistBug on the robot of an environment."""
-
-    def __init__(self, environment: GoalReaching) -> None:
-        self._environment = environment
-        self._bug = Bug(environment.goal())
-
-    def __call__(self, observation: Observation) -> Action:
-        """The action for now; the robot's own sensors are read, not the observation."""
-        return np.array(self._bug.decide(self._environment.robot), np.float32)

@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 
 from ..drive import LaneKeeper
 from ..sim import Scene
-from ._base import Action, Observation, RobotEnvironment
-from ._track import TrackTask
-from .cone_racing import driven
+from ._base import BehaviourPolicy, RobotEnvironment
+from ._track import TrackTask, driven
 
 
 class _LaneTask(TrackTask):
@@ -77,18 +76,6 @@ class LaneKeeping(RobotEnvironment):
         """What the car's camera sees now, of shape (240, 320, 3)."""
         return self.robot.image()
 
-    def baseline(self) -> LanePolicy:
+    def baseline(self) -> BehaviourPolicy:
         """The library's lane keeper, which sees the lane with the camera."""
-        return LanePolicy(self)
-
-
-class LanePolicy:
-    """A policy that is the library's lane keeper on the car of an environment."""
-
-    def __init__(self, environment: LaneKeeping) -> None:
-        self._environment = environment
-        self._keeper = LaneKeeper()
-
-    def __call__(self, observation: Observation) -> Action:
-        """The action for now; the camera is read, not the observation."""
-        return driven(self._keeper.decide(self._environment.robot))
+        return BehaviourPolicy(self, LaneKeeper(), driven)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..drive import WallFollower
 from ..maze import Maze
 from ..sim import Scene
-from ._base import RobotEnvironment
+from ._base import BehaviourPolicy, RobotEnvironment
 from ._task import FARTHEST, Bools, Floats, Task, require_sensors
-from .wall_following import WallPolicy
 
 _SIDE = 5
 _CELL = 0.4
@@ -19,6 +19,8 @@ _MOST = 32
 _WIDTH = _MOST + 2
 _AROUND = np.array([np.roll((1, _WIDTH, -1, -_WIDTH), -quarter) for quarter in range(4)])
 """Steps in an array of cells to the one ahead and on, counter-clockwise, for a robot that looks east and on."""
+_STEPS = np.array([1.0, _WIDTH])
+"""Steps in it to the next column and row."""
 
 
 class _MazeTask(Task):
@@ -34,8 +36,10 @@ class _MazeTask(Task):
         # A border of cells all round, so that those of the outer ones have neighbours too.
         self._visited = np.zeros((worlds, _WIDTH, _WIDTH), np.bool_)
         self._flat = self._visited.reshape(-1)
-        self._first = np.arange(worlds) * _WIDTH**2
+        # The cell at the origin of each world.
+        self._first = np.arange(worlds) * _WIDTH**2 + _WIDTH + 1
         self._at = self._first.copy()
+        self._places = np.zeros((worlds, 2))
         self._left = np.zeros(worlds, np.int64)
 
     def begin(self, world: int) -> None:
@@ -51,8 +55,11 @@ class _MazeTask(Task):
 
     def _visit(self, worlds: slice) -> Bools:
         """Marks the cells of robots. Returns which of them are new."""
-        places = np.clip(self.true_poses[worlds, :2] / _CELL, 0.0, _MOST - 1.0).astype(np.int64)
-        at = self._first[worlds] + (places[:, 1] + 1) * _WIDTH + places[:, 0] + 1
+        places = self._places[worlds]
+        np.multiply(self.true_poses[worlds, :2], 1.0 / _CELL, out=places)
+        np.clip(places, 0.0, _MOST - 1.0, out=places)
+        np.floor(places, out=places)
+        at = self._first[worlds] + (places @ _STEPS).astype(np.int64)
         new: Bools = ~self._flat[at]
         self._flat[at] = True
         self._left[worlds] -= new
@@ -62,16 +69,20 @@ class _MazeTask(Task):
     def judge(self) -> tuple[Floats, Bools]:
         rewards = self._visit(slice(None)).astype(np.float64)
         done, touched = self._left == 0, self.contacts > 0
-        rewards[done] += MazeExploration.BONUS
-        rewards[touched] = -1.0
-        return rewards, done | touched
+        over = done | touched
+        if over.any():
+            rewards[done] += MazeExploration.BONUS
+            rewards[touched] = -1.0
+        return rewards, over
 
     def observe(self, out: NDArray[np.float32]) -> None:
         out[:, :4] = self.distances[:, :4]
         out[:, 4:6] = self.speeds
-        quarters = np.rint(self.true_poses[:, 2] * (2.0 / np.pi)).astype(np.int64) % 4
-        out[:, 6:] = self._flat[self._at[:, None] + _AROUND[quarters]]
-        np.clip(out, self.low, self.high, out=out)
+        quarters = np.rint(self.true_poses[:, 2] * (2.0 / np.pi)).astype(np.int64) & 3
+        around = _AROUND.take(quarters, axis=0)
+        around += self._at[:, None]
+        out[:, 6:] = self._flat.take(around)
+        self.bound(out)
 
 
 class MazeExploration(RobotEnvironment):
@@ -106,6 +117,6 @@ class MazeExploration(RobotEnvironment):
     BONUS = 10.0
     """Reward of the last cell."""
 
-    def baseline(self) -> WallPolicy:
+    def baseline(self) -> BehaviourPolicy:
         """The library's wall follower, in the middle of the corridors."""
-        return WallPolicy(self, 0.467 * self.CELL)
+        return BehaviourPolicy(self, WallFollower("left", 0.467 * self.CELL))

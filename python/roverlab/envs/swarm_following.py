@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..drive import Follower
 from ..sim import Scene
-from ._base import Action, Observation, RobotEnvironment
+from ._base import BehaviourPolicy, RobotEnvironment
 from ._task import FARTHEST, Bools, Floats, Task, require_beams, sectors, turned
 
 _SECTORS = 36
@@ -93,7 +93,7 @@ class _SwarmTask(Task):
         out[:, 1] = self._bearings
         out[:, 2:4] = self.speeds
         out[:, 4:] = sectors(self.ranges, _SECTORS)
-        np.clip(out, self.low, self.high, out=out)
+        self.bound(out)
 
 
 class SwarmFollowing(RobotEnvironment):
@@ -132,18 +132,6 @@ class SwarmFollowing(RobotEnvironment):
     COST = 10.0
     """Cost of a contact and of losing the leader."""
 
-    def baseline(self) -> FollowerPolicy:
+    def baseline(self) -> BehaviourPolicy:
         """The library's follower, which finds the leader with the lidar."""
-        return FollowerPolicy(self)
-
-
-class FollowerPolicy:
-    """A policy that is the library's follower on the robot of an environment."""
-
-    def __init__(self, environment: SwarmFollowing) -> None:
-        self._environment = environment
-        self._follower = Follower(environment.GAP, 0.3, _RADIUS, _RADIUS)
-
-    def __call__(self, observation: Observation) -> Action:
-        """The action for now; the robot's own sensors are read, not the observation."""
-        return np.array(self._follower.decide(self._environment.robot), np.float32)
+        return BehaviourPolicy(self, Follower(self.GAP, 0.3, _RADIUS, _RADIUS))

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..drive import WallFollower
 from ..sim import Scene
-from ._base import Action, Observation, RobotEnvironment
+from ._base import BehaviourPolicy, RobotEnvironment
 from ._task import FARTHEST, Bools, Floats, Task, require_sensors
 
 
@@ -40,7 +40,7 @@ class _WallTask(Task):
     def observe(self, out: NDArray[np.float32]) -> None:
         out[:, :3] = self.distances[:, :3]
         out[:, 3:] = self.speeds
-        np.clip(out, self.low, self.high, out=out)
+        self.bound(out)
 
 
 class WallFollowing(RobotEnvironment):
@@ -75,18 +75,6 @@ class WallFollowing(RobotEnvironment):
     TOLERANCE = 0.1
     """Error of the distance at which no reward is left (m)."""
 
-    def baseline(self) -> WallPolicy:
+    def baseline(self) -> BehaviourPolicy:
         """The library's PID controller on the left distance sensor."""
-        return WallPolicy(self, self.DISTANCE)
-
-
-class WallPolicy:
-    """A policy that is the library's wall follower on the robot of an environment."""
-
-    def __init__(self, environment: RobotEnvironment, distance: float) -> None:
-        self._environment = environment
-        self._follower = WallFollower("left", distance)
-
-    def __call__(self, observation: Observation) -> Action:
-        """The action for now; the robot's own sensors are read, not the observation."""
-        return np.array(self._follower.decide(self._environment.robot), np.float32)
+        return BehaviourPolicy(self, WallFollower("left", self.DISTANCE))
