@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from roverlab.evolve import CmaEs
+from roverlab.evolve import CmaEs, OneByOne
 
 
 def valley(points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -49,3 +49,24 @@ def test_wrong_fitness_is_named_and_changes_nothing() -> None:
         CmaEs([0.0], 1.0, 2)
     with pytest.raises(ValueError, match="sigma is 0; expected a positive"):
         CmaEs([0.0], 0.0)
+
+
+def test_individuals_are_evaluated_one_by_one() -> None:
+    seen: list[tuple[int, int, int]] = []
+
+    def fitness(genome: NDArray[np.float64], seed: int, generation: int, index: int) -> float:
+        seen.append((seed, generation, index))
+        if generation == 2:
+            raise ZeroDivisionError
+        return float(valley(genome[None])[0])
+
+    one, all_of_them = (CmaEs([-1.0, 1.0], 0.5, 6, seed=3) for _ in range(2))
+    each = OneByOne(fitness, seed=7)
+    for _ in range(2):
+        one.step(each)
+        all_of_them.step(valley)
+    assert np.array_equal(one.history, all_of_them.history) and each.generation == 2
+    assert seen == [(7, generation, index) for generation in range(2) for index in range(6)]
+    with pytest.raises(ZeroDivisionError):
+        one.step(each)
+    assert each.generation == 2 and len(one.history) == 2

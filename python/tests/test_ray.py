@@ -9,7 +9,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 pytest.importorskip("ray")
 # On small machines it would end workers.
@@ -18,19 +20,12 @@ os.environ["RAY_DISABLE_IMPORT_WARNING"] = "1"
 
 from roverlab import ray as rover_ray  # noqa: E402
 from roverlab._programs import find  # noqa: E402
+from roverlab.evolve import CmaEs, OneByOne  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore")
 
 CAMPAIGN = ["distbug", "--campaign", "--worlds", "4", "--levels", "0,1", "--seed", "7"]
 EVOLUTION = ["starman", "--population", "60", "--generations", "8", "--seed", "3"]
-
-
-@pytest.fixture(scope="module", autouse=True)
-def programs() -> None:
-    try:
-        find("roverlab")
-    except FileNotFoundError:
-        pytest.skip("the program roverlab is not in PATH")
 
 
 @pytest.fixture
@@ -89,6 +84,37 @@ def test_an_evolution_survives_a_node(cluster: Any) -> None:
     report = rover_ray.evolve(longer)
     killer.join()
     assert report == local(*longer, "--processes", "1")
+
+
+def noisy(genome: NDArray[np.float64], seed: int, generation: int, index: int) -> float:
+    """A function of everything that it is given, which takes some milliseconds."""
+    end = time.perf_counter() + 0.004
+    while time.perf_counter() < end:
+        pass
+    genome -= 1.0
+    return float(np.random.default_rng([seed, generation, index]).normal() - 10.0 * genome @ genome)
+
+
+def test_fitness_in_python_is_that_of_one_machine_although_a_node_is_lost(cluster: Any) -> None:
+    here, there = (CmaEs(np.zeros(4), 0.5, 40, seed=3) for _ in range(2))
+    one, many = OneByOne(noisy, seed=7), rover_ray.OneByOne(noisy, seed=7)
+    for generation in range(12):
+        if generation == 6:
+            cluster.remove_node(cluster.second, allow_graceful=False)
+        here.step(one)
+        there.step(many)
+    assert here.history.tobytes() == there.history.tobytes() and here.mean.tobytes() == there.mean.tobytes()
+    assert here.history[-1, 1] > here.history[0, 1]
+
+
+def test_an_exception_of_fitness_in_python_is_raised(cluster: Any) -> None:
+    def wrong(genome: NDArray[np.float64], seed: int, generation: int, index: int) -> float:
+        raise ZeroDivisionError(f"individual {index}")
+
+    search, fitness = CmaEs(np.zeros(4), 0.5, 40), rover_ray.OneByOne(wrong)
+    with pytest.raises(ZeroDivisionError, match="individual 0"):
+        search.step(fitness)
+    assert len(search.history) == 0 and fitness.generation == 0
 
 
 def test_wrong_campaigns_are_named(cluster: Any) -> None:

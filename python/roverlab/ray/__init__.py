@@ -1,8 +1,8 @@
 """Campaigns and evolution on the machines of a Ray cluster.
 
 Work is divided into pieces that depend on seeds and indices only. Ray asks a piece again whose machine is lost, and
-the report is that of one machine, to the byte. Each machine needs this package, and the program ``roverlab`` in PATH;
-``pip install roverlab[ray]`` brings Ray. Without a connection, Ray is started on this machine.
+the report is that of one machine, to the byte. Each machine needs this package; ``pip install roverlab[ray]`` brings
+Ray. Without a connection, Ray is started on this machine.
 """
 
 from __future__ import annotations
@@ -12,15 +12,14 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
-from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
 
 from .._programs import find
+from ._connection import connected
+from ._fitness import OneByOne
 from ._worker import part
 
-__all__ = ["campaign", "evolve"]
+__all__ = ["OneByOne", "campaign", "evolve"]
 
 Progress = Callable[[int, int], None]
 """Is called with the number of pieces that are done, and of all."""
@@ -73,7 +72,7 @@ def campaign(
 
 
 def _campaign(arguments: list[str], parts: int, folder: Path, options: Sequence[str], progress: Progress | None) -> str:
-    ray = _connected()
+    ray = connected()
     files = {number: folder / f"part-{number}-of-{parts}.jsonl" for number in range(1, parts + 1)}
     missing = [number for number, file in files.items() if not file.exists()]
     done = parts - len(missing)
@@ -127,7 +126,7 @@ def evolve(arguments: Sequence[str]) -> str:
     RuntimeError
         If the evolution fails; the message is that of the program.
     """
-    ray = _connected()
+    ray = connected()
     address = ray.get_runtime_context().gcs_address
     worker = f'"{sys.executable}" -m roverlab.ray {address}'
     own = ["--json", "--processes", "1", "--worker-piece", "100000", "--worker-command", worker]
@@ -135,14 +134,3 @@ def evolve(arguments: Sequence[str]) -> str:
     if run.returncode != 0:
         raise RuntimeError(run.stderr.strip() or run.stdout.strip() or f"status {run.returncode}")
     return run.stdout
-
-
-def _connected() -> Any:
-    """The module ray, connected to a cluster."""
-    if find_spec("ray") is None:
-        raise ModuleNotFoundError("roverlab.ray needs ray; expected: pip install roverlab[ray]")
-    # An extra, which may not be there when types are checked.
-    ray = import_module("ray")
-    if not ray.is_initialized():
-        ray.init(log_to_driver=False, logging_level="ERROR")
-    return ray

@@ -13,10 +13,8 @@ from collections.abc import Iterator
 from importlib import import_module
 from typing import Any
 
-from ._worker import answered
+from ._worker import PIECE, answered
 
-PIECE = 0.05
-"""Time that a piece should take (s): many times what a call of Ray costs, and short beside a generation."""
 ATTEMPTS = 20
 """Number of attempts to connect to the cluster."""
 

@@ -9,6 +9,8 @@ from pathlib import Path
 
 from .._programs import find
 
+PIECE = 0.05
+"""Time that a piece should take (s): many times what a call of Ray costs, and short beside a generation."""
 BLOCK = 256
 """Questions sent to a worker before their answers are read, which fit in a pipe."""
 
