@@ -26,7 +26,8 @@ def main(worlds: int) -> None:
             print("a node is lost")
 
     report = campaign(command, parts=8, progress=progress)
-    alone = subprocess.run(["roverlab", *command, "--json"], capture_output=True, text=True).stdout
+    program = [sys.executable, "-m", "roverlab"]
+    alone = subprocess.run([*program, *command, "--json"], capture_output=True, text=True).stdout
     print(report, "equal to that of one machine:", report == alone)
     ray.shutdown()
     cluster.shutdown()
