@@ -8,16 +8,19 @@
 use pyo3::prelude::*;
 
 mod arrays;
+mod ascent;
 mod batch;
 mod behaviour;
 mod bug;
 mod cma_es;
+mod dive;
 mod errors;
 mod follower;
 mod image;
 mod lane_keeper;
 mod maze;
 mod planner;
+mod programs;
 mod racer;
 mod recording;
 mod robot;
@@ -38,11 +41,15 @@ mod _native {
     #[allow(non_upper_case_globals, reason = "Python's name for it")]
     const __version__: &str = env!("CARGO_PKG_VERSION");
     #[pymodule_export]
+    use crate::ascent::Ascent;
+    #[pymodule_export]
     use crate::batch::Batch;
     #[pymodule_export]
     use crate::bug::Bug;
     #[pymodule_export]
     use crate::cma_es::CmaEs;
+    #[pymodule_export]
+    use crate::dive::Dive;
     #[pymodule_export]
     use crate::errors::{FileFormatError, NoPathError, RobotError, UnsupportedError};
     #[pymodule_export]
@@ -53,6 +60,8 @@ mod _native {
     use crate::maze::{Maze, Route};
     #[pymodule_export]
     use crate::planner::{DStarLite, Path, Planner, distance_field, inflate};
+    #[pymodule_export]
+    use crate::programs::{run_robios, run_roverlab};
     #[pymodule_export]
     use crate::racer::Racer;
     #[pymodule_export]
