@@ -1,7 +1,8 @@
-"""Rates of the package, beside the Rust library and IR-SIM. Usage: rates.py [FLEET]
+"""Rates of the package, beside the Rust library and IR-SIM. Usage: rates.py [--processor] [FLEET]
 
 FLEET is the rate that `cargo bench -p roverlab-python --bench fleet` prints, in robot steps per second. IR-SIM takes
-part if it is installed. Each figure is the median of five rounds.
+part if it is installed. Each figure is the median of five rounds; with `--processor` in processor time, for a machine
+that has other work.
 """
 
 import importlib.util
@@ -20,6 +21,9 @@ from roverlab.envs import ENVIRONMENTS, RobotVectorEnvironment, WallFollowing
 from roverlab.nav import Planner
 from roverlab.sim import Batch, RobotSpec, Scene, Simulation
 
+PROCESSOR = "--processor" in sys.argv
+clock = time.thread_time if PROCESSOR else time.perf_counter
+
 ROOM = 4.0
 BEAMS = 180
 
@@ -35,10 +39,10 @@ def seconds(work: Callable[[], object], times: int) -> float:
     """Median time of one call."""
     rounds = []
     for _ in range(5):
-        start = time.perf_counter()
+        start = clock()
         for _ in range(times):
             work()
-        rounds.append((time.perf_counter() - start) / times)
+        rounds.append((clock() - start) / times)
     return statistics.median(rounds)
 
 
@@ -83,8 +87,10 @@ def vector(name: str, count: int = 1000) -> tuple[float, float]:
     """Rate of an environment's worlds, and that of their batch alone. No episode ends meanwhile."""
     env = RobotVectorEnvironment(ENVIRONMENTS[name][0], count)
     env.reset(seed=1)
-    actions = np.tile(np.array([0.0, 0.3], np.float32), (count, 1))
-    commands = np.tile([0.0, 0.3], (len(env.batch), 1))
+    # Turning on the spot touches nothing, and craft float without thrust.
+    action = np.zeros(len(env.task.slowest), np.float32)
+    action[1] = 0.0 if env.task.THRUSTERS else 0.3
+    actions, commands = np.tile(action, (count, 1)), np.tile(action.astype(np.float64), (len(env.batch), 1))
     rounds = []
     for _ in range(7):
         alone = seconds(lambda: env.batch.step(commands, env.period), 5)
@@ -135,12 +141,16 @@ def ir_sim() -> float:
 
 
 def main() -> None:
-    cores = os.cpu_count() or 1
-    print(f"1 robot, {BEAMS} beams at 10 Hz: {one_robot():,.0f} steps/s")
+    given = [float(word) for word in sys.argv[1:] if word != "--processor"]
+    # Threads have processor times of their own.
+    cores = 1 if PROCESSOR else os.cpu_count() or 1
+    one = one_robot()
+    print(f"1 robot, {BEAMS} beams at 10 Hz: {one:,.0f} steps/s")
     if importlib.util.find_spec("irsim"):
-        print(f"IR-SIM, the same: {ir_sim():,.0f} steps/s")
+        other = ir_sim()
+        print(f"IR-SIM, the same: {other:,.0f} steps/s, 1 / {one / other:.0f}")
     rate = batch(1)
-    fleet = f", {rate / float(sys.argv[1]):.2f} of the fleet in Rust" if len(sys.argv) > 1 else ""
+    fleet = f", {rate / given[0]:.2f} of the fleet in Rust" if given else ""
     print(f"1,000 robots in one call: {rate:,.0f} robot steps/s{fleet}")
     if cores > 1:
         both = batch(2)

@@ -16,11 +16,15 @@ _CELL = 0.4
 _MOST = 32
 """Largest number of rows and of columns of a maze."""
 
-_WIDTH = _MOST + 2
-_AROUND = np.array([np.roll((1, _WIDTH, -1, -_WIDTH), -quarter) for quarter in range(4)])
-"""Steps in an array of cells to the one ahead and on, counter-clockwise, for a robot that looks east and on."""
-_STEPS = np.array([1.0, _WIDTH])
-"""Steps in it to the next column and row."""
+
+def _cells(scene: Scene) -> tuple[int, int]:
+    """Numbers of columns and rows of a scene."""
+    x0, y0, x1, y1 = scene.bounds
+    columns, rows = round(x1 / _CELL), round(y1 / _CELL)
+    if not (1 <= columns <= _MOST and 1 <= rows <= _MOST and x0 > -_CELL and y0 > -_CELL):
+        expected = f"cells of {_CELL} m from (0, 0) on, at most {_MOST} in a row"
+        raise ValueError(f"the scene's bounds are {(x0, y0, x1, y1)}; expected {expected}")
+    return columns, rows
 
 
 class _MazeTask(Task):
@@ -33,21 +37,23 @@ class _MazeTask(Task):
     def _prepare(self, worlds: int) -> None:
         super()._prepare(worlds)
         require_sensors(self.distances, 4)
-        # A border of cells all round, so that those of the outer ones have neighbours too.
-        self._visited = np.zeros((worlds, _WIDTH, _WIDTH), np.bool_)
+        # No larger than it has to be, so that it stays in the cache, and with a border of cells all round, so that
+        # those of the outer ones have neighbours too.
+        width = max(_SIDE, *(max(_cells(scene)) for scene in self.scenes)) + 2
+        self._visited = np.zeros((worlds, width, width), np.bool_)
+        # Steps in the array to the next column and row, and to the cell ahead and on, counter-clockwise, for a robot
+        # that looks east and on.
+        self._steps = np.array([1.0, width])
+        self._around = np.array([np.roll((1, width, -1, -width), -quarter) for quarter in range(4)])
         self._flat = self._visited.reshape(-1)
         # The cell at the origin of each world.
-        self._first = np.arange(worlds) * _WIDTH**2 + _WIDTH + 1
+        self._first = np.arange(worlds) * width**2 + width + 1
         self._at = self._first.copy()
         self._places = np.zeros((worlds, 2))
         self._left = np.zeros(worlds, np.int64)
 
     def begin(self, world: int) -> None:
-        x0, y0, x1, y1 = self.scenes[world].bounds
-        columns, rows = round(x1 / _CELL), round(y1 / _CELL)
-        if not (1 <= columns <= _MOST and 1 <= rows <= _MOST and x0 > -_CELL and y0 > -_CELL):
-            expected = f"cells of {_CELL} m from (0, 0) on, at most {_MOST} in a row"
-            raise ValueError(f"the scene's bounds are {(x0, y0, x1, y1)}; expected {expected}")
+        columns, rows = _cells(self.scenes[world])
         self._visited[world] = True
         self._visited[world, 1 : rows + 1, 1 : columns + 1] = False
         self._left[world] = rows * columns
@@ -57,9 +63,9 @@ class _MazeTask(Task):
         """Marks the cells of robots. Returns which of them are new."""
         places = self._places[worlds]
         np.multiply(self.true_poses[worlds, :2], 1.0 / _CELL, out=places)
-        np.clip(places, 0.0, _MOST - 1.0, out=places)
+        np.clip(places, 0.0, self._visited.shape[1] - 3.0, out=places)
         np.floor(places, out=places)
-        at = self._first[worlds] + (places @ _STEPS).astype(np.int64)
+        at = self._first[worlds] + (places @ self._steps).astype(np.int64)
         new: Bools = ~self._flat[at]
         self._flat[at] = True
         self._left[worlds] -= new
@@ -79,7 +85,7 @@ class _MazeTask(Task):
         out[:, :4] = self.distances[:, :4]
         out[:, 4:6] = self.speeds
         quarters = np.rint(self.true_poses[:, 2] * (2.0 / np.pi)).astype(np.int64) & 3
-        around = _AROUND.take(quarters, axis=0)
+        around = self._around.take(quarters, axis=0)
         around += self._at[:, None]
         out[:, 6:] = self._flat.take(around)
         self.bound(out)

@@ -16,7 +16,8 @@ class OneByOne(evolve.OneByOne):
     """`roverlab.evolve.OneByOne` on the machines of a Ray cluster, with the same result.
 
     Individuals are evaluated in pieces of about 50 ms. Ray asks a piece again whose machine is lost. A machine needs
-    the modules that the function imports.
+    the modules that the function imports, and its own if that is not the main program. What the function raises is
+    raised.
 
     Parameters
     ----------
