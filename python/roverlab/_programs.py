@@ -11,7 +11,8 @@ from pathlib import Path
 
 from ._native import run_robios, run_roverlab
 
-HOME = Path(__file__).parent / "_robios"
+# No name of a package, as its modules are for programs.
+HOME = Path(__file__).parent / "robios-home"
 """Headers, library and modules of programs for RoBIOS."""
 
 

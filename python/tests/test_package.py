@@ -58,7 +58,7 @@ def test_there_are_examples() -> None:
 def test_stubs_are_those_of_the_package() -> None:
     pytest.importorskip("mypy")
     pytest.importorskip("gymnasium")
-    run("-m", "mypy.stubtest", "roverlab")
+    run("-m", "mypy.stubtest", "--mypy-config-file", str(PROJECT / "pyproject.toml"), "roverlab")
 
 
 def test_types_are_consistent() -> None:
