@@ -1,6 +1,7 @@
 use std::error::Error;
 use std::fmt::{self, Display};
 
+use roverlab::io::ErrorKind;
 use roverlab::picture::SaveError;
 
 use super::Report;
@@ -56,14 +57,16 @@ impl Display for Failure {
 }
 
 impl From<roverlab::io::Error> for Failure {
-    /// The error and its sources, on one line.
+    /// The error and its sources, on one line. A robot that lacks what a run needs is a wrong input.
     fn from(error: roverlab::io::Error) -> Self {
+        let status = if error.kind() == ErrorKind::Unsupported { Self::INPUT } else { Self::RUN };
         let causes = std::iter::successors(error.source(), |error| (*error).source());
         let causes = causes.map(ToString::to_string);
-        Self::run(causes.fold(error.to_string(), |text, cause| {
+        let message = causes.fold(error.to_string(), |text, cause| {
             // A wrapped error repeats its source.
             if text.ends_with(&cause) { text } else { format!("{text}: {cause}") }
-        }))
+        });
+        Self { status, message, done: None }
     }
 }
 

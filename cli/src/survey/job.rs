@@ -1,7 +1,7 @@
 use roverlab::drive::marine::{DepthMap, SurveyOutcome};
 use roverlab::geometry::{Point, Vector, units};
 use roverlab::picture::{Picture, Style, ramp};
-use roverlab::world::{Scene, World};
+use roverlab::world::{HeightField, Scene, World};
 
 use super::Args;
 use super::campaign::campaign;
@@ -11,7 +11,7 @@ use super::tour::{COVERED, Tour, tour, true_depth};
 use crate::common::{Failure, Outcome, Report, check_writable, millimetres, rounded};
 use crate::driving::{Conditions, paced};
 use crate::terrain::percent;
-use crate::water::{Side, Site, afloat, limit, surveyor};
+use crate::water::{Side, Site, afloat, ground, limit, surveyor};
 
 /// The work of the command.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
@@ -24,6 +24,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         check_writable("--map", &file)?;
     }
     let scene = afloat((common, &args.waters), &surveyor(), || scene(common.seed, args.altitude))?;
+    check_room(args, &scene.world)?;
     let site = Site::of(&scene.world, args.depth);
     let conditions = Conditions::new(common, limit(&site, args.spacing))?;
     let done = tour(&scene, args.parameters(&scene.world), &conditions, paced(common))?;
@@ -48,6 +49,26 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     }
     report = common.draw(report, "survey.svg", || picture(&scene, &done));
     Ok(report)
+}
+
+/// Fails where the craft is to be below the floor wherever it is, or above the surface.
+fn check_room(args: &Args, world: &World) -> Result<(), Failure> {
+    let level = world.water_level.unwrap_or_default();
+    let deepest = level - ground(world).map_or(0.0, HeightField::lowest);
+    let refused = |option: &str, found: f64, expected: f64| {
+        let [found, expected, deepest] =
+            [found, expected, deepest].map(|length| units::to_mm(length).round());
+        Err(Failure::input(format!(
+            "{option}: found {found} mm, in water of at most {deepest} mm; expected less than {expected} mm"
+        )))
+    };
+    match args.altitude {
+        _ if args.depth >= deepest => refused("--depth", args.depth, deepest),
+        Some(altitude) if altitude + args.depth >= deepest => {
+            refused("--altitude", altitude, deepest - args.depth)
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The way over the pool, the map, the truth, and the way from the side.

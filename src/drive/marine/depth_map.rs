@@ -103,6 +103,9 @@ const LEAST: usize = 6;
 const PARTS: usize = 5;
 /// The median of the square of a normal number.
 const MEDIAN: f64 = 0.455;
+/// How much too large the median of few ripples is, relative to it and times their number: the upper one of
+/// two in the middle, of a skew distribution, where each ripple shares its soundings with those beside it.
+const OF_FEW: f64 = 5.7;
 
 impl DepthMap {
     /// Creates an empty map of an area. Fails for a cell size that is not positive, and for more than a
@@ -262,8 +265,9 @@ impl DepthMap {
     /// matter.
     fn noise(&self, column: usize, row: usize) -> Option<f64> {
         let mut ripples: Vec<f64> = self.around(column, row).filter_map(|noted| noted.ripple).collect();
-        let middle = ripples.len() / 2;
-        (!ripples.is_empty()).then(|| *ripples.select_nth_unstable_by(middle, f64::total_cmp).1 / MEDIAN)
+        let (count, middle) = (ripples.len() as f64, ripples.len() / 2);
+        let median = || *ripples.select_nth_unstable_by(middle, f64::total_cmp).1;
+        (count > 0.0).then(median).map(|median| median / (MEDIAN * (1.0 + OF_FEW / count)))
     }
 
     /// The surface's functions at a sounding, in cells from a centre.

@@ -93,6 +93,8 @@ impl Thruster {
 const MOST_FORCE: f64 = 1e6;
 /// Mass of the heaviest craft (kg).
 const MOST_MASS: f64 = 1e6;
+/// A moment of inertia relative to the sum of the two others, at most: 1 for a flat body, and what a file rounds.
+const FLAT: f64 = 1.001;
 
 impl CraftSpec {
     /// Speed at which damping equals the full forward thrust (m/s); 0 without forward thrust.
@@ -121,6 +123,10 @@ impl CraftSpec {
         for value in self.inertia.as_flattened() {
             require_finite("craft's inertia", *value)?;
         }
+        let moments = [0, 1, 2].map(|axis| self.inertia[axis][axis]);
+        let (largest, sum) = (moments.iter().fold(0.0, |a: f64, b| a.max(*b)), moments.iter().sum::<f64>());
+        let rigid = "at most the sum of the two others";
+        require("craft's largest moment of inertia", largest, largest <= FLAT * (sum - largest), rigid)?;
         self.hull.iter().try_for_each(HullPart::validate)?;
         for (name, values) in [
             ("added mass", &self.added_mass),
