@@ -1,7 +1,6 @@
 use std::error::Error;
 use std::fmt::{self, Display};
 
-use roverlab::io::ErrorKind;
 use roverlab::picture::SaveError;
 
 use super::Report;
@@ -57,16 +56,14 @@ impl Display for Failure {
 }
 
 impl From<roverlab::io::Error> for Failure {
-    /// The error and its sources, on one line. A robot that lacks what a run needs is a wrong input.
+    /// The error and its sources, on one line.
     fn from(error: roverlab::io::Error) -> Self {
-        let status = if error.kind() == ErrorKind::Unsupported { Self::INPUT } else { Self::RUN };
         let causes = std::iter::successors(error.source(), |error| (*error).source());
         let causes = causes.map(ToString::to_string);
-        let message = causes.fold(error.to_string(), |text, cause| {
+        Self::run(causes.fold(error.to_string(), |text, cause| {
             // A wrapped error repeats its source.
             if text.ends_with(&cause) { text } else { format!("{text}: {cause}") }
-        });
-        Self { status, message, done: None }
+        }))
     }
 }
 

@@ -362,6 +362,23 @@ mod tests {
         assert!((0.92..0.98).contains(&(inside / cells)), "{inside} of {cells}");
     }
 
+    /// Of a level ground, also where a cell has few soundings: errors and what is said of them agree.
+    #[test]
+    fn the_noise_is_known_from_few_soundings() {
+        for soundings in [20_u32, 200] {
+            let (mut squares, mut stream) = (0.0, crate::random::Stream::new(8));
+            for _ in 0..1000 {
+                let mut map = DepthMap::new(Aabb::new(Point::origin(), Point::new(1.0, 1.0)), 1.0).unwrap();
+                for index in 0..soundings {
+                    let place = Point::new(f64::from(index) / f64::from(soundings), 0.5);
+                    map.add(sounding(place, 2.0 + 0.01 * stream.normal()));
+                }
+                squares += map.noise(0, 0).unwrap() / 1e-4 / 1000.0;
+            }
+            assert!((squares - 1.0).abs() < 0.04, "{soundings}: {squares}");
+        }
+    }
+
     #[test]
     fn a_noisier_ground_is_less_sure() {
         let sigma = |noise: f64| {
