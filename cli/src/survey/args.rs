@@ -18,11 +18,11 @@ water: a line `water_level MM`. With --altitude, the floor is a ridge with slope
 log, a compass and distance sensors; where the water ends at four straight sides, it localises by these too. It starts where the
 water is widest, unless the world or --start states a start.
 
-Cells are at least half a metre from the sides, and at most as wide as the spacing or half a metre, so that whole ones fill
-the narrower side. Where lanes are narrow, the first ones lead along the sides; of half a metre, the cell in each corner is out of
-reach. The uncertainty of a depth has the noise, place, datum and waves of its soundings in it, and how far the floor around is off
-a quadratic surface. --map writes a colour picture, and beside it the depths as an ESRI grid (.asc) and all cells with their
-uncertainty as a table (.csv), in mm.
+Cells are at least half a metre from the sides, and at most as wide as the spacing or half a metre, whichever is more, so that
+whole ones fill the narrower side. Where lanes are narrow, the first ones lead along the sides; of half a metre, the cell in each
+corner is out of reach. In currents of 50 mm/s and more, it may touch the sides where it turns. The uncertainty of a depth has the
+noise, place, datum and waves of its soundings in it, and how far the floor around is off a quadratic surface. --map writes a colour
+picture, and beside it the depths as an ESRI grid (.asc) and all cells with their uncertainty as a table (.csv), in mm.
 
 With --campaign, floors of all kinds: 12 of them without --runs.
 

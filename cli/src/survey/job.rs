@@ -24,7 +24,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         check_writable("--map", &file)?;
     }
     let scene = afloat((common, &args.waters), &surveyor(), || scene(common.seed, args.altitude))?;
-    check_room(args, &scene.world)?;
+    check_room(args, &scene)?;
     let site = Site::of(&scene.world, args.depth);
     let conditions = Conditions::new(common, limit(&site, args.spacing))?;
     let done = tour(&scene, args.parameters(&scene.world), &conditions, paced(common))?;
@@ -51,24 +51,23 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(report)
 }
 
-/// Fails where the craft is to be below the floor wherever it is, or above the surface.
-fn check_room(args: &Args, world: &World) -> Result<(), Failure> {
-    let level = world.water_level.unwrap_or_default();
-    let deepest = level - ground(world).map_or(0.0, HeightField::lowest);
-    let refused = |option: &str, found: f64, expected: f64| {
-        let [found, expected, deepest] =
-            [found, expected, deepest].map(|length| units::to_mm(length).round());
-        Err(Failure::input(format!(
-            "{option}: found {found} mm, in water of at most {deepest} mm; expected less than {expected} mm"
-        )))
-    };
-    match args.altitude {
-        _ if args.depth >= deepest => refused("--depth", args.depth, deepest),
-        Some(altitude) if altitude + args.depth >= deepest => {
-            refused("--altitude", altitude, deepest - args.depth)
+/// Fails where there is no water of the wanted depth or altitude with room for the craft.
+fn check_room(args: &Args, scene: &Scene) -> Result<(), Failure> {
+    let (world, spec) = (&scene.world, &scene.robots[0].spec);
+    let deepest = world.water_level.unwrap_or_default() - ground(world).map_or(0.0, HeightField::lowest);
+    // The depth is that of the sensor, above the craft's lowest point.
+    let up = spec.depth_sensor.map_or(0.0, |sensor| sensor.z);
+    let (option, found, most) = match args.altitude {
+        _ if args.depth >= deepest - up => ("--depth", args.depth, deepest - up),
+        Some(altitude) if altitude >= deepest - args.depth - up => {
+            ("--altitude", altitude, deepest - args.depth - up)
         }
-        _ => Ok(()),
-    }
+        _ => return Ok(()),
+    };
+    let [found, most, deepest] = [found, most, deepest].map(|length| units::to_mm(length).round());
+    Err(Failure::input(format!(
+        "{option}: found {found} mm, in water of at most {deepest} mm; expected less than {most} mm"
+    )))
 }
 
 /// The way over the pool, the map, the truth, and the way from the side.

@@ -103,8 +103,9 @@ const LEAST: usize = 6;
 const PARTS: usize = 5;
 /// The median of the square of a normal number.
 const MEDIAN: f64 = 0.455;
-/// How much too large the median of few ripples is, relative to it and times their number: the upper one of
-/// two in the middle, of a skew distribution, where each ripple shares its soundings with those beside it.
+/// How much too large the median of few ripples is, relative to it and times their number: it is the upper one
+/// of two in the middle, of a skew distribution, where each ripple shares its soundings with those beside it.
+/// The mean over 20,000 rows of 20 to 300 soundings with normal noise.
 const OF_FEW: f64 = 5.7;
 
 impl DepthMap {

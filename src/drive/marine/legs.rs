@@ -95,7 +95,7 @@ impl Legs {
 pub(super) struct Steered {
     /// Turn rate (rad/s).
     pub(super) turn: f64,
-    /// Speed ahead (m/s): backwards, as long as it points away from where it is to move.
+    /// Speed ahead (m/s): negative as long as the bow points away from the course.
     pub(super) speed: f64,
 }
 

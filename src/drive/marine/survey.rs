@@ -305,7 +305,7 @@ fn lanes(area: &Aabb, start: Point, spacing: f64, [margin, brim]: [f64; 2]) -> R
         let found = format!("{x} x {y} m");
         return Err(Error::invalid_input("area", found, "room for a lane between its margins"));
     }
-    // Between two corners where it turns, a craft needs room to come nearer to the side, and to leave it again.
+    // Between two corners where it turns, a craft needs room to come nearer to the side and to leave it.
     let brim = if short > 4.0 * margin { brim.min(margin) } else { margin };
     let count = ((short - 2.0 * brim) / spacing).ceil();
     require("number of lanes", count, count <= MOST_LANES, "at most 10000")?;
