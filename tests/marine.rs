@@ -246,6 +246,12 @@ fn craft_that_cannot_be_are_refused_or_named() {
     };
     assert!(refused(with(&|craft| craft.hull.clear())).contains("hull parts"));
     assert!(refused(with(&|craft| craft.mass = f64::NAN)).contains("mass"));
+    let long_and_thick = [[9.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    assert!(refused(with(&|craft| craft.inertia = long_and_thick)).contains("largest principal moment"));
+    let tangled = [[2.0, 1.9, 0.0], [1.9, 2.0, 0.0], [0.0, 0.0, 2.0]];
+    assert!(refused(with(&|craft| craft.inertia = tangled)).contains("largest principal moment"));
+    let negative = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]];
+    assert!(refused(with(&|craft| craft.inertia = negative)).contains("least principal moment"));
     let negative = |size| with(&|craft| craft.hull.push(HullPart::Box { size, centre: Point3::origin() }));
     assert!(refused(negative(Vector3::new(-0.2, 0.3, 0.1))).contains("hull part"));
     assert!(refused(negative(Vector3::new(0.2, f64::NAN, 0.1))).contains("hull part"));

@@ -61,6 +61,7 @@ export const OVERRIDES = {
   genetic: { options: { task: { default: "wall", always: true }, generations: { default: "5", always: true } } },
   camera: { options: { images: { default: "40", always: true } } },
   traffic: { options: { laps: { default: "1", always: true } } },
+  "end-to-end": { options: { minutes: { default: "0.5", always: true } } },
   "base-station": { options: { cars: { default: "2", always: true } } },
 };
 

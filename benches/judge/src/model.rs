@@ -47,7 +47,7 @@ const ROAD_WHEEL: f64 = 0.005;
 /// Radius of the castor's ball (m).
 const CASTOR: f64 = 0.01;
 /// Compression of all road wheels' springs by the robot's weight (m), as in the simulator.
-const SAG: f64 = 1e-4;
+const SAG: f64 = 1e-3;
 /// Position of the centre of mass between axle and castor, and its height, as fractions of the whole. The
 /// simulator assumes these for descriptions without a centre of mass.
 const CENTRE: (f64, f64) = (0.3, 0.4);

@@ -8,7 +8,9 @@ use crate::water::WaterArgs;
     after_help = "\
 Without --world, --seed chooses a pool, a red thing among others on its floor, and the turbidity of the water: 0.05, 0.3 or 1
 per metre. A world needs water: a line `water_level MM`, and one `turbidity B` if it is not clear. Mako drives lanes with its
-camera down, and knows its place by Doppler log, compass and, where the water ends at four straight sides, by these.
+camera down, the first ones along the sides, and knows its place by Doppler log, compass and, where the water ends at four straight
+sides, by these. It sees no colour in what is much darker than the floor, and nothing in
+corners, of which it keeps clear by a metre.
 
 With --campaign, 200 pools in light from 30 to 150 %.
 

@@ -6,7 +6,7 @@ use roverlab::world::{Colour, Scene};
 
 use crate::common::Failure;
 use crate::driving::{Conditions, Run};
-use crate::water::Site;
+use crate::water::{NEAREST, Site};
 
 /// A search and what came of it.
 #[derive(Debug, Clone)]
@@ -24,8 +24,8 @@ pub(super) struct Hunt {
 const FALSE: f64 = 0.3;
 /// Metres of the depth sensor below the surface.
 pub(super) const DEPTH: f64 = 0.5;
-/// Hues on RoBIOS's scale that are still red.
-const RED: [u8; 2] = [36, 48];
+/// Hues on RoBIOS's scale that are still red: crimson to vermilion, as the search takes them.
+const RED: [u8; 2] = [32, 52];
 
 impl Hunt {
     pub(super) fn is_false(&self) -> bool {
@@ -37,8 +37,12 @@ impl Hunt {
 pub(super) fn hunt(scene: &Scene, conditions: &Conditions, watch: impl FnMut(f64)) -> Result<Hunt, Failure> {
     let robot = &scene.robots[0];
     let site = Site::of(&scene.world, DEPTH);
-    let survey =
-        SurveyParameters { depth: DEPTH, density: scene.world.water.density, ..SurveyParameters::default() };
+    let survey = SurveyParameters {
+        depth: DEPTH,
+        brim: NEAREST,
+        density: scene.world.water.density,
+        ..SurveyParameters::default()
+    };
     let parameters = PoolSearchParameters { survey, ..PoolSearchParameters::default() };
     let mut search = PoolSearch::new(&robot.spec, robot.pose, site.area, site.by_walls, parameters)
         .map_err(Failure::input)?;

@@ -55,11 +55,13 @@ fn picture(scene: &Scene, done: &Hunt) -> Picture {
     }
     let mut both = Picture::panels(&[above, below], 2);
     both.title("Search of a pool's floor");
-    let error = done
-        .error
-        .map_or("nothing was found".into(), |error| format!("found {:.0} mm off", units::to_mm(error)));
+    let find = match (done.place, done.error) {
+        (None, _) => "nothing was found".into(),
+        (_, None) => "found where nothing is red".into(),
+        (_, Some(error)) => format!("found {:.0} mm off", units::to_mm(error)),
+    };
     both.caption(format!(
-        "{error}, after {:.0} s; turbidity {} per metre",
+        "{find}, after {:.0} s; turbidity {} per metre",
         done.run.sim_time, scene.world.water.turbidity
     ));
     both

@@ -6,7 +6,7 @@ use roverlab::world::World;
 
 use super::tour::OFF;
 use crate::common::{CampaignArgs, CommonArgs, OF_A_CAMPAIGN, OF_ONE_RUN, parse_png};
-use crate::water::WaterArgs;
+use crate::water::{NEAREST, WaterArgs};
 
 /// Command line of `survey`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -18,9 +18,10 @@ water: a line `water_level MM`. With --altitude, the floor is a ridge with slope
 log, a compass and distance sensors; where the water ends at four straight sides, it localises by these too. It starts where the
 water is widest, unless the world or --start states a start.
 
-Cells are at least half a metre from the sides, and at most as wide as the spacing, so that whole ones fill the narrower side.
-Where lanes are narrow, the first ones lead along the sides. The uncertainty of a depth has the noise, place, datum and waves of its soundings in it, and
-how far the floor around is off a quadratic surface. --map writes a colour
+Cells are at least half a metre from the sides, and at most as wide as the spacing or half a metre, whichever is more, so that
+whole ones fill the narrower side. Where lanes are narrow, the first ones lead along the sides; of half a metre, the cell in each
+corner is out of reach. In currents of 50 mm/s and more, it may touch the sides where it turns. The uncertainty of a depth has the
+noise, place, datum and waves of its soundings in it, and how far the floor around is off a quadratic surface. --map writes a colour
 picture, and beside it the depths as an ESRI grid (.asc) and all cells with their uncertainty as a table (.csv), in mm.
 
 With --campaign, floors of all kinds: 12 of them without --runs.
@@ -64,9 +65,6 @@ pub(crate) struct Args {
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }
-
-/// Distance from the sides at which Mako, which is half as wide, keeps clear of them on a lane (m).
-const NEAREST: f64 = 0.75;
 
 crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("always", &["goal"]),

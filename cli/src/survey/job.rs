@@ -1,7 +1,7 @@
 use roverlab::drive::marine::{DepthMap, SurveyOutcome};
 use roverlab::geometry::{Point, Vector, units};
 use roverlab::picture::{Picture, Style, ramp};
-use roverlab::world::{Scene, World};
+use roverlab::world::{HeightField, Scene, World};
 
 use super::Args;
 use super::campaign::campaign;
@@ -11,7 +11,7 @@ use super::tour::{COVERED, Tour, tour, true_depth};
 use crate::common::{Failure, Outcome, Report, check_writable, millimetres, rounded};
 use crate::driving::{Conditions, paced};
 use crate::terrain::percent;
-use crate::water::{Side, Site, afloat, limit, surveyor};
+use crate::water::{Side, Site, afloat, ground, limit, surveyor};
 
 /// The work of the command.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
@@ -24,6 +24,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         check_writable("--map", &file)?;
     }
     let scene = afloat((common, &args.waters), &surveyor(), || scene(common.seed, args.altitude))?;
+    check_room(args, &scene)?;
     let site = Site::of(&scene.world, args.depth);
     let conditions = Conditions::new(common, limit(&site, args.spacing))?;
     let done = tour(&scene, args.parameters(&scene.world), &conditions, paced(common))?;
@@ -48,6 +49,25 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     }
     report = common.draw(report, "survey.svg", || picture(&scene, &done));
     Ok(report)
+}
+
+/// Fails where there is no water of the wanted depth or altitude with room for the craft.
+fn check_room(args: &Args, scene: &Scene) -> Result<(), Failure> {
+    let (world, spec) = (&scene.world, &scene.robots[0].spec);
+    let deepest = world.water_level.unwrap_or_default() - ground(world).map_or(0.0, HeightField::lowest);
+    // The depth is that of the sensor, above the craft's lowest point.
+    let up = spec.depth_sensor.map_or(0.0, |sensor| sensor.z);
+    let (option, found, most) = match args.altitude {
+        _ if args.depth >= deepest - up => ("--depth", args.depth, deepest - up),
+        Some(altitude) if altitude >= deepest - args.depth - up => {
+            ("--altitude", altitude, deepest - args.depth - up)
+        }
+        _ => return Ok(()),
+    };
+    let [found, most, deepest] = [found, most, deepest].map(|length| units::to_mm(length).round());
+    Err(Failure::input(format!(
+        "{option}: found {found} mm, in water of at most {deepest} mm; expected less than {most} mm"
+    )))
 }
 
 /// The way over the pool, the map, the truth, and the way from the side.

@@ -5,7 +5,7 @@ use roverlab::world::{Scene, World};
 
 use crate::common::{Failure, portable};
 use crate::driving::{Conditions, Run};
-use crate::water::{Site, ground};
+use crate::water::{NEAREST, Site, ground};
 
 /// A survey, its map, and how good it is.
 #[derive(Debug, Clone)]
@@ -43,6 +43,8 @@ const DOWN: Psd = Psd(6);
 const REACHED: f64 = 0.01;
 /// Metres off the sides at which cells begin.
 pub(super) const OFF: f64 = 0.5;
+/// The least width of a cell (m): lanes along the sides are in the middle of the cells there.
+const NARROWEST: f64 = 2.0 * (NEAREST - OFF);
 /// Points of a cell along each side, of which its true depth is the mean.
 const POINTS: u32 = 6;
 
@@ -57,7 +59,7 @@ pub(super) fn tour(
     let site = Site::of(&scene.world, parameters.depth);
     let mut survey =
         Survey::new(&robot.spec, robot.pose, site.area, site.by_walls, parameters).map_err(Failure::input)?;
-    let (cells, cell) = whole_cells(&site.area.inflated(-OFF), parameters.spacing);
+    let (cells, cell) = whole_cells(&site.area.inflated(-OFF), parameters.spacing.max(NARROWEST));
     let mut map = DepthMap::new(cells, cell).map_err(Failure::input)?;
     let mut beliefs = Vec::new();
     let run = conditions.run(scene, watch, |robot, step| {
@@ -96,12 +98,12 @@ pub(super) fn true_depth(world: &World, centre: Point, cell: f64) -> Option<f64>
     Some(sum / f64::from(POINTS * POINTS))
 }
 
-/// The size of cells, as wide as lanes are apart, that fill the narrower side of an area; and the part of it
-/// that whole ones cover, in the middle of the longer side.
-fn whole_cells(area: &Aabb, spacing: f64) -> (Aabb, f64) {
+/// The size of cells, at most so wide, that fill the narrower side of an area; and the part of it that whole
+/// ones cover, in the middle of the longer side.
+fn whole_cells(area: &Aabb, widest: f64) -> (Aabb, f64) {
     let size = area.size();
     let narrow = size.min();
-    let cell = narrow / (narrow / spacing).ceil().max(1.0);
+    let cell = narrow / (narrow / widest).ceil().max(1.0);
     // A hair less, so that rounding begins no further row.
     let half = (size / cell).map(|cells| 0.5 * cell * (cells + 1e-9).floor() - 1e-9);
     let middle = area.min + 0.5 * size;

@@ -82,10 +82,19 @@ fn mako_goes_round_in_a_current() {
     }
 }
 
-/// Lanes of half a metre, of which those along the sides are nearer to them than a craft may turn.
+/// A current carries it to the side at which a lane ends, while it turns there.
+#[test]
+fn a_survey_turns_clear_of_the_sides_in_a_current() {
+    let ended = run("survey", &["--seed", "2", "--water", "current 0 -100"]);
+    assert_outcome(&ended, "covered");
+    assert!(ended.1["collisions"] == 0 && ended.1["coverage_percent"] == 100.0, "{}", ended.1);
+}
+
+/// Lanes along the sides are nearer to them than a craft may turn; cells are never narrower than such a lane
+/// needs.
 #[test]
 fn narrow_lanes_cover_the_floor_up_to_the_sides() {
-    let ended = run("survey", &["--spacing", "500"]);
+    let ended = run("survey", &["--spacing", "400"]);
     assert_outcome(&ended, "covered");
     assert!(number(&ended.1, "coverage_percent") >= 99.0 && ended.1["collisions"] == 0, "{}", ended.1);
     let inside = number(&ended.1, "inside_2_sigma_percent");
@@ -193,6 +202,8 @@ fn what_is_no_water_is_refused() {
         ("boat", vec!["--course", "x"], "waypoints in mm"),
         ("survey", vec!["--spacing", "1"], "200 to"),
         ("survey", vec!["--altitude", "1"], "200 to"),
+        ("survey", vec!["--depth", "1900"], "less than 1640"),
+        ("survey", vec!["--depth", "3000", "--altitude", "3000"], "less than 2740"),
         ("pool_search", vec!["--light", "-1"], "--light"),
         ("pool_search", vec!["--world", &wet, "--robot", "SolarRaft"], "camera"),
         ("dive", vec!["--depth", "9000"], "1.9 m"),

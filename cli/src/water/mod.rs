@@ -15,7 +15,7 @@ use crate::common::{CommonArgs, Failure, StandIn};
 pub(crate) use pool::{BOOK, LEVEL, pool};
 pub(crate) use shore::Shore;
 pub(crate) use side::Side;
-pub(crate) use site::{Site, limit, surveyor};
+pub(crate) use site::{NEAREST, Site, limit, surveyor};
 
 /// Cells along a side of the grid on which a start is looked for.
 const CELLS: usize = 40;

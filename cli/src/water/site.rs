@@ -41,6 +41,8 @@ pub(crate) fn limit(site: &Site, spacing: f64) -> f64 {
     PACE * (size.x * size.y / spacing + size.x + size.y) + BESIDES
 }
 
+/// Metres off the sides at which Mako, which is half as wide, keeps clear of them on a lane.
+pub(crate) const NEAREST: f64 = 0.75;
 /// Range of the Doppler log (m).
 const RANGE: f64 = 30.0;
 

@@ -103,6 +103,10 @@ const LEAST: usize = 6;
 const PARTS: usize = 5;
 /// The median of the square of a normal number.
 const MEDIAN: f64 = 0.455;
+/// How much too large the median of few ripples is, relative to it and times their number: it is the upper one
+/// of two in the middle, of a skew distribution, where each ripple shares its soundings with those beside it.
+/// The mean over 20,000 rows of 20 to 300 soundings with normal noise.
+const OF_FEW: f64 = 5.7;
 
 impl DepthMap {
     /// Creates an empty map of an area. Fails for a cell size that is not positive, and for more than a
@@ -262,8 +266,9 @@ impl DepthMap {
     /// matter.
     fn noise(&self, column: usize, row: usize) -> Option<f64> {
         let mut ripples: Vec<f64> = self.around(column, row).filter_map(|noted| noted.ripple).collect();
-        let middle = ripples.len() / 2;
-        (!ripples.is_empty()).then(|| *ripples.select_nth_unstable_by(middle, f64::total_cmp).1 / MEDIAN)
+        let (count, middle) = (ripples.len() as f64, ripples.len() / 2);
+        let median = || *ripples.select_nth_unstable_by(middle, f64::total_cmp).1;
+        (count > 0.0).then(median).map(|median| median / (MEDIAN * (1.0 + OF_FEW / count)))
     }
 
     /// The surface's functions at a sounding, in cells from a centre.
@@ -356,6 +361,23 @@ mod tests {
             }
         }
         assert!((0.92..0.98).contains(&(inside / cells)), "{inside} of {cells}");
+    }
+
+    /// Of a level ground, also where a cell has few soundings: errors and what is said of them agree.
+    #[test]
+    fn the_noise_is_known_from_few_soundings() {
+        for soundings in [20_u32, 200] {
+            let (mut squares, mut stream) = (0.0, crate::random::Stream::new(8));
+            for _ in 0..1000 {
+                let mut map = DepthMap::new(Aabb::new(Point::origin(), Point::new(1.0, 1.0)), 1.0).unwrap();
+                for index in 0..soundings {
+                    let place = Point::new(f64::from(index) / f64::from(soundings), 0.5);
+                    map.add(sounding(place, 2.0 + 0.01 * stream.normal()));
+                }
+                squares += map.noise(0, 0).unwrap() / 1e-4 / 1000.0;
+            }
+            assert!((squares - 1.0).abs() < 0.04, "{soundings}: {squares}");
+        }
     }
 
     #[test]

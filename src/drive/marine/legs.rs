@@ -95,14 +95,14 @@ impl Legs {
 pub(super) struct Steered {
     /// Turn rate (rad/s).
     pub(super) turn: f64,
-    /// Speed ahead (m/s).
+    /// Speed ahead (m/s): negative as long as the bow points away from the course.
     pub(super) speed: f64,
 }
 
 /// Turn rate per angle off the course (1/s).
 const GAIN: f64 = 1.2;
 /// Largest turn rate (rad/s).
-const FASTEST: f64 = 0.6;
+const FASTEST: f64 = 1.0;
 /// The share of the missing velocity by which a craft points beyond the wanted one: without a keel, only its
 /// thrust takes out a drift aside.
 const LEAD: f64 = 1.5;
@@ -114,7 +114,7 @@ pub(super) fn steer(pose: &Pose, moves: Vector, wanted: Vector) -> Steered {
     let aim = wanted + (wanted - moves) * LEAD;
     let points = aim.norm() > LITTLE;
     let off = if points { angle_difference(math::atan2(aim.y, aim.x), pose.heading) } else { 0.0 };
-    Steered { turn: (GAIN * off).clamp(-FASTEST, FASTEST), speed: wanted.norm() * math::cos(off).max(0.0) }
+    Steered { turn: (GAIN * off).clamp(-FASTEST, FASTEST), speed: wanted.norm() * math::cos(off) }
 }
 
 /// A velocity in a craft's frame as the world sees it.

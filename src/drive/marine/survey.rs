@@ -206,7 +206,7 @@ impl Survey {
             fix: Fix::new(start, sides.then_some(area)),
             zero: Zero::afloat(craft.waterline(density) - up),
             floor: FloorTrack::default(),
-            lanes: lanes(&area, start.position(), spacing, [margin, brim.min(margin)])?,
+            lanes: lanes(&area, start.position(), spacing, [margin, brim])?,
             sight,
             legs: Legs::new(vec![start.position()], speed, LOOKAHEAD, REACHED),
             has_looked: false,
@@ -305,6 +305,8 @@ fn lanes(area: &Aabb, start: Point, spacing: f64, [margin, brim]: [f64; 2]) -> R
         let found = format!("{x} x {y} m");
         return Err(Error::invalid_input("area", found, "room for a lane between its margins"));
     }
+    // Between two corners where it turns, a craft needs room to come nearer to the side and to leave it.
+    let brim = if short > 4.0 * margin { brim.min(margin) } else { margin };
     let count = ((short - 2.0 * brim) / spacing).ceil();
     require("number of lanes", count, count <= MOST_LANES, "at most 10000")?;
     let count = count as usize;

@@ -1,3 +1,5 @@
+use nalgebra::Matrix3;
+
 use super::{HullPart, MAX_THRUSTERS};
 use crate::ParameterError;
 use crate::geometry::{Point3, Vector3};
@@ -93,6 +95,8 @@ impl Thruster {
 const MOST_FORCE: f64 = 1e6;
 /// Mass of the heaviest craft (kg).
 const MOST_MASS: f64 = 1e6;
+/// The most that a moment of inertia is of the sum of the two others: 1 of a flat body, and what a file rounds.
+const FLAT: f64 = 1.001;
 
 impl CraftSpec {
     /// Speed at which damping equals the full forward thrust (m/s); 0 without forward thrust.
@@ -121,6 +125,12 @@ impl CraftSpec {
         for value in self.inertia.as_flattened() {
             require_finite("craft's inertia", *value)?;
         }
+        let moments = Matrix3::from_fn(|row, column| self.inertia[row.min(column)][row.max(column)]);
+        let moments = moments.symmetric_eigenvalues();
+        require_not_negative("craft's least principal moment of inertia", moments.min())?;
+        let (largest, others) = (moments.max(), moments.sum() - moments.max());
+        let expected = "at most the sum of the two others";
+        require("craft's largest principal moment of inertia", largest, largest <= FLAT * others, expected)?;
         self.hull.iter().try_for_each(HullPart::validate)?;
         for (name, values) in [
             ("added mass", &self.added_mass),

@@ -7,7 +7,8 @@
 //! its sliding speed, the difference between the speed of the body and that of the wheel rim or track belt.
 //! The ground at a foot is a stiff spring with critical damping rather than rigid, which makes the
 //! distribution of loads unique and keeps feet from chattering: the body sinks in by a tenth of a millimetre.
-//! Mecanum wheels are on softer springs, as all four of them have to carry load.
+//! Mecanum wheels are on softer springs, as all four of them have to carry load, and belts yield like rubber, by
+//! a millimetre, so that the load goes from point to point more slowly than a tick.
 //!
 //! In each tick, speeds are computed such that the body ends on the ground, not in it, and no friction
 //! exceeds its limit (Moreau time stepping; projected Gauss-Seidel with warm starts). Resting attitudes,
@@ -17,8 +18,7 @@
 //! # Limits of the model
 //!
 //! Motors are as strong as friction. There is no restitution, only Mecanum wheels have a suspension, and the
-//! ground is never soft.
-//! The body rotates like a ball of its mean radius of gyration, without precession. Feet do not detect ground
+//! ground is never soft. The body rotates like a ball of its mean radius of gyration, without precession. Feet do not detect ground
 //! edges between them. Air and water exert no forces. A belt touches the ground at eight points. How its
 //! load is shared among them decides how a tracked robot turns: beside belts of road wheels on springs,
 //! curves of 1.9 m end 3 to 83 mm apart, and beside rigid belts, which a crest carries at one line, 19 mm to
@@ -27,8 +27,8 @@
 //! # Accuracy
 //!
 //! Ground normals, lever arms and rim directions are those of the middle of the tick (a midpoint rule). On
-//! smooth hills, halving the tick moves the end of a 10 m drive by less than 1 mm and 0.1 degrees (on belts,
-//! which skid, 5 mm and 0.3 degrees), if the drive accelerates as motors do.
+//! smooth hills, halving the tick moves the end of a 10 m drive by at most 1 mm and 0.1 degrees, if the drive
+//! accelerates as motors do.
 
 mod hills;
 mod mishap;

@@ -3,7 +3,7 @@ use std::f64::consts::TAU;
 use proptest::prelude::*;
 
 use super::*;
-use crate::geometry::{Aabb, Point, Point3, Pose, Pose3, Vector, math, units};
+use crate::geometry::{Aabb, Point, Point3, Pose, Pose3, Vector, Vector3, math, units};
 use crate::io::sim::TICK;
 use crate::kinematics::{PlanarTwist, advance_planar};
 use crate::random::Stream;
@@ -74,7 +74,7 @@ impl Robot {
             let upright = ground.normal(at.xy()).map_or(1.0, |normal| normal.z);
             ground.height(at.xy()).map_or(f64::NEG_INFINITY, |level| (level - at.z) * upright)
         };
-        // Wheels on springs yield to the ground.
+        // Wheels on springs yield to the ground, and so do belts.
         let stiff = self.carriage.feet.iter().filter(|foot| foot.softness < 1e-3);
         stiff.map(depth).fold(f64::NEG_INFINITY, f64::max)
     }
@@ -302,17 +302,16 @@ fn apart(ends: &[Pose3; 3]) -> (f64, f64) {
     })
 }
 
-/// Halving the tick moves the end of a drive of 10 m by at most 1 mm and 0.1 degrees; on belts, which skid
-/// all the way, by at most 5 mm and 0.3 degrees.
+/// Halving the tick moves the end of a drive of 10 m by at most 1 mm and 0.1 degrees, also on belts, which skid
+/// all the way.
 #[test]
 fn the_tick_matters_little() {
-    for seed in [3, 4] {
+    for seed in 3..6 {
         let ground = hills(seed, 0.2);
         for spec in robots() {
             let drive = PlanarTwist::new(0.25, 0.0, 0.15);
             let found = apart(&ends(&spec, &ground, Pose::new(0.0, -1.7, 0.0), drive, 40));
-            let most = if spec.name == "Blizzard" { (5e-3, 0.3) } else { (1e-3, 0.1) };
-            assert!(found.0 < most.0 && found.1 < most.1, "{}, {seed}: {found:?}", spec.name);
+            assert!(found.0 < 1e-3 && found.1 < 0.1, "{}, {seed}: {found:?}", spec.name);
         }
     }
 }
@@ -325,9 +324,13 @@ fn let_go(ground: &HeightField, spec: &RobotSpec, stream: &mut Stream) -> Result
     let (x, y) = (between(2.0), between(2.0));
     let (roll, pitch, yaw) = (between(0.5), between(0.5), between(3.0));
     let (drop, vx, vy, w) = (0.225 + between(0.175), between(1.0), between(1.0), between(3.0));
-    let reach = carriage.feet.iter().map(|foot| foot.place.norm()).fold(0.0, f64::max);
-    let level = ground.height(Point::new(x, y)).unwrap();
-    let pose = Pose3::from_angles(Point3::new(x, y, level + drop + 1.5 * reach), roll, pitch, yaw);
+    let low = Pose3::from_angles(Point3::new(x, y, 0.0), roll, pitch, yaw);
+    let below = |foot: &super::undercarriage::Foot| {
+        let at = low.to_world(Point3::from(foot.place + carriage.centre));
+        ground.height(at.xy()).unwrap() - at.z
+    };
+    let up = carriage.feet.iter().map(below).fold(f64::NEG_INFINITY, f64::max);
+    let pose = Pose3::new(low.position + Vector3::z() * (up + drop), low.attitude);
     let mut body = RigidBody::new(&carriage, &pose);
     body.shove(Vector::new(vx, vy) * TICK, w * TICK, TICK);
     let mut robot = Robot { carriage, body };
@@ -336,7 +339,6 @@ fn let_go(ground: &HeightField, spec: &RobotSpec, stream: &mut Stream) -> Result
         robot.step(ground, PlanarTwist::STOP);
         let now = robot.body.energy(&robot.carriage);
         let (more, depth) = (now - energy, robot.depth(ground));
-        // A corner of a belt, a sixteenth of what carries it, yields by 10 mm to the hardest of these falls.
         if more > 1e-9 || depth > 0.015 {
             return Err(format!("{}, tick {tick}: {more} J/kg more, {depth} m deep", spec.name));
         }

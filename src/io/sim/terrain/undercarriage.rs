@@ -43,8 +43,11 @@ pub(super) enum Grip {
     Free,
 }
 
-/// Sinking of a body on all its wheels, belts or corners (m).
+/// Sinking of a body on all its wheels or corners (m).
 const SAG: f64 = 1e-4;
+/// The same of a body on belts of rubber (m). Stiff ones pass the load from point to point faster than a tick,
+/// and where they skid to then depends on it.
+const BELT_SAG: f64 = 1e-3;
 /// The same of a body on springs, and their travel from there to the stop (m). Mecanum wheels need springs: a
 /// rigid body on uneven ground stands on two that are diagonal and hold it along one direction only.
 const SPRUNG: f64 = 3e-3;
@@ -95,7 +98,7 @@ impl Undercarriage {
                     let roller = Vector::new(1.0, -(ahead * side).signum()).normalize();
                     let stops: Vec<Foot> =
                         wheel(place, 0.5 * wheel_diameter, Grip::Roller(place, roller), 4).collect();
-                    feet.extend(stops.iter().map(|stop| stop.sprung(4)));
+                    feet.extend(stops.iter().map(|stop| stop.sprung(4, SPRUNG)));
                     feet.extend(stops.iter().map(|stop| stop.raised(SPRUNG)));
                 }
                 0.0
@@ -127,9 +130,9 @@ impl Foot {
         Self::new(place, grip, number, SAG)
     }
 
-    /// The same foot on a spring, which a body's weight on `number` of them compresses to its place.
-    fn sprung(&self, number: u32) -> Self {
-        Self::new(self.raised(-SPRUNG).place, self.grip, number, SPRUNG)
+    /// The same foot on a spring, which a body's weight on `number` of them compresses by `sag`, to its place.
+    fn sprung(&self, number: u32, sag: f64) -> Self {
+        Self::new(self.raised(-sag).place, self.grip, number, sag)
     }
 
     fn raised(&self, up: f64) -> Self {
@@ -174,7 +177,8 @@ fn belts(feet: &mut Vec<Foot>, drive: Tracked, radius: f64) {
         let grip = Grip::Driven(Vector::new(0.0, side * half));
         let below: Vec<_> = drive.places(side).map(|place| Vector3::new(place.x, place.y, 0.0)).collect();
         let number = 2 * below.len() as u32;
-        feet.extend(below.into_iter().map(|place| Foot::stiff(place, grip, number)));
+        let rubber = |place| Foot::stiff(place, grip, number).sprung(number, BELT_SAG);
+        feet.extend(below.into_iter().map(rubber));
         for end in [0.5, -0.5] {
             for degrees in [30.0, 60.0, 90.0] {
                 let (sin, cos) = math::sin_cos(units::from_deg(degrees));
