@@ -106,6 +106,16 @@ fn reached_is_reached_beside_walls() {
     assert!(wrong.is_empty() && runs > 60, "{} of {runs}: {wrong:#?}", wrong.len());
 }
 
+/// How a bug ends without noise.
+fn end(kind: BugKind, world: &World, start: Pose, goal: Point) -> BugOutcome {
+    let scene = Scene::with_robot(world.clone(), RobotSpec::s4(), start);
+    let simulation = Simulation::new(&scene, SimOptions::with_noise(0.0, 1)).unwrap();
+    let parameters = BugParameters { match_scans: false, ..BugParameters::default() };
+    let mut bug = kind.with(start.to_local(goal), parameters).unwrap();
+    let mut robot = simulation.robot(0).unwrap();
+    control::run(&mut robot, bug.as_mut(), 600.0, |_, _, _| {}).unwrap()
+}
+
 /// A passage of one and a half robot widths beside the place where an obstacle is met: the boundary through
 /// it and the one past it are near each other, and only one of them is the loop.
 #[test]
@@ -115,15 +125,30 @@ fn a_passage_beside_the_end_of_a_lap_is_entered() {
         world.walls.push(Wall::new(Point::new(1.059, from), Point::new(1.059, to)));
     }
     let (start, goal) = (Pose::new(0.754, 2.189, 1.27), Point::new(1.438, 0.463));
-    let scene = Scene::with_robot(world, RobotSpec::s4(), start);
     for kind in BugKind::ALL {
-        let simulation = Simulation::new(&scene, SimOptions::with_noise(0.0, 1)).unwrap();
-        let parameters = BugParameters { match_scans: false, ..BugParameters::default() };
-        let mut bug = kind.with(start.to_local(goal), parameters).unwrap();
-        let mut robot = simulation.robot(0).unwrap();
-        let outcome = control::run(&mut robot, bug.as_mut(), 600.0, |_, _, _| {}).unwrap();
-        assert_eq!(outcome, BugOutcome::Reached, "{kind}");
+        assert_eq!(end(kind, &world, start, goal), BugOutcome::Reached, "{kind}");
     }
+}
+
+/// A ring of walls, one of whose gaps leaves few millimetres on either side. TangentBug sees a place behind
+/// it for which it leaves the wall, but cannot steer so exactly; following the wall, it gets in.
+#[test]
+fn a_gap_too_narrow_to_steer_through_from_afar_is_entered_along_the_wall() {
+    let mut world = World::walled(2.129_141, 2.379_761);
+    let walls = [
+        [1867.669, 1535.532, 1401.153, 1639.584],
+        [1293.791, 1663.531, 620.822, 1813.631],
+        [620.822, 1813.631, 481.572, 1189.305],
+        [443.475, 1018.502, 342.723, 566.783],
+        [342.723, 566.783, 831.786, 457.702],
+        [968.428, 427.225, 1589.571, 288.685],
+        [1589.571, 288.685, 1742.883, 976.056],
+        [1766.829, 1083.418, 1867.669, 1535.532],
+    ];
+    let point = |x: f64, y: f64| Point::new(x / 1000.0, y / 1000.0);
+    world.walls.extend(walls.map(|[x, y, to_x, to_y]| Wall::new(point(x, y), point(to_x, to_y))));
+    let start = Pose::new(0.231_52, 1.981_56, 28.9_f64.to_radians());
+    assert_eq!(end(BugKind::TangentBug, &world, start, point(603.0, 785.07)), BugOutcome::Reached);
 }
 
 mod campaigns {

@@ -1,7 +1,7 @@
 //! Runs that are killed: recordings lose their last chunk at most, and evolutions go on to the same end.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 use std::{fs, thread};
 
@@ -11,34 +11,41 @@ use serde_json::Value;
 
 use super::{roverlab, said};
 
-/// Kills recording processes at random times. What is on disk is the beginning of the whole recording, and
-/// all of its complete chunks can be saved. A second process that wants to record to the same file is
-/// refused, and changes nothing.
+/// A process that records to a file, which it does not find there.
+fn recorder(log: &Path) -> Child {
+    let _ = fs::remove_file(log);
+    let mut command = roverlab(&["distbug", "--json", "--seed", "2", "--record"]);
+    command.arg(log).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
+}
+
+/// Kills processes that record into a folder at random times. What is on disk is the beginning of the whole
+/// recording, and all of its complete chunks can be saved. A second process that wants to record to the same
+/// file is refused, and changes nothing.
 #[allow(clippy::disallowed_methods, reason = "processes are killed at times on the wall clock")]
-fn kill_recorders(kills: usize) {
-    let log = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("killed-{kills}.mcap"));
-    let start = || {
-        let _ = fs::remove_file(&log);
-        let mut command = roverlab(&["distbug", "--json", "--seed", "2", "--record"]);
-        command.arg(&log).stdout(Stdio::null()).spawn().unwrap()
-    };
+fn kill_recorders(kills: usize, folder: &Path) {
+    let elsewhere = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("whole-{kills}.mcap"));
+    let log = folder.join(format!("killed-{kills}.mcap"));
     let began = Instant::now();
-    assert!(start().wait().unwrap().success());
+    assert!(recorder(&elsewhere).wait().unwrap().success());
     let duration = began.elapsed().as_secs_f64();
-    let whole = fs::read(&log).unwrap();
+    let whole = fs::read(&elsewhere).unwrap();
     let mut times = Stream::new(1);
-    let mut cut = 0;
+    let (mut cut, mut refused) = (0, 0);
     for kill in 0..kills {
-        let mut child = start();
+        let mut child = recorder(&log);
         thread::sleep(Duration::from_secs_f64(times.between(0.0, duration)));
         if kill % 2 == 1 && log.exists() && child.try_wait().unwrap().is_none() {
             let (_, said) =
                 said(roverlab(&["distbug", "--seed", "3", "--time-limit", "1", "--record"]).arg(&log));
             let is_over = child.try_wait().unwrap().is_some();
-            assert!(is_over || said.contains("somebody who records to it"), "{said}");
+            // On a full disk the first one has given up its file, and the second one finds no room.
+            let is_refused =
+                ["somebody who records to it", "No space left"].iter().any(|why| said.contains(why));
+            assert!(is_over || is_refused, "{said}");
             if is_over {
                 continue;
             }
+            refused += 1;
         }
         child.kill().unwrap();
         child.wait().unwrap();
@@ -52,20 +59,36 @@ fn kill_recorders(kills: usize) {
             assert!(saved.lost < 2 << 20, "{} bytes are lost", saved.lost);
         }
     }
-    println!("{cut} of {kills} recordings were cut off");
+    println!("{cut} of {kills} recordings were cut off; {refused} second recorders were refused");
 }
 
 #[test]
 fn a_killed_process_loses_its_last_chunk_at_most() {
-    kill_recorders(4);
+    kill_recorders(4, Path::new(env!("CARGO_TARGET_TMPDIR")));
 }
 
 /// Takes minutes: `cargo nextest run -p roverlab-cli --run-ignored all -E 'test(killed::campaigns)'`.
 mod campaigns {
+    use super::*;
+
     #[test]
     #[ignore = "a campaign of minutes, by the command above"]
     fn a_thousand_killed_processes_lose_their_last_chunk_at_most() {
-        super::kill_recorders(1000);
+        kill_recorders(1000, Path::new(env!("CARGO_TARGET_TMPDIR")));
+    }
+
+    /// With `SMALL_DISK`, a folder on a file system that is smaller than the recording, as by
+    /// `mount -t tmpfs -o size=SIZE none FOLDER`.
+    #[test]
+    #[ignore = "a campaign of minutes, by the command above"]
+    fn a_full_disk_keeps_the_beginning_of_a_recording() {
+        let folder = std::env::var_os("SMALL_DISK").expect("SMALL_DISK names a folder on a small disk");
+        let log = Path::new(&folder).join("full.mcap");
+        let (status, said) = said(roverlab(&["distbug", "--seed", "2", "--record"]).arg(&log));
+        assert!(status != 0 && said.contains("the recording is incomplete"), "{status}: {said}");
+        assert!(recover(&fs::read(&log).unwrap()).is_ok_and(|saved| saved.header && saved.chunks > 0));
+        fs::remove_file(log).unwrap();
+        kill_recorders(1001, Path::new(&folder));
     }
 }
 

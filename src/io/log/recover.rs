@@ -17,7 +17,8 @@ pub struct Recovery {
     pub chunks: usize,
     /// Number of recovered messages.
     pub messages: u64,
-    /// Whether the header was recovered. Without it the result can be viewed, but not replayed.
+    /// Whether the header was recovered. Without it the result can be viewed, but not replayed. That of a
+    /// newer schema is recovered too; [`Log::read`](super::Log::read) refuses it.
     pub header: bool,
     /// Number of unusable bytes in the damaged file, such as an incomplete last chunk.
     pub lost: usize,

@@ -21,6 +21,12 @@ impl Doubt {
         1.0 - self.0
     }
 
+    /// The share of the spare room that a way must have on either side: none at first, all of it at the
+    /// maximum doubt.
+    pub(super) fn caution(self) -> f64 {
+        (self.0 - FIRST) / (MOST - FIRST)
+    }
+
     /// Increases the doubt after a range proved too long.
     pub(super) fn grow(&mut self) {
         self.0 = (2.0 * self.0).min(MOST);

@@ -28,7 +28,8 @@ bug_algorithm! {
     /// # Model
     ///
     /// As for [`DistBug`](super::DistBug): free ranges are those of the whole disc. Places count up to 33
-    /// robot radii away, since walls farther off may hide between the beams.
+    /// robot radii away, since walls farther off may hide between the beams. After a leave that led no nearer,
+    /// a shorter part of the free range counts, and more room must be beside the way.
     TangentBug, "TangentBug", Tangent, PathBound::Unknown
 }
 
@@ -182,12 +183,19 @@ impl Strategy for Tangent {
 
     fn consider(&mut self, body: &Body, sight: &Sight) -> Decision {
         self.passed = self.passed.min(sight.corner_distance());
-        self.panorama.look(body.surroundings.points(), body.parameters.follow_distances().least);
+        let distances = body.parameters.follow_distances();
+        self.panorama.look(body.surroundings.points(), distances.least);
         let (pose, radius) = (body.pose, body.parameters.robot_radius);
         let goal = pose.to_local(body.goal);
         let wall = normalize_angle(sight.place.wall - pose.heading);
         let seen = self.panorama.obstacle(wall, LINK * radius).map(|end| (end - goal).norm());
         self.seen = seen.fold(self.seen, f64::min);
+        // A passage through which the last way did not lead may be too narrow to steer through from afar. The
+        // boundary leads through it.
+        let spare = self.doubt.caution() * (distances.wished - distances.least);
+        if spare > 0.0 {
+            self.panorama.look(body.surroundings.points(), distances.least + spare);
+        }
         let place = self.panorama.nearest_to(goal, REACH * radius, self.doubt.trust());
         let reach = (place - goal).norm();
         self.reach = self.reach.min(reach);

@@ -23,6 +23,9 @@ fn with_metadata(records: &[&[(&str, &str)]]) -> Vec<u8> {
 fn several_runs_and_newer_schemas_are_named() {
     let named = |records: &[&[(&str, &str)]]| Log::read(with_metadata(records)).unwrap_err();
     assert!(matches!(named(&[&[("schema", "2")]]), LogError::Newer { found: 2, supported: 1 }));
+    // It is recovered as it is, header included.
+    let newer = recover(&with_metadata(&[&[("schema", "2")]])).unwrap();
+    assert!(newer.header && matches!(Log::read(newer.bytes), Err(LogError::Newer { found: 2, .. })));
     let metadata = header().metadata();
     let ours: Vec<(&str, &str)> =
         metadata.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect();
