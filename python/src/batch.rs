@@ -113,6 +113,7 @@ struct Arrays {
 
 /// Which columns the arrays of a batch have.
 #[derive(Debug, Clone, Copy)]
+#[allow(clippy::struct_excessive_bools, reason = "Each is an option of the batch by itself")]
 struct Columns {
     scan: bool,
     walls: bool,

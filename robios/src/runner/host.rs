@@ -119,7 +119,7 @@ pub(crate) fn run_together(
             truth.trail.clear();
         }
         if let Some(Walked { odometry, path_length, stance }) = served.walked {
-            truth = Truth { odometry, path_length, stance, ..truth };
+            truth = Truth { stance, odometry, path_length, ..truth };
         }
         Verdict::new(&program.name, program.robot, served.ending, &served.report, truth)
     });

@@ -28,13 +28,11 @@ pub(crate) fn program() -> Result<PathBuf, String> {
 
 /// Headers, scripts and Python modules: at the set place, above this program's folder, or in the project.
 pub(crate) fn home() -> Result<PathBuf, String> {
-    let places = match PLACE.get() {
-        Some(place) => vec![place.home.clone()],
-        None => {
-            let installed =
-                env::current_exe().ok().and_then(|file| Some(file.parent()?.parent()?.to_owned()));
-            installed.into_iter().chain([PathBuf::from(env!("CARGO_MANIFEST_DIR"))]).collect()
-        }
+    let places = if let Some(place) = PLACE.get() {
+        vec![place.home.clone()]
+    } else {
+        let installed = env::current_exe().ok().and_then(|file| Some(file.parent()?.parent()?.to_owned()));
+        installed.into_iter().chain([PathBuf::from(env!("CARGO_MANIFEST_DIR"))]).collect()
     };
     let is_home =
         |place: &&PathBuf| place.join("include/eyebot.h").is_file() && place.join("bin/gccsim").is_file();
