@@ -123,7 +123,7 @@ impl CraftSpec {
             require_finite("craft's middle of mass", *coordinate)?;
         }
         for value in self.inertia.as_flattened() {
-            require_finite("craft's inertia", *value)?;
+            require("craft's inertia", *value, value.abs() <= 1e9, "at most 1e9")?;
         }
         let moments = Matrix3::from_fn(|row, column| self.inertia[row.min(column)][row.max(column)]);
         let moments = moments.symmetric_eigenvalues();

@@ -215,7 +215,7 @@ fn nonsense_is_refused_by_name() {
         Craft::new(&spec, 0.01).map(|_| ()).unwrap_err().name().to_owned()
     };
     assert_eq!(refused(&|spec| spec.mass = -1.0), "craft's mass");
-    assert_eq!(refused(&|spec| spec.inertia[1][1] = -3.0), "least principal inertia");
+    assert_eq!(refused(&|spec| spec.inertia[1][1] = -3.0), "craft's least principal moment of inertia");
     assert_eq!(refused(&|spec| spec.added_mass[2] = f64::NAN), "added mass");
     assert_eq!(
         refused(&|spec| spec.thrusters[0].direction = Vector3::zeros()),
