@@ -244,10 +244,12 @@ impl Pieces {
 
 impl Worker {
     fn start(mut command: Command) -> Result<Self> {
-        let failed = |error: std::io::Error| {
-            Error::new(ErrorKind::Other, "a process of the evaluation cannot be started").with_source(error)
-        };
-        let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().map_err(failed)?;
+        let child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn();
+        let mut child = child.map_err(|error| {
+            let program = command.get_program().display();
+            let message = format!("{program}, a process of the evaluation, cannot be started");
+            Error::new(ErrorKind::Other, message).with_source(error)
+        })?;
         let pipes = child.stdin.take().zip(child.stdout.take());
         let (input, output) =
             pipes.ok_or_else(|| Error::new(ErrorKind::Other, "a process of the evaluation has no pipes"))?;

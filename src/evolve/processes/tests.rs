@@ -119,7 +119,7 @@ fn a_question_without_an_end_is_refused() {
 #[test]
 fn processes_that_end_or_cannot_start_are_errors() {
     let error = Processes::start(1, || Command::new("/no/such/program")).unwrap_err();
-    assert_eq!(error.to_string(), "a process of the evaluation cannot be started");
+    assert_eq!(error.to_string(), "/no/such/program, a process of the evaluation, cannot be started");
     // The test binary, run with a test name that does not exist, ends without an answer.
     let idle = || {
         let mut command = Command::new(std::env::current_exe().unwrap());
