@@ -158,7 +158,7 @@ fn spring(
         .local_anchor1(place)
         .contacts_enabled(false)
         .motor_model(MotorModel::ForceBased)
-        .motor_position(0.0, stiffness, damping);
+        .motor_position(-SAG, stiffness, damping);
     world.insert_impulse_joint(body, wheel, joint);
 }
 
