@@ -11,9 +11,10 @@
 //! a millimetre, so that the load goes from point to point more slowly than a tick.
 //!
 //! In each tick, speeds are computed such that the body ends on the ground, not in it, and no friction
-//! exceeds its limit (Moreau time stepping; projected Gauss-Seidel with warm starts). Resting attitudes,
-//! loads, slip under drive, sliding and skidding, high-centring, tipping, free fall and inelastic impacts
-//! follow from that. Drives turn their wheels as on level ground, so encoders and odometry drift with slip.
+//! exceeds its limit or acts aside from the slide (Moreau time stepping, solved by Newton's method). Resting
+//! attitudes, loads, slip under drive, sliding and skidding, high-centring, tipping, free fall and inelastic
+//! impacts follow from that. Drives turn their wheels as on level ground, so encoders and odometry drift with
+//! slip.
 //!
 //! # Limits of the model
 //!
@@ -30,6 +31,7 @@
 //! smooth hills, halving the tick moves the end of a 10 m drive by at most 1 mm and 0.1 degrees, if the drive
 //! accelerates as motors do.
 
+mod contact;
 mod hills;
 mod mishap;
 mod rigid_body;

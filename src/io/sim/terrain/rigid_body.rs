@@ -1,6 +1,7 @@
 use nalgebra::{Quaternion, UnitQuaternion};
 
-use super::undercarriage::{Foot, GRAVITY, Grip, Undercarriage};
+use super::contact::{Contact, Load, Meeting, Motion, Ride, solve};
+use super::undercarriage::{Foot, GRAVITY, Undercarriage};
 use crate::geometry::{Point3, Pose, Pose3, Vector3, math};
 use crate::kinematics::PlanarTwist;
 use crate::world::HeightField;
@@ -14,8 +15,8 @@ pub(super) struct RigidBody {
     velocity: Vector3,
     /// Angular velocity about each axis of the world (rad/s).
     spin: Vector3,
-    /// Impulse of each foot in the last tick: along the ground's normal and two tangents.
-    impulses: Vec<Vector3>,
+    /// Forces at each foot in the last tick.
+    loads: Vec<Load>,
     contacts: Vec<Contact>,
     /// Elastic energy of its feet (J/kg).
     strain: f64,
@@ -23,49 +24,16 @@ pub(super) struct RigidBody {
     asleep: bool,
 }
 
-/// A foot on the ground, or about to reach it.
-#[derive(Debug, Clone)]
-struct Contact {
-    foot: usize,
-    /// Speed along the normal below which the ground presses (m/s).
-    least_speed: f64,
-    /// Speed by which the ground yields to an impulse, per impulse of a unit mass.
-    softness: f64,
-    /// Height above the ground at the start of the tick (m).
-    gap: f64,
-    /// Along the normal, and along the directions in which it is held.
-    axes: [Axis; 3],
-    held: usize,
-    /// The rim's speeds along the latter.
-    rim: [f64; 2],
-    /// Impulses along the axes.
-    impulse: Vector3,
-}
-
-/// Effect of an impulse at a foot on a body, along one direction.
-#[derive(Debug, Clone, Copy, Default)]
-struct Axis {
-    direction: Vector3,
-    /// Its moment about the centre of mass, and the change of angular velocity.
-    moment: Vector3,
-    spin: Vector3,
-    /// The change of the foot's speed.
-    effort: f64,
-}
-
-/// Maximum number of solver iterations per contact search of a tick: the first search estimates the positions
-/// of the feet, and the second one uses them.
-const ROUNDS: [usize; 2] = [10, 60];
-/// Change of an impulse at which the iteration ends (m/s).
-const SETTLED: f64 = 1e-9;
+/// Largest number of searches for contacts in a tick.
+const SEARCHES: usize = 2;
+/// Difference from the expected position at the end of a tick that needs no further search (m).
+const AS_EXPECTED: f64 = 1e-5;
 /// Height above which feet of a body at rest are not considered (m).
 const MARGIN: f64 = 2e-3;
 /// Depth of a foot above which its point of entry into the ground is computed (m).
 const DEEP: f64 = 1.5e-3;
 /// Kinetic energy of a body at rest (J/kg): 10 µm/s.
 const ASLEEP: f64 = 5e-11;
-/// Speed at which a body placed in the ground leaves it (m/s).
-const EMERGING: f64 = 0.25;
 
 impl RigidBody {
     /// A body at rest with its robot's frame at a pose.
@@ -75,7 +43,7 @@ impl RigidBody {
             attitude: pose.attitude,
             velocity: Vector3::zeros(),
             spin: Vector3::zeros(),
-            impulses: vec![Vector3::zeros(); carriage.feet.len()],
+            loads: vec![Load::default(); carriage.feet.len()],
             contacts: Vec::with_capacity(carriage.feet.len()),
             strain: 0.0,
             asleep: false,
@@ -109,7 +77,7 @@ impl RigidBody {
 
     /// Whether a foot supported it in the last tick.
     pub(super) fn is_carried(&self) -> bool {
-        self.impulses.iter().any(|impulse| impulse.x > 0.0)
+        self.loads.iter().any(|load| load.pressure > 0.0)
     }
 
     /// Energy above that at rest at height 0 (J/kg).
@@ -141,17 +109,28 @@ impl RigidBody {
     }
 
     fn advance(&mut self, ground: &HeightField, carriage: &Undercarriage, drive: &PlanarTwist, tick: f64) {
-        let free = self.velocity - Vector3::z() * (GRAVITY * tick);
-        let (mut velocity, mut spin) = (self.velocity, self.spin);
-        for rounds in ROUNDS {
-            self.look(ground, carriage, drive, (velocity, spin), tick);
-            (velocity, spin) = self.solve(carriage, (free, self.spin), rounds);
+        let radius = carriage.gyration.sqrt();
+        let mut motion = stacked(&self.velocity, &(self.spin * radius));
+        let free = motion - stacked(&(Vector3::z() * (GRAVITY * tick)), &Vector3::zeros());
+        // The first search expects the body to move on as it did; if it does not, the second one knows better.
+        for _ in 0..SEARCHES {
+            let (velocity, spin) = split(&motion);
+            self.look(ground, carriage, drive, (velocity, spin / radius), tick);
+            let expected = motion;
+            motion = solve(&mut self.contacts, &free, expected);
+            for contact in &self.contacts {
+                self.loads[contact.foot] = contact.load;
+            }
+            if (motion - expected).norm() * tick < AS_EXPECTED {
+                break;
+            }
         }
-        (self.velocity, self.spin) = (velocity, spin);
-        self.strain =
-            self.contacts.iter().map(|contact| contact.strain(carriage, &(velocity, spin), tick)).sum();
-        self.place += velocity * tick;
-        self.attitude = UnitQuaternion::new_normalize((turn(spin * tick) * self.attitude).into_inner());
+        let strain = |contact: &Contact| contact.strain(&carriage.feet[contact.foot], &motion, tick);
+        self.strain = self.contacts.iter().map(strain).sum();
+        let (velocity, spin) = split(&motion);
+        (self.velocity, self.spin) = (velocity, spin / radius);
+        self.place += self.velocity * tick;
+        self.attitude = UnitQuaternion::new_normalize((turn(self.spin * tick) * self.attitude).into_inner());
     }
 
     /// Slows the body down if its energy has increased without a motor, because of a ground edge unknown to
@@ -177,65 +156,28 @@ impl RigidBody {
         tick: f64,
     ) {
         // Arms and rims are taken at the middle of the tick, so that arcs are exact.
-        let middle = turn(spin * (0.5 * tick)) * self.attitude;
-        let forward = middle * Vector3::x();
+        let start = self.attitude.to_rotation_matrix();
+        let middle = (turn(spin * (0.5 * tick)) * self.attitude).to_rotation_matrix();
+        let ride = Ride {
+            forward: middle * Vector3::x(),
+            drive,
+            friction: carriage.friction,
+            per_radius: 1.0 / carriage.gyration.sqrt(),
+            tick,
+        };
         // A body that hits the ground on one side turns its other side towards it within the tick.
         let margin = MARGIN + tick * self.velocity.norm();
         self.contacts.clear();
         for (number, foot) in carriage.feet.iter().enumerate() {
-            let start = self.place + self.attitude * foot.place;
             let arm = middle * foot.place;
             let way = (velocity + spin.cross(&arm)) * tick;
-            let Some((normal, gap)) = plane(ground, start, way) else { continue };
-            if gap + normal.dot(&way) > margin {
-                self.impulses[number] = Vector3::zeros();
+            let Some((normal, gap)) = plane(ground, self.place + start * foot.place, way, margin) else {
+                self.loads[number] = Load::default();
                 continue;
-            }
-            let relaxation = foot.relaxation();
-            let mut contact = Contact {
-                foot: number,
-                least_speed: least_speed(gap, tick, relaxation),
-                softness: foot.softness / (tick * (tick + relaxation)),
-                gap,
-                axes: [Axis::default(); 3],
-                held: 0,
-                rim: [0.0; 2],
-                impulse: self.impulses[number],
             };
-            contact.hold(foot.grip, (arm, normal), forward, drive, carriage.gyration);
-            self.contacts.push(contact);
+            let meeting = Meeting { arm, normal, gap };
+            self.contacts.push(Contact::new(number, foot, &meeting, &ride, self.loads[number]));
         }
-    }
-
-    /// Speeds at the end of the tick from those without the ground.
-    fn solve(
-        &mut self,
-        carriage: &Undercarriage,
-        mut speeds: (Vector3, Vector3),
-        rounds: usize,
-    ) -> (Vector3, Vector3) {
-        for contact in &self.contacts {
-            for (axis, impulse) in contact.axes.iter().zip(contact.impulse.iter()) {
-                axis.push(*impulse, &mut speeds);
-            }
-        }
-        for _ in 0..rounds {
-            let mut change = 0.0_f64;
-            for contact in &mut self.contacts {
-                change = change.max(contact.press(&mut speeds));
-                // No friction without pressure.
-                if contact.held > 0 && contact.impulse != Vector3::zeros() {
-                    change = change.max(contact.rub(&mut speeds, carriage.friction));
-                }
-            }
-            if change < SETTLED {
-                break;
-            }
-        }
-        for contact in &self.contacts {
-            self.impulses[contact.foot] = contact.impulse;
-        }
-        speeds
     }
 
     /// Displaces the body like an obstacle in the way of its outline, and removes the speed in that
@@ -275,12 +217,13 @@ impl RigidBody {
 
     /// This body at rest, to which it has come without sliding; `None` if it finds no rest.
     fn settled(&self, ground: &HeightField, carriage: &Undercarriage, tick: f64) -> Option<Self> {
-        let held = Undercarriage { friction: f64::MAX, ..carriage.clone() };
+        let held = Undercarriage { friction: UNLIMITED, ..carriage.clone() };
         let goal = self.pose(carriage).position.xy();
         let mut body = self.clone();
         for _ in 0..MOST_SETTLING {
             let before = body.place;
             body.advance(ground, &held, &PlanarTwist::STOP, tick);
+            // A tilt about the centre of mass moves the robot's origin aside.
             let aside = goal - body.pose(carriage).position.xy();
             body.place += Vector3::new(aside.x, aside.y, 0.0);
             if (body.place - before).norm() < 1e-9 && body.is_carried() {
@@ -294,29 +237,26 @@ impl RigidBody {
     }
 }
 
+/// Coefficient of friction of a body that cannot slide.
+const UNLIMITED: f64 = 1e6;
 /// Largest number of ticks in which a placed body comes to rest.
 const MOST_SETTLING: u32 = 400;
 /// Fraction of its speed that remains after each of these ticks.
 const CALMING: f64 = 0.8;
 
-/// Speed along the normal below which the ground presses a foot at a height above it (m/s).
-///
-/// The ground is a spring and a damper under each foot, integrated by backward Euler: a foot under the
-/// surface returns with the time constant of both, and one above it is stopped when it arrives.
-fn least_speed(gap: f64, tick: f64, relaxation: f64) -> f64 {
-    if gap > 0.0 { -gap / tick } else { (-gap / (tick + relaxation)).min(EMERGING) }
-}
-
 /// Normal of the ground where a foot arrives on its way, and the foot's initial distance from that plane;
-/// `None` beyond the ground.
+/// `None` if it arrives more than `margin` above the ground, or beyond it.
 ///
 /// It goes through the ground's place at the end, but lies as the ground does in the middle of the way: as
 /// arms and rims do, so that halving the tick quarters the error and does not halve it.
-fn plane(ground: &HeightField, start: Point3, way: Vector3) -> Option<(Vector3, f64)> {
+fn plane(ground: &HeightField, start: Point3, way: Vector3, margin: f64) -> Option<(Vector3, f64)> {
     let at = |end: Point3| {
-        let (level, slope) = ground.height_and_gradient(end.xy())?;
+        let level = ground.height(end.xy())?;
+        if end.z - level > margin {
+            return None;
+        }
         let middle = ground.gradient(nalgebra::center(&start, &end).xy());
-        let slope = middle.unwrap_or(slope);
+        let slope = middle.or_else(|| ground.gradient(end.xy()))?;
         let normal = Vector3::new(-slope.x, -slope.y, 1.0).normalize();
         let below = start.z - level - slope.dot(&(start.xy() - end.xy()));
         Some((normal, below * normal.z))
@@ -337,6 +277,16 @@ fn plane(ground: &HeightField, start: Point3, way: Vector3) -> Option<(Vector3, 
     if hit.is_finite() { at(lifted + direction * (hit + 1e-9)) } else { Some((normal, gap)) }
 }
 
+/// A motion of two parts.
+fn stacked(velocity: &Vector3, spin: &Vector3) -> Motion {
+    Motion::new(velocity.x, velocity.y, velocity.z, spin.x, spin.y, spin.z)
+}
+
+/// Parts of a motion.
+fn split(motion: &Motion) -> (Vector3, Vector3) {
+    (motion.fixed_rows::<3>(0).into_owned(), motion.fixed_rows::<3>(3).into_owned())
+}
+
 /// Rotation about a vector by its length.
 fn turn(by: Vector3) -> UnitQuaternion<f64> {
     let angle = by.norm();
@@ -346,115 +296,4 @@ fn turn(by: Vector3) -> UnitQuaternion<f64> {
     let (sin, cos) = math::sin_cos(0.5 * angle);
     let axis = by * (sin / angle);
     UnitQuaternion::new_unchecked(Quaternion::new(cos, axis.x, axis.y, axis.z))
-}
-
-impl Axis {
-    /// The axis along a direction at a foot with a lever arm from the centre of mass.
-    fn new(direction: Vector3, arm: &Vector3, gyration: f64) -> Self {
-        let moment = arm.cross(&direction);
-        let effort = 1.0 + moment.norm_squared() / gyration;
-        Self { direction, moment, spin: moment / gyration, effort }
-    }
-
-    /// Speed of a foot along the axis (m/s).
-    #[inline]
-    fn speed(&self, (velocity, spin): &(Vector3, Vector3)) -> f64 {
-        self.direction.dot(velocity) + self.moment.dot(spin)
-    }
-
-    #[inline]
-    fn push(&self, impulse: f64, (velocity, spin): &mut (Vector3, Vector3)) {
-        *velocity += self.direction * impulse;
-        *spin += self.spin * impulse;
-    }
-}
-
-impl Contact {
-    /// Finds the directions in which a foot is held, and how fast its rim moves along them.
-    fn hold(
-        &mut self,
-        grip: Grip,
-        (arm, normal): (Vector3, Vector3),
-        forward: Vector3,
-        drive: &PlanarTwist,
-        gyration: f64,
-    ) {
-        let along = forward - normal * forward.dot(&normal);
-        // If the robot's nose points along the normal, any direction is valid.
-        let along = along
-            .try_normalize(1e-9)
-            .unwrap_or_else(|| Vector3::z().cross(&normal).try_normalize(1e-9).unwrap_or_else(Vector3::x));
-        let left = normal.cross(&along);
-        let rim = grip.rim_speed(drive);
-        let single = |axis: crate::geometry::Vector| (along * axis.x + left * axis.y, axis.dot(&rim));
-        let mut tangents = [Vector3::zeros(); 2];
-        match grip {
-            Grip::Free => {}
-            Grip::Driven(_) | Grip::Body => {
-                (tangents, self.held, self.rim) = ([along, left], 2, [rim.x, rim.y]);
-            }
-            Grip::Rolling(_) => {
-                let rolls = rim.try_normalize(1e-6).unwrap_or_else(crate::geometry::Vector::x);
-                let across = crate::geometry::Vector::new(-rolls.y, rolls.x);
-                (tangents[0], self.rim[0]) = single(across);
-                self.held = 1;
-            }
-            Grip::Roller(_, axis) => {
-                (tangents[0], self.rim[0]) = single(axis);
-                self.held = 1;
-            }
-        }
-        self.axes[0] = Axis::new(normal, &arm, gyration);
-        for (axis, tangent) in self.axes[1..].iter_mut().zip(tangents).take(self.held) {
-            *axis = Axis::new(tangent, &arm, gyration);
-        }
-        let held = [self.held > 0, self.held > 1].map(|held| f64::from(u8::from(held)));
-        self.impulse.component_mul_assign(&Vector3::new(1.0, held[0], held[1]));
-    }
-
-    /// Elastic energy at the end of the tick (J/kg).
-    fn strain(&self, carriage: &Undercarriage, speeds: &(Vector3, Vector3), tick: f64) -> f64 {
-        let depth = (self.gap + self.axes[0].speed(speeds) * tick).min(0.0);
-        0.5 * depth * depth / carriage.feet[self.foot].softness
-    }
-
-    /// Applies the normal force required by the foot's speed; returns the change of the impulse.
-    #[inline]
-    fn press(&mut self, speeds: &mut (Vector3, Vector3)) -> f64 {
-        let (axis, softness) = (&self.axes[0], self.softness);
-        let missing = self.least_speed - axis.speed(speeds) - softness * self.impulse.x;
-        let pressed = (self.impulse.x + missing / (axis.effort + softness)).max(0.0);
-        let change = pressed - self.impulse.x;
-        if change != 0.0 {
-            self.impulse.x = pressed;
-            axis.push(change, speeds);
-        }
-        change.abs()
-    }
-
-    /// Applies the friction required by the foot's sliding, up to its limit; returns the change of the
-    /// impulse.
-    #[inline]
-    fn rub(&mut self, speeds: &mut (Vector3, Vector3), friction: f64) -> f64 {
-        let limit = friction * self.impulse.x;
-        let [_, along, left] = &self.axes;
-        let (before_y, before_z) = (self.impulse.y, self.impulse.z);
-        let mut y = before_y - (along.speed(speeds) - self.rim[0]) / along.effort;
-        let mut z = 0.0;
-        if self.held > 1 {
-            z = before_z - (left.speed(speeds) - self.rim[1]) / left.effort;
-        }
-        let squared = y * y + z * z;
-        if squared > limit * limit {
-            let share = limit / squared.sqrt();
-            (y, z) = (y * share, z * share);
-        }
-        (self.impulse.y, self.impulse.z) = (y, z);
-        let (dy, dz) = (y - before_y, z - before_z);
-        along.push(dy, speeds);
-        if self.held > 1 {
-            left.push(dz, speeds);
-        }
-        dy.abs().max(dz.abs())
-    }
 }
