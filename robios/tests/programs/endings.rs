@@ -4,7 +4,7 @@ use std::process::Command;
 
 use serde_json::Value;
 
-use super::{Folder, compiler, programs, python, report};
+use super::{Folder, compiler, programs, python, report, robios};
 
 /// Runs a program with this text, and returns its report.
 fn told(name: &str, text: &str, options: &[&str]) -> Value {
@@ -53,6 +53,22 @@ fn whoever_is_left_behind_with_an_open_pipe_is_not_waited_for() {
     let left = robot["lcd_text"].as_str().unwrap();
     let killed = Command::new("kill").args(["-9", left]).status().unwrap();
     assert!(killed.success(), "process {left} should still have been there");
+}
+
+#[test]
+fn of_endless_output_the_beginning_is_passed_on() {
+    if !compiler() {
+        return;
+    }
+    let folder = Folder::new("endings-output");
+    let text = "#include <stdio.h>\n#include \"eyebot.h\"\nint main() { LCDPrintf(\"on\");\n\
+                for (int i = 0; i < 3000000; i++) puts(\"line\"); LCDPrintf(\"ly\"); return 0; }\n";
+    let file = folder.write("chatters.c", text);
+    let output = robios(&["--json", file.to_str().unwrap()]);
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["robots"][0]["lcd_text"], "only", "{report}");
+    let passed = output.stderr.len();
+    assert!((60_000..70_000).contains(&passed), "{passed} bytes");
 }
 
 #[test]
