@@ -33,10 +33,10 @@ use crate::world::{GridCell, World};
 /// # Outcomes
 ///
 /// [`Unreachable`](NavigatorOutcome::Unreachable) is reported at once if the known world has no way to within
-/// the goal's tolerance. Cells that may close one are halved twice first; a passage with less room to spare
-/// than the resulting cells may count as closed. If seen obstacles leave none, they are forgotten and looked
-/// at anew first. A robot without progress records what is in front of it, backs off and plans anew; after
-/// several attempts it is [`Stuck`](NavigatorOutcome::Stuck).
+/// the goal's tolerance. Cells that may close one are halved twice first; a passage with less room to
+/// spare on either side than one and a half of the resulting cells may count as closed. If seen obstacles
+/// leave none, they are forgotten and looked at anew first. A robot without progress records what is in front
+/// of it, backs off and plans anew; after several attempts it is [`Stuck`](NavigatorOutcome::Stuck).
 ///
 /// ```
 /// use roverlab::geometry::{Point, Pose};
