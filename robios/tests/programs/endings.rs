@@ -69,7 +69,7 @@ fn a_program_ends_with_a_runner_that_is_killed() {
     let text = "#include <stdio.h>\n#include <unistd.h>\n#include \"eyebot.h\"\n\
                 int main() { printf(\"%d\\n\", getpid()); fflush(stdout); for (;;); }\n";
     let mut command = Command::new(env!("CARGO_BIN_EXE_robios"));
-    command.arg(folder.write("endless.c", text)).stdout(Stdio::null()).stderr(Stdio::piped());
+    command.arg("--json").arg(folder.write("endless.c", text)).stdout(Stdio::null()).stderr(Stdio::piped());
     let mut runner = command.spawn().unwrap();
     let said = BufReader::new(runner.stderr.take().unwrap());
     let number: u32 = said.lines().find_map(|line| line.unwrap().trim().parse().ok()).unwrap();
