@@ -151,6 +151,16 @@ fn a_gap_too_narrow_to_steer_through_from_afar_is_entered_along_the_wall() {
     assert_eq!(end(BugKind::TangentBug, &world, start, point(603.0, 785.07)), BugOutcome::Reached);
 }
 
+/// In a corner that the robot's disc does not fill, it has room within the tolerance of the goal, but beside
+/// the straight way there from most places along the walls.
+#[test]
+fn room_beside_the_straight_way_to_the_goal_counts() {
+    let (start, goal) = (Pose::new(0.5, 0.858_831_81, -2.867_829_18), Point::new(2.936_542_37, 0.064_813_58));
+    for kind in BugKind::ALL {
+        assert_eq!(end(kind, &room(), start, goal), BugOutcome::Reached, "{kind}");
+    }
+}
+
 mod campaigns {
     use super::*;
 

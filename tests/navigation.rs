@@ -245,3 +245,48 @@ fn a_blind_lidar_and_a_stopped_clock_end_the_run_with_an_error() {
     let error = control::run(&mut faulty, &mut bug, 100.0, |_, _, _| {}).unwrap_err();
     assert_eq!(error.to_string(), "the robot's clock stands still");
 }
+
+mod campaigns {
+    use super::*;
+    use roverlab::geometry::direction;
+    use roverlab::nav::{Navigator, NavigatorOutcome, NavigatorParameters, NavigatorPhase};
+    use roverlab::random::Stream;
+
+    /// A closed cell with a corridor into it, both turned, and the goal in the cell.
+    fn corridor(half_width: f64, heading: f64) -> (World, Point) {
+        let (mut world, along) = (World::walled(3.0, 2.0), direction(heading));
+        let across = Vector::new(-along.y, along.x);
+        let goal = Point::new(1.5, 1.0);
+        let side = [(-0.6, half_width), (-0.3, half_width), (-0.3, 0.3), (0.3, 0.3)];
+        let corners = side.into_iter().chain(side.into_iter().rev().map(|(x, y)| (x, -y)));
+        let corners: Vec<Point> = corners.map(|(x, y)| goal + along * x + across * y).collect();
+        world.walls.extend(corners.windows(2).map(|ends| Wall::new(ends[0], ends[1])));
+        (world, goal)
+    }
+
+    /// Whichever way a corridor runs, it is a way if the robot's disc has 4 mm to spare on either side, and
+    /// none if it lacks any.
+    #[test]
+    #[ignore = "takes a minute: cargo test --release --all-features --test navigation -- --ignored"]
+    fn corridors_are_ways_where_the_robot_fits() {
+        let mut stream = Stream::new(1);
+        for number in 0..1000 {
+            let spare =
+                if stream.chance(0.5) { stream.between(0.004, 0.02) } else { stream.between(-0.02, 0.0) };
+            let heading = stream.between(-PI, PI);
+            // The disc with its least clearance, and half of the wall.
+            let (world, goal) = corridor(0.072 + 0.005 + spare, heading);
+            let start = Pose::new(stream.between(0.2, 0.5), stream.between(0.2, 1.8), heading);
+            let parameters = NavigatorParameters { match_scans: false, ..NavigatorParameters::default() };
+            let mut navigator = Navigator::new(&world, start, goal, parameters).unwrap();
+            let ended = navigator.phase() == NavigatorPhase::Ended(NavigatorOutcome::Unreachable);
+            assert_eq!(ended, spare < 0.0, "{spare} m to spare at {heading}");
+            if !ended && number % 10 == 0 {
+                let (mut robot, truth) = robot_in(world, start, SimOptions::ideal());
+                let outcome = control::run(&mut robot, &mut navigator, 120.0, |_, _, _| {}).unwrap();
+                let contacts = truth.robot(0).unwrap().contacts;
+                assert_eq!((outcome, contacts), (NavigatorOutcome::Reached, 0), "{spare} m at {heading}");
+            }
+        }
+    }
+}

@@ -5,7 +5,7 @@
 use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use roverlab::geometry::{Pose, Twist};
 use roverlab::io::log::{Header, Log, LogWriter};
@@ -190,6 +190,24 @@ fn who_never_reads_holds_nobody_up() {
     assert!(count(&messages, Message::Told) < 40_000, "the oldest are not");
 }
 
+/// Several together cost no more time than one.
+#[test]
+#[allow(clippy::disallowed_methods, reason = "it is the real time that is measured")]
+fn who_never_reads_is_not_waited_for_at_the_end() {
+    let page = beside();
+    let sleepers: Vec<_> = (0..3).map(|_| look(page.address())).collect();
+    page.wait();
+    thread::sleep(Duration::from_millis(500));
+    for line in 0..20_000 {
+        page.told(&format!("{line} {}", "x".repeat(1000)));
+    }
+    let begin = Instant::now();
+    drop(page);
+    let waited = begin.elapsed().as_secs_f64();
+    assert!((9.0..15.0).contains(&waited), "{waited} s");
+    drop(sleepers);
+}
+
 #[test]
 fn who_comes_later_gets_what_is_said_once() {
     let page = beside();
@@ -273,6 +291,35 @@ fn strangers_are_refused() {
     );
     assert!(get(path).contains("<title>") && get(&format!("{path}main.js")).contains("import "));
     assert!(Beside::open(&Opening { port: port_of(own), command: String::new() }).is_err(), "it is taken");
+}
+
+#[test]
+fn who_dawdles_over_a_request_holds_a_place_for_seconds() {
+    let page = beside();
+    let place = page.address().split('/').nth(2).unwrap().to_owned();
+    let open = || TcpStream::connect(&place).unwrap();
+    let said = |mut stream: TcpStream| {
+        let mut text = String::new();
+        match stream.read_to_string(&mut text) {
+            Err(error) if error.kind() != ErrorKind::ConnectionReset => panic!("{error}"),
+            _ => text,
+        }
+    };
+    let silent: Vec<TcpStream> = (0..31).map(|_| open()).collect();
+    let mut dripping = open();
+    dripping.write_all(b"G").unwrap();
+    let refused = said(open());
+    assert!(refused.starts_with("HTTP/1.1 503"), "{refused}");
+    let drips = (0..40).take_while(|_| {
+        thread::sleep(Duration::from_millis(500));
+        dripping.write_all(b"E").is_ok()
+    });
+    let drips = drips.count();
+    assert!((6..30).contains(&drips), "{drips} drips of half a second each");
+    for stream in silent {
+        assert_eq!(said(stream), "");
+    }
+    assert!(try_join(page.address(), &[("Sec-WebSocket-Protocol", PROTOCOL)]).is_ok(), "there is room again");
 }
 
 fn port_of(own: &str) -> u16 {

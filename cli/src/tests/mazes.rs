@@ -166,6 +166,11 @@ fn hostile_mice_are_stopped_and_named() {
         assert!(err.contains(expected), "{name}: {err}");
         assert_eq!(report["score"], 2000.0);
     }
+    let dawdles = temporary("dawdles.sh");
+    fs::write(&dawdles, "while :; do echo mazeWidth; read -r answer; sleep 0.1; done").unwrap();
+    let command = format!("sh {}", dawdles.display());
+    let (status, _, err) = run(&["--mms-run", &command, "--mms-limit", "1"]);
+    assert!(status == 1 && err.contains("found no end after 1 s"), "{err}");
     let (status, report, err) = run(&["--mms-run", "no/such/mouse"]);
     assert_eq!((status, report), (2, Value::Null));
     assert!(err.starts_with("--mms-run no/such/mouse: found "), "{err}");

@@ -1,10 +1,14 @@
 //! Ends of programs: final calls, limits, faults, and processes left behind.
 
-use std::process::Command;
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::process::{Command, Stdio};
+use std::thread;
+use std::time::Duration;
 
 use serde_json::Value;
 
-use super::{Folder, compiler, programs, python, report};
+use super::{Folder, compiler, programs, python, report, robios};
 
 /// Runs a program with this text, and returns its report.
 fn told(name: &str, text: &str, options: &[&str]) -> Value {
@@ -53,6 +57,47 @@ fn whoever_is_left_behind_with_an_open_pipe_is_not_waited_for() {
     let left = robot["lcd_text"].as_str().unwrap();
     let killed = Command::new("kill").args(["-9", left]).status().unwrap();
     assert!(killed.success(), "process {left} should still have been there");
+}
+
+/// Even one that makes no calls.
+#[test]
+fn a_program_ends_with_a_runner_that_is_killed() {
+    if !compiler() || !cfg!(target_os = "linux") {
+        return;
+    }
+    let folder = Folder::new("endings-killed");
+    let text = "#include <stdio.h>\n#include <unistd.h>\n#include \"eyebot.h\"\n\
+                int main() { printf(\"%d\\n\", getpid()); fflush(stdout); for (;;); }\n";
+    let mut command = Command::new(env!("CARGO_BIN_EXE_robios"));
+    command.arg("--json").arg(folder.write("endless.c", text)).stdout(Stdio::null()).stderr(Stdio::piped());
+    let mut runner = command.spawn().unwrap();
+    let said = BufReader::new(runner.stderr.take().unwrap());
+    let number: u32 = said.lines().find_map(|line| line.unwrap().trim().parse().ok()).unwrap();
+    let is_there = || fs::read(format!("/proc/{number}/cmdline")).is_ok_and(|words| !words.is_empty());
+    assert!(is_there());
+    runner.kill().unwrap();
+    runner.wait().unwrap();
+    let ends = (0..1000).any(|_| {
+        thread::sleep(Duration::from_millis(10));
+        !is_there()
+    });
+    assert!(ends, "process {number} goes on");
+}
+
+#[test]
+fn of_endless_output_the_beginning_is_passed_on() {
+    if !compiler() {
+        return;
+    }
+    let folder = Folder::new("endings-output");
+    let text = "#include <stdio.h>\n#include \"eyebot.h\"\nint main() { LCDPrintf(\"on\");\n\
+                for (int i = 0; i < 3000000; i++) puts(\"line\"); LCDPrintf(\"ly\"); return 0; }\n";
+    let file = folder.write("chatters.c", text);
+    let output = robios(&["--json", file.to_str().unwrap()]);
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["robots"][0]["lcd_text"], "only", "{report}");
+    let passed = output.stderr.len();
+    assert!((60_000..70_000).contains(&passed), "{passed} bytes");
 }
 
 #[test]

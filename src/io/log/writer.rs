@@ -70,6 +70,8 @@ struct Shared<W: Write> {
     tracks: BTreeMap<usize, Track>,
     /// Maximum number of bytes by which a robot may be ahead of the others.
     most_ahead: Option<usize>,
+    /// Time for which it then waits for others that record nothing.
+    patience: Duration,
     /// Number of each channel in the file and of its next message, by robot and topic.
     channels: BTreeMap<(usize, &'static str), (u16, u32)>,
     /// Second of the open chunk, and number of bytes in it.
@@ -138,6 +140,7 @@ impl<W: Write> LogWriter<W> {
             failure: None,
             tracks: BTreeMap::new(),
             most_ahead: None,
+            patience: PATIENCE,
             channels: BTreeMap::new(),
             second: 0,
             bytes: 0,
@@ -200,7 +203,8 @@ impl<W: Write> LogWriter<W> {
         shared.drain();
         self.written.notify_all();
         while shared.is_recording() && shared.is_far_ahead(track) {
-            let waited = self.written.wait_timeout(shared, PATIENCE);
+            let patience = shared.patience;
+            let waited = self.written.wait_timeout(shared, patience);
             let (lock, wait) = waited.unwrap_or_else(PoisonError::into_inner);
             shared = lock;
             if wait.timed_out() {
@@ -336,6 +340,18 @@ mod tests {
         });
         drop(robots);
         assert!(writer.finish().unwrap().len() > 400 * MESSAGE.len());
+    }
+
+    #[test]
+    fn a_robot_far_ahead_waits_for_a_program_that_hangs_no_longer_than_its_patience() {
+        let writer = LogWriter::new(Vec::new(), &Header::new("hangs", [""; 0])).unwrap();
+        writer.hold_at_most(MOST);
+        assert_eq!(writer.lock().patience, PATIENCE);
+        writer.lock().patience = Duration::from_millis(20);
+        let (_hangs, _driven) = (writer.port(1), writer.port(0));
+        (0..10).for_each(|time| writer.push(0, Some(time), CALLS, &MESSAGE));
+        assert_eq!(writer.lock().track(0).waiting, 10 * MESSAGE.len());
+        assert!(writer.finish().unwrap().len() > 10 * MESSAGE.len());
     }
 
     #[test]

@@ -47,8 +47,8 @@ pub(super) struct GoalView {
     /// How far the disc can move towards the goal, and the point it touches there.
     pub(super) free: f64,
     pub(super) obstacle: Option<Point>,
-    /// Whether the goal is near and the disc can move straight to within its tolerance.
-    pub(super) is_at_hand: bool,
+    /// Direction in which the disc can move straight to within the tolerance of a goal that is near.
+    pub(super) at_hand: Option<f64>,
 }
 
 /// Radius around the robot within which points count for its next step (steps).
@@ -175,9 +175,29 @@ impl Body {
         let distance = self.goal_distance();
         let radius = self.parameters.follow_distances().least;
         let (free, obstacle) = self.surroundings.free_distance(direction(bearing), radius);
-        let is_at_hand = free >= distance - USED_TOLERANCE * self.parameters.goal_tolerance
-            && distance < NEAR * self.parameters.follow_distances().wished;
-        GoalView { bearing, distance, free, obstacle, is_at_hand }
+        let straight = free >= distance - USED_TOLERANCE * self.parameters.goal_tolerance;
+        let at_hand = if distance >= NEAR * self.parameters.follow_distances().wished {
+            None
+        } else if straight {
+            Some(bearing)
+        } else {
+            self.beside_goal()
+        };
+        GoalView { bearing, distance, free, obstacle, at_hand }
+    }
+
+    /// Direction to the nearest place within the goal's tolerance that the disc can move straight to. Near
+    /// walls there may be room beside the straight way to the goal alone.
+    fn beside_goal(&self) -> Option<f64> {
+        let goal = self.pose.to_local(self.goal);
+        let radius = self.parameters.follow_distances().least;
+        let ways = around(USED_TOLERANCE * self.parameters.goal_tolerance).map(|away| goal.coords + away);
+        let leads_there = |way: &Vector| {
+            let (free, _) = self.surroundings.free_distance(direction(math::atan2(way.y, way.x)), radius);
+            free >= way.norm()
+        };
+        let nearest = ways.filter(leads_there).min_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()));
+        nearest.map(|way| math::atan2(way.y, way.x))
     }
 
     /// Whether the way to the goal is blocked at the robot.
@@ -220,12 +240,7 @@ impl Body {
             .filter(|away| away.norm() < least + tolerance)
             .collect();
         let has_room = |place: Vector| near.iter().all(|point| (point - place).norm() >= least);
-        let places = (1..=RINGS).flat_map(|ring| (0..DIRECTIONS).map(move |turn| (ring, turn)));
-        let place = |(ring, turn): (u32, u32)| {
-            let angle = std::f64::consts::TAU * f64::from(turn) / f64::from(DIRECTIONS);
-            direction(angle) * (tolerance * f64::from(ring) / f64::from(RINGS))
-        };
-        !has_room(Vector::zeros()) && !places.map(place).any(has_room)
+        !has_room(Vector::zeros()) && !around(tolerance).any(has_room)
     }
 
     /// The twist that turns the robot to a heading and drives it on.
@@ -261,6 +276,15 @@ impl Body {
         let (ahead, _) = self.surroundings.free_distance(direction(0.0), outline);
         approach(ahead.min(self.goal_distance()), present, &self.parameters)
     }
+}
+
+/// Ways from the goal to the points that are tried around it, within a distance.
+fn around(far: f64) -> impl Iterator<Item = Vector> {
+    let places = (1..=RINGS).flat_map(|ring| (0..DIRECTIONS).map(move |turn| (ring, turn)));
+    places.map(move |(ring, turn)| {
+        let angle = std::f64::consts::TAU * f64::from(turn) / f64::from(DIRECTIONS);
+        direction(angle) * (far * f64::from(ring) / f64::from(RINGS))
+    })
 }
 
 /// The speed at which a robot now moving at `present` stops after at most `room` metres.

@@ -86,8 +86,8 @@ impl Decider<'_> {
     /// Drives towards the goal; returns the heading to take.
     fn head_for_goal(&mut self) -> Option<f64> {
         let view = self.body.look_at_goal();
-        if view.is_at_hand {
-            return Some(view.bearing);
+        if view.at_hand.is_some() {
+            return view.at_hand;
         }
         if let Some(heading) = self.strategy.detour(self.body, &view) {
             return Some(heading);
@@ -152,7 +152,7 @@ impl Decider<'_> {
         following.last = position;
         let sight = self.sight(&view)?;
         let decision = self.strategy.consider(self.body, &sight);
-        let decision = if view.is_at_hand { Decision::Leave } else { decision };
+        let decision = if view.at_hand.is_some() { Decision::Leave } else { decision };
         if let Some(heading) = self.obey(decision, &view)? {
             return Some(heading);
         }
@@ -179,7 +179,7 @@ impl Decider<'_> {
             Decision::Follow => Some(None),
             Decision::Leave => {
                 self.leave(view);
-                Some(Some(view.bearing))
+                Some(Some(view.at_hand.unwrap_or(view.bearing)))
             }
             Decision::Reverse => {
                 self.reverse()?;

@@ -84,9 +84,14 @@ fn refused(error: &ParameterError) -> Error {
 }
 
 impl Chart {
-    /// The chart of what a robot can reach from a start.
-    pub(super) fn new(world: &World, start: Point, parameters: &NavigatorParameters) -> Result<Self> {
-        let finest = parameters.resolution;
+    /// The chart of what a robot can reach from a start, in cells of `finest` metres or as small as the
+    /// maximum number of cells allows.
+    pub(super) fn new(
+        world: &World,
+        start: Point,
+        parameters: &NavigatorParameters,
+        finest: f64,
+    ) -> Result<Self> {
         let whole = world.site();
         let resolution = resolution_of(&whole, finest);
         let clearance = if resolution > finest {
@@ -104,20 +109,26 @@ impl Chart {
             Level { clearance, room: parameters.radius() + clearance + inexact(resolution) }
         });
         let evidence = vec![0; clearance.raster().cells()];
-        Ok(Self { clearance, levels, evidence, marks: Vec::new(), is_coarse: resolution > finest })
+        let is_coarse = resolution > parameters.resolution;
+        Ok(Self { clearance, levels, evidence, marks: Vec::new(), is_coarse })
     }
 
-    /// Whether cells larger than wished may close a way that exists between two points.
-    pub(super) fn may_hide_a_way(&self, robot: Point, goal: Point) -> bool {
+    /// Whether the cells may close a way that exists between two points, to within a distance of the second
+    /// one.
+    pub(super) fn may_hide_a_way(&self, robot: Point, goal: Point, tolerance: f64) -> bool {
         let raster = self.clearance.raster();
-        let (Some(from), Some(to)) = (raster.cell_at(robot), raster.cell_at(goal)) else { return false };
-        if !self.is_coarse {
-            return false;
-        }
+        let inexact = inexact(self.resolution());
         // Cells in which the robot may have room somewhere.
-        let room = self.levels[LEVELS - 1].room - 2.0 * inexact(self.resolution());
+        let room = self.levels[LEVELS - 1].room - 2.0 * inexact;
         let regions = raster.regions(|cell| self.clearance.at(cell) > room);
-        regions[from].is_some() && regions[from] == regions[to]
+        let own = raster.cell_at(robot).and_then(|cell| regions[cell]);
+        let is_near = |cell: usize| (raster.centre(cell) - goal).norm() <= tolerance + inexact;
+        own.is_some() && (0..raster.cells()).any(|cell| regions[cell] == own && is_near(cell))
+    }
+
+    /// Whether the cells are larger than wished.
+    pub(super) fn is_coarse(&self) -> bool {
+        self.is_coarse
     }
 
     /// Cell size (m).

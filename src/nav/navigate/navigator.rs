@@ -32,10 +32,11 @@ use crate::world::{GridCell, World};
 ///
 /// # Outcomes
 ///
-/// [`Unreachable`](NavigatorOutcome::Unreachable) is reported at once if the known world has no way. If seen
-/// obstacles leave none, they are forgotten and looked at anew first. A robot without progress records what
-/// is in front of it, backs off and plans anew; after several attempts it is
-/// [`Stuck`](NavigatorOutcome::Stuck).
+/// [`Unreachable`](NavigatorOutcome::Unreachable) is reported at once if the known world has no way to within
+/// the goal's tolerance. Cells that may close one are halved twice first; a passage with less room to
+/// spare on either side than one and a half of the resulting cells may count as closed. If seen obstacles
+/// leave none, they are forgotten and looked at anew first. A robot without progress records what is in front
+/// of it, backs off and plans anew; after several attempts it is [`Stuck`](NavigatorOutcome::Stuck).
 ///
 /// ```
 /// use roverlab::geometry::{Point, Pose};
@@ -109,6 +110,8 @@ const BACKING_SPEED: f64 = 0.06;
 const MAX_BLOCKED: u32 = 8;
 /// Maximum number of times that detections may be discarded.
 const MAX_DOUBTS: u32 = 2;
+/// Number of times that cells are halved before no way is said to exist.
+const HALVINGS: u32 = 2;
 /// Distance driven between two searches for a path with more clearance (m).
 const WIDENING: f64 = 0.3;
 
@@ -125,7 +128,7 @@ impl Navigator {
             return Err(Error::invalid_input("goal", point_in_words(goal), "finite numbers"));
         }
         let mut this = Self {
-            chart: Chart::new(world, start.position(), &parameters)?,
+            chart: Chart::new(world, start.position(), &parameters, parameters.resolution)?,
             parameters,
             goal,
             phase: NavigatorPhase::Looking,
@@ -151,13 +154,32 @@ impl Navigator {
             doubts: 0,
             widened_at: start.position(),
         };
-        if !this.chart.is_open(start.position()) || !this.plan(LEVELS) {
-            if this.chart.may_hide_a_way(start.position(), goal) {
-                return Err(this.too_coarse());
-            }
+        let is_open = this.chart.is_open(start.position());
+        if !is_open || !(this.plan(LEVELS) || this.plan_finer(world)?) {
             this.end(NavigatorOutcome::Unreachable);
         }
         Ok(this)
+    }
+
+    /// Plans with finer cells as long as those in use may close a way. `false` if there is none. Fails if the
+    /// cells are larger than wished.
+    fn plan_finer(&mut self, world: &World) -> Result<bool> {
+        let (start, tolerance) = (self.start.position(), self.parameters.goal_tolerance);
+        let mut halvings = 0..HALVINGS;
+        while self.chart.may_hide_a_way(start, self.goal, tolerance) {
+            if self.chart.is_coarse() {
+                return Err(self.too_coarse());
+            }
+            let finer = 0.5 * self.chart.resolution();
+            if halvings.next().is_none() {
+                return Ok(false);
+            }
+            self.chart = Chart::new(world, start, &self.parameters, finer)?;
+            if self.plan(LEVELS) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     fn too_coarse(&self) -> Error {
@@ -271,9 +293,9 @@ impl Navigator {
 
     /// Plans with the largest of the first `levels` clearances that leaves a way.
     fn plan(&mut self, levels: usize) -> bool {
-        let (from, radius) = (self.pose.position(), self.parameters.radius());
+        let from = self.pose.position();
         let mut routes =
-            (0..levels).filter_map(|level| Route::new(&self.chart, level, from, self.goal, radius));
+            (0..levels).filter_map(|level| Route::new(&self.chart, level, from, self.goal, &self.parameters));
         let Some(route) = routes.next() else { return false };
         let clearance = self.chart.clearance(route.level);
         self.events.push(NavigatorEvent::Planned { length: route.length(), clearance });

@@ -1,4 +1,5 @@
 use super::chart::Chart;
+use super::parameters::NavigatorParameters;
 use crate::geometry::Point;
 use crate::nav::grid::DStarLite;
 use crate::world::{BitGrid, GridCell};
@@ -10,27 +11,31 @@ pub(super) struct Route {
     planner: DStarLite,
     /// The robot's cell when the path was planned, or the nearest free one.
     cell: GridCell,
-    /// Centres of the path's cells, and the goal.
+    /// Centres of the path's cells, and the place to drive to.
     path: Vec<Point>,
-    goal: Point,
+    place: Point,
     length: f64,
 }
 
 /// Maximum distance to the nearest free cell from a robot or a goal in an occupied one (m).
 const REACH: f64 = 0.12;
+/// Fraction of the goal's tolerance that is used where the robot has no room at the goal.
+const USED_TOLERANCE: f64 = 0.9;
 
 impl Route {
     /// A plan at a level; `None` if no way exists.
-    pub(super) fn new(chart: &Chart, level: usize, robot: Point, goal: Point, radius: f64) -> Option<Self> {
+    pub(super) fn new(
+        chart: &Chart,
+        level: usize,
+        robot: Point,
+        goal: Point,
+        parameters: &NavigatorParameters,
+    ) -> Option<Self> {
         let grid = chart.grid(level);
         let from = nearest_free(chart, &grid, robot)?;
-        let to = match chart.cell(goal)? {
-            cell if grid.is_free(cell) => cell,
-            _ if chart.has_room(goal, radius) => nearest_free(chart, &grid, goal)?,
-            _ => return None,
-        };
+        let (to, place) = end_of_path(chart, &grid, goal, parameters)?;
         let planner = DStarLite::new(&grid, from, to).ok()?;
-        let mut route = Self { level, planner, cell: from, path: Vec::new(), goal, length: 0.0 };
+        let mut route = Self { level, planner, cell: from, path: Vec::new(), place, length: 0.0 };
         route.plan(chart).then_some(route)
     }
 
@@ -69,7 +74,7 @@ impl Route {
         self.path.extend(
             path.points.iter().filter_map(|&point| GridCell::at(point)).map(|cell| chart.centre(cell)),
         );
-        self.path.push(self.goal);
+        self.path.push(self.place);
         self.length = path.cost * chart.resolution();
         true
     }
@@ -106,6 +111,22 @@ impl Route {
         }
         best
     }
+}
+
+/// The cell to plan to, and the place to drive to: the goal, or the nearest place within its tolerance where
+/// the robot has room.
+fn end_of_path(
+    chart: &Chart,
+    grid: &BitGrid,
+    goal: Point,
+    parameters: &NavigatorParameters,
+) -> Option<(GridCell, Point)> {
+    let cell = nearest_free(chart, grid, goal)?;
+    if chart.has_room(goal, parameters.radius()) {
+        return Some((cell, goal));
+    }
+    let place = chart.centre(cell);
+    ((place - goal).norm() <= USED_TOLERANCE * parameters.goal_tolerance).then_some((cell, place))
 }
 
 /// The free cell nearest to a point, if one is near.

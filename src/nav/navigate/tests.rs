@@ -1,7 +1,7 @@
 use std::ops::ControlFlow;
 
 use super::*;
-use crate::geometry::{Point, Pose, Vector};
+use crate::geometry::{Point, Pose, Vector, direction};
 use crate::io::control::{Behaviour, LidarObservation};
 use crate::world::{Wall, World};
 
@@ -35,6 +35,39 @@ fn narrow_doors_are_passed_with_less_clearance_and_closed_ones_told_at_once() {
     assert_eq!(closed.take_events(), [NavigatorEvent::End(NavigatorOutcome::Unreachable)]);
     let decision = closed.step(0.0, &LidarObservation::default()).unwrap();
     assert_eq!(decision, ControlFlow::Break(NavigatorOutcome::Unreachable));
+}
+
+/// Cells of 10 mm close a corridor that lies aslant to them and leaves 8 mm on either side.
+#[test]
+fn a_narrow_corridor_aslant_to_the_cells_is_a_way() {
+    for (width, outcome) in [(0.170, None), (0.146, Some(NavigatorOutcome::Unreachable))] {
+        let (mut world, along) = (World::walled(3.0, 2.0), direction(-0.35));
+        let across = Vector::new(-along.y, along.x);
+        let middle = Point::new(1.5, 1.0);
+        let corner = |x: f64, y: f64| middle + along * x + across * y;
+        let half = 0.5 * width;
+        // A cell of 0.6 m, and the corridor into it.
+        let around = [(-0.3, half), (-0.3, 0.3), (0.3, 0.3), (0.3, -0.3), (-0.3, -0.3), (-0.3, -half)];
+        let around = [&[(-0.6, half)][..], &around, &[(-0.6, -half)]].concat();
+        let ends = around.windows(2).map(|pair| (corner(pair[0].0, pair[0].1), corner(pair[1].0, pair[1].1)));
+        world.walls.extend(ends.map(|(from, to)| Wall::new(from, to)));
+        let start = Pose::new(0.3, 0.3, 0.0);
+        let navigator = Navigator::new(&world, start, middle, NavigatorParameters::default()).unwrap();
+        assert_eq!(navigator.phase(), outcome.map_or(NavigatorPhase::Looking, NavigatorPhase::Ended));
+    }
+}
+
+/// The robot's centre fits no nearer to a wall than 72 mm; 25 mm off the goal are near enough.
+#[test]
+fn a_goal_too_near_to_a_wall_counts_within_its_tolerance() {
+    for (away, ends) in [(0.055, false), (0.070, false), (0.045, true)] {
+        let (start, goal) = (Pose::new(0.3, 0.5, 0.0), Point::new(0.5, 1.0 - 0.005 - away));
+        let navigator = Navigator::new(&rooms(0.5), start, goal, NavigatorParameters::default()).unwrap();
+        let ended = navigator.phase() == NavigatorPhase::Ended(NavigatorOutcome::Unreachable);
+        assert_eq!(ended, ends, "{away}");
+        let place = navigator.path().last();
+        assert!(ends || place.is_some_and(|place| (place - goal).norm() <= 0.0225 && place.y <= 0.9231));
+    }
 }
 
 #[test]

@@ -8,7 +8,7 @@ use roverlab::io::Key;
 use roverlab::io::log::Topic;
 use serde_json::Value;
 
-use super::outbox::Outbox;
+use super::outbox::{Outbox, deadline};
 use super::protocol::{self, Wish};
 
 /// Number of the page's channel, which every hub has.
@@ -217,8 +217,9 @@ impl Hub {
         let outboxes: Vec<Outbox> =
             self.lock().clients.values().map(|client| client.outbox.clone()).collect();
         outboxes.iter().for_each(Outbox::close);
+        let end = deadline(patience);
         for outbox in &outboxes {
-            outbox.flush(patience);
+            outbox.flush(end);
         }
     }
 

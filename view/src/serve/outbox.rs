@@ -115,8 +115,7 @@ impl Outbox {
     }
 
     /// Waits until everything has been sent, up to a time.
-    pub(super) fn flush(&self, patience: Duration) {
-        let end = deadline(patience);
+    pub(super) fn flush(&self, end: Instant) {
         let mut queue = self.lock();
         while !queue.frames.is_empty() || queue.sending {
             let left = end.saturating_duration_since(now());
@@ -133,7 +132,7 @@ pub(super) fn now() -> Instant {
     Instant::now()
 }
 
-fn deadline(patience: Duration) -> Instant {
+pub(super) fn deadline(patience: Duration) -> Instant {
     now() + patience
 }
 

@@ -3,14 +3,14 @@ use std::net::{Ipv4Addr, Shutdown, TcpListener, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use tungstenite::http::StatusCode;
 use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Message, WebSocket};
 
 use super::hub::Hub;
-use super::outbox::Outbox;
+use super::outbox::{Outbox, deadline, now};
 use super::protocol::{self, Wish};
 use super::request::{self, Answer};
 
@@ -119,16 +119,16 @@ impl Desk {
         }
     }
 
-    fn attend(&self, mut stream: TcpStream) -> io::Result<()> {
-        stream.set_read_timeout(Some(PATIENCE))?;
-        stream.set_write_timeout(Some(PATIENCE))?;
+    fn attend(&self, stream: TcpStream) -> io::Result<()> {
         stream.set_nodelay(true)?;
-        let Some((request, rest)) = request::read(&mut stream)? else {
+        let mut hasty = Hasty { stream: &stream, end: deadline(PATIENCE) };
+        let Some((request, rest)) = request::read(&mut hasty)? else {
             let why = "expected a request of a browser".into();
-            return request::write(&mut stream, &request::refused(StatusCode::BAD_REQUEST, why));
+            return request::write(&mut hasty, &request::refused(StatusCode::BAD_REQUEST, why));
         };
         let answer = request::answer(&request, &self.token, self.port);
-        request::write(&mut stream, &answer)?;
+        hasty.end = deadline(PATIENCE);
+        request::write(&mut hasty, &answer)?;
         if !matches!(answer, Answer::Upgrade(_)) {
             return stream.shutdown(Shutdown::Write);
         }
@@ -176,6 +176,37 @@ fn send(mut stream: TcpStream, outbox: &Outbox) {
         }
     }
     let _ = stream.shutdown(Shutdown::Both);
+}
+
+/// A connection until a time, however few bytes come at once.
+struct Hasty<'a> {
+    stream: &'a TcpStream,
+    end: Instant,
+}
+
+impl Hasty<'_> {
+    fn left(&self) -> io::Result<Duration> {
+        let left = self.end.saturating_duration_since(now());
+        if left.is_zero() { Err(io::ErrorKind::TimedOut.into()) } else { Ok(left) }
+    }
+}
+
+impl Read for Hasty<'_> {
+    fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
+        self.stream.set_read_timeout(Some(self.left()?))?;
+        (&*self.stream).read(out)
+    }
+}
+
+impl Write for Hasty<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.stream.set_write_timeout(Some(self.left()?))?;
+        (&*self.stream).write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
 }
 
 /// The reading end of a connection. Answers to pings are queued with all other messages.
