@@ -226,8 +226,8 @@ impl Body {
     }
 
     /// Records the outline's motion in comparison with that of the wheels.
-    pub(super) fn note_motion(&mut self, wished: f64, moved: f64) {
-        let held = self.touch.touching && moved < 0.2 * wished && self.drive.get().is_driving();
+    pub(super) fn note_motion(&mut self, wished: f64, moved: f64, is_driving: bool) {
+        let held = self.touch.touching && moved < 0.2 * wished && is_driving;
         self.touch.held_ticks = if held { self.touch.held_ticks.saturating_add(1) } else { 0 };
     }
 

@@ -6,6 +6,7 @@
 use super::body::Body;
 use super::course::Course;
 use super::engine::Engine;
+use super::mechanics::Drift;
 use crate::geometry::{Pose, Vector};
 use crate::kinematics::PlanarMotion;
 use crate::world::Footprint;
@@ -22,17 +23,17 @@ pub(super) const PUSH_TOLERANCE: f64 = 1e-6;
 
 impl Engine {
     /// Moves all robots by their motions of this tick.
-    pub(super) fn move_bodies(&mut self, motions: &[PlanarMotion]) {
+    pub(super) fn move_bodies(&mut self, drifts: &[Drift]) {
         // Upper bound of a robot's motion in this tick.
-        let reaches = self.bodies.iter().zip(motions).map(|(body, &motion)| reach(body, motion));
+        let reaches = self.bodies.iter().zip(drifts).map(|(body, drift)| reach(body, drift.motion));
         let farthest = reaches.fold(0.0, f64::max) + 2.0 * PUSH_TOLERANCE;
-        for (index, &motion) in motions.iter().enumerate() {
+        for (index, drift) in drifts.iter().enumerate() {
             self.bodies[index].solid_budget -= farthest;
-            if motion == PlanarMotion::default() {
+            if drift.motion == PlanarMotion::default() {
                 self.stand(index);
                 continue;
             }
-            let moved = self.move_body(index, motion);
+            let moved = self.move_body(index, drift);
             let body = &mut self.bodies[index];
             body.drive.settle(moved);
             self.space.set_pose(body.solid, body.pose());
@@ -40,13 +41,14 @@ impl Engine {
     }
 
     /// Moves a robot; returns its actual motion.
-    fn move_body(&mut self, index: usize, motion: PlanarMotion) -> PlanarMotion {
+    fn move_body(&mut self, index: usize, drift: &Drift) -> PlanarMotion {
+        let motion = drift.motion;
         let body = &mut self.bodies[index];
         let reach = reach(body, motion);
         body.wall_budget -= reach;
         body.solid_budget -= reach;
         if body.wall_budget <= 0.0 || body.solid_budget <= 0.0 {
-            return self.move_among_things(index, motion, reach);
+            return self.move_among_things(index, drift, reach);
         }
         body.course.advance(motion);
         body.path_length += motion.length();
@@ -67,7 +69,8 @@ impl Engine {
     }
 
     /// Moves a robot near obstacles, in strides that cannot skip any.
-    fn move_among_things(&mut self, index: usize, motion: PlanarMotion, reach: f64) -> PlanarMotion {
+    fn move_among_things(&mut self, index: usize, drift: &Drift, reach: f64) -> PlanarMotion {
+        let motion = drift.motion;
         let body = &self.bodies[index];
         let start = body.pose();
         let strides = (reach / body.stride).ceil().max(1.0);
@@ -85,7 +88,7 @@ impl Engine {
         let moved = (end.position() - start.position()).norm();
         body.path_length += moved;
         let turned = crate::geometry::angle_difference(end.heading, start.heading).abs();
-        body.note_motion(reach, moved + spin_radius(body) * turned);
+        body.note_motion(reach, moved + spin_radius(body) * turned, drift.is_driving);
         if free { motion } else { PlanarMotion::between(start, end) }
     }
 

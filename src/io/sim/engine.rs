@@ -7,6 +7,7 @@ use super::body::Body;
 use super::camera::{CameraDevice, Moment, Studio};
 use super::inertial_unit::InertialUnit;
 use super::lockstep::{Ticking, no_robot};
+use super::mechanics::{AHEAD, Drift};
 use super::movable::{Movable, movables};
 use super::options::ticks_in;
 use super::terrain::Hills;
@@ -29,7 +30,10 @@ pub(super) struct Engine {
     pub(super) options: SimOptions,
     /// Ticks since the start.
     pub(super) tick: u64,
-    motions: Vec<PlanarMotion>,
+    /// What the drives do in the next ticks, tick by tick.
+    drifts: Vec<Drift>,
+    /// Whether no drive depends on its robot's motion.
+    independent: bool,
     pub(super) contacts: Vec<Contact>,
     pub(super) movables: Vec<Movable>,
     radio: Radio,
@@ -63,8 +67,8 @@ impl Ticking for Engine {
         self.tick
     }
 
-    fn tick(&mut self) {
-        self.step();
+    fn run(&mut self, ticks: u64) {
+        Engine::run(self, ticks);
     }
 }
 
@@ -84,7 +88,7 @@ impl Engine {
         }
         let robots: Vec<SolidId> = bodies.iter().map(|body| body.solid).collect();
         let studio = Box::new(Studio::new(scene, &objects, &robots));
-        let motions = vec![PlanarMotion::default(); bodies.len()];
+        let independent = bodies.iter().all(|body| body.drive.is_independent());
         let trail_ticks = options.trail_interval.map(ticks_in);
         let radio = Radio::new(options.radio_loss, root.child("radio", 0));
         let mut engine = Self {
@@ -93,7 +97,8 @@ impl Engine {
             bodies,
             options,
             tick: 0,
-            motions,
+            drifts: Vec::new(),
+            independent,
             contacts: Vec::new(),
             movables: movables(&scene.world, &objects),
             moves: Vec::new(),
@@ -195,25 +200,55 @@ impl Engine {
         Err(Error::invalid_input("object", object, &expected))
     }
 
-    /// Advances the world by one tick.
-    pub(super) fn step(&mut self) {
-        self.make_moves();
-        let mut motions = std::mem::take(&mut self.motions);
-        let mut moving = false;
-        for (body, motion) in self.bodies.iter_mut().zip(&mut motions) {
-            *motion = body.drive.step();
-            moving |= *motion != PlanarMotion::default();
+    /// Advances the world by a number of ticks.
+    pub(super) fn run(&mut self, ticks: u64) {
+        let end = self.tick + ticks;
+        while self.tick < end {
+            self.make_moves();
+            let ahead = self.ahead().min(end - self.tick) as usize;
+            let (mut drifts, robots) = (std::mem::take(&mut self.drifts), self.bodies.len());
+            drifts.resize(ahead * robots, Drift::default());
+            self.run_drives(ahead, &mut drifts);
+            for tick in 0..ahead {
+                self.step(&mut drifts[tick * robots..][..robots]);
+            }
+            self.drifts = drifts;
         }
+    }
+
+    /// Ticks for which the drives may run ahead of the robots: nobody commands or looks at them before.
+    fn ahead(&self) -> u64 {
+        if self.watcher.is_some() || self.hills.is_some() || !self.independent {
+            return 1;
+        }
+        let trail = self.trail_ticks.map_or(u64::MAX, |ticks| ticks - self.tick % ticks);
+        trail.min(AHEAD as u64)
+    }
+
+    /// Lets all drives run for some ticks. A drive's state is brought into the cache only once.
+    fn run_drives(&mut self, ticks: usize, drifts: &mut [Drift]) {
+        let robots = self.bodies.len();
+        let mut own = [Drift::default(); AHEAD];
+        for (index, body) in self.bodies.iter_mut().enumerate() {
+            body.drive.run(&mut own[..ticks]);
+            for (tick, drift) in own[..ticks].iter().enumerate() {
+                drifts[tick * robots + index] = *drift;
+            }
+        }
+    }
+
+    /// Advances the world by one tick, in which the drives have done this.
+    fn step(&mut self, drifts: &mut [Drift]) {
+        let mut moving = drifts.iter().any(|drift| drift.motion != PlanarMotion::default());
         if let Some(hills) = &mut self.hills {
             let time = self.tick as f64 / TICKS_PER_SECOND;
-            moving = hills.ride(&mut self.bodies, &mut motions, time);
+            moving = hills.ride(&mut self.bodies, drifts, time);
         }
         if moving {
-            self.move_bodies(&motions);
+            self.move_bodies(drifts);
         } else {
             self.bodies.iter_mut().for_each(|body| body.touch.held_ticks = 0);
         }
-        self.motions = motions;
         if let Some(hills) = &mut self.hills {
             hills.yield_to(&mut self.bodies, &mut self.space);
             self.slide_things();

@@ -6,6 +6,7 @@ use super::marine::CraftDrive;
 use super::wheels::WheelSpec;
 use super::{NoiseModel, TICK};
 
+
 use crate::io::{Error, ErrorKind, Result};
 use crate::kinematics::marine::Craft;
 use crate::kinematics::{Ackermann, Differential, Omni, PlanarMotion, Tracked};
@@ -20,6 +21,18 @@ pub(super) enum Powertrain {
     Car(Box<Car>),
     Omni(Box<MecanumWheels>),
     Craft(Box<CraftDrive>),
+}
+
+/// Ticks for which a drive runs ahead of its robot at most.
+pub(super) const AHEAD: usize = 16;
+
+/// What a drive does to its robot in a tick.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Drift {
+    /// The robot's true motion, if nothing is in its way.
+    pub(super) motion: PlanarMotion,
+    /// Whether the wheels are commanded to turn.
+    pub(super) is_driving: bool,
 }
 
 /// Highest top speed of a robot (m/s).
@@ -66,15 +79,20 @@ impl Powertrain {
         })
     }
 
-    /// Lets the motors follow their commands for one tick; returns the robot's true motion.
-    pub(super) fn step(&mut self) -> PlanarMotion {
+    /// Lets the motors follow their commands for some ticks, at most [`AHEAD`].
+    pub(super) fn run(&mut self, drifts: &mut [Drift]) {
         match self {
-            Self::Differential(drive) => drive.step().into(),
-            Self::Car(drive) => drive.step(),
-            Self::Omni(drive) => drive.step(),
+            Self::Differential(drive) => drive.run(drifts),
+            Self::Car(drive) => fill(drifts, || (drive.step(), drive.is_driving())),
+            Self::Omni(drive) => fill(drifts, || (drive.step(), drive.is_driving())),
             // Water moves it, and the hills know how.
-            Self::Craft(_) => PlanarMotion::default(),
+            Self::Craft(drive) => fill(drifts, || (PlanarMotion::default(), drive.is_driving())),
         }
+    }
+
+    /// Whether it turns its wheels alike, whatever stands in the robot's way.
+    pub(super) fn is_independent(&self) -> bool {
+        matches!(self, Self::Differential(_) | Self::Omni(_))
     }
 
     /// Records the robot's true motion in this tick, which obstacles may have changed.
@@ -106,6 +124,13 @@ impl Powertrain {
     pub(super) fn craft_mut(&mut self) -> Option<&mut CraftDrive> {
         if let Self::Craft(drive) = self { Some(drive) } else { None }
     }
+}
+
+fn fill(drifts: &mut [Drift], mut step: impl FnMut() -> (PlanarMotion, bool)) {
+    drifts.fill_with(|| {
+        let (motion, is_driving) = step();
+        Drift { motion, is_driving }
+    });
 }
 
 fn wheel_spec(drive: &DriveSpec) -> WheelSpec {

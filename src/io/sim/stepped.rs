@@ -67,7 +67,7 @@ impl Stepped {
     /// number that is not finite, and for more than 1e6 s.
     pub fn run_for(&mut self, seconds: f64) -> Result<()> {
         check_duration("duration", seconds)?;
-        (0..ticks_in(seconds.max(0.0))).for_each(|_| self.engine.step());
+        self.engine.run(ticks_in(seconds.max(0.0)));
         Ok(())
     }
 

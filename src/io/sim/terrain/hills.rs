@@ -5,6 +5,7 @@ use crate::geometry::{Aabb, Point, Point3, Pose, Pose3, Vector, angle_difference
 use crate::io::sim::TICK;
 use crate::io::sim::body::Body;
 use crate::io::sim::marine::{Swimmer, Waters};
+use crate::io::sim::mechanics::Drift;
 use crate::io::sim::movable::Movable;
 use crate::io::{Mishap, Result};
 use crate::kinematics::{PlanarMotion, PlanarTwist};
@@ -132,11 +133,11 @@ impl Hills {
     pub(in crate::io::sim) fn ride(
         &mut self,
         bodies: &mut [Body],
-        motions: &mut [PlanarMotion],
+        drifts: &mut [Drift],
         time: f64,
     ) -> bool {
         let mut moving = false;
-        for ((mover, body), motion) in self.movers.iter_mut().zip(bodies).zip(motions) {
+        for ((mover, body), Drift { motion, .. }) in self.movers.iter_mut().zip(bodies).zip(drifts) {
             match mover {
                 Mover::Riding(rider) => {
                     let drive = if rider.watch.is_over() { PlanarTwist::STOP } else { speed(*motion) };
