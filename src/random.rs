@@ -143,7 +143,10 @@ fn inverse_normal(p: f64) -> f64 {
 /// for several at once.
 #[cfg_attr(
     feature = "io",
-    multiversion::multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2+bmi1+bmi2"))
+    multiversion::multiversion(targets(
+        "x86_64+avx512f+avx512bw+avx512dq+avx512vl",
+        "x86_64+avx2+bmi1+bmi2"
+    ))
 )]
 fn inverse_normals(probabilities: &mut [f64]) {
     let (mut tails, mut count) = ([(0, 0.0); 64], 0);

@@ -25,35 +25,32 @@ impl Engine {
     /// Moves all robots by their motions of this tick.
     pub(super) fn move_bodies(&mut self, drifts: &[Drift]) {
         // Upper bound of a robot's motion in this tick.
-        let reaches = self.bodies.iter().zip(drifts).map(|(body, drift)| reach(body, drift.motion));
-        let farthest = reaches.fold(0.0, f64::max) + 2.0 * PUSH_TOLERANCE;
+        let farthest = drifts.iter().map(|drift| drift.reach).fold(0.0, f64::max) + 2.0 * PUSH_TOLERANCE;
         for (index, drift) in drifts.iter().enumerate() {
-            self.bodies[index].solid_budget -= farthest;
+            let body = &mut self.bodies[index];
+            body.solid_budget -= farthest;
             if drift.motion == PlanarMotion::default() {
                 self.stand(index);
                 continue;
             }
-            let moved = self.move_body(index, drift);
-            let body = &mut self.bodies[index];
-            body.drive.settle(moved);
+            body.wall_budget -= drift.reach;
+            body.solid_budget -= drift.reach;
+            let start = body.pose();
+            let free = if body.wall_budget <= 0.0 || body.solid_budget <= 0.0 {
+                self.move_among_things(index, drift)
+            } else {
+                body.course.advance(drift.motion);
+                body.path_length += drift.motion.length();
+                body.touch.held_ticks = 0;
+                true
+            };
+            let body = &self.bodies[index];
             self.space.set_pose(body.solid, body.pose());
+            if !self.independent {
+                let moved = if free { drift.motion } else { PlanarMotion::between(start, body.pose()) };
+                self.machines[index].drive.settle(moved);
+            }
         }
-    }
-
-    /// Moves a robot; returns its actual motion.
-    fn move_body(&mut self, index: usize, drift: &Drift) -> PlanarMotion {
-        let motion = drift.motion;
-        let body = &mut self.bodies[index];
-        let reach = reach(body, motion);
-        body.wall_budget -= reach;
-        body.solid_budget -= reach;
-        if body.wall_budget <= 0.0 || body.solid_budget <= 0.0 {
-            return self.move_among_things(index, drift, reach);
-        }
-        body.course.advance(motion);
-        body.path_length += motion.length();
-        body.touch.held_ticks = 0;
-        motion
     }
 
     /// A robot at rest may have been touched by another one that has left again.
@@ -68,9 +65,9 @@ impl Engine {
         }
     }
 
-    /// Moves a robot near obstacles, in strides that cannot skip any.
-    fn move_among_things(&mut self, index: usize, drift: &Drift, reach: f64) -> PlanarMotion {
-        let motion = drift.motion;
+    /// Moves a robot near obstacles, in strides that cannot skip any. Returns whether nothing was in the way.
+    fn move_among_things(&mut self, index: usize, drift: &Drift) -> bool {
+        let Drift { motion, reach, is_driving } = *drift;
         let body = &self.bodies[index];
         let start = body.pose();
         let strides = (reach / body.stride).ceil().max(1.0);
@@ -88,8 +85,8 @@ impl Engine {
         let moved = (end.position() - start.position()).norm();
         body.path_length += moved;
         let turned = crate::geometry::angle_difference(end.heading, start.heading).abs();
-        body.note_motion(reach, moved + spin_radius(body) * turned, drift.is_driving);
-        if free { motion } else { PlanarMotion::between(start, end) }
+        body.note_motion(reach, moved + body.spin_radius * turned, is_driving);
+        free
     }
 
     /// Moves a robot by a part of its motion. Returns whether nothing was in the way.
@@ -99,8 +96,8 @@ impl Engine {
         body.course.advance(motion);
         let wished = body.course;
         let (outline, span, me) = (body.outline, body.span, Some(body.solid));
-        body.wall_budget = self.space.walls_clearance(&outline, &wished.pose(), span, LOOK_AHEAD);
-        body.solid_budget = self.space.solids_clearance(&outline, &wished.pose(), span, LOOK_AHEAD, me);
+        (body.wall_budget, body.solid_budget) =
+            self.space.clearances(&outline, &wished.pose(), span, LOOK_AHEAD, me);
         if body.solid_budget <= 0.0 && self.topple(index, &wished.pose()) {
             let clearance = self.space.solids_clearance(&outline, &wished.pose(), span, LOOK_AHEAD, me);
             self.bodies[index].solid_budget = clearance;
@@ -140,7 +137,7 @@ impl Engine {
                 self.look_around_again();
                 course
             }
-            _ => stay(&self.bodies[index].spec.footprint, before, wished),
+            _ => stay(&self.bodies[index].outline, before, wished),
         };
         let body = &mut self.bodies[index];
         body.course = end;
@@ -173,7 +170,7 @@ impl Engine {
     fn note_touch(&mut self, index: usize, pose: &Pose) {
         let normal = self.contacts.first().map_or_else(Vector::zeros, |contact| contact.normal);
         let body = &mut self.bodies[index];
-        let place = pose.position() - normal * body.spec.footprint.bounding_radius();
+        let place = pose.position() - normal * body.radius;
         body.touch.begin(place);
         // Objects precede robots in the space.
         let objects = self.space.solids() - self.bodies.len();
@@ -216,19 +213,6 @@ impl Engine {
         for body in &mut self.bodies {
             body.solid_budget = 0.0;
         }
-    }
-}
-
-/// Upper bound of the motion of any point of the robot's outline.
-fn reach(body: &Body, motion: PlanarMotion) -> f64 {
-    motion.length() + spin_radius(body) * motion.angle.abs()
-}
-
-/// Radius within which a turn on the spot moves the robot's outline.
-fn spin_radius(body: &Body) -> f64 {
-    match body.spec.footprint {
-        Footprint::Disc { .. } => 0.0,
-        Footprint::Rectangle(_) => body.radius,
     }
 }
 

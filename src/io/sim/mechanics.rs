@@ -6,7 +6,6 @@ use super::marine::CraftDrive;
 use super::wheels::WheelSpec;
 use super::{NoiseModel, TICK};
 
-
 use crate::io::{Error, ErrorKind, Result};
 use crate::kinematics::marine::Craft;
 use crate::kinematics::{Ackermann, Differential, Omni, PlanarMotion, Tracked};
@@ -33,6 +32,8 @@ pub(super) struct Drift {
     pub(super) motion: PlanarMotion,
     /// Whether the wheels are commanded to turn.
     pub(super) is_driving: bool,
+    /// Upper bound of the motion of any point of the robot's outline (m).
+    pub(super) reach: f64,
 }
 
 /// Highest top speed of a robot (m/s).
@@ -129,7 +130,7 @@ impl Powertrain {
 fn fill(drifts: &mut [Drift], mut step: impl FnMut() -> (PlanarMotion, bool)) {
     drifts.fill_with(|| {
         let (motion, is_driving) = step();
-        Drift { motion, is_driving }
+        Drift { motion, is_driving, reach: 0.0 }
     });
 }
 

@@ -14,7 +14,7 @@ impl Engine {
     /// moved.
     pub(super) fn push(&mut self, index: usize, pose: &Pose) -> bool {
         self.depth_at(index, pose);
-        let strength = self.bodies[index].spec.mass;
+        let strength = self.machines[index].spec.mass;
         let contacts = std::mem::take(&mut self.contacts);
         let mut moved = false;
         for contact in &contacts {
@@ -32,7 +32,7 @@ impl Engine {
     /// whether anything fell.
     pub(super) fn topple(&mut self, index: usize, pose: &Pose) -> bool {
         self.depth_at(index, pose);
-        let strength = self.bodies[index].spec.mass;
+        let strength = self.machines[index].spec.mass;
         let contacts = std::mem::take(&mut self.contacts);
         let mut fell = false;
         for solid in contacts.iter().filter_map(|contact| contact.with) {

@@ -77,6 +77,23 @@ impl Space {
         self.find_clearance(&query, limit)
     }
 
+    /// [`walls_clearance`](Self::walls_clearance) and [`solids_clearance`](Self::solids_clearance) at once.
+    pub(crate) fn clearances(
+        &self,
+        outline: &Footprint,
+        pose: &Pose,
+        span: Span,
+        limit: f64,
+        except: Option<SolidId>,
+    ) -> (f64, f64) {
+        let query = Query { shape: outline.at(pose), span, walls: true, solids: true, except };
+        let mut nearest = [Nearest::within(limit); 2];
+        self.for_each_near(&query, &query.shape.bounds().inflated(limit), |shape, with| {
+            nearest[usize::from(with.is_some())].meet(&query.shape, shape);
+        });
+        (nearest[0].gap, nearest[1].gap)
+    }
+
     #[inline]
     fn find_contacts(&self, query: &Query, out: &mut Vec<Contact>) {
         out.clear();
@@ -101,10 +118,10 @@ impl Space {
 
     #[inline]
     fn find_clearance(&self, query: &Query, limit: f64) -> f64 {
-        let mut nearest = limit;
+        let mut nearest = Nearest::within(limit);
         let window = query.shape.bounds().inflated(limit);
-        self.for_each_near(query, &window, |shape, _| nearest = nearest.min(query.shape.gap(shape)));
-        nearest
+        self.for_each_near(query, &window, |shape, _| nearest.meet(&query.shape, shape));
+        nearest.gap
     }
 
     /// Visits the candidates that may overlap a window and share heights with the query; walls possibly more
@@ -143,6 +160,26 @@ impl Space {
                     }
                 });
             }
+        }
+    }
+}
+
+/// The smallest gap so far between a shape and others.
+#[derive(Clone, Copy)]
+struct Nearest {
+    gap: f64,
+}
+
+impl Nearest {
+    fn within(limit: f64) -> Self {
+        Self { gap: limit }
+    }
+
+    /// Takes another shape into account. Nothing is nearer than 0, which many contacts are.
+    #[inline]
+    fn meet(&mut self, own: &Shape, other: &Shape) {
+        if self.gap > 0.0 {
+            self.gap = self.gap.min(own.gap(other));
         }
     }
 }
