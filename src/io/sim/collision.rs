@@ -24,12 +24,20 @@ pub(super) const PUSH_TOLERANCE: f64 = 1e-6;
 impl Engine {
     /// Moves all robots by their motions of this tick.
     pub(super) fn move_bodies(&mut self, drifts: &[Drift]) {
+        let moves = |drift: &Drift| drift.motion != PlanarMotion::default();
+        let (farthest, moving) = drifts.iter().fold((0.0, false), |(farthest, moving), drift| {
+            (drift.reach.max(farthest), moving | moves(drift))
+        });
+        if !moving {
+            self.bodies.iter_mut().for_each(|body| body.touch.held_ticks = 0);
+            return;
+        }
         // Upper bound of a robot's motion in this tick.
-        let farthest = drifts.iter().map(|drift| drift.reach).fold(0.0, f64::max) + 2.0 * PUSH_TOLERANCE;
+        let farthest = farthest + 2.0 * PUSH_TOLERANCE;
         for (index, drift) in drifts.iter().enumerate() {
             let body = &mut self.bodies[index];
             body.solid_budget -= farthest;
-            if drift.motion == PlanarMotion::default() {
+            if !moves(drift) {
                 self.stand(index);
                 continue;
             }

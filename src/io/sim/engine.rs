@@ -245,16 +245,11 @@ impl Engine {
 
     /// Advances the world by one tick, in which the drives have done this.
     fn step(&mut self, drifts: &mut [Drift]) {
-        let mut moving = drifts.iter().any(|drift| drift.motion != PlanarMotion::default());
         if let Some(hills) = &mut self.hills {
             let time = self.tick as f64 / TICKS_PER_SECOND;
-            moving = hills.ride(&mut self.bodies, &mut self.machines, drifts, time);
+            hills.ride(&mut self.bodies, &mut self.machines, drifts, time);
         }
-        if moving {
-            self.move_bodies(drifts);
-        } else {
-            self.bodies.iter_mut().for_each(|body| body.touch.held_ticks = 0);
-        }
+        self.move_bodies(drifts);
         if let Some(hills) = &mut self.hills {
             hills.yield_to(&mut self.bodies, &self.machines, &mut self.space);
             self.slide_things();

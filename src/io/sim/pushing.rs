@@ -31,6 +31,9 @@ impl Engine {
     /// Knocks over the falling objects that a robot at a pose would overlap; each is a contact. Returns
     /// whether anything fell.
     pub(super) fn topple(&mut self, index: usize, pose: &Pose) -> bool {
+        if self.movables.is_empty() {
+            return false;
+        }
         self.depth_at(index, pose);
         let strength = self.machines[index].spec.mass;
         let contacts = std::mem::take(&mut self.contacts);

@@ -1,4 +1,4 @@
-use super::shape::{OrientedBox, Shape};
+use super::shape::{Block, OrientedBox, Shape};
 use super::solid::{SolidId, Span};
 use super::store::Space;
 use crate::geometry::{Aabb, Pose, Vector};
@@ -128,15 +128,14 @@ impl Space {
     /// than once.
     #[inline]
     fn for_each_near(&self, query: &Query, window: &Aabb, mut visit: impl FnMut(&Shape, Option<SolidId>)) {
-        let mut wall = |number: u32| {
-            let wall = &self.walls[number as usize];
+        let mut wall = |wall: &Block| {
             if wall.span.overlaps(&query.span) {
                 visit(&Shape::Box(wall.shape), None);
             }
         };
         let window_cells = self.grid.lattice.under(window).map(|(cells, _)| cells);
         if query.walls {
-            self.grid.loose_walls().iter().for_each(|&number| wall(number));
+            self.grid.loose_walls().iter().for_each(|&number| wall(&self.walls[number as usize]));
             if let Some(cells) = window_cells {
                 self.grid.for_each_wall_in(cells, wall);
             }

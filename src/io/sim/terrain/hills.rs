@@ -130,15 +130,14 @@ impl Hills {
     }
 
     /// Moves all robots for one tick, and replaces the motion of their wheels by that of their frames in the
-    /// plane. Returns whether any robot moves.
+    /// plane.
     pub(in crate::io::sim) fn ride(
         &mut self,
         bodies: &mut [Body],
         machines: &mut [Machine],
         drifts: &mut [Drift],
         time: f64,
-    ) -> bool {
-        let mut moving = false;
+    ) {
         let robots = self.movers.iter_mut().zip(bodies).zip(machines);
         for (((mover, body), machine), Drift { motion, reach, .. }) in robots.zip(drifts) {
             match mover {
@@ -162,9 +161,7 @@ impl Hills {
                 PlanarMotion::between(body.pose(), there)
             };
             *reach = body.reach(*motion);
-            moving |= *motion != PlanarMotion::default();
         }
-        moving
     }
 
     /// Takes obstacles in the robots' way into account, and updates the robots' solids.
