@@ -223,7 +223,7 @@ mod tests {
     use super::*;
     use crate::geometry::units;
     use crate::io::sim::TICK;
-    use crate::kinematics::advance_planar;
+    use crate::kinematics::{advance, advance_planar};
     use proptest::prelude::*;
 
     fn s4(ideal_encoders: bool) -> TwoWheels {

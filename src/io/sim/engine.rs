@@ -1,5 +1,7 @@
 mod radio;
 
+use std::sync::Arc;
+
 use image::RgbImage;
 use radio::Radio;
 
@@ -89,7 +91,9 @@ impl Engine {
             check_placement(placement)?;
             let solid = space.add(Solid::from(placement));
             bodies.push(Body::new(placement, solid));
-            machines.push(Machine::new(placement, &options, &root.child("robot", index as u64))?);
+            let alike = machines.last().filter(|last: &&Machine| Arc::ptr_eq(&last.spec, &placement.spec));
+            let stream = root.child("robot", index as u64);
+            machines.push(Machine::new(placement, alike, &options, &stream)?);
         }
         let robots: Vec<SolidId> = bodies.iter().map(|body| body.solid).collect();
         let studio = Box::new(Studio::new(scene, &objects, &robots));

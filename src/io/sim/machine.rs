@@ -17,7 +17,8 @@ use crate::world::{Mount, PsdSpec, RobotPlacement, RobotSpec};
 pub(super) struct Machine {
     pub(super) spec: Arc<RobotSpec>,
     pub(super) drive: Powertrain,
-    psds: Box<[PsdDevice]>,
+    /// Shared by robots of one description, so that a fleet reads it from the cache.
+    psds: Arc<[PsdDevice]>,
     pub(super) psd_noise: Stream,
     pub(super) lidar: Option<Box<LidarDevice>>,
     pub(super) camera: Option<Box<CameraDevice>>,
@@ -92,7 +93,13 @@ fn scanner(height: f64, max_range: f64, settings: &LidarSettings) -> Scanner {
 }
 
 impl Machine {
-    pub(super) fn new(placement: &RobotPlacement, options: &SimOptions, streams: &Stream) -> Result<Self> {
+    /// The machine of a robot; `alike` is another one of the same description.
+    pub(super) fn new(
+        placement: &RobotPlacement,
+        alike: Option<&Self>,
+        options: &SimOptions,
+        streams: &Stream,
+    ) -> Result<Self> {
         let spec = &placement.spec;
         let drive = Powertrain::new(spec, &options.noise, options.ideal_encoders, streams.child("drive", 0))?;
         let lidar = spec.lidar.map(|lidar| {
@@ -112,7 +119,10 @@ impl Machine {
         });
         Ok(Self {
             drive,
-            psds: spec.psds.iter().map(PsdDevice::new).collect(),
+            psds: match alike {
+                Some(alike) => Arc::clone(&alike.psds),
+                None => spec.psds.iter().map(PsdDevice::new).collect(),
+            },
             psd_noise: streams.child("psd", 0),
             lidar,
             camera: spec.camera.map(|camera| {

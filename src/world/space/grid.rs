@@ -317,7 +317,7 @@ impl Grid {
     pub(super) fn new(walls: &[Block], solids: &[Aabb]) -> Self {
         let all = walls.iter().map(Block::bounds).chain(solids.iter().copied());
         let bounds = all.reduce(|a, b| a.union(&b)).unwrap_or(Aabb::new(Point::origin(), Point::origin()));
-        let mut cells = 2 * (walls.len() + solids.len()) + 16;
+        let mut cells = walls.len() + solids.len() + 16;
         let most_entries = 8 * walls.len() + 64;
         loop {
             let lattice = Lattice::covering(bounds, cells);
@@ -478,4 +478,46 @@ fn take(list: &mut Vec<u32>, solid: u32) {
 fn distance(bounds: &Aabb, point: Point) -> f64 {
     let nearest = point.sup(&bounds.min).inf(&bounds.max);
     (nearest - point).norm()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(crate::testing::cases(256))]
+        #[test]
+        fn a_cell_lists_what_was_inserted_and_not_removed(
+            changes in prop::collection::vec((0..12_u32, any::<bool>()), 0..60),
+        ) {
+            let (mut cell, mut expected) = (Cell::default(), Vec::new());
+            for (solid, comes) in changes {
+                let listed = expected.contains(&solid);
+                if comes && !listed {
+                    cell.insert(solid);
+                    expected.push(solid);
+                } else if !comes {
+                    cell.remove(solid);
+                    expected.retain(|&other| other != solid);
+                }
+                let mut found: Vec<u32> = cell.solids().copied().collect();
+                found.sort_unstable();
+                expected.sort_unstable();
+                prop_assert_eq!(&found, &expected);
+            }
+        }
+
+        #[test]
+        fn every_cell_has_a_place_of_its_own(columns in 1..40_i32, rows in 1..40_i32) {
+            let bounds = Aabb::new(Point::origin(), Point::new(f64::from(columns), f64::from(rows)));
+            let lattice = Lattice::covering(bounds, (columns * rows) as usize);
+            let cells = (0..lattice.rows).flat_map(|y| (0..lattice.columns).map(move |x| (x, y)));
+            let mut places: Vec<usize> = cells.map(|(x, y)| lattice.index(x, y)).collect();
+            let count = places.len();
+            places.sort_unstable();
+            places.dedup();
+            prop_assert!(places.len() == count && places.iter().all(|&place| place < lattice.count()));
+        }
+    }
 }
