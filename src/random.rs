@@ -102,7 +102,7 @@ impl Stream {
         samples.chunks_mut(64).for_each(inverse_normals);
     }
 
-    /// Uniform between 0 and 1, of which the half step keeps it off: there the normal quantile is infinite.
+    /// Uniform between 0 and 1; the half step keeps it off both, where the normal quantile is infinite.
     #[inline]
     fn inner_uniform(&mut self) -> f64 {
         ((self.bits() >> 12) as f64 + 0.5) * (1.0 / (1u64 << 52) as f64)
@@ -169,6 +169,7 @@ fn is_central(q: f64) -> bool {
 
 /// Quantile of `q + 0.5`.
 #[inline(always)]
+#[allow(clippy::inline_always, reason = "part of a loop compiled for several processors")]
 fn inverse_normal_centre(q: f64) -> f64 {
     q * ratio(&CENTRE, 0.180_625 - q * q)
 }
@@ -184,6 +185,7 @@ fn inverse_normal_tail(p: f64, q: f64) -> f64 {
 type Rational = [[f64; 8]; 2];
 
 #[inline(always)]
+#[allow(clippy::inline_always, reason = "part of a loop compiled for several processors")]
 fn ratio([numerator, denominator]: &Rational, x: f64) -> f64 {
     let horner = |c: &[f64; 8]| c.iter().rev().fold(0.0, |sum, c| sum * x + c);
     horner(numerator) / horner(denominator)

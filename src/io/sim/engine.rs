@@ -29,7 +29,7 @@ use crate::world::{RobotPlacement, Scene, World};
 #[derive(Debug)]
 pub(super) struct Engine {
     pub(super) space: Space,
-    /// The robots, each in two parts: what moves, and what drives and senses.
+    /// The robots, each in two parts: what moves, which a fleet needs in every tick, and the rest.
     pub(super) bodies: Vec<Body>,
     pub(super) machines: Vec<Machine>,
     pub(super) options: SimOptions,
@@ -226,7 +226,8 @@ impl Engine {
         }
     }
 
-    /// Ticks for which the drives may run ahead of the robots: nobody commands or looks at them before.
+    /// Ticks for which the drives may run ahead of the robots: until then nobody looks at them, and nothing
+    /// that stops a robot changes what its drive does.
     fn ahead(&self) -> u64 {
         if self.watcher.is_some() || self.hills.is_some() || !self.independent {
             return 1;

@@ -91,7 +91,7 @@ impl Powertrain {
         }
     }
 
-    /// Whether it turns its wheels alike, whatever stands in the robot's way.
+    /// Whether it does the same whatever stands in the robot's way.
     pub(super) fn is_independent(&self) -> bool {
         matches!(self, Self::Differential(_) | Self::Omni(_))
     }

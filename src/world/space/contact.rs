@@ -87,11 +87,12 @@ impl Space {
         except: Option<SolidId>,
     ) -> (f64, f64) {
         let query = Query { shape: outline.at(pose), span, walls: true, solids: true, except };
-        let mut nearest = [Nearest::within(limit); 2];
+        let (mut walls, mut solids) = (limit, limit);
         self.for_each_near(&query, &query.shape.bounds().inflated(limit), |shape, with| {
-            nearest[usize::from(with.is_some())].meet(&query.shape, shape);
+            let nearest = if with.is_some() { &mut solids } else { &mut walls };
+            *nearest = smaller(*nearest, &query.shape, shape);
         });
-        (nearest[0].gap, nearest[1].gap)
+        (walls, solids)
     }
 
     #[inline]
@@ -118,10 +119,10 @@ impl Space {
 
     #[inline]
     fn find_clearance(&self, query: &Query, limit: f64) -> f64 {
-        let mut nearest = Nearest::within(limit);
+        let mut nearest = limit;
         let window = query.shape.bounds().inflated(limit);
-        self.for_each_near(query, &window, |shape, _| nearest.meet(&query.shape, shape));
-        nearest.gap
+        self.for_each_near(query, &window, |shape, _| nearest = smaller(nearest, &query.shape, shape));
+        nearest
     }
 
     /// Visits the candidates that may overlap a window and share heights with the query; walls possibly more
@@ -163,24 +164,10 @@ impl Space {
     }
 }
 
-/// The smallest gap so far between a shape and others.
-#[derive(Clone, Copy)]
-struct Nearest {
-    gap: f64,
-}
-
-impl Nearest {
-    fn within(limit: f64) -> Self {
-        Self { gap: limit }
-    }
-
-    /// Takes another shape into account. Nothing is nearer than 0, which many contacts are.
-    #[inline]
-    fn meet(&mut self, own: &Shape, other: &Shape) {
-        if self.gap > 0.0 {
-            self.gap = self.gap.min(own.gap(other));
-        }
-    }
+/// The smaller of a gap and that between two shapes. Nothing is nearer than 0, which many contacts are.
+#[inline]
+fn smaller(gap: f64, own: &Shape, other: &Shape) -> f64 {
+    if gap > 0.0 { gap.min(own.gap(other)) } else { gap }
 }
 
 impl Shape {

@@ -1,9 +1,9 @@
 use super::cluster::Clusters;
 use super::grid::{Cells, Grid};
-use super::shape::{Block, OrientedBox, Shape};
+use super::shape::{Block, Shape};
 use super::solid::{Solid, SolidId, Span};
 use crate::geometry::{Aabb, Pose};
-use crate::world::{Footprint, Wall};
+use crate::world::Wall;
 
 /// An index of static walls and moving solids.
 ///
@@ -91,11 +91,7 @@ impl Space {
         described.pose = pose;
         match &mut placed.shape {
             Shape::Disc { centre, .. } => *centre = pose.position(),
-            Shape::Box(shape) => {
-                if let Footprint::Rectangle(rectangle) = &described.outline {
-                    *shape = OrientedBox::placed(rectangle, &pose);
-                }
-            }
+            shape => *shape = described.outline.at(&pose),
         }
         if placed.mast.is_some() {
             placed.mast = described.placed_mast().map(Box::new);
@@ -170,6 +166,7 @@ impl Space {
 mod tests {
     use super::*;
     use crate::geometry::{Point, Vector};
+    use crate::world::Footprint;
     use crate::world::World;
     use crate::world::space::Scanner;
 
