@@ -3,7 +3,6 @@
 //! Bodies are rigid: a robot is pushed out of the obstacle into which its wheels drove it. Therefore it
 //! slides along a slanted wall and stops before a perpendicular one. Robots move in sequence within a tick.
 
-use super::body::Body;
 use super::course::Course;
 use super::engine::Engine;
 use super::mechanics::Drift;

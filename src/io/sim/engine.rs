@@ -19,7 +19,7 @@ use super::{LONGEST, SimOptions, TICKS_PER_SECOND, TrailPoint};
 use crate::geometry::{Pose, Pose3, Twist, Vector3, units};
 use crate::io::reading::{point_in_words, pose_in_words};
 use crate::io::{Attitude, Error, ErrorKind, Key, LidarScan, LidarSettings, Psd, Resolution, Result};
-use crate::kinematics::{Displacement, PlanarMotion};
+use crate::kinematics::Displacement;
 use crate::parameter::{require_finite, require_positive};
 use crate::random::Stream;
 use crate::world::space::{Contact, Solid, SolidId, Space};
