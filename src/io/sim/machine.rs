@@ -12,7 +12,7 @@ use crate::random::Stream;
 use crate::world::space::Scanner;
 use crate::world::{Mount, PsdSpec, RobotPlacement, RobotSpec};
 
-/// One robot in the engine but for its motion, which is its [`Body`](super::body::Body): its drive and devices.
+/// A robot but for its motion, which is its [`Body`](super::body::Body): its drive and devices.
 #[derive(Debug)]
 pub(super) struct Machine {
     pub(super) spec: Arc<RobotSpec>,
