@@ -91,7 +91,7 @@ impl Space {
         described.pose = pose;
         match &mut placed.shape {
             Shape::Disc { centre, .. } => *centre = pose.position(),
-            shape => *shape = described.outline.at(&pose),
+            shape @ Shape::Box(_) => *shape = described.outline.at(&pose),
         }
         if placed.mast.is_some() {
             placed.mast = described.placed_mast().map(Box::new);
