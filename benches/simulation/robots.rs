@@ -245,9 +245,9 @@ pub(crate) fn fleet(c: &mut Criterion) {
     group.bench_function("1000 robots, 2000 walls", |b| {
         b.iter_batched_ref(young, |fleet| run(fleet, 1.0), BatchSize::LargeInput);
     });
-    run(&mut fleet, 300.0);
+    run(&mut fleet, 600.0);
     let factor = real_time_factor(50, PERIOD, || run(&mut fleet, PERIOD));
-    println!("the same after five minutes: {factor:.0} times real time");
+    println!("the same after ten minutes: {factor:.0} times real time");
     group.finish();
 }
 

@@ -92,7 +92,9 @@ impl Car {
         }
         let motion = self.nominal.displacement(rolled, steering);
         let rear = self.axle.inverse(Twist::new(motion.length, motion.angle));
-        self.errors.motion(self.axle.track * self.errors.size(), [rear.left, rear.right])
+        let mut travel = [rear.left, rear.right];
+        self.errors.slip(std::slice::from_mut(&mut travel));
+        self.errors.motion(self.axle.track, travel)
     }
 
     /// Records the car's true motion in this tick.

@@ -3,9 +3,9 @@
 //! Bodies are rigid: a robot is pushed out of the obstacle into which its wheels drove it. Therefore it
 //! slides along a slanted wall and stops before a perpendicular one. Robots move in sequence within a tick.
 
-use super::body::Body;
 use super::course::Course;
 use super::engine::Engine;
+use super::mechanics::Drift;
 use crate::geometry::{Pose, Vector};
 use crate::kinematics::PlanarMotion;
 use crate::world::Footprint;
@@ -22,36 +22,42 @@ pub(super) const PUSH_TOLERANCE: f64 = 1e-6;
 
 impl Engine {
     /// Moves all robots by their motions of this tick.
-    pub(super) fn move_bodies(&mut self, motions: &[PlanarMotion]) {
+    pub(super) fn move_bodies(&mut self, drifts: &[Drift]) {
+        let moves = |drift: &Drift| drift.motion != PlanarMotion::default();
+        let (farthest, moving) = drifts.iter().fold((0.0, false), |(farthest, moving), drift| {
+            (drift.reach.max(farthest), moving | moves(drift))
+        });
+        if !moving {
+            self.bodies.iter_mut().for_each(|body| body.touch.held_ticks = 0);
+            return;
+        }
         // Upper bound of a robot's motion in this tick.
-        let reaches = self.bodies.iter().zip(motions).map(|(body, &motion)| reach(body, motion));
-        let farthest = reaches.fold(0.0, f64::max) + 2.0 * PUSH_TOLERANCE;
-        for (index, &motion) in motions.iter().enumerate() {
-            self.bodies[index].solid_budget -= farthest;
-            if motion == PlanarMotion::default() {
+        let farthest = farthest + 2.0 * PUSH_TOLERANCE;
+        for (index, drift) in drifts.iter().enumerate() {
+            let body = &mut self.bodies[index];
+            body.solid_budget -= farthest;
+            if !moves(drift) {
                 self.stand(index);
                 continue;
             }
-            let moved = self.move_body(index, motion);
-            let body = &mut self.bodies[index];
-            body.drive.settle(moved);
+            body.wall_budget -= drift.reach;
+            body.solid_budget -= drift.reach;
+            let start = body.pose();
+            let free = if body.wall_budget <= 0.0 || body.solid_budget <= 0.0 {
+                self.move_among_things(index, drift)
+            } else {
+                body.course.advance(drift.motion);
+                body.path_length += drift.motion.length();
+                body.touch.held_ticks = 0;
+                true
+            };
+            let body = &self.bodies[index];
             self.space.set_pose(body.solid, body.pose());
+            if !self.independent {
+                let moved = if free { drift.motion } else { PlanarMotion::between(start, body.pose()) };
+                self.machines[index].drive.settle(moved);
+            }
         }
-    }
-
-    /// Moves a robot; returns its actual motion.
-    fn move_body(&mut self, index: usize, motion: PlanarMotion) -> PlanarMotion {
-        let body = &mut self.bodies[index];
-        let reach = reach(body, motion);
-        body.wall_budget -= reach;
-        body.solid_budget -= reach;
-        if body.wall_budget <= 0.0 || body.solid_budget <= 0.0 {
-            return self.move_among_things(index, motion, reach);
-        }
-        body.course.advance(motion);
-        body.path_length += motion.length();
-        body.touch.held_ticks = 0;
-        motion
     }
 
     /// A robot at rest may have been touched by another one that has left again.
@@ -66,8 +72,9 @@ impl Engine {
         }
     }
 
-    /// Moves a robot near obstacles, in strides that cannot skip any.
-    fn move_among_things(&mut self, index: usize, motion: PlanarMotion, reach: f64) -> PlanarMotion {
+    /// Moves a robot near obstacles, in strides that cannot skip any. Returns whether nothing was in the way.
+    fn move_among_things(&mut self, index: usize, drift: &Drift) -> bool {
+        let Drift { motion, reach, is_driving } = *drift;
         let body = &self.bodies[index];
         let start = body.pose();
         let strides = (reach / body.stride).ceil().max(1.0);
@@ -85,8 +92,8 @@ impl Engine {
         let moved = (end.position() - start.position()).norm();
         body.path_length += moved;
         let turned = crate::geometry::angle_difference(end.heading, start.heading).abs();
-        body.note_motion(reach, moved + spin_radius(body) * turned);
-        if free { motion } else { PlanarMotion::between(start, end) }
+        body.note_motion(reach, moved + body.spin_radius * turned, is_driving);
+        free
     }
 
     /// Moves a robot by a part of its motion. Returns whether nothing was in the way.
@@ -96,8 +103,8 @@ impl Engine {
         body.course.advance(motion);
         let wished = body.course;
         let (outline, span, me) = (body.outline, body.span, Some(body.solid));
-        body.wall_budget = self.space.walls_clearance(&outline, &wished.pose(), span, LOOK_AHEAD);
-        body.solid_budget = self.space.solids_clearance(&outline, &wished.pose(), span, LOOK_AHEAD, me);
+        (body.wall_budget, body.solid_budget) =
+            self.space.clearances(&outline, &wished.pose(), span, LOOK_AHEAD, me);
         if body.solid_budget <= 0.0 && self.topple(index, &wished.pose()) {
             let clearance = self.space.solids_clearance(&outline, &wished.pose(), span, LOOK_AHEAD, me);
             self.bodies[index].solid_budget = clearance;
@@ -137,7 +144,7 @@ impl Engine {
                 self.look_around_again();
                 course
             }
-            _ => stay(&self.bodies[index].spec.footprint, before, wished),
+            _ => stay(&self.bodies[index].outline, before, wished),
         };
         let body = &mut self.bodies[index];
         body.course = end;
@@ -170,7 +177,7 @@ impl Engine {
     fn note_touch(&mut self, index: usize, pose: &Pose) {
         let normal = self.contacts.first().map_or_else(Vector::zeros, |contact| contact.normal);
         let body = &mut self.bodies[index];
-        let place = pose.position() - normal * body.spec.footprint.bounding_radius();
+        let place = pose.position() - normal * body.radius;
         body.touch.begin(place);
         // Objects precede robots in the space.
         let objects = self.space.solids() - self.bodies.len();
@@ -213,19 +220,6 @@ impl Engine {
         for body in &mut self.bodies {
             body.solid_budget = 0.0;
         }
-    }
-}
-
-/// Upper bound of the motion of any point of the robot's outline.
-fn reach(body: &Body, motion: PlanarMotion) -> f64 {
-    motion.length() + spin_radius(body) * motion.angle.abs()
-}
-
-/// Radius within which a turn on the spot moves the robot's outline.
-fn spin_radius(body: &Body) -> f64 {
-    match body.spec.footprint {
-        Footprint::Disc { .. } => 0.0,
-        Footprint::Rectangle(_) => body.radius,
     }
 }
 

@@ -1,6 +1,10 @@
 use super::NoiseModel;
+use super::mechanics::AHEAD;
 use crate::kinematics::{Differential, Displacement};
 use crate::random::Stream;
+
+/// Number of wheels of the drives with the most.
+const MOST_WHEELS: usize = 4;
 
 /// One robot's deviations from its description, and its random stream for slip.
 #[derive(Debug, Clone)]
@@ -24,10 +28,9 @@ impl DriveErrors<2> {
         Self::new(wheel, noise, stream)
     }
 
-    /// True motion of a robot for these wheel rolls, in terms of its description.
-    pub(super) fn motion(&mut self, track: f64, rolled: [f64; 2]) -> Displacement {
-        let [left, right] = self.ground_travel(rolled);
-        let motion = Differential { track }.displacement(left, right);
+    /// True motion of a robot whose wheels travelled so far over the ground, in terms of its description.
+    pub(super) fn motion(&self, track: f64, [left, right]: [f64; 2]) -> Displacement {
+        let motion = Differential { track: track * self.size }.displacement(left, right);
         let [length, angle] = self.command_factors;
         Displacement { length: motion.length * length, angle: motion.angle * angle }
     }
@@ -74,15 +77,21 @@ impl<const N: usize> DriveErrors<N> {
         }
     }
 
-    /// Travel over the ground of wheels with these rolls.
-    pub(super) fn ground_travel(&mut self, rolled: [f64; N]) -> [f64; N] {
-        std::array::from_fn(|wheel| {
-            let travel = rolled[wheel] * self.wheel[wheel];
-            if self.slip == 0.0 || rolled[wheel] == 0.0 {
-                return travel;
+    /// Replaces the rolls of the wheels, of at most [`AHEAD`] ticks, by their travel over the ground.
+    pub(super) fn slip(&mut self, rolls: &mut [[f64; N]]) {
+        let mut samples = [0.0; MOST_WHEELS * AHEAD];
+        let turning = rolls.as_flattened().iter().filter(|&&rolled| rolled != 0.0).count();
+        let drawn = &mut samples[..if self.slip == 0.0 { 0 } else { turning }];
+        self.stream.fill_normal(drawn);
+        let mut drawn = drawn.iter();
+        for rolled in rolls {
+            for (travel, scale) in rolled.iter_mut().zip(self.wheel) {
+                // A wheel that stands does not slip.
+                let sample = if *travel == 0.0 { 0.0 } else { drawn.next().copied().unwrap_or(0.0) };
+                *travel *= scale;
+                *travel += self.slip * travel.abs().sqrt() * sample;
             }
-            travel + self.slip * travel.abs().sqrt() * self.stream.normal()
-        })
+        }
     }
 }
 
@@ -111,7 +120,9 @@ mod tests {
     fn standing_wheels_draw_no_random_numbers() {
         let mut errors = DriveErrors::of_two_wheels(&NoiseModel::real(), Stream::new(1));
         let mut before = errors.stream.clone();
-        assert_eq!(errors.ground_travel([0.0; 2]), [0.0; 2]);
+        let mut rolls = [[0.0; 2]];
+        errors.slip(&mut rolls);
+        assert_eq!(rolls, [[0.0; 2]]);
         assert_eq!(errors.stream.bits(), before.bits());
     }
 }

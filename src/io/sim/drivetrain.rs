@@ -3,6 +3,7 @@ use super::autopilot::Autopilot;
 use super::course::Course;
 use super::drive_errors::DriveErrors;
 use super::drive_mechanics::Mechanics;
+use super::mechanics::{AHEAD, Drift};
 use super::wheels::{WheelSpec, Wheels};
 use crate::geometry::{Pose, Twist};
 use crate::io::Result;
@@ -105,19 +106,26 @@ impl TwoWheels {
         Self::of(nominal, wheels, motor, ideal_encoders, DriveErrors::of_two_wheels(noise, stream))
     }
 
-    /// Lets the motors follow their commands for one tick; returns the robot's true motion.
-    pub(super) fn step(&mut self) -> Displacement {
-        let command = self.autopilot.command(&self.wheels);
-        if self.wheels.rest(&command) {
-            return Displacement::default();
+    /// Lets the motors follow their commands for some ticks.
+    pub(super) fn run(&mut self, drifts: &mut [Drift]) {
+        let mut rolls = [[0.0; 2]; AHEAD];
+        let rolls = &mut rolls[..drifts.len()];
+        for (rolled, drift) in rolls.iter_mut().zip(&mut *drifts) {
+            let command = self.autopilot.command(&self.wheels);
+            drift.is_driving = self.autopilot.is_driving();
+            if self.wheels.rest(&command) {
+                continue;
+            }
+            *rolled = self.wheels.follow(command);
+            let [left, right] = self.wheels.measure();
+            if left != 0.0 || right != 0.0 {
+                self.odometry.advance(self.nominal.displacement(left, right).into());
+            }
         }
-        let rolled = self.wheels.follow(command);
-        let [left, right] = self.wheels.measure();
-        if left != 0.0 || right != 0.0 {
-            self.odometry.advance(self.nominal.displacement(left, right).into());
+        self.errors.slip(rolls);
+        for (drift, &travel) in drifts.iter_mut().zip(&*rolls) {
+            drift.motion = self.errors.motion(self.nominal.track, travel).into();
         }
-        let track = self.nominal.track * self.errors.size();
-        self.errors.motion(track, rolled)
     }
 }
 
@@ -139,12 +147,13 @@ impl MecanumWheels {
         if self.wheels.rest(&command) {
             return PlanarMotion::default();
         }
-        let rolled = self.wheels.follow(command);
+        let mut rolled = self.wheels.follow(command);
         let counted = self.wheels.measure();
         if counted != [0.0; 4] {
             self.odometry.advance(self.nominal.displacement(counted));
         }
-        let motion = self.nominal.displacement(self.errors.ground_travel(rolled));
+        self.errors.slip(std::slice::from_mut(&mut rolled));
+        let motion = self.nominal.displacement(rolled);
         let [length, angle] = self.errors.command_factors();
         PlanarMotion {
             forward: motion.forward * length,
@@ -214,7 +223,7 @@ mod tests {
     use super::*;
     use crate::geometry::units;
     use crate::io::sim::TICK;
-    use crate::kinematics::advance;
+    use crate::kinematics::{advance, advance_planar};
     use proptest::prelude::*;
 
     fn s4(ideal_encoders: bool) -> TwoWheels {
@@ -236,13 +245,18 @@ mod tests {
         drive.start(motion, speed);
         let mut pose = Pose::default();
         let mut ticks = 0;
+        let mut step = |drive: &mut TwoWheels| {
+            let mut drift = [Drift::default()];
+            drive.run(&mut drift);
+            pose = advance_planar(pose, drift[0].motion);
+        };
         while !drive.is_done() {
-            pose = advance(pose, drive.step());
+            step(drive);
             ticks += 1;
             assert!(ticks < 100_000, "never done: {motion:?} at {speed}");
         }
         for _ in 0..300 {
-            pose = advance(pose, drive.step());
+            step(drive);
         }
         (pose, f64::from(ticks) * TICK)
     }

@@ -1,5 +1,7 @@
 mod radio;
 
+use std::sync::Arc;
+
 use image::RgbImage;
 use radio::Radio;
 
@@ -7,6 +9,8 @@ use super::body::Body;
 use super::camera::{CameraDevice, Moment, Studio};
 use super::inertial_unit::InertialUnit;
 use super::lockstep::{Ticking, no_robot};
+use super::machine::Machine;
+use super::mechanics::{AHEAD, Drift};
 use super::movable::{Movable, movables};
 use super::options::ticks_in;
 use super::terrain::Hills;
@@ -15,7 +19,7 @@ use super::{LONGEST, SimOptions, TICKS_PER_SECOND, TrailPoint};
 use crate::geometry::{Pose, Pose3, Twist, Vector3, units};
 use crate::io::reading::{point_in_words, pose_in_words};
 use crate::io::{Attitude, Error, ErrorKind, Key, LidarScan, LidarSettings, Psd, Resolution, Result};
-use crate::kinematics::{Displacement, PlanarMotion};
+use crate::kinematics::Displacement;
 use crate::parameter::{require_finite, require_positive};
 use crate::random::Stream;
 use crate::world::space::{Contact, Solid, SolidId, Space};
@@ -25,11 +29,16 @@ use crate::world::{RobotPlacement, Scene, World};
 #[derive(Debug)]
 pub(super) struct Engine {
     pub(super) space: Space,
+    /// The robots, each in two parts: what moves, which a fleet needs in every tick, and the rest.
     pub(super) bodies: Vec<Body>,
+    pub(super) machines: Vec<Machine>,
     pub(super) options: SimOptions,
     /// Ticks since the start.
     pub(super) tick: u64,
-    motions: Vec<PlanarMotion>,
+    /// What the drives do in the next ticks, tick by tick.
+    drifts: Vec<Drift>,
+    /// Whether no drive depends on its robot's motion.
+    pub(super) independent: bool,
     pub(super) contacts: Vec<Contact>,
     pub(super) movables: Vec<Movable>,
     radio: Radio,
@@ -63,8 +72,8 @@ impl Ticking for Engine {
         self.tick
     }
 
-    fn tick(&mut self) {
-        self.step();
+    fn run(&mut self, ticks: u64) {
+        Engine::run(self, ticks);
     }
 }
 
@@ -77,23 +86,29 @@ impl Engine {
             scene.world.objects.iter().map(|object| space.add(Solid::from(object))).collect();
         let root = Stream::new(options.seed);
         let mut bodies = Vec::with_capacity(scene.robots.len());
+        let mut machines = Vec::with_capacity(scene.robots.len());
         for (index, placement) in scene.robots.iter().enumerate() {
             check_placement(placement)?;
             let solid = space.add(Solid::from(placement));
-            bodies.push(Body::new(placement, solid, &options, &root.child("robot", index as u64))?);
+            bodies.push(Body::new(placement, solid));
+            let alike = machines.last().filter(|last: &&Machine| Arc::ptr_eq(&last.spec, &placement.spec));
+            let stream = root.child("robot", index as u64);
+            machines.push(Machine::new(placement, alike, &options, &stream)?);
         }
         let robots: Vec<SolidId> = bodies.iter().map(|body| body.solid).collect();
         let studio = Box::new(Studio::new(scene, &objects, &robots));
-        let motions = vec![PlanarMotion::default(); bodies.len()];
+        let independent = machines.iter().all(|machine| machine.drive.is_independent());
         let trail_ticks = options.trail_interval.map(ticks_in);
         let radio = Radio::new(options.radio_loss, root.child("radio", 0));
         let mut engine = Self {
             radio,
             space,
             bodies,
+            machines,
             options,
             tick: 0,
-            motions,
+            drifts: Vec::new(),
+            independent,
             contacts: Vec::new(),
             movables: movables(&scene.world, &objects),
             moves: Vec::new(),
@@ -102,7 +117,7 @@ impl Engine {
             trail_ticks,
             watcher: None,
         };
-        engine.hills = Hills::of(&scene.world, &scene.robots, &mut engine.bodies, engine.options.seed)?;
+        engine.hills = Hills::of(&scene.world, &scene.robots, &mut engine.machines, engine.options.seed)?;
         engine.stand_on_hills();
         (0..engine.bodies.len()).for_each(|index| engine.begin_inertial(index));
         Ok(engine)
@@ -115,7 +130,7 @@ impl Engine {
             let place = self.space.solid(movable.solid).pose.position();
             self.space.set_level(movable.solid, hills.level(place, movable));
         }
-        hills.yield_to(&mut self.bodies, &mut self.space);
+        hills.yield_to(&mut self.bodies, &self.machines, &mut self.space);
     }
 
     /// Puts an object somewhere else, at its height above the ground there.
@@ -149,8 +164,8 @@ impl Engine {
             return Err(Error::invalid_input("time of the key press", time, &expected));
         }
         let robots = self.bodies.len();
-        let body = self.bodies.get_mut(robot).ok_or_else(|| no_robot(robot, robots))?;
-        body.schedule_key(time, key);
+        let machine = self.machines.get_mut(robot).ok_or_else(|| no_robot(robot, robots))?;
+        machine.schedule_key(time, key);
         Ok(())
     }
 
@@ -195,31 +210,57 @@ impl Engine {
         Err(Error::invalid_input("object", object, &expected))
     }
 
-    /// Advances the world by one tick.
-    pub(super) fn step(&mut self) {
-        self.make_moves();
-        let mut motions = std::mem::take(&mut self.motions);
-        let mut moving = false;
-        for (body, motion) in self.bodies.iter_mut().zip(&mut motions) {
-            *motion = body.drive.step();
-            moving |= *motion != PlanarMotion::default();
+    /// Advances the world by a number of ticks.
+    pub(super) fn run(&mut self, ticks: u64) {
+        let end = self.tick + ticks;
+        while self.tick < end {
+            self.make_moves();
+            let ahead = self.ahead().min(end - self.tick) as usize;
+            let (mut drifts, robots) = (std::mem::take(&mut self.drifts), self.bodies.len());
+            drifts.resize(ahead * robots, Drift::default());
+            self.run_drives(ahead, &mut drifts);
+            for tick in 0..ahead {
+                self.step(&mut drifts[tick * robots..][..robots]);
+            }
+            self.drifts = drifts;
         }
+    }
+
+    /// Ticks for which the drives may run ahead of the robots: until then nobody looks at them, and nothing
+    /// that stops a robot changes what its drive does.
+    fn ahead(&self) -> u64 {
+        if self.watcher.is_some() || self.hills.is_some() || !self.independent {
+            return 1;
+        }
+        let trail = self.trail_ticks.map_or(u64::MAX, |ticks| ticks - self.tick % ticks);
+        trail.min(AHEAD as u64)
+    }
+
+    /// Lets all drives run for some ticks. A drive's state is brought into the cache only once.
+    fn run_drives(&mut self, ticks: usize, drifts: &mut [Drift]) {
+        let robots = self.bodies.len();
+        let mut own = [Drift::default(); AHEAD];
+        for (index, (machine, body)) in self.machines.iter_mut().zip(&self.bodies).enumerate() {
+            machine.drive.run(&mut own[..ticks]);
+            for (tick, drift) in own[..ticks].iter().enumerate() {
+                drifts[tick * robots + index] = Drift { reach: body.reach(drift.motion), ..*drift };
+            }
+        }
+    }
+
+    /// Advances the world by one tick, in which the drives have done this.
+    fn step(&mut self, drifts: &mut [Drift]) {
         if let Some(hills) = &mut self.hills {
             let time = self.tick as f64 / TICKS_PER_SECOND;
-            moving = hills.ride(&mut self.bodies, &mut motions, time);
+            hills.ride(&mut self.bodies, &mut self.machines, drifts, time);
         }
-        if moving {
-            self.move_bodies(&motions);
-        } else {
-            self.bodies.iter_mut().for_each(|body| body.touch.held_ticks = 0);
-        }
-        self.motions = motions;
+        self.move_bodies(drifts);
         if let Some(hills) = &mut self.hills {
-            hills.yield_to(&mut self.bodies, &mut self.space);
+            hills.yield_to(&mut self.bodies, &self.machines, &mut self.space);
             self.slide_things();
         }
         self.feel();
-        self.radio.deliver(&mut self.bodies);
+        self.radio.deliver(&mut self.machines);
         self.tick += 1;
         self.extend_trails();
         self.show();
@@ -227,8 +268,8 @@ impl Engine {
 
     /// Restarts the inertial unit of a robot that was placed elsewhere.
     pub(super) fn begin_inertial(&mut self, index: usize) {
-        let body = &mut self.bodies[index];
-        if let Some(unit) = &mut body.inertial {
+        let body = &self.bodies[index];
+        if let Some(unit) = &mut self.machines[index].inertial {
             let (pose, elevation) = (body.course.pose(), body.span.bottom);
             unit.begin(pose_in_space(self.hills.as_deref(), index, pose, elevation));
         }
@@ -236,8 +277,8 @@ impl Engine {
 
     /// Updates inertial units with the robots' motion in this tick.
     fn feel(&mut self) {
-        for (index, body) in self.bodies.iter_mut().enumerate() {
-            if let Some(unit) = &mut body.inertial {
+        for (index, (body, machine)) in self.bodies.iter().zip(&mut self.machines).enumerate() {
+            if let Some(unit) = &mut machine.inertial {
                 let (pose, elevation) = (body.course.pose(), body.span.bottom);
                 unit.feel(pose_in_space(self.hills.as_deref(), index, pose, elevation));
             }
@@ -247,9 +288,9 @@ impl Engine {
     fn extend_trails(&mut self) {
         if self.trail_ticks.is_some_and(|ticks| self.tick.is_multiple_of(ticks)) {
             let time = self.time();
-            for body in &mut self.bodies {
-                let odometry = body.drive.get().odometry();
-                body.trail.push(TrailPoint { time, pose: body.pose(), odometry });
+            for (body, machine) in self.bodies.iter().zip(&mut self.machines) {
+                let odometry = machine.drive.get().odometry();
+                machine.trail.push(TrailPoint { time, pose: body.pose(), odometry });
             }
         }
     }
@@ -260,7 +301,7 @@ impl Engine {
                 return Err(Error::invalid_input(name, speed, "a finite number of at most 1e6 either way"));
             }
         }
-        let drive = self.bodies[index].drive.get_mut();
+        let drive = self.machines[index].drive.get_mut();
         drive.begin_command();
         drive.set_twist(twist);
         Ok(())
@@ -270,43 +311,43 @@ impl Engine {
         require_finite("distance", motion.length)?;
         require_finite("angle", motion.angle)?;
         require_positive("speed", speed.abs())?;
-        let body = &mut self.bodies[index];
-        let seconds = body.drive.get().least_seconds(motion, speed)?;
+        let machine = &mut self.machines[index];
+        let seconds = machine.drive.get().least_seconds(motion, speed)?;
         if seconds.is_nan() || seconds > LONGEST {
             let found = format!("{seconds} s long");
             return Err(Error::invalid_input("manoeuvre", found, &format!("at most {LONGEST} s")));
         }
-        body.drive.get_mut().begin_command();
+        machine.drive.get_mut().begin_command();
         // A waiting program must not see the previous manoeuvre's stall.
-        body.touch.held_ticks = 0;
-        body.drive.get_mut().start(motion, speed);
+        self.bodies[index].touch.held_ticks = 0;
+        machine.drive.get_mut().start(motion, speed);
         Ok(())
     }
 
     pub(super) fn set_motor(&mut self, index: usize, motor: u8, fraction: f64) -> Result<()> {
-        let body = &mut self.bodies[index];
-        let motor = body.motor_index(motor)?;
+        let machine = &mut self.machines[index];
+        let motor = machine.motor_index(motor)?;
         if !(-1.0..=1.0).contains(&fraction) {
             return Err(Error::invalid_input("motor speed", fraction, "-1 to 1"));
         }
-        body.drive.get_mut().begin_command();
-        body.drive.get_mut().set_motor(motor, fraction);
+        machine.drive.get_mut().begin_command();
+        machine.drive.get_mut().set_motor(motor, fraction);
         Ok(())
     }
 
     pub(super) fn set_servo(&mut self, index: usize, servo: u8, position: f64) -> Result<()> {
-        let body = &mut self.bodies[index];
-        let own = body.drive.get().servos();
-        match (&mut body.camera, servo.checked_sub(own)) {
+        let machine = &mut self.machines[index];
+        let own = machine.drive.get().servos();
+        match (&mut machine.camera, servo.checked_sub(own)) {
             // The head's two servos follow those of the drive.
             (Some(camera), Some(head @ 1..=2)) => camera.set_servo(head, position, self.tick),
-            _ => body.drive.get_mut().set_servo(servo, position),
+            _ => machine.drive.get_mut().set_servo(servo, position),
         }
     }
 
     /// Camera of a robot that has one.
     fn camera(&mut self, index: usize) -> Result<&mut CameraDevice> {
-        self.bodies[index].camera.as_deref_mut().ok_or_else(|| Error::unsupported("camera"))
+        self.machines[index].camera.as_deref_mut().ok_or_else(|| Error::unsupported("camera"))
     }
 
     pub(super) fn resolution(&mut self, index: usize) -> Result<Resolution> {
@@ -319,9 +360,8 @@ impl Engine {
     }
 
     pub(super) fn image_into(&mut self, index: usize, image: &mut RgbImage) -> Result<()> {
-        let body = &mut self.bodies[index];
-        let pose = body.pose();
-        let Some(camera) = &mut body.camera else { return Err(Error::unsupported("camera")) };
+        let pose = self.bodies[index].pose();
+        let Some(camera) = &mut self.machines[index].camera else { return Err(Error::unsupported("camera")) };
         let moment = Moment { tick: self.tick, light: self.options.light, noise: &self.options.noise };
         let around = (&self.space, self.hills.as_deref());
         camera.take(&mut self.studio, around, (index, pose), moment, image)?;
@@ -333,14 +373,15 @@ impl Engine {
 
     pub(super) fn depth(&mut self, index: usize) -> Result<f64> {
         let (time, sigma) = (self.time(), self.options.noise.depth);
-        let body = &mut self.bodies[index];
-        let Some(gauge) = &mut body.depth else { return Err(Error::unsupported("depth sensor")) };
+        let Some(gauge) = &mut self.machines[index].depth else {
+            return Err(Error::unsupported("depth sensor"));
+        };
         let depth = self.hills.as_ref().map_or(0.0, |hills| hills.depth(index, gauge.spec.z, time));
         Ok(gauge.read(depth, sigma))
     }
 
     fn inertial(&mut self, index: usize) -> Result<&mut InertialUnit> {
-        self.bodies[index].inertial.as_deref_mut().ok_or_else(|| Error::unsupported("inertial unit"))
+        self.machines[index].inertial.as_deref_mut().ok_or_else(|| Error::unsupported("inertial unit"))
     }
 
     pub(super) fn attitude(&mut self, index: usize) -> Result<Attitude> {
@@ -362,26 +403,26 @@ impl Engine {
         if !pose.is_finite() {
             return Err(Error::invalid_input("pose", pose_in_words(&pose), "finite numbers"));
         }
-        self.bodies[index].drive.get_mut().set_odometry(pose);
+        self.machines[index].drive.get_mut().set_odometry(pose);
         Ok(())
     }
 
     pub(super) fn psd(&mut self, index: usize, psd: Psd) -> Result<f64> {
         let sigma = self.options.noise.range;
-        let body = &mut self.bodies[index];
-        let device = *body.psd(psd)?;
-        let (place, ahead) = (device.place, device.direction);
+        let (body, machine) = (&self.bodies[index], &mut self.machines[index]);
+        let device = machine.psd(psd)?;
+        let (place, ahead, max_range) = (device.place, device.direction, device.max_range);
         let range = if device.level && self.hills.is_none() {
             let origin = body.pose().position() + body.course.turned(place.xy().coords);
             let (direction, height) = (body.course.turned(ahead.xy()), body.span.bottom + place.z);
-            self.space.cast_ray(origin, direction, height, device.max_range, Some(body.solid))
+            self.space.cast_ray(origin, direction, height, max_range, Some(body.solid))
         } else {
             let pose = pose_in_space(self.hills.as_deref(), index, body.pose(), body.span.bottom);
             let (origin, direction) = (pose.to_world(place), pose.rotate(ahead));
             let ground = self.hills.as_deref().map(Hills::ground);
-            self.space.cast_ray_over(ground, origin, direction, device.max_range, Some(body.solid))
+            self.space.cast_ray_over(ground, origin, direction, max_range, Some(body.solid))
         };
-        let reading = noisy(range, sigma, device.max_range, &mut body.psd_noise);
+        let reading = noisy(range, sigma, max_range, &mut machine.psd_noise);
         if let Some(watcher) = &mut self.watcher {
             watcher.distance(index, psd, reading);
         }
@@ -390,8 +431,8 @@ impl Engine {
 
     pub(super) fn scan_into(&mut self, index: usize, scan: &mut LidarScan) -> Result<()> {
         let sigma = self.options.noise.range;
-        let body = &mut self.bodies[index];
-        let Some(device) = &mut body.lidar else { return Err(Error::unsupported("lidar")) };
+        let body = &self.bodies[index];
+        let Some(device) = &mut self.machines[index].lidar else { return Err(Error::unsupported("lidar")) };
         let (angle_min, angle_increment) = device.settings.beams();
         scan.angle_min = angle_min;
         scan.angle_increment = angle_increment;
@@ -416,7 +457,7 @@ impl Engine {
     }
 
     pub(super) fn configure_lidar(&mut self, index: usize, settings: LidarSettings) -> Result<()> {
-        match &mut self.bodies[index].lidar {
+        match &mut self.machines[index].lidar {
             Some(device) => device.configure(settings),
             None => Err(Error::unsupported("lidar")),
         }

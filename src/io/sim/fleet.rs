@@ -119,7 +119,8 @@ impl<'a> Fleet<'a> {
             if self.members.iter().all(Option::is_none) {
                 return Ok(());
             }
-            self.engine.step();
+            let due = self.members.iter().flatten().map(|member| member.due).min();
+            self.engine.run(due.unwrap_or(end).min(end) - self.engine.tick);
         }
         Ok(())
     }

@@ -22,6 +22,20 @@ pub(super) enum Powertrain {
     Craft(Box<CraftDrive>),
 }
 
+/// Ticks for which a drive runs ahead of its robot at most.
+pub(super) const AHEAD: usize = 16;
+
+/// What a drive does to its robot in a tick.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Drift {
+    /// The robot's true motion, if nothing is in its way.
+    pub(super) motion: PlanarMotion,
+    /// Whether the wheels are commanded to turn.
+    pub(super) is_driving: bool,
+    /// Upper bound of the motion of any point of the robot's outline (m).
+    pub(super) reach: f64,
+}
+
 /// Highest top speed of a robot (m/s).
 const MAX_TOP_SPEED: f64 = 100.0;
 
@@ -66,15 +80,20 @@ impl Powertrain {
         })
     }
 
-    /// Lets the motors follow their commands for one tick; returns the robot's true motion.
-    pub(super) fn step(&mut self) -> PlanarMotion {
+    /// Lets the motors follow their commands for some ticks, at most [`AHEAD`].
+    pub(super) fn run(&mut self, drifts: &mut [Drift]) {
         match self {
-            Self::Differential(drive) => drive.step().into(),
-            Self::Car(drive) => drive.step(),
-            Self::Omni(drive) => drive.step(),
+            Self::Differential(drive) => drive.run(drifts),
+            Self::Car(drive) => fill(drifts, || (drive.step(), drive.is_driving())),
+            Self::Omni(drive) => fill(drifts, || (drive.step(), drive.is_driving())),
             // Water moves it, and the hills know how.
-            Self::Craft(_) => PlanarMotion::default(),
+            Self::Craft(drive) => fill(drifts, || (PlanarMotion::default(), drive.is_driving())),
         }
+    }
+
+    /// Whether it does the same whatever stands in the robot's way.
+    pub(super) fn is_independent(&self) -> bool {
+        matches!(self, Self::Differential(_) | Self::Omni(_))
     }
 
     /// Records the robot's true motion in this tick, which obstacles may have changed.
@@ -106,6 +125,13 @@ impl Powertrain {
     pub(super) fn craft_mut(&mut self) -> Option<&mut CraftDrive> {
         if let Self::Craft(drive) = self { Some(drive) } else { None }
     }
+}
+
+fn fill(drifts: &mut [Drift], mut step: impl FnMut() -> (PlanarMotion, bool)) {
+    drifts.fill_with(|| {
+        let (motion, is_driving) = step();
+        Drift { motion, is_driving, reach: 0.0 }
+    });
 }
 
 fn wheel_spec(drive: &DriveSpec) -> WheelSpec {

@@ -39,6 +39,7 @@ mod engine;
 mod fleet;
 mod inertial_unit;
 mod lockstep;
+mod machine;
 mod marine;
 mod mechanics;
 mod movable;

@@ -14,7 +14,7 @@ impl Engine {
     /// moved.
     pub(super) fn push(&mut self, index: usize, pose: &Pose) -> bool {
         self.depth_at(index, pose);
-        let strength = self.bodies[index].spec.mass;
+        let strength = self.machines[index].spec.mass;
         let contacts = std::mem::take(&mut self.contacts);
         let mut moved = false;
         for contact in &contacts {
@@ -31,8 +31,11 @@ impl Engine {
     /// Knocks over the falling objects that a robot at a pose would overlap; each is a contact. Returns
     /// whether anything fell.
     pub(super) fn topple(&mut self, index: usize, pose: &Pose) -> bool {
+        if self.movables.is_empty() {
+            return false;
+        }
         self.depth_at(index, pose);
-        let strength = self.bodies[index].spec.mass;
+        let strength = self.machines[index].spec.mass;
         let contacts = std::mem::take(&mut self.contacts);
         let mut fell = false;
         for solid in contacts.iter().filter_map(|contact| contact.with) {

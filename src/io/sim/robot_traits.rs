@@ -15,19 +15,19 @@ use image::RgbImage;
 /// Answers when the running manoeuvre has ended or stalled.
 #[allow(clippy::unnecessary_wraps, reason = "Other questions that a poll asks may fail")]
 fn arrival(engine: &mut Engine, index: usize) -> Result<Option<()>> {
-    let body = &engine.bodies[index];
-    Ok((body.drive.get().is_done() || body.touch.is_stalled()).then_some(()))
+    let done = engine.machines[index].drive.get().is_done() || engine.bodies[index].touch.is_stalled();
+    Ok(done.then_some(()))
 }
 
 /// Answers with the next key press; fails if none is scheduled.
 fn next_key(engine: &mut Engine, index: usize) -> Result<Option<Key>> {
     let now = engine.time();
-    let body = &mut engine.bodies[index];
-    if body.keys.is_empty() {
+    let machine = &mut engine.machines[index];
+    if machine.keys.is_empty() {
         let message = "the program waits for a key, and no key press is scheduled";
         return Err(Error::new(ErrorKind::Other, message));
     }
-    Ok(body.take_key(now))
+    Ok(machine.take_key(now))
 }
 
 macro_rules! robot_through_engine {
@@ -54,11 +54,11 @@ macro_rules! robot_through_engine {
 
         impl Odometry for $robot {
             fn speed(&mut self) -> Result<Twist> {
-                self.call(|engine, i| Ok(engine.bodies[i].drive.get().twist()))
+                self.call(|engine, i| Ok(engine.machines[i].drive.get().twist()))
             }
 
             fn pose(&mut self) -> Result<Pose> {
-                self.call(|engine, i| Ok(engine.bodies[i].drive.get().odometry()))
+                self.call(|engine, i| Ok(engine.machines[i].drive.get().odometry()))
             }
 
             fn set_pose(&mut self, pose: Pose) -> Result<()> {
@@ -80,11 +80,11 @@ macro_rules! robot_through_engine {
             }
 
             fn remaining(&mut self) -> Result<f64> {
-                self.call(|engine, i| Ok(engine.bodies[i].drive.get().remaining()))
+                self.call(|engine, i| Ok(engine.machines[i].drive.get().remaining()))
             }
 
             fn is_done(&mut self) -> Result<bool> {
-                self.call(|engine, i| Ok(engine.bodies[i].drive.get().is_done()))
+                self.call(|engine, i| Ok(engine.machines[i].drive.get().is_done()))
             }
 
             fn wait_done(&mut self) -> Result<()> {
@@ -130,43 +130,43 @@ macro_rules! robot_through_engine {
 
         impl Display for $robot {
             fn print(&mut self, text: &str) -> Result<()> {
-                self.call(|engine, i| engine.bodies[i].lcd().print(text))
+                self.call(|engine, i| engine.machines[i].lcd().print(text))
             }
 
             fn set_cursor(&mut self, row: i32, column: i32) -> Result<()> {
-                self.call(|engine, i| engine.bodies[i].lcd().set_cursor(row, column))
+                self.call(|engine, i| engine.machines[i].lcd().set_cursor(row, column))
             }
 
             fn cursor(&mut self) -> Result<(i32, i32)> {
-                self.call(|engine, i| engine.bodies[i].lcd().cursor())
+                self.call(|engine, i| engine.machines[i].lcd().cursor())
             }
 
             fn set_text_colours(&mut self, foreground: Colour, background: Colour) -> Result<()> {
-                self.call(|engine, i| engine.bodies[i].lcd().set_text_colours(foreground, background))
+                self.call(|engine, i| engine.machines[i].lcd().set_text_colours(foreground, background))
             }
 
             fn set_font(&mut self, font: Font) -> Result<()> {
-                self.call(|engine, i| engine.bodies[i].lcd().set_font(font))
+                self.call(|engine, i| engine.machines[i].lcd().set_font(font))
             }
 
             fn clear_display(&mut self) -> Result<()> {
-                self.call(|engine, i| engine.bodies[i].lcd().clear_display())
+                self.call(|engine, i| engine.machines[i].lcd().clear_display())
             }
 
             fn display_size(&mut self) -> Result<(i32, i32)> {
-                self.call(|engine, i| engine.bodies[i].lcd().display_size())
+                self.call(|engine, i| engine.machines[i].lcd().display_size())
             }
 
             fn set_pixel(&mut self, at: Pixel, colour: Colour) -> Result<()> {
-                self.call(|engine, i| engine.bodies[i].lcd().set_pixel(at, colour))
+                self.call(|engine, i| engine.machines[i].lcd().set_pixel(at, colour))
             }
 
             fn pixel(&mut self, at: Pixel) -> Result<Option<Colour>> {
-                self.call(|engine, i| engine.bodies[i].lcd().pixel(at))
+                self.call(|engine, i| engine.machines[i].lcd().pixel(at))
             }
 
             fn draw_line(&mut self, from: Pixel, to: Pixel, colour: Colour) -> Result<()> {
-                self.call(|engine, i| engine.bodies[i].lcd().draw_line(from, to, colour))
+                self.call(|engine, i| engine.machines[i].lcd().draw_line(from, to, colour))
             }
 
             fn draw_rectangle(
@@ -176,7 +176,7 @@ macro_rules! robot_through_engine {
                 colour: Colour,
                 fill: Fill,
             ) -> Result<()> {
-                self.call(|engine, i| engine.bodies[i].lcd().draw_rectangle(corner, opposite, colour, fill))
+                self.call(|engine, i| engine.machines[i].lcd().draw_rectangle(corner, opposite, colour, fill))
             }
 
             fn draw_circle(
@@ -186,11 +186,11 @@ macro_rules! robot_through_engine {
                 colour: Colour,
                 fill: Fill,
             ) -> Result<()> {
-                self.call(|engine, i| engine.bodies[i].lcd().draw_circle(centre, diameter, colour, fill))
+                self.call(|engine, i| engine.machines[i].lcd().draw_circle(centre, diameter, colour, fill))
             }
 
             fn draw_image(&mut self, picture: DisplayImage<'_>, viewport: Viewport) -> Result<()> {
-                self.call(|engine, i| engine.bodies[i].lcd().draw_image(picture, viewport))
+                self.call(|engine, i| engine.machines[i].lcd().draw_image(picture, viewport))
             }
 
             fn set_menu_label(
@@ -201,24 +201,24 @@ macro_rules! robot_through_engine {
                 background: Colour,
             ) -> Result<()> {
                 self.call(|engine, i| {
-                    engine.bodies[i].lcd().set_menu_label(key, label, foreground, background)
+                    engine.machines[i].lcd().set_menu_label(key, label, foreground, background)
                 })
             }
 
             fn set_menu(&mut self, labels: [&str; 4]) -> Result<()> {
-                self.call(|engine, i| engine.bodies[i].lcd().set_menu(labels))
+                self.call(|engine, i| engine.machines[i].lcd().set_menu(labels))
             }
 
             fn set_display_option(&mut self, option: DisplayOption, on: bool) -> Result<()> {
-                self.call(|engine, i| engine.bodies[i].lcd().set_display_option(option, on))
+                self.call(|engine, i| engine.machines[i].lcd().set_display_option(option, on))
             }
 
             fn refresh(&mut self) -> Result<()> {
-                self.call(|engine, i| engine.bodies[i].lcd().refresh())
+                self.call(|engine, i| engine.machines[i].lcd().refresh())
             }
 
             fn screenshot(&mut self) -> Result<RgbImage> {
-                self.call(|engine, i| engine.bodies[i].lcd().screenshot())
+                self.call(|engine, i| engine.machines[i].lcd().screenshot())
             }
         }
 
@@ -226,7 +226,7 @@ macro_rules! robot_through_engine {
             fn read_key(&mut self) -> Result<Option<Key>> {
                 self.call(|engine, i| {
                     let now = engine.time();
-                    Ok(engine.bodies[i].take_key(now))
+                    Ok(engine.machines[i].take_key(now))
                 })
             }
 
@@ -253,7 +253,7 @@ macro_rules! robot_through_engine {
             }
 
             fn receive(&mut self) -> Result<Option<RadioMessage>> {
-                self.call(|engine, i| Ok(engine.bodies[i].mailbox.pop_front()))
+                self.call(|engine, i| Ok(engine.machines[i].mailbox.pop_front()))
             }
         }
 
@@ -271,11 +271,11 @@ macro_rules! robot_through_engine {
 
         impl Encoders for $robot {
             fn encoder(&mut self, motor: u8) -> Result<i64> {
-                self.call(|engine, i| engine.bodies[i].encoder(motor))
+                self.call(|engine, i| engine.machines[i].encoder(motor))
             }
 
             fn reset_encoder(&mut self, motor: u8) -> Result<()> {
-                self.call(|engine, i| engine.bodies[i].reset_encoder(motor))
+                self.call(|engine, i| engine.machines[i].reset_encoder(motor))
             }
         }
 

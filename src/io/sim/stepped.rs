@@ -67,7 +67,7 @@ impl Stepped {
     /// number that is not finite, and for more than 1e6 s.
     pub fn run_for(&mut self, seconds: f64) -> Result<()> {
         check_duration("duration", seconds)?;
-        (0..ticks_in(seconds.max(0.0))).for_each(|_| self.engine.step());
+        self.engine.run(ticks_in(seconds.max(0.0)));
         Ok(())
     }
 
@@ -111,7 +111,7 @@ mod tests {
     use super::super::Fleet;
     use super::*;
     use crate::geometry::Twist;
-    use crate::io::{Clock, Drive, Lidar, LidarScan, Manoeuvres};
+    use crate::io::{Clock, Drive, Lidar, LidarScan, Manoeuvres, StallDetector};
     use crate::world::{RobotPlacement, RobotSpec, World};
 
     fn two_robots() -> Scene {
@@ -158,6 +158,37 @@ mod tests {
             );
             assert!(truth.path_length > 1.0);
         }
+    }
+
+    /// Drives run ahead of their robots; that must not show, whatever they do and whatever is in the way.
+    #[test]
+    fn many_ticks_at_once_are_as_many_ticks() {
+        let mut scene = Scene::new(World::walled(1.2, 0.8));
+        let specs = [RobotSpec::s4(), RobotSpec::s4(), RobotSpec::omni(), RobotSpec::s4()];
+        for (index, spec) in specs.into_iter().enumerate() {
+            let pose = Pose::new(0.2 + 0.25 * index as f64, 0.4, index as f64);
+            scene.robots.push(RobotPlacement::new(spec.into(), pose));
+        }
+        let options = SimOptions { trail_interval: Some(0.07), ..SimOptions::with_noise(2.0, 3) };
+        let mut worlds = [(); 2].map(|()| Stepped::new(&scene, options.clone()).unwrap());
+        for step in 0..60 {
+            for world in &mut worlds {
+                let turn = 0.3 * f64::from(step % 5) - 0.6;
+                world.robot(0).unwrap().set_speed(Twist::new(0.3, turn)).unwrap();
+                world.robot(2).unwrap().set_speed(Twist::new(-0.2, turn)).unwrap();
+                if step % 20 == 0 {
+                    world.robot(1).unwrap().curve(0.15, turn, 0.3).unwrap();
+                }
+            }
+            worlds[0].run_for(0.37).unwrap();
+            (0..37).for_each(|_| worlds[1].run_for(0.01).unwrap());
+            for robot in 0..4 {
+                assert_eq!(worlds[0].truth(robot).unwrap(), worlds[1].truth(robot).unwrap(), "step {step}");
+                let stalled = |world: &mut Stepped| world.robot(robot).unwrap().is_stalled().unwrap();
+                assert_eq!(stalled(&mut worlds[0]), stalled(&mut worlds[1]));
+            }
+        }
+        assert!((0..3).all(|robot| worlds[0].contacts(robot).unwrap() > 0));
     }
 
     #[test]

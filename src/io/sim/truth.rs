@@ -180,14 +180,14 @@ pub(super) fn require_finite_pose(pose: Pose) -> Result<()> {
 }
 
 pub(super) fn robot_truth(engine: &Engine, robot: usize) -> Result<RobotTruth> {
-    let body = engine.body(robot)?;
+    let (body, machine) = (engine.body(robot)?, &engine.machines[robot]);
     Ok(RobotTruth {
         pose: body.pose(),
-        odometry: body.drive.get().odometry(),
+        odometry: machine.drive.get().odometry(),
         contacts: body.touch.contacts,
         contact_places: body.touch.places.clone(),
         path_length: body.path_length,
-        trail: body.trail.clone(),
+        trail: machine.trail.clone(),
     })
 }
 

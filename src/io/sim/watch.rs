@@ -92,7 +92,7 @@ impl<'e> Onlooking<'e> {
 
     /// A robot's odometry pose, in the frame of the odometry.
     pub fn odometry(&self, robot: usize) -> Option<Pose> {
-        self.engine.bodies.get(robot).map(|body| body.drive.get().odometry())
+        self.engine.machines.get(robot).map(|machine| machine.drive.get().odometry())
     }
 
     /// A robot's number of contacts, and the places of the first thousand.
@@ -103,7 +103,7 @@ impl<'e> Onlooking<'e> {
     /// A robot's display, and the number of its display calls; the display is unchanged while this number is.
     /// `None` before the first call.
     pub fn display(&self, robot: usize) -> Option<(u64, &Lcd)> {
-        self.engine.bodies.get(robot)?.display()
+        self.engine.machines.get(robot)?.display()
     }
 
     /// An object's pose; robots may have pushed it.

@@ -1,4 +1,4 @@
-use super::shape::{OrientedBox, Shape};
+use super::shape::{Block, OrientedBox, Shape};
 use super::solid::{SolidId, Span};
 use super::store::Space;
 use crate::geometry::{Aabb, Pose, Vector};
@@ -77,6 +77,24 @@ impl Space {
         self.find_clearance(&query, limit)
     }
 
+    /// [`walls_clearance`](Self::walls_clearance) and [`solids_clearance`](Self::solids_clearance) at once.
+    pub(crate) fn clearances(
+        &self,
+        outline: &Footprint,
+        pose: &Pose,
+        span: Span,
+        limit: f64,
+        except: Option<SolidId>,
+    ) -> (f64, f64) {
+        let query = Query { shape: outline.at(pose), span, walls: true, solids: true, except };
+        let (mut walls, mut solids) = (limit, limit);
+        self.for_each_near(&query, &query.shape.bounds().inflated(limit), |shape, with| {
+            let nearest = if with.is_some() { &mut solids } else { &mut walls };
+            *nearest = smaller(*nearest, &query.shape, shape);
+        });
+        (walls, solids)
+    }
+
     #[inline]
     fn find_contacts(&self, query: &Query, out: &mut Vec<Contact>) {
         out.clear();
@@ -103,7 +121,7 @@ impl Space {
     fn find_clearance(&self, query: &Query, limit: f64) -> f64 {
         let mut nearest = limit;
         let window = query.shape.bounds().inflated(limit);
-        self.for_each_near(query, &window, |shape, _| nearest = nearest.min(query.shape.gap(shape)));
+        self.for_each_near(query, &window, |shape, _| nearest = smaller(nearest, &query.shape, shape));
         nearest
     }
 
@@ -111,15 +129,14 @@ impl Space {
     /// than once.
     #[inline]
     fn for_each_near(&self, query: &Query, window: &Aabb, mut visit: impl FnMut(&Shape, Option<SolidId>)) {
-        let mut wall = |number: u32| {
-            let wall = &self.walls[number as usize];
+        let mut wall = |wall: &Block| {
             if wall.span.overlaps(&query.span) {
                 visit(&Shape::Box(wall.shape), None);
             }
         };
         let window_cells = self.grid.lattice.under(window).map(|(cells, _)| cells);
         if query.walls {
-            self.grid.loose_walls().iter().for_each(|&number| wall(number));
+            self.grid.loose_walls().iter().for_each(|&number| wall(&self.walls[number as usize]));
             if let Some(cells) = window_cells {
                 self.grid.for_each_wall_in(cells, wall);
             }
@@ -145,6 +162,12 @@ impl Space {
             }
         }
     }
+}
+
+/// The smaller of a gap and that between two shapes. Nothing is nearer than 0, which many contacts are.
+#[inline]
+fn smaller(gap: f64, own: &Shape, other: &Shape) -> f64 {
+    if gap > 0.0 { gap.min(own.gap(other)) } else { gap }
 }
 
 impl Shape {

@@ -7,6 +7,9 @@ const FARTHEST: f64 = 1e7;
 /// Number of cells above which a solid is tested by every query instead of being listed in each cell.
 const MOST_CELLS_OF_A_SOLID: usize = 64;
 
+/// Width of a tile in cells.
+const TILE: u32 = 8;
+
 /// Width of a block in cells.
 const BLOCK: usize = 8;
 
@@ -67,13 +70,22 @@ impl Lattice {
         }
     }
 
+    /// Number of places in memory for cells.
     pub(super) fn count(&self) -> usize {
-        self.columns as usize * self.rows as usize
+        (self.tiles_in_a_row() * TILE * TILE) as usize * (self.rows as u32).div_ceil(TILE) as usize
+    }
+
+    /// Place of a cell in memory: tile by tile, so that what is near in the world is near in memory too.
+    #[inline]
+    pub(super) fn index(&self, x: i32, y: i32) -> usize {
+        let (x, y) = (x as u32, y as u32);
+        let tile = (y / TILE) as usize * self.tiles_in_a_row() as usize + (x / TILE) as usize;
+        tile * (TILE * TILE) as usize + ((y % TILE) * TILE + x % TILE) as usize
     }
 
     #[inline]
-    pub(super) fn index(&self, x: i32, y: i32) -> usize {
-        y as usize * self.columns as usize + x as usize
+    fn tiles_in_a_row(&self) -> u32 {
+        (self.columns as u32).div_ceil(TILE)
     }
 
     /// Cells under a box, and whether the whole box is on cells; `None` if there are none.
@@ -246,14 +258,55 @@ impl Axis {
     }
 }
 
+/// What is in a cell. Half a cache line.
+#[derive(Debug, Clone, Default)]
+struct Cell {
+    /// Start and end of its walls in the list of all cells' walls.
+    walls: [u32; 2],
+    /// The first `count` are its first solids.
+    few: [u32; 3],
+    count: u32,
+    /// All others.
+    #[allow(clippy::box_collection, reason = "Nearly all cells have none, and it shall be small")]
+    more: Option<Box<Vec<u32>>>,
+}
+
+impl Cell {
+    #[inline]
+    fn solids(&self) -> impl Iterator<Item = &u32> {
+        self.few[..self.count as usize].iter().chain(self.more.iter().flat_map(|more| more.iter()))
+    }
+
+    fn insert(&mut self, solid: u32) {
+        match self.few.get_mut(self.count as usize) {
+            Some(place) => {
+                *place = solid;
+                self.count += 1;
+            }
+            None => self.more.get_or_insert_default().push(solid),
+        }
+    }
+
+    fn remove(&mut self, solid: u32) {
+        let few = &mut self.few[..self.count as usize];
+        let Some(at) = few.iter().position(|&other| other == solid) else {
+            return self.more.iter_mut().for_each(|more| take(more, solid));
+        };
+        let last = few[few.len() - 1];
+        few[at] = self.more.as_mut().and_then(|more| more.pop()).unwrap_or_else(|| {
+            self.count -= 1;
+            last
+        });
+    }
+}
+
 /// Cells with lists of the walls and solids in them.
 #[derive(Debug, Clone)]
 pub(super) struct Grid {
     pub(super) lattice: Lattice,
-    /// Start of each cell's walls in `wall_list`, and the end of the last one's.
-    wall_starts: Vec<u32>,
-    wall_list: Vec<u32>,
-    solids: Vec<Vec<u32>>,
+    cells: Vec<Cell>,
+    /// The walls of all cells, one after the other: those of a cell are together in memory.
+    wall_list: Vec<Block>,
     /// Things tested by every query, because they are not completely on cells.
     loose_walls: Vec<u32>,
     loose_solids: Vec<u32>,
@@ -264,7 +317,7 @@ impl Grid {
     pub(super) fn new(walls: &[Block], solids: &[Aabb]) -> Self {
         let all = walls.iter().map(Block::bounds).chain(solids.iter().copied());
         let bounds = all.reduce(|a, b| a.union(&b)).unwrap_or(Aabb::new(Point::origin(), Point::origin()));
-        let mut cells = 2 * (walls.len() + solids.len()) + 16;
+        let mut cells = walls.len() + solids.len() + 16;
         let most_entries = 8 * walls.len() + 64;
         loop {
             let lattice = Lattice::covering(bounds, cells);
@@ -300,28 +353,31 @@ impl Grid {
         for cell in 1..counts.len() {
             counts[cell] += counts[cell - 1];
         }
-        let wall_starts = counts;
-        let mut ends = wall_starts.clone();
-        let mut wall_list = vec![0; wall_starts[lattice.count()] as usize];
+        let listed = counts[lattice.count()] as usize;
+        let mut wall_list: Vec<Block> = walls.iter().copied().cycle().take(listed).collect();
+        let mut cells: Vec<Cell> = counts[..lattice.count()]
+            .iter()
+            .map(|&start| Cell { walls: [start; 2], ..Cell::default() })
+            .collect();
         let mut loose = loose_walls.iter().copied().peekable();
         for (number, wall) in walls.iter().enumerate() {
             if loose.next_if_eq(&(number as u32)).is_some() {
                 continue;
             }
             lattice.for_each_under(&wall.shape, |cell| {
-                wall_list[ends[cell] as usize] = number as u32;
-                ends[cell] += 1;
+                let end = &mut cells[cell].walls[1];
+                wall_list[*end as usize] = *wall;
+                *end += 1;
                 true
             });
         }
-        let solids = vec![Vec::new(); lattice.count()];
-        Some(Self { lattice, wall_starts, wall_list, solids, loose_walls, loose_solids: Vec::new() })
+        Some(Self { lattice, cells, wall_list, loose_walls, loose_solids: Vec::new() })
     }
 
     /// Number of cells and of entries in their lists.
     #[cfg(test)]
     pub(super) fn size(&self) -> usize {
-        let solids: usize = self.solids.iter().map(Vec::len).sum();
+        let solids: usize = self.cells.iter().map(|cell| cell.solids().count()).sum();
         self.lattice.count()
             + self.wall_list.len()
             + self.loose_walls.len()
@@ -331,29 +387,30 @@ impl Grid {
 
     /// Walls listed in a cell.
     #[inline]
-    pub(super) fn walls_in(&self, cell: usize) -> &[u32] {
-        &self.wall_list[self.wall_starts[cell] as usize..self.wall_starts[cell + 1] as usize]
+    pub(super) fn walls_in(&self, cell: usize) -> &[Block] {
+        let [start, end] = self.cells[cell].walls;
+        &self.wall_list[start as usize..end as usize]
     }
 
     /// Solids listed in a cell.
     #[inline]
-    pub(super) fn solids_in(&self, cell: usize) -> &[u32] {
-        &self.solids[cell]
+    pub(super) fn solids_in(&self, cell: usize) -> impl Iterator<Item = &u32> {
+        self.cells[cell].solids()
     }
 
     /// Solids in some cells; a solid occurs once per cell that lists it.
     #[inline]
     pub(super) fn solids_of(&self, cells: Cells) -> impl Iterator<Item = &u32> {
-        let row = move |y| self.lattice.index(cells.x0, y)..self.lattice.index(cells.x1, y) + 1;
-        (cells.y0..=cells.y1).flat_map(move |y| self.solids[row(y)].iter().flatten())
+        let row = move |y| (cells.x0..=cells.x1).flat_map(move |x| self.solids_in(self.lattice.index(x, y)));
+        (cells.y0..=cells.y1).flat_map(row)
     }
 
     /// Visits the walls in some cells; a wall once per cell that lists it.
     #[inline]
-    pub(super) fn for_each_wall_in(&self, cells: Cells, mut visit: impl FnMut(u32)) {
+    pub(super) fn for_each_wall_in(&self, cells: Cells, mut visit: impl FnMut(&Block)) {
         for y in cells.y0..=cells.y1 {
             for x in cells.x0..=cells.x1 {
-                self.walls_in(self.lattice.index(x, y)).iter().for_each(|&number| visit(number));
+                self.walls_in(self.lattice.index(x, y)).iter().for_each(&mut visit);
             }
         }
     }
@@ -363,7 +420,7 @@ impl Grid {
     pub(super) fn for_each_solid_in(&self, cells: Cells, mut visit: impl FnMut(u32, i32, i32)) {
         for y in cells.y0..=cells.y1 {
             for x in cells.x0..=cells.x1 {
-                self.solids_in(self.lattice.index(x, y)).iter().for_each(|&number| visit(number, x, y));
+                self.solids_in(self.lattice.index(x, y)).for_each(|&number| visit(number, x, y));
             }
         }
     }
@@ -392,7 +449,7 @@ impl Grid {
         };
         for y in cells.y0..=cells.y1 {
             for x in cells.x0..=cells.x1 {
-                self.solids[self.lattice.index(x, y)].push(solid);
+                self.cells[self.lattice.index(x, y)].insert(solid);
             }
         }
     }
@@ -404,7 +461,7 @@ impl Grid {
         };
         for y in cells.y0..=cells.y1 {
             for x in cells.x0..=cells.x1 {
-                take(&mut self.solids[self.lattice.index(x, y)], solid);
+                self.cells[self.lattice.index(x, y)].remove(solid);
             }
         }
     }
@@ -421,4 +478,46 @@ fn take(list: &mut Vec<u32>, solid: u32) {
 fn distance(bounds: &Aabb, point: Point) -> f64 {
     let nearest = point.sup(&bounds.min).inf(&bounds.max);
     (nearest - point).norm()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(crate::testing::cases(256))]
+        #[test]
+        fn a_cell_lists_what_was_inserted_and_not_removed(
+            changes in prop::collection::vec((0..12_u32, any::<bool>()), 0..60),
+        ) {
+            let (mut cell, mut expected) = (Cell::default(), Vec::new());
+            for (solid, comes) in changes {
+                let listed = expected.contains(&solid);
+                if comes && !listed {
+                    cell.insert(solid);
+                    expected.push(solid);
+                } else if !comes {
+                    cell.remove(solid);
+                    expected.retain(|&other| other != solid);
+                }
+                let mut found: Vec<u32> = cell.solids().copied().collect();
+                found.sort_unstable();
+                expected.sort_unstable();
+                prop_assert_eq!(&found, &expected);
+            }
+        }
+
+        #[test]
+        fn every_cell_has_a_place_of_its_own(columns in 1..40_i32, rows in 1..40_i32) {
+            let bounds = Aabb::new(Point::origin(), Point::new(f64::from(columns), f64::from(rows)));
+            let lattice = Lattice::covering(bounds, (columns * rows) as usize);
+            let cells = (0..lattice.rows).flat_map(|y| (0..lattice.columns).map(move |x| (x, y)));
+            let mut places: Vec<usize> = cells.map(|(x, y)| lattice.index(x, y)).collect();
+            let count = places.len();
+            places.sort_unstable();
+            places.dedup();
+            prop_assert!(places.len() == count && places.iter().all(|&place| place < lattice.count()));
+        }
+    }
 }

@@ -104,9 +104,8 @@ impl Space {
     ) -> f64 {
         let mut nearest = f64::INFINITY;
         let ray = &slanted.ray;
-        let wall = |number: u32, nearest: &mut f64| {
-            if let Some(hit) = slanted.hit_wall(ground, &self.walls[number as usize], lesser(*nearest, limit))
-            {
+        let wall = |wall: &Block, nearest: &mut f64| {
+            if let Some(hit) = slanted.hit_wall(ground, wall, lesser(*nearest, limit)) {
                 *nearest = lesser(hit, *nearest);
             }
         };
@@ -117,11 +116,11 @@ impl Space {
                 *nearest = lesser(hit, *nearest);
             }
         };
-        self.grid.loose_walls().iter().for_each(|&n| wall(n, &mut nearest));
+        self.grid.loose_walls().iter().for_each(|&n| wall(&self.walls[n as usize], &mut nearest));
         self.grid.loose_solids().iter().for_each(|&n| solid(n, &mut nearest));
         self.grid.lattice.walk(ray.origin, ray.direction, lesser(nearest, limit), |cell| {
-            self.grid.walls_in(cell).iter().for_each(|&n| wall(n, &mut nearest));
-            self.grid.solids_in(cell).iter().for_each(|&n| solid(n, &mut nearest));
+            self.grid.walls_in(cell).iter().for_each(|own| wall(own, &mut nearest));
+            self.grid.solids_in(cell).for_each(|&n| solid(n, &mut nearest));
             nearest
         });
         if nearest <= limit { nearest } else { f64::INFINITY }

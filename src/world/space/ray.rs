@@ -1,4 +1,4 @@
-use super::shape::{OrientedBox, Shape};
+use super::shape::{Block, OrientedBox, Shape};
 use super::solid::{SolidId, Span};
 use super::store::{Placed, Space};
 use crate::geometry::{Point, Vector, cross};
@@ -32,8 +32,7 @@ impl Space {
 
     pub(super) fn cast(&self, ray: &Ray, max_range: f64, except: Option<SolidId>) -> f64 {
         let mut nearest = f64::INFINITY;
-        let wall = |number: u32, nearest: &mut f64| {
-            let wall = &self.walls[number as usize];
+        let wall = |wall: &Block, nearest: &mut f64| {
             if let Some(hit) = ray.hit_box(&wall.shape, &wall.span) {
                 *nearest = lesser(hit, *nearest);
             }
@@ -50,11 +49,11 @@ impl Space {
                 *nearest = lesser(hit, *nearest);
             }
         };
-        self.grid.loose_walls().iter().for_each(|&n| wall(n, &mut nearest));
+        self.grid.loose_walls().iter().for_each(|&n| wall(&self.walls[n as usize], &mut nearest));
         self.grid.loose_solids().iter().for_each(|&n| solid(n, &mut nearest));
         self.grid.lattice.walk(ray.origin, ray.direction, lesser(nearest, max_range), |cell| {
-            self.grid.walls_in(cell).iter().for_each(|&n| wall(n, &mut nearest));
-            self.grid.solids_in(cell).iter().for_each(|&n| solid(n, &mut nearest));
+            self.grid.walls_in(cell).iter().for_each(|own| wall(own, &mut nearest));
+            self.grid.solids_in(cell).for_each(|&n| solid(n, &mut nearest));
             nearest
         });
         if nearest <= max_range { nearest } else { f64::INFINITY }

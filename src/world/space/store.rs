@@ -16,6 +16,8 @@ pub struct Space {
     pub(super) walls: Vec<Block>,
     pub(super) clusters: Clusters,
     pub(super) solids: Vec<Placed>,
+    /// The solids as their users described them, apart from what queries look at.
+    described: Vec<Solid>,
     pub(super) grid: Grid,
     /// The grid is rebuilt at this number of solids ...
     full_at: usize,
@@ -27,11 +29,10 @@ pub struct Space {
 /// A solid with its index data.
 #[derive(Debug, Clone)]
 pub(super) struct Placed {
-    solid: Solid,
     pub(super) shape: Shape,
     pub(super) span: Span,
     pub(super) taper: f64,
-    pub(super) mast: Option<Block>,
+    pub(super) mast: Option<Box<Block>>,
     /// Elevation of the ground on hills; its heights are relative to that (m).
     pub(super) level: f64,
     /// Cells that list it; `None`: every query tests it.
@@ -57,7 +58,8 @@ impl Space {
     pub fn new(walls: &[Wall]) -> Self {
         let (walls, clusters) = Clusters::of(&walls.iter().map(Block::of_wall).collect::<Vec<_>>());
         let grid = Grid::new(&walls, &[]);
-        Self { walls, clusters, solids: Vec::new(), grid, full_at: 16, strays: 0, strays_allowed: 16 }
+        let (solids, described) = (Vec::new(), Vec::new());
+        Self { walls, clusters, solids, described, grid, full_at: 16, strays: 0, strays_allowed: 16 }
     }
 
     /// Adds a solid.
@@ -69,8 +71,9 @@ impl Space {
         let id = SolidId(u32::try_from(self.solids.len()).expect("fewer than 2^32 solids"));
         let shape = solid.outline.at(&solid.pose);
         let span = solid.span();
-        let (taper, mast) = (solid.taper, solid.placed_mast());
-        self.solids.push(Placed { solid, shape, span, taper, mast, level: 0.0, cells: None, stray: false });
+        let (taper, mast) = (solid.taper, solid.placed_mast().map(Box::new));
+        self.described.push(solid);
+        self.solids.push(Placed { shape, span, taper, mast, level: 0.0, cells: None, stray: false });
         self.list(id.0, &shape.bounds());
         if self.solids.len() >= self.full_at || self.strays > self.strays_allowed {
             self.rebuild();
@@ -84,10 +87,15 @@ impl Space {
     ///
     /// If the solid is of another space that holds more solids.
     pub fn set_pose(&mut self, id: SolidId, pose: Pose) {
-        let placed = &mut self.solids[id.index()];
-        placed.solid.pose = pose;
-        placed.shape = placed.solid.outline.at(&pose);
-        placed.mast = placed.solid.placed_mast();
+        let (placed, described) = (&mut self.solids[id.index()], &mut self.described[id.index()]);
+        described.pose = pose;
+        match &mut placed.shape {
+            Shape::Disc { centre, .. } => *centre = pose.position(),
+            shape @ Shape::Box(_) => *shape = described.outline.at(&pose),
+        }
+        if placed.mast.is_some() {
+            placed.mast = described.placed_mast().map(Box::new);
+        }
         let bounds = placed.shape.bounds();
         let cells = self.grid.place_for(&bounds);
         if cells.is_some() && cells == placed.cells {
@@ -102,9 +110,8 @@ impl Space {
     ///
     /// If the solid is of another space that holds more solids.
     pub fn set_top(&mut self, id: SolidId, top: f64) {
-        let placed = &mut self.solids[id.index()];
-        placed.solid.top = top;
-        placed.span.top = top;
+        self.described[id.index()].top = top;
+        self.solids[id.index()].span.top = top;
     }
 
     /// A solid with its present pose.
@@ -113,7 +120,7 @@ impl Space {
     ///
     /// If the solid is of another space that holds more solids.
     pub fn solid(&self, id: SolidId) -> &Solid {
-        &self.solids[id.index()].solid
+        &self.described[id.index()]
     }
 
     /// The number of solids.

@@ -1,6 +1,6 @@
 //! Radio messages between the robots of a world.
 
-use crate::io::sim::body::Body;
+use crate::io::sim::machine::Machine;
 use crate::io::{Error, RadioMessage, Result};
 use crate::random::Stream;
 
@@ -44,14 +44,14 @@ impl Radio {
     }
 
     /// Delivers the messages of this tick to the mailboxes, in an order independent of thread scheduling.
-    pub(super) fn deliver(&mut self, bodies: &mut [Body]) {
+    pub(super) fn deliver(&mut self, machines: &mut [Machine]) {
         if self.outbox.is_empty() {
             return;
         }
         self.outbox.sort_by_key(|letter| letter.from);
         let (loss, losses) = (self.loss, &mut self.losses);
         for letter in self.outbox.drain(..).filter(|_| loss == 0.0 || !losses.chance(loss)) {
-            let mailbox = &mut bodies[letter.to as usize - 1].mailbox;
+            let mailbox = &mut machines[letter.to as usize - 1].mailbox;
             if mailbox.len() == MAX_MAILBOX {
                 mailbox.pop_front();
             }

@@ -15,10 +15,12 @@ impl Ticking for Ledger {
         self.time
     }
 
-    fn tick(&mut self) {
-        self.time += 1;
+    fn run(&mut self, ticks: u64) {
         let fold = |sum: u64, told: &u64| sum.rotate_left(7).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ told;
-        self.history = self.told.iter().fold(self.history, fold);
+        for _ in 0..ticks {
+            self.time += 1;
+            self.history = self.told.iter().fold(self.history, fold);
+        }
     }
 }
 
@@ -85,9 +87,7 @@ fn one_by_one(scripts: &[Script]) -> Vec<Vec<(u64, u64)>> {
     calls.sort_by_key(|&(tick, index, _)| (tick, index));
     let mut seen = vec![Vec::new(); scripts.len()];
     for (tick, index, number) in calls {
-        while world.time < tick {
-            world.tick();
-        }
+        world.run(tick.saturating_sub(world.time));
         world.told[index] = number;
         seen[index].push((world.time, world.history));
     }

@@ -236,8 +236,8 @@ impl Ticking for Figure {
         self.steps
     }
 
-    fn tick(&mut self) {
-        self.step();
+    fn run(&mut self, ticks: u64) {
+        (0..ticks).for_each(|_| self.step());
     }
 }
 

@@ -4,7 +4,9 @@ use super::{RigidBody, Undercarriage, Watch};
 use crate::geometry::{Aabb, Point, Point3, Pose, Pose3, Vector, angle_difference};
 use crate::io::sim::TICK;
 use crate::io::sim::body::Body;
+use crate::io::sim::machine::Machine;
 use crate::io::sim::marine::{Swimmer, Waters};
+use crate::io::sim::mechanics::Drift;
 use crate::io::sim::movable::Movable;
 use crate::io::{Mishap, Result};
 use crate::kinematics::{PlanarMotion, PlanarTwist};
@@ -47,12 +49,12 @@ impl Hills {
     pub(in crate::io::sim) fn of(
         world: &World,
         robots: &[RobotPlacement],
-        bodies: &mut [Body],
+        machines: &mut [Machine],
         seed: u64,
     ) -> Result<Option<Box<Self>>> {
         world.water.validate()?;
         let surface = world.terrain.as_ref().and_then(|terrain| terrain.surface.clone());
-        let craft = bodies.iter_mut().any(|body| body.drive.craft_mut().is_some());
+        let craft = machines.iter_mut().any(|machine| machine.drive.craft_mut().is_some());
         let is_wet = world.water_level.is_some_and(|level| level > 0.0);
         let drops = robots.iter().any(|robot| robot.elevation > 0.0);
         let ground = match surface {
@@ -62,14 +64,14 @@ impl Hills {
         };
         let waters = Waters::of(world, seed);
         let mut hills = Self { ground, waters, movers: Vec::new() };
-        for (robot, body) in robots.iter().zip(bodies) {
-            hills.movers.push(hills.mover(robot, body, world.water_level));
+        for (robot, machine) in robots.iter().zip(machines) {
+            hills.movers.push(hills.mover(robot, machine, world.water_level));
         }
         Ok(Some(Box::new(hills)))
     }
 
-    fn mover(&self, robot: &RobotPlacement, body: &mut Body, water_level: Option<f64>) -> Mover {
-        if let (DriveSpec::Craft(spec), Some(drive)) = (&robot.spec.drive, body.drive.craft_mut()) {
+    fn mover(&self, robot: &RobotPlacement, machine: &mut Machine, water_level: Option<f64>) -> Mover {
+        if let (DriveSpec::Craft(spec), Some(drive)) = (&robot.spec.drive, machine.drive.craft_mut()) {
             let mut swimmer = Swimmer::new(drive.craft().clone(), spec.windage());
             swimmer.place(&self.ground, &self.waters, robot.pose, robot.elevation);
             return Mover::Swimming(Box::new(swimmer));
@@ -128,22 +130,23 @@ impl Hills {
     }
 
     /// Moves all robots for one tick, and replaces the motion of their wheels by that of their frames in the
-    /// plane. Returns whether any robot moves.
+    /// plane.
     pub(in crate::io::sim) fn ride(
         &mut self,
         bodies: &mut [Body],
-        motions: &mut [PlanarMotion],
+        machines: &mut [Machine],
+        drifts: &mut [Drift],
         time: f64,
-    ) -> bool {
-        let mut moving = false;
-        for ((mover, body), motion) in self.movers.iter_mut().zip(bodies).zip(motions) {
+    ) {
+        let robots = self.movers.iter_mut().zip(bodies).zip(machines);
+        for (((mover, body), machine), Drift { motion, reach, .. }) in robots.zip(drifts) {
             match mover {
                 Mover::Riding(rider) => {
                     let drive = if rider.watch.is_over() { PlanarTwist::STOP } else { speed(*motion) };
                     rider.step(&self.ground, &drive);
                 }
                 Mover::Swimming(swimmer) => {
-                    let Some(drive) = body.drive.craft_mut() else { continue };
+                    let Some(drive) = machine.drive.craft_mut() else { continue };
                     if let Some(place) = swimmer.step(&self.ground, &self.waters, drive, time) {
                         body.touch.count(place);
                     }
@@ -157,14 +160,18 @@ impl Hills {
             } else {
                 PlanarMotion::between(body.pose(), there)
             };
-            moving |= *motion != PlanarMotion::default();
+            *reach = body.reach(*motion);
         }
-        moving
     }
 
     /// Takes obstacles in the robots' way into account, and updates the robots' solids.
-    pub(in crate::io::sim) fn yield_to(&mut self, bodies: &mut [Body], space: &mut Space) {
-        for (mover, body) in self.movers.iter_mut().zip(bodies) {
+    pub(in crate::io::sim) fn yield_to(
+        &mut self,
+        bodies: &mut [Body],
+        machines: &[Machine],
+        space: &mut Space,
+    ) {
+        for ((mover, body), machine) in self.movers.iter_mut().zip(bodies).zip(machines) {
             let pose = mover.pose();
             let (there, moved) = (body.pose(), pose.pose());
             let aside = there.position() - moved.position();
@@ -178,7 +185,7 @@ impl Hills {
             let above = pose.position.z - self.ground.height(there.position()).unwrap_or(0.0);
             let above = if above > STANDING { above } else { 0.0 };
             body.span.bottom = above;
-            body.span.top = above + body.spec.height;
+            body.span.top = above + machine.spec.height;
             let level = pose.position.z - space.solid(body.solid).bottom;
             space.set_level(body.solid, level);
         }
