@@ -111,7 +111,7 @@ impl Desk {
         let desk = Arc::clone(self);
         let attend = move || {
             // A connection that breaks has no consequence.
-            let _ = desk.attend(stream);
+            let _ = desk.attend(&stream);
             desk.connections.fetch_sub(1, Ordering::Relaxed);
         };
         if thread::Builder::new().name("viewer".into()).spawn(attend).is_err() {
@@ -119,9 +119,9 @@ impl Desk {
         }
     }
 
-    fn attend(&self, stream: TcpStream) -> io::Result<()> {
+    fn attend(&self, stream: &TcpStream) -> io::Result<()> {
         stream.set_nodelay(true)?;
-        let mut hasty = Hasty { stream: &stream, end: deadline(PATIENCE) };
+        let mut hasty = Hasty { stream, end: deadline(PATIENCE) };
         let Some((request, rest)) = request::read(&mut hasty)? else {
             let why = "expected a request of a browser".into();
             return request::write(&mut hasty, &request::refused(StatusCode::BAD_REQUEST, why));
@@ -134,7 +134,7 @@ impl Desk {
         }
         stream.set_read_timeout(None)?;
         stream.set_write_timeout(None)?;
-        self.talk(&stream, rest)
+        self.talk(stream, rest)
     }
 
     /// Speaks the protocol with a client until either side ends it.
