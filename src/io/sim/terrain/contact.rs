@@ -25,6 +25,7 @@ pub(super) struct Contact {
     tangents: [Motion; 2],
     /// The rim's speeds along them (m/s).
     rim: Vector2<f64>,
+    guess: Load,
     pub(super) load: Load,
     law: Law,
 }
@@ -66,6 +67,9 @@ pub(super) struct Ride<'a> {
 
 /// Steps of Newton's method in which almost all ticks are solved.
 const MOST_STEPS: usize = 10;
+/// Coefficient of friction up to which it is used: with more, a body can wedge itself between its feet, which
+/// solves the equations too.
+const MOST_FRICTION: f64 = 5.0;
 /// Rounds over all feet for the others.
 const MOST_ROUNDS: usize = 60;
 /// Change of a speed at which the iteration ends (m/s).
@@ -77,7 +81,9 @@ const EMERGING: f64 = 0.25;
 
 /// Motion of a body at the end of a tick from that without the ground, `free`; `start` is a guess.
 pub(super) fn solve(contacts: &mut [Contact], free: &Motion, start: Motion) -> Motion {
-    newton(contacts, free, start).unwrap_or_else(|| relaxed(contacts, free))
+    let wedges = contacts.iter().any(|contact| contact.friction > MOST_FRICTION);
+    let found = if wedges { None } else { newton(contacts, free, start) };
+    found.unwrap_or_else(|| relaxed(contacts, free))
 }
 
 /// Newton's method on the six equations of the body: each foot's impulse is a function of the motion, smooth
@@ -106,6 +112,7 @@ fn newton(contacts: &mut [Contact], free: &Motion, start: Motion) -> Option<Moti
 fn relaxed(contacts: &mut [Contact], free: &Motion) -> Motion {
     let mut motion = *free;
     for contact in contacts.iter_mut() {
+        contact.load = contact.guess;
         contact.load.friction = contact.held_back(contact.load.friction);
         motion += contact.impulse();
     }
@@ -122,8 +129,8 @@ fn relaxed(contacts: &mut [Contact], free: &Motion) -> Motion {
 }
 
 impl Contact {
-    /// The contact of a foot, the `number`th one; `load` is a guess.
-    pub(super) fn new(number: usize, foot: &Foot, at: &Meeting, ride: &Ride, load: Load) -> Self {
+    /// The contact of a foot, the `number`th one; `guess` are its impulses in the last tick.
+    pub(super) fn new(number: usize, foot: &Foot, at: &Meeting, ride: &Ride, guess: Load) -> Self {
         let relaxation = foot.relaxation();
         let (tangents, rim) = held(foot.grip, &at.normal, ride);
         let axis = |direction: Vector3| {
@@ -139,7 +146,8 @@ impl Contact {
             normal: axis(at.normal),
             tangents: tangents.map(axis),
             rim,
-            load,
+            guess,
+            load: guess,
             law: Law::default(),
         }
     }

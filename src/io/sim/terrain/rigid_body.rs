@@ -217,7 +217,7 @@ impl RigidBody {
 
     /// This body at rest, to which it has come without sliding; `None` if it finds no rest.
     fn settled(&self, ground: &HeightField, carriage: &Undercarriage, tick: f64) -> Option<Self> {
-        let held = Undercarriage { friction: UNLIMITED, ..carriage.clone() };
+        let held = Undercarriage { friction: f64::MAX, ..carriage.clone() };
         let goal = self.pose(carriage).position.xy();
         let mut body = self.clone();
         for _ in 0..MOST_SETTLING {
@@ -237,8 +237,6 @@ impl RigidBody {
     }
 }
 
-/// Coefficient of friction of a body that cannot slide.
-const UNLIMITED: f64 = 1e6;
 /// Largest number of ticks in which a placed body comes to rest.
 const MOST_SETTLING: u32 = 400;
 /// Fraction of its speed that remains after each of these ticks.
