@@ -86,37 +86,44 @@ impl TrafficActors {
             if (before.along, before.left) != (now.along, now.left)
                 || before.is_gone(item) != now.is_gone(item)
             {
-                moved.push((index, self.pose(index)));
+                moved.extend(self.pose(index).map(|pose| (index, pose)));
             }
         }
         moved
     }
 
-    /// Pose of a box; beyond the floor's corner while it is off the road.
-    pub fn pose(&self, index: usize) -> Pose {
-        let (item, actor) = (&self.scene.boxes[index], &self.actors[index]);
+    /// Pose of a box; beyond the floor's corner while it is off the road. `None` if there is no such box.
+    pub fn pose(&self, index: usize) -> Option<Pose> {
+        let (item, actor) = self.find(index)?;
         if actor.is_gone(item) {
             let corner = self.scene.course.floor().min;
-            return Pose::new(corner.x - 5.0, corner.y - 5.0, 0.0);
+            return Some(Pose::new(corner.x - 5.0, corner.y - 5.0, 0.0));
         }
-        item.pose_at(&self.scene.course, actor.along, actor.left)
+        Some(item.pose_at(&self.scene.course, actor.along, actor.left))
     }
 
-    /// Position of a box's near side along the line (m); `None` while it is off the road.
+    /// Position of a box's near side along the line (m); `None` while it is off the road, and if there is no
+    /// such box.
     pub fn along(&self, index: usize) -> Option<f64> {
-        let (item, actor) = (&self.scene.boxes[index], &self.actors[index]);
+        let (item, actor) = self.find(index)?;
         (!actor.is_gone(item)).then_some(actor.along)
     }
 
-    /// Whether a pedestrian is off the road, or crossing traffic has crossed it.
+    /// Whether a pedestrian is off the road, or crossing traffic has crossed it; `false` of all other boxes,
+    /// and if there is no such box.
     pub fn is_clear(&self, index: usize) -> bool {
-        let (item, actor) = (&self.scene.boxes[index], &self.actors[index]);
+        let Some((item, actor)) = self.find(index) else { return false };
         let course = &self.scene.course;
         match item.motion {
             BoxMotion::Across => (actor.left + course.lane_middle()).abs() > course.edge() + 0.5 * PERSON[1],
             BoxMotion::Crossing(_) => actor.left - 0.5 * item.size[0] > course.edge(),
             BoxMotion::Static | BoxMotion::Along(_) => false,
         }
+    }
+
+    /// A box and its state.
+    fn find(&self, index: usize) -> Option<(&RoadBox, &Actor)> {
+        self.scene.boxes.get(index).zip(self.actors.get(index))
     }
 
     /// The scene.

@@ -118,7 +118,8 @@ impl ObstacleEvasion {
         self.lane.along
     }
 
-    /// Observes the car, its speed (m/s) and the boxes at a time (s). Returns whether the run is over.
+    /// Observes the car, its speed (m/s) and the boxes at a time (s). Returns whether the run is over. The
+    /// actors are to be those of the referee's scene; boxes that they lack count as off the road.
     pub fn see(&mut self, time: f64, car: &Pose, speed: f64, actors: &TrafficActors) -> bool {
         self.score.time = time;
         let before = self.lane;
@@ -157,8 +158,9 @@ impl ObstacleEvasion {
         let outline = Outline::new(car, (body.back, body.front), body.half_width);
         for it in &mut self.encounters {
             let Some(index) = it.index else { continue };
+            let Some(pose) = actors.pose(index) else { continue };
             let [length, width, _] = self.scene.boxes[index].size;
-            let item = Outline::new(&actors.pose(index), (-0.5 * length, 0.5 * length), 0.5 * width);
+            let item = Outline::new(&pose, (-0.5 * length, 0.5 * length), 0.5 * width);
             if !it.is_touched && outline.touches(&item) {
                 it.is_touched = true;
                 self.score.collisions += 1;

@@ -295,6 +295,10 @@ impl Drawing {
     /// Occupies a suitable free interval of a length where cars leave their lane. Returns where it begins
     /// (m).
     fn take(&mut self, long: f64, is_suitable: impl Fn(f64) -> bool) -> Option<f64> {
+        // A line that is too long for stations has no places, however many its length would give.
+        if self.course.line.stations().is_empty() {
+            return None;
+        }
         let length = self.course.line.length();
         let from = self.random.uniform() * length;
         let mut places = (0..(length / 0.25) as usize).map(|i| (from + 0.25 * i as f64) % length);

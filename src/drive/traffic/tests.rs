@@ -186,3 +186,20 @@ fn drawn_scenes_follow_the_rules() {
     }
     assert!(seen.iter().all(|count| *count > 4), "{seen:?}");
 }
+
+#[test]
+fn boxes_that_actors_lack_are_nowhere() {
+    let full = scene("straight 20000\n", &[(3.0, 0.0, BoxMotion::Static)]);
+    let actors = TrafficActors::new(scene("straight 20000\n", &[]));
+    assert_eq!((actors.pose(0), actors.along(usize::MAX), actors.is_clear(0)), (None, None, false));
+    let mut referee = ObstacleEvasion::new(full.clone(), &RobotSpec::road_car(), 1);
+    referee.see(0.1, &full.course.pose(3.1, 0.0), 1.0, &actors);
+    assert_eq!(referee.score().collisions, 0);
+}
+
+#[test]
+fn a_road_of_no_end_gets_no_boxes_on_it() {
+    let mut course = oval("straight 20000\n").scaled(1e9);
+    course.marks.clear();
+    assert!(course.line.stations().is_empty() && TrafficScene::drawn(course, 1).boxes.is_empty());
+}

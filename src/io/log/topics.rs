@@ -27,7 +27,8 @@ pub(super) const WORLD: &str = "world";
 
 /// Name of a robot's own frame.
 pub(super) fn frame(track: usize) -> String {
-    format!("robot{}", track + 1)
+    // The last index has a name too.
+    format!("robot{}", track as u128 + 1)
 }
 
 /// Topic of a robot; one that begins with a slash is shared.

@@ -50,7 +50,8 @@ impl CraftSpec {
     }
 
     /// Height of the waterline in the craft's own frame (m), when it floats level in still water of a density
-    /// (kg/m³). Above the hull for a craft that sinks.
+    /// (kg/m³). Above the hull for a craft that sinks; NaN if that cannot be told, as of a hull whose sizes are
+    /// not finite.
     ///
     /// ```
     /// use roverlab::kinematics::marine::CraftSpec;
@@ -81,7 +82,7 @@ fn solidity(part: &HullPart) -> f64 {
     }
 }
 
-/// The level of water at which a hull carries a mass; above the hull if it cannot.
+/// The level of water at which a hull carries a mass; above the hull if it cannot. NaN if it cannot be told.
 fn floats_at(hull: &[HullPart], mass: f64, density: f64) -> f64 {
     let end = |part: &HullPart, sign: f64| part.centre().z + sign * part.half_size().z;
     let mut low = hull.iter().map(|part| end(part, -1.0)).fold(f64::INFINITY, f64::min);
@@ -89,6 +90,9 @@ fn floats_at(hull: &[HullPart], mass: f64, density: f64) -> f64 {
     for _ in 0..50 {
         let middle = 0.5 * (low + high);
         let carried: f64 = hull.iter().map(|part| part.displaced(&Vector3::z(), middle).volume).sum();
+        if (density * carried).is_nan() || mass.is_nan() {
+            return f64::NAN;
+        }
         if density * carried < mass { low = middle } else { high = middle }
     }
     high

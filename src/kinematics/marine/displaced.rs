@@ -15,9 +15,13 @@ impl Displaced {
     /// No water.
     pub const NOTHING: Self = Self { volume: 0.0, moment: Vector3::new(0.0, 0.0, 0.0) };
 
+    /// The water that something displaces whose sizes or place are not finite.
+    pub(super) const UNKNOWN: Self =
+        Self { volume: f64::NAN, moment: Vector3::new(f64::NAN, f64::NAN, f64::NAN) };
+
     /// Centre of buoyancy; the origin if no water is displaced.
     pub fn centre(&self) -> Point3 {
-        if self.volume > 0.0 { Point3::from(self.moment / self.volume) } else { Point3::origin() }
+        if self.volume <= 0.0 { Point3::origin() } else { Point3::from(self.moment / self.volume) }
     }
 
     /// The same relative to another origin.

@@ -97,7 +97,8 @@ impl HullPart {
 
     /// The water that it displaces, if points `p` with `up · p < level` are under water.
     ///
-    /// The volume is exact, not sampled: that of a polyhedron, a cap, or an obliquely cut capsule. O(1).
+    /// The volume is exact, not sampled: that of a polyhedron, a cap, or an obliquely cut capsule. NaN if it
+    /// depends on a size, a place or a level that is not finite. O(1).
     ///
     /// ```
     /// use roverlab::geometry::{Point3, Vector3};
@@ -117,6 +118,9 @@ impl HullPart {
         }
         if depth <= -reach {
             return Displaced::NOTHING;
+        }
+        if !(depth - reach).is_finite() {
+            return Displaced::UNKNOWN;
         }
         let cut = match *self {
             Self::Box { size, .. } => cut_box(0.5 * size, up, depth),
@@ -263,6 +267,24 @@ mod tests {
             // The second derivative jumps at the edges of a box.
             prop_assert!((growth - level * area).abs() < 1e-3 * (1.0 + area), "{} {}", growth, level * area);
             prop_assert!(area > 0.0);
+        }
+    }
+
+    #[test]
+    fn what_is_not_finite_displaces_no_number() {
+        let half_axes = Vector3::new(0.5, f64::NAN, 0.3);
+        let parts = [
+            HullPart::Box { size: half_axes, centre: Point3::origin() },
+            HullPart::Ellipsoid { half_axes, centre: Point3::origin() },
+            HullPart::Capsule { radius: f64::INFINITY, length: 1.0, axis: 0, centre: Point3::origin() },
+            HullPart::Capsule { radius: 0.1, length: f64::NAN, axis: 0, centre: Point3::origin() },
+            HullPart::Capsule { radius: 0.1, length: 1.0, axis: 2, centre: Point3::new(0.0, f64::NAN, 0.0) },
+        ];
+        for part in parts {
+            let displaced = part.displaced(&Vector3::z(), 0.01);
+            assert!(displaced.volume.is_nan() && displaced.centre().x.is_nan(), "{part:?}: {displaced:?}");
+            let craft = super::super::CraftSpec::of_hull(1.0, Point3::origin(), vec![part]);
+            assert!(craft.validate().is_err() && craft.waterline(1e3).is_nan(), "{craft:?}");
         }
     }
 

@@ -1,3 +1,5 @@
+use std::ops::RangeInclusive;
+
 use crate::geometry::{Aabb, Point, direction};
 use crate::world::{BitGrid, Footprint};
 
@@ -6,6 +8,7 @@ use crate::world::{BitGrid, Footprint};
 /// Cells are `resolution` metres wide, columns along x and rows along y, as in an
 /// [`OccupancyGrid`](crate::world::OccupancyGrid) without rotation. Without a heading the robot may turn on
 /// the spot: its outline is then its bounding circle. Everything outside the map is blocked. Edges may touch.
+/// No cell is free for an outline, in cells, that is not finite.
 ///
 /// Works on 64 cells at a time: for each row of cells that the outline covers, the map's rows are shifted and
 /// combined, in a number of steps logarithmic in the outline's width.
@@ -22,19 +25,15 @@ use crate::world::{BitGrid, Footprint};
 /// ```
 pub fn inflated(grid: &BitGrid, resolution: f64, footprint: &Footprint, heading: Option<f64>) -> BitGrid {
     let outline = Outline::new(footprint, resolution, heading);
-    let reach = outline.reach().min(grid.width().max(grid.height()) as i64 + 1);
+    let Some([columns, rows]) = outline.spans(grid.width(), grid.height()) else {
+        return BitGrid::blocked(grid.width(), grid.height())
+            .unwrap_or_else(|_| unreachable!("as large as the first"));
+    };
     let mut blocked = vec![vec![0u64; grid.width().div_ceil(64)]; grid.height()];
     let solid = grid.inverted();
     let mut line = Line::new(grid.width());
-    // A row as far away as the map is high lies outside it, and so do all beyond.
-    let rows = reach.min(grid.height() as i64);
-    if rows == grid.height() as i64 && [-rows, rows].iter().any(|&dy| outline.columns(dy, reach).is_some()) {
-        // It reaches beyond the map wherever it is.
-        return BitGrid::blocked(grid.width(), grid.height())
-            .unwrap_or_else(|_| unreachable!("as large as the first"));
-    }
-    for dy in -rows..=rows {
-        let Some((first, last)) = outline.columns(dy, reach) else { continue };
+    for dy in rows {
+        let Some((first, last)) = outline.columns(dy, &columns) else { continue };
         for (row, blocked) in blocked.iter_mut().enumerate() {
             let source = row as i64 + dy;
             if source < 0 || source >= grid.height() as i64 {
@@ -75,24 +74,37 @@ impl Outline {
         }
     }
 
-    /// Maximum reach of the outline (cells).
-    fn reach(&self) -> i64 {
-        let radius = match self {
-            Self::Disc(radius) => *radius,
-            Self::Rectangle(sides, _) => {
-                let far = |low: f64, high: f64| low.abs().max(high.abs());
-                let (x, y) = (far(sides.min.x, sides.max.x), far(sides.min.y, sides.max.y));
-                (x * x + y * y).sqrt()
-            }
+    /// The columns and the rows that it may meet, by their offsets. `None` if wherever it is, it reaches
+    /// beyond a map of this size, and if it is not finite.
+    fn spans(&self, width: usize, height: usize) -> Option<[RangeInclusive<i64>; 2]> {
+        let span = |(middle, half): (f64, f64), size: usize| {
+            let fits = middle.abs() + half <= size as f64;
+            fits.then(|| (middle - half).floor() as i64 - 1..=(middle + half).ceil() as i64 + 1)
         };
-        // NaN gives no reach; the caller limits a reach that is too large.
-        (radius + 0.5).ceil().max(0.0) as i64
+        let [x, y] = self.extents();
+        Some([span(x, width)?, span(y, height)?])
+    }
+
+    /// The middle and half of its extent along columns, and along rows (cells).
+    fn extents(&self) -> [(f64, f64); 2] {
+        match self {
+            Self::Disc(radius) => [(0.0, radius.abs()); 2],
+            Self::Rectangle(sides, axis) => {
+                let (x, y) = (0.5 * (sides.min.x + sides.max.x), 0.5 * (sides.min.y + sides.max.y));
+                let half = 0.5 * (sides.max - sides.min).abs();
+                let (c, s) = (axis.x.abs(), axis.y.abs());
+                [
+                    (x * axis.x - y * axis.y, half.x * c + half.y * s),
+                    (x * axis.y + y * axis.x, half.x * s + half.y * c),
+                ]
+            }
+        }
     }
 
     /// The cells of the row at offset `dy` whose interiors it meets: without gaps, as it is convex.
-    fn columns(&self, dy: i64, reach: i64) -> Option<(i64, i64)> {
-        let first = (-reach..=reach).find(|&dx| self.meets(dx, dy))?;
-        let last = (-reach..=reach).rev().find(|&dx| self.meets(dx, dy))?;
+    fn columns(&self, dy: i64, span: &RangeInclusive<i64>) -> Option<(i64, i64)> {
+        let first = span.clone().find(|&dx| self.meets(dx, dy))?;
+        let last = span.clone().rev().find(|&dx| self.meets(dx, dy))?;
         Some((first, last))
     }
 
@@ -255,5 +267,17 @@ mod tests {
         }
         assert_eq!(inflated(&grid, 1.0, &Footprint::Disc { radius: 5.0 }, None).count_free(), 0);
         assert_eq!(inflated(&grid, 1.0, &Footprint::Disc { radius: 4.5 }, None).count_free(), 24);
+    }
+
+    #[test]
+    fn a_robot_beyond_the_map_or_without_an_outline_has_no_place() {
+        let grid = BitGrid::from_fn(3, 100_000, |_, _| true).unwrap();
+        let beside = Footprint::Rectangle(Aabb::new(Point::new(50.0, 0.0), Point::new(51.0, 1.0)));
+        assert_eq!(inflated(&grid, 1.0, &beside, Some(0.0)).count_free(), 0);
+        let far = Footprint::Disc { radius: 40_000.0 };
+        assert_eq!(inflated(&grid, 1.0, &far, None).count_free(), 0, "at once");
+        for resolution in [f64::NAN, 0.0, -0.0] {
+            assert_eq!(inflated(&grid, resolution, &beside, Some(0.0)).count_free(), 0, "{resolution}");
+        }
     }
 }

@@ -204,7 +204,7 @@ impl FlowDetector {
         for (x, &foot) in floor.ends.iter().enumerate() {
             let reach = self.focal() * self.parameters.overhang / self.depth(foot as f64 - 0.5);
             let reach = (reach + 0.5) as usize;
-            let near = x.saturating_sub(reach)..x.saturating_add(reach + 1).min(width);
+            let near = x.saturating_sub(reach)..x.saturating_add(reach).saturating_add(1).min(width);
             floor.wide[near].iter_mut().for_each(|other| *other = foot.max(*other));
         }
     }

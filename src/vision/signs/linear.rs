@@ -138,7 +138,8 @@ impl LinearClassifier {
     ///
     /// If these are no whole rows, or a weight is not finite.
     pub fn from_weights(weights: Vec<f32>, features: usize) -> Result<Self, ParameterError> {
-        let whole = features > 0 && !weights.is_empty() && weights.len().is_multiple_of(features + 1);
+        let row = features.checked_add(1).filter(|_| features > 0);
+        let whole = !weights.is_empty() && row.is_some_and(|row| weights.len().is_multiple_of(row));
         require(
             "number of weights",
             weights.len() as f64,
