@@ -52,7 +52,9 @@ pub(super) fn drive(args: &Args, setting: &Setting, stage: &Stage) -> Result<Dri
         truth: stage.truth(0)?,
         referee: ObstacleEvasion::new(setting.scene.clone(), &spec, args.laps),
         trail: Vec::new(),
-        boxes: (0..setting.scene.boxes.len()).map(|index| vec![(0.0, actors.pose(index))]).collect(),
+        boxes: (0..setting.scene.boxes.len())
+            .map(|index| actors.pose(index).map(|pose| (0.0, pose)).into_iter().collect())
+            .collect(),
         actors,
         pace: Box::new(paced(&args.common)),
     };
