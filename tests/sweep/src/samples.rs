@@ -96,7 +96,7 @@ samples! {
     HeightField => [hill(41, 2.0, 0.2)?, hill(2, 1e6, 1e6)?, hill(3, 1e-9, -1e6)?, hill(2, 1.0, 0.0)?];
     Corridor => [
         Corridor::closed(&ring(60, 20.0, 2.0)).ok()?, Corridor::open(&ring(60, 20.0, 2.0)).ok()?,
-        Corridor::closed(&ring(5, 1.0, 3.0)).ok()?, Corridor::open(&ring(2, 1e3, 0.0)).ok()?
+        Corridor::closed(&ring(5, 1.0, 3.0)).ok()?, Corridor::open(&ring(2, 1e3, 1e-3)).ok()?
     ];
     Craft => [Craft::new(&CraftSpec::mako(), 0.01).ok()?];
     DepthHold => [DepthHold::new(&Craft::nth(0)?, 0.5, DepthHoldParameters::default()).ok()?];
