@@ -1,6 +1,6 @@
 use super::error::LineError;
 use crate::geometry::{Point, Segment, Vector};
-use crate::parameter::{require_not_negative, require_positive};
+use crate::parameter::{require, require_not_negative, require_positive};
 
 /// A station of the centre line, with the widths to both edges.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -206,9 +206,11 @@ impl Corridor {
     ///
     /// # Errors
     ///
-    /// If `step` is not positive.
+    /// If `step` is not positive, or so short that there would be more than a million stations.
     pub fn resampled(&self, step: f64) -> Result<Self, LineError> {
         require_positive("step", step)?;
+        let expected = "at least a millionth of the corridor's length";
+        require("step", step, self.length() / step <= 1e6, expected)?;
         let n = self.stations.len();
         if !self.closed {
             let mut points = Vec::new();

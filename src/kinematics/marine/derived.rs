@@ -50,8 +50,8 @@ impl CraftSpec {
     }
 
     /// Height of the waterline in the craft's own frame (m), when it floats level in still water of a density
-    /// (kg/m³). Above the hull for a craft that sinks; NaN if that cannot be told, as of a hull whose sizes are
-    /// not finite.
+    /// (kg/m³). Above the hull for a craft that sinks; NaN if that cannot be told, as of a hull without finite
+    /// sizes.
     ///
     /// ```
     /// use roverlab::kinematics::marine::CraftSpec;
