@@ -4,8 +4,8 @@
 //! slides along a slanted wall and stops before a perpendicular one. Robots move in sequence within a tick.
 
 use super::course::Course;
+use super::drive_mechanics::Drift;
 use super::engine::Engine;
-use super::mechanics::Drift;
 use crate::geometry::{Pose, Vector};
 use crate::kinematics::PlanarMotion;
 use crate::world::Footprint;

@@ -1,5 +1,5 @@
 use super::NoiseModel;
-use super::mechanics::AHEAD;
+use super::drive_mechanics::AHEAD;
 use crate::kinematics::{Differential, Displacement};
 use crate::random::Stream;
 

@@ -1,6 +1,20 @@
 use crate::geometry::{Pose, Twist};
 use crate::io::{Error, Result};
-use crate::kinematics::Displacement;
+use crate::kinematics::{Displacement, PlanarMotion};
+
+/// Ticks for which a drive runs ahead of its robot at most.
+pub(super) const AHEAD: usize = 16;
+
+/// What a drive does to its robot in a tick.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Drift {
+    /// The robot's true motion, if nothing is in its way.
+    pub(super) motion: PlanarMotion,
+    /// Whether the wheels are commanded to turn.
+    pub(super) is_driving: bool,
+    /// Upper bound of the motion of any point of the robot's outline (m).
+    pub(super) reach: f64,
+}
 
 /// Interface of every drive: commands in, odometry and encoder counts out.
 pub(super) trait Mechanics {

@@ -7,10 +7,10 @@ use radio::Radio;
 
 use super::body::Body;
 use super::camera::{CameraDevice, Moment, Studio};
+use super::drive_mechanics::{AHEAD, Drift};
 use super::inertial_unit::InertialUnit;
 use super::lockstep::{Ticking, no_robot};
 use super::machine::Machine;
-use super::mechanics::{AHEAD, Drift};
 use super::movable::{Movable, movables};
 use super::options::ticks_in;
 use super::terrain::Hills;

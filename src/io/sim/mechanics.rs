@@ -1,6 +1,6 @@
 use super::bicycle::Bicycle;
 use super::car::Car;
-use super::drive_mechanics::Mechanics;
+use super::drive_mechanics::{Drift, Mechanics};
 use super::drivetrain::{MecanumWheels, TwoWheels};
 use super::marine::CraftDrive;
 use super::wheels::WheelSpec;
@@ -20,20 +20,6 @@ pub(super) enum Powertrain {
     Car(Box<Car>),
     Omni(Box<MecanumWheels>),
     Craft(Box<CraftDrive>),
-}
-
-/// Ticks for which a drive runs ahead of its robot at most.
-pub(super) const AHEAD: usize = 16;
-
-/// What a drive does to its robot in a tick.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Drift {
-    /// The robot's true motion, if nothing is in its way.
-    pub(super) motion: PlanarMotion,
-    /// Whether the wheels are commanded to turn.
-    pub(super) is_driving: bool,
-    /// Upper bound of the motion of any point of the robot's outline (m).
-    pub(super) reach: f64,
 }
 
 /// Highest top speed of a robot (m/s).
@@ -80,7 +66,7 @@ impl Powertrain {
         })
     }
 
-    /// Lets the motors follow their commands for some ticks, at most [`AHEAD`].
+    /// Lets the motors follow their commands for some ticks, at most [`AHEAD`](super::drive_mechanics::AHEAD).
     pub(super) fn run(&mut self, drifts: &mut [Drift]) {
         match self {
             Self::Differential(drive) => drive.run(drifts),
