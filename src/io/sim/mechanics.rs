@@ -66,7 +66,8 @@ impl Powertrain {
         })
     }
 
-    /// Lets the motors follow their commands for some ticks, at most [`AHEAD`](super::drive_mechanics::AHEAD).
+    /// Lets the motors follow their commands for some ticks, at most
+    /// [`AHEAD`](super::drive_mechanics::AHEAD).
     pub(super) fn run(&mut self, drifts: &mut [Drift]) {
         match self {
             Self::Differential(drive) => drive.run(drifts),

@@ -53,8 +53,8 @@ impl Space {
         limit: f64,
         except: Option<SolidId>,
     ) -> f64 {
-        let query = Query { shape: outline.at(pose), span, walls: true, solids: true, except };
-        self.find_clearance(&query, limit)
+        let (walls, solids) = self.clearances(outline, pose, span, limit, except);
+        walls.min(solids)
     }
 
     /// Like [`clearance`](Self::clearance), for walls only. Walls are static, so an outline that moves (and

@@ -31,6 +31,7 @@ mod contact;
 mod fan;
 mod grid;
 mod hills;
+mod lattice;
 mod polar;
 mod ray;
 mod scanner;

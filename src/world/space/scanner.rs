@@ -1,6 +1,6 @@
 use super::cluster::CLUSTER;
 use super::fan::{Fan, Sector};
-use super::grid::Cells;
+use super::lattice::Cells;
 use super::polar::PolarBuffer;
 use super::ray::Ray;
 use super::shape::{OrientedBox, Shape};

@@ -1,5 +1,6 @@
 use super::cluster::Clusters;
-use super::grid::{Cells, Grid};
+use super::grid::Grid;
+use super::lattice::Cells;
 use super::shape::{Block, Shape};
 use super::solid::{Solid, SolidId, Span};
 use crate::geometry::{Aabb, Pose};

@@ -67,8 +67,8 @@ pub(super) struct Ride<'a> {
 
 /// Steps of Newton's method in which almost all ticks are solved.
 const MOST_STEPS: usize = 10;
-/// Coefficient of friction up to which it is used: with more, a body can wedge itself between its feet, which
-/// solves the equations too.
+/// Coefficient of friction up to which it is used: with much more, a body can wedge itself between its feet,
+/// which solves the equations too. Up to 4, no run on hills did.
 const MOST_FRICTION: f64 = 5.0;
 /// Rounds over all feet for the others.
 const MOST_ROUNDS: usize = 60;
@@ -88,7 +88,8 @@ pub(super) fn solve(contacts: &mut [Contact], free: &Motion, start: Motion) -> M
 
 /// Newton's method on the six equations of the body: each foot's impulse is a function of the motion, smooth
 /// but for the places where it lifts off, or begins to slide. Whether it slides is judged by its friction and
-/// its slide together, as in an augmented Lagrangian (Alart and Curnier 1991). `None` if it does not end soon.
+/// its slide together, as in an augmented Lagrangian (Alart and Curnier 1991). `None` if it does not end
+/// soon.
 fn newton(contacts: &mut [Contact], free: &Motion, start: Motion) -> Option<Motion> {
     let mut motion = start;
     for _ in 0..MOST_STEPS {
@@ -152,7 +153,8 @@ impl Contact {
         }
     }
 
-    /// Subtracts the foot's impulse at a motion of the body from `excess`, and its derivative from `stiffness`.
+    /// Subtracts the foot's impulse at a motion of the body from `excess`, and adds what the foot resists a
+    /// change of that motion to `stiffness`.
     #[inline]
     fn resist(&mut self, motion: &Motion, excess: &mut Motion, stiffness: &mut Matrix6<f64>) {
         let pressure = self.pressure(motion);

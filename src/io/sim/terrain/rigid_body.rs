@@ -26,7 +26,8 @@ pub(super) struct RigidBody {
 
 /// Largest number of searches for contacts in a tick.
 const SEARCHES: usize = 2;
-/// Difference from the expected position at the end of a tick that needs no further search (m).
+/// Difference from the expected position at the end of a tick that needs no further search (m). A curve of
+/// 2 m ends 2 µm elsewhere than with two searches always.
 const AS_EXPECTED: f64 = 1e-5;
 /// Height above which feet of a body at rest are not considered (m).
 const MARGIN: f64 = 2e-3;
@@ -112,7 +113,7 @@ impl RigidBody {
         let radius = carriage.gyration.sqrt();
         let mut motion = stacked(&self.velocity, &(self.spin * radius));
         let free = motion - stacked(&(Vector3::z() * (GRAVITY * tick)), &Vector3::zeros());
-        // The first search expects the body to move on as it did; if it does not, the second one knows better.
+        // The first search expects the body to move on as it did. If it does not, the second one knows more.
         for _ in 0..SEARCHES {
             let (velocity, spin) = split(&motion);
             self.look(ground, carriage, drive, (velocity, spin / radius), tick);
