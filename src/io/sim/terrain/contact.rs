@@ -25,6 +25,8 @@ pub(super) struct Contact {
     tangents: [Motion; 2],
     /// The rim's speeds along them (m/s).
     rim: Vector2<f64>,
+    /// Impulse that stops a slide, per speed of it, at most.
+    ease: f64,
     guess: Load,
     pub(super) load: Load,
     law: Law,
@@ -70,6 +72,8 @@ const MOST_STEPS: usize = 10;
 /// Coefficient of friction up to which it is used: with much more, a body can wedge itself between its feet,
 /// which solves the equations too. Up to 4, no run on hills did.
 const MOST_FRICTION: f64 = 5.0;
+/// Change of a speed after which no further step is made (m/s): that one would be about its square.
+const LAST_STEP: f64 = 1e-5;
 /// Rounds over all feet for the others.
 const MOST_ROUNDS: usize = 60;
 /// Change of a speed at which the iteration ends (m/s).
@@ -102,7 +106,7 @@ fn newton(contacts: &mut [Contact], free: &Motion, start: Motion) -> Option<Moti
         for contact in contacts.iter_mut() {
             contact.follow(&motion);
         }
-        if change.amax() < SETTLED {
+        if change.amax() < LAST_STEP {
             return Some(motion);
         }
     }
@@ -138,6 +142,7 @@ impl Contact {
             let moment = at.arm.cross(&direction) * ride.per_radius;
             Motion::new(direction.x, direction.y, direction.z, moment.x, moment.y, moment.z)
         };
+        let tangents = tangents.map(axis);
         Self {
             foot: number,
             gap: at.gap,
@@ -145,8 +150,9 @@ impl Contact {
             firmness: ride.tick * (ride.tick + relaxation) / foot.softness,
             friction: ride.friction,
             normal: axis(at.normal),
-            tangents: tangents.map(axis),
+            tangents,
             rim,
+            ease: 1.0 / (1.0 + tangents[0].norm_squared() + tangents[1].norm_squared()),
             guess,
             load: guess,
             law: Law::default(),
@@ -188,22 +194,20 @@ impl Contact {
 
     /// Friction near the present one. A foot that slides is held against its slide only.
     fn law(&self, limit: f64, slide: &Vector2<f64>) -> Law {
-        let (trial, ease) = self.trial(slide);
+        let trial = self.trial(slide);
         let size = trial.norm();
         if size <= limit {
             return Law { share: Vector2::zeros(), hardness: Matrix2::identity() / CREEP };
         }
         let share = trial / size;
         let aside = Matrix2::identity() - share * share.transpose();
-        Law { share, hardness: aside * (limit * ease / (size - limit)) }
+        Law { share, hardness: aside * (limit * self.ease / (size - limit)) }
     }
 
-    /// The friction that a slide asks for, without its limit, and the friction per speed.
+    /// The friction that a slide asks for, without its limit.
     #[inline]
-    fn trial(&self, slide: &Vector2<f64>) -> (Vector2<f64>, f64) {
-        let [ahead, left] = &self.tangents;
-        let ease = 1.0 / (1.0 + ahead.norm_squared() + left.norm_squared());
-        (self.load.friction - slide * ease, ease)
+    fn trial(&self, slide: &Vector2<f64>) -> Vector2<f64> {
+        self.load.friction - slide * self.ease
     }
 
     /// Friction up to its limit.
@@ -223,8 +227,7 @@ impl Contact {
         let missing = self.least_speed - self.normal.dot(motion) - self.load.pressure * yielding;
         let change = missing / (self.normal.norm_squared() + yielding);
         self.load.pressure = (self.load.pressure + change).max(0.0);
-        let (trial, _) = self.trial(&self.slide(motion));
-        self.load.friction = self.held_back(trial);
+        self.load.friction = self.held_back(self.trial(&self.slide(motion)));
         *motion += self.impulse() - before;
     }
 
