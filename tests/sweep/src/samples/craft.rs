@@ -5,17 +5,16 @@ use std::f64::consts::PI;
 use crate::Sample;
 use crate::sample::{samples, varied};
 use roverlab::drive::marine::{
-    PoolSearch, PoolSearchParameters, PoolWall, PoolWallParameters, Survey, SurveyParameters,
+    DepthHold, DepthHoldParameters, PoolSearch, PoolSearchParameters, PoolWall, PoolWallParameters, Survey,
+    SurveyParameters,
 };
 use roverlab::drive::terrain::SlopeSensor;
 use roverlab::geometry::{Aabb, Point, Pose};
 use roverlab::io::Clock;
 use roverlab::io::sim::starman::{BodyPlan, LimbPlan, Starman, StarmanSpec};
 use roverlab::kinematics::marine::{Craft, CraftSpec};
-use roverlab::world::{HeightField, PsdSpec, RobotSpec};
-
-use roverlab::drive::marine::{DepthHold, DepthHoldParameters};
 use roverlab::nav::{RampCrossing, SummitParameters, SummitSearch};
+use roverlab::world::{HeightField, PsdSpec, RobotSpec};
 
 varied! {
     CraftSpec => varied [CraftSpec::mako(), CraftSpec::solar_raft()];
@@ -101,25 +100,40 @@ samples! {
         survey(Pose::new(1e300, -1e300, 1e300), pool(10.0, 5.0), SurveyParameters::default())?,
         survey(Pose::default(), pool(1e300, 1e300), SurveyParameters::default())?,
         survey(Pose::default(), pool(f64::INFINITY, f64::NAN), SurveyParameters::default())?,
-        survey(Pose::default(), pool(1e6, 1e-3), SurveyParameters { margin: 0.0, brim: 0.0, ..Default::default() })?,
+        survey(
+            Pose::default(), pool(1e6, 1e-3), SurveyParameters { margin: 0.0, brim: 0.0, ..Default::default() }
+        )?,
         survey(Pose::default(), pool(50.0, 50.0), SurveyParameters { spacing: 1e-9, ..Default::default() })?,
         survey(Pose::default(), pool(50.0, 50.0), SurveyParameters { spacing: 1e300, ..Default::default() })?,
         survey(Pose::default(), pool(50.0, 50.0), SurveyParameters { margin: 1e300, ..Default::default() })?,
-        survey(Pose::default(), pool(50.0, 50.0), SurveyParameters { altitude: Some(1e300), speed: 1e300, ..Default::default() })?,
-        survey(Pose::default(), pool(50.0, 50.0), SurveyParameters { period: 1e-300, density: 1e300, ..Default::default() })?
+        survey(
+            Pose::default(), pool(50.0, 50.0),
+            SurveyParameters { altitude: Some(1e300), speed: 1e300, ..Default::default() }
+        )?,
+        survey(
+            Pose::default(), pool(50.0, 50.0),
+            SurveyParameters { period: 1e-300, density: 1e300, ..Default::default() }
+        )?
     ];
     PoolSearch => [
         search(&RobotSpec::mako(), pool(10.0, 5.0), SurveyParameters::default())?,
         search(&RobotSpec::mako(), pool(1e300, 5.0), SurveyParameters::default())?,
         search(&RobotSpec::mako(), pool(1e3, 1e3), SurveyParameters { spacing: 1e-3, ..Default::default() })?,
         search(&mako_with_sensors(|psd| psd.mount.x = 1e300), pool(10.0, 5.0), SurveyParameters::default())?,
-        search(&mako_with_sensors(|psd| psd.max_range = f64::NAN), pool(10.0, 5.0), SurveyParameters::default())?
+        search(
+            &mako_with_sensors(|psd| psd.max_range = f64::NAN), pool(10.0, 5.0), SurveyParameters::default()
+        )?
     ];
     PoolWall => [
         wall(&RobotSpec::mako(), PoolWallParameters::default())?,
         wall(&RobotSpec::mako(), PoolWallParameters { laps: u32::MAX, speed: 1e300, ..Default::default() })?,
-        wall(&RobotSpec::mako(), PoolWallParameters { period: 1e300, distance: 1e300, depth: 1e300, ..Default::default() })?,
-        wall(&RobotSpec::mako(), PoolWallParameters { lookahead: 1e-300, distance: 1e-300, ..Default::default() })?,
+        wall(
+            &RobotSpec::mako(),
+            PoolWallParameters { period: 1e300, distance: 1e300, depth: 1e300, ..Default::default() }
+        )?,
+        wall(
+            &RobotSpec::mako(), PoolWallParameters { lookahead: 1e-300, distance: 1e-300, ..Default::default() }
+        )?,
         wall(&mako_with_sensors(|psd| psd.mount.y = f64::NAN), PoolWallParameters::default())?
     ];
     Starman => [
@@ -127,13 +141,18 @@ samples! {
         body(chain(2, LimbPlan::default()), BodyPlan::default())?,
         body(chain(24, LimbPlan::default()), BodyPlan::default())?,
         body(chain(1, LimbPlan { hinge: [1e3, -1e3], ..LimbPlan::default() }), BodyPlan::default())?,
-        body(chain(3, LimbPlan { mass: 1e300, ..LimbPlan::default() }), BodyPlan { mass: 1e-300, ..BodyPlan::default() })?,
+        body(
+            chain(3, LimbPlan { mass: 1e300, ..LimbPlan::default() }),
+            BodyPlan { mass: 1e-300, ..BodyPlan::default() }
+        )?,
         body(chain(3, LimbPlan { length: 1e300, ..LimbPlan::default() }), BodyPlan::default())?,
         body(chain(3, LimbPlan { rest: PI, radius: 1e300, ..LimbPlan::default() }), BodyPlan::default())?,
         star(StarmanSpec { servo_speed: 1e300, servo_torque: 1e300, ..StarmanSpec::book() })?,
         star(StarmanSpec { time_step: 1e-300, ..StarmanSpec::book() })?,
-        star(StarmanSpec { time_step: 1e-6, ..StarmanSpec::book() })?,
-        star(StarmanSpec { body_radius: 1e-300, limb_radius: 1e-300, limb_length: 1e-300, ..StarmanSpec::book() })?,
+        star(StarmanSpec { time_step: 1e-5, ..StarmanSpec::book() })?,
+        star(StarmanSpec {
+            body_radius: 1e-300, limb_radius: 1e-300, limb_length: 1e-300, ..StarmanSpec::book()
+        })?,
         star(StarmanSpec { body_mass: 1e300, limb_mass: 1e-300, friction: 1e300, ..StarmanSpec::book() })?
     ];
 }

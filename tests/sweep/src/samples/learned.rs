@@ -65,7 +65,8 @@ samples! {
     Architecture => [
         "8x8x1 conv2/3/1 pool2 dense4 dense1".parse().ok()?, "1x1x1 dense1".parse().ok()?,
         "8x8x1 dense3".parse().ok()?, "32x32x3 conv4/5/2 pool2 dense2".parse().ok()?,
-        "3000x3000x1 dense1".parse().ok()?, "4000x1x1 conv1/1/4000 dense2400 dense4000".parse().ok()?
+        "790x790x1 dense1".parse().ok()?,
+        "4000x1x1 conv1/1/4000 dense2400 dense4000".parse().ok()?
     ];
     MarkingFilter => [
         filter(0.02, 1.5, |_| ())?, filter(0.005, 2.5, |_| ())?, filter(0.2, 100.0, |_| ())?,

@@ -96,8 +96,8 @@ samples! {
     ConeTrack => [
         strip(1.5, Pose::new(-2.45, 0.0, 0.0)), skidpad(Pose::new(-17.0, 0.0, 0.0)), ConeTrack::default(),
         strip(1.5, Pose::new(-2.45, f64::NAN, 0.0)), strip(1.5, Pose::new(-2.45, 0.0, f64::INFINITY)),
-        strip(1.5, Pose::new(-1e9, 0.0, 0.0)), skidpad(Pose::new(-1e9, 0.0, 0.0)), skidpad(Pose::new(-1e300, 0.0, 0.0)),
-        skidpad(Pose::default()),
+        strip(1.5, Pose::new(-1e9, 0.0, 0.0)), skidpad(Pose::new(-1e9, 0.0, 0.0)),
+        skidpad(Pose::new(-1e300, 0.0, 0.0)), skidpad(Pose::default()),
         with_cone(strip(1.5, Pose::new(-2.45, 0.0, 0.0)), Point::new(1e9, 1.5), ConeColour::Orange),
         with_cone(strip(1.5, Pose::new(-2.45, 0.0, 0.0)), Point::new(1e300, 1.5), ConeColour::Orange),
         with_cone(strip(1.5, Pose::new(-2.45, 0.0, 0.0)), Point::new(1e9, 1.5), ConeColour::BigOrange),
