@@ -101,7 +101,8 @@ samples! {
         survey(Pose::default(), pool(1e300, 1e300), SurveyParameters::default())?,
         survey(Pose::default(), pool(f64::INFINITY, f64::NAN), SurveyParameters::default())?,
         survey(
-            Pose::default(), pool(1e6, 1e-3), SurveyParameters { margin: 0.0, brim: 0.0, ..Default::default() }
+            Pose::default(), pool(1e6, 1e-3),
+            SurveyParameters { margin: 0.0, brim: 0.0, ..Default::default() }
         )?,
         survey(Pose::default(), pool(50.0, 50.0), SurveyParameters { spacing: 1e-9, ..Default::default() })?,
         survey(Pose::default(), pool(50.0, 50.0), SurveyParameters { spacing: 1e300, ..Default::default() })?,
@@ -132,7 +133,8 @@ samples! {
             PoolWallParameters { period: 1e300, distance: 1e300, depth: 1e300, ..Default::default() }
         )?,
         wall(
-            &RobotSpec::mako(), PoolWallParameters { lookahead: 1e-300, distance: 1e-300, ..Default::default() }
+            &RobotSpec::mako(),
+            PoolWallParameters { lookahead: 1e-300, distance: 1e-300, ..Default::default() }
         )?,
         wall(&mako_with_sensors(|psd| psd.mount.y = f64::NAN), PoolWallParameters::default())?
     ];

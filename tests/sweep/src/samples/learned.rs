@@ -70,7 +70,8 @@ samples! {
     ];
     MarkingFilter => [
         filter(0.02, 1.5, |_| ())?, filter(0.005, 2.5, |_| ())?, filter(0.2, 100.0, |_| ())?,
-        filter(0.02, 1.5, |camera| camera.height = 1e300)?, filter(0.02, 1.5, |camera| camera.height = 1e-300)?,
+        filter(0.02, 1.5, |camera| camera.height = 1e300)?,
+        filter(0.02, 1.5, |camera| camera.height = 1e-300)?,
         filter(0.02, 1.5, |camera| camera.ahead = -1e300)?, filter(0.02, 1.5, |camera| camera.ahead = 1e300)?,
         filter(0.02, 1.5, |camera| camera.tilt = 1.49)?, filter(0.02, 1.5, |camera| camera.tilt = -1.49)?,
         filter(0.02, 1.5, |camera| camera.field_of_view = 1e-300)?,
