@@ -69,8 +69,8 @@ fn star(spec: StarmanSpec) -> Option<Starman> {
     after(0.05, Starman::new(&spec))
 }
 
-fn body(limbs: Vec<LimbPlan>, plan: BodyPlan) -> Option<Starman> {
-    after(0.05, Starman::of(&BodyPlan { limbs, ..plan }))
+fn body(limbs: Vec<LimbPlan>, mass: f64) -> Option<Starman> {
+    after(0.05, Starman::of(&BodyPlan { limbs, mass, ..BodyPlan::default() }))
 }
 
 /// Limbs, each at the tip of the one before.
@@ -140,15 +140,12 @@ samples! {
     ];
     Starman => [
         star(StarmanSpec::book())?,
-        body(chain(2, LimbPlan::default()), BodyPlan::default())?,
-        body(chain(24, LimbPlan::default()), BodyPlan::default())?,
-        body(chain(1, LimbPlan { hinge: [1e3, -1e3], ..LimbPlan::default() }), BodyPlan::default())?,
-        body(
-            chain(3, LimbPlan { mass: 1e300, ..LimbPlan::default() }),
-            BodyPlan { mass: 1e-300, ..BodyPlan::default() }
-        )?,
-        body(chain(3, LimbPlan { length: 1e300, ..LimbPlan::default() }), BodyPlan::default())?,
-        body(chain(3, LimbPlan { rest: PI, radius: 1e300, ..LimbPlan::default() }), BodyPlan::default())?,
+        body(chain(2, LimbPlan::default()), 0.2)?,
+        body(chain(24, LimbPlan::default()), 0.2)?,
+        body(chain(1, LimbPlan { hinge: [1e3, -1e3], ..LimbPlan::default() }), 0.2)?,
+        body(chain(3, LimbPlan { mass: 1e300, ..LimbPlan::default() }), 1e-300)?,
+        body(chain(3, LimbPlan { length: 1e300, ..LimbPlan::default() }), 0.2)?,
+        body(chain(3, LimbPlan { rest: PI, radius: 1e300, ..LimbPlan::default() }), 0.2)?,
         star(StarmanSpec { servo_speed: 1e300, servo_torque: 1e300, ..StarmanSpec::book() })?,
         star(StarmanSpec { time_step: 1e-300, ..StarmanSpec::book() })?,
         star(StarmanSpec { time_step: 1e-5, ..StarmanSpec::book() })?,

@@ -1,5 +1,8 @@
 //! What sees lines and signs, and what learned to.
 
+use std::f64::consts::{PI, TAU};
+use std::fmt::Write as _;
+
 use crate::Sample;
 use crate::sample::{samples, varied};
 use roverlab::vision::lane_markings::{MarkingFilter, RoadCamera};
@@ -45,9 +48,8 @@ fn model(names: &[&str], weight: f32, finds: bool) -> Option<SignModel> {
         let from = data.len();
         data.extend(std::iter::repeat_n(weight.to_le_bytes(), rows * columns).flatten());
         let to = data.len();
-        header += &format!(
-            r#","{name}":{{"dtype":"F32","shape":[{rows},{columns}],"data_offsets":[{from},{to}]}}"#
-        );
+        let shape = format!(r#""dtype":"F32","shape":[{rows},{columns}]"#);
+        let _ = write!(header, r#","{name}":{{{shape},"data_offsets":[{from},{to}]}}"#);
     }
     header.push('}');
     let mut file = (header.len() as u64).to_le_bytes().to_vec();
@@ -75,8 +77,8 @@ samples! {
         filter(0.02, 1.5, |camera| camera.ahead = -1e300)?, filter(0.02, 1.5, |camera| camera.ahead = 1e300)?,
         filter(0.02, 1.5, |camera| camera.tilt = 1.49)?, filter(0.02, 1.5, |camera| camera.tilt = -1.49)?,
         filter(0.02, 1.5, |camera| camera.field_of_view = 1e-300)?,
-        filter(0.02, 1.5, |camera| camera.field_of_view = 3.14159)?,
-        filter(0.02, 1.5, |camera| (camera.fisheye, camera.field_of_view) = (true, 6.28))?
+        filter(0.02, 1.5, |camera| camera.field_of_view = PI - 1e-9)?,
+        filter(0.02, 1.5, |camera| (camera.fisheye, camera.field_of_view) = (true, TAU - 1e-9))?
     ];
     SignModel => [
         model(&["stop", "give way"], 0.01, true)?, model(&["stop", "give way"], -0.01, false)?,

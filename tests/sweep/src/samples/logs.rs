@@ -47,7 +47,9 @@ fn simulated(header: &Header) -> Option<Vec<u8>> {
         for _ in 0..3 {
             robot.set_speed(Twist::new(0.2, 0.5))?;
             robot.wait(0.1)?;
-            (robot.pose()?, robot.scan()?, truth.pose(0)?);
+            robot.pose()?;
+            robot.scan()?;
+            truth.pose(0)?;
         }
         Ok(())
     })
@@ -61,7 +63,8 @@ fn fleet() -> Option<Vec<u8>> {
     recorded(&Header::default(), |writer| {
         let mut fleet = writer.fleet(Fleet::new(&scene, SimOptions::default())?);
         fleet.run_for(0.1)?;
-        (fleet.pose(1)?, fleet.truth(0)?);
+        fleet.pose(1)?;
+        fleet.truth(0)?;
         Ok(())
     })
 }
