@@ -3,7 +3,7 @@ use super::profile::SpeedProfile;
 use super::tyres::Tyres;
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, angle_difference, cross, math, units};
-use crate::parameter::{require, require_positive, require_up_to};
+use crate::parameter::{require, require_finite, require_positive, require_up_to};
 use crate::world::CarDynamics;
 
 /// Parameters of [`LineTracker`].
@@ -139,7 +139,8 @@ impl LineTracker {
     ///
     /// # Errors
     ///
-    /// If a parameter is out of range.
+    /// If a parameter is out of range, there are fewer than two points, the profile has another number of
+    /// speeds, curvatures or lengths, a length is not positive, or a number is not finite.
     pub fn new(
         points: Vec<Point>,
         profile: SpeedProfile,
@@ -147,9 +148,20 @@ impl LineTracker {
         parameters: LineTrackerParameters,
     ) -> Result<Self, ParameterError> {
         parameters.validate()?;
-        let (found, speeds) = (points.len(), profile.speeds.len());
+        let SpeedProfile { speeds, curvatures, lengths, .. } = &profile;
+        let found = points.len();
+        let fits = [speeds, curvatures, lengths].iter().all(|values| values.len() == found);
         let expected = "2 or more, as many as the profile has";
-        require("points of the line", found as f64, found >= 2 && found == speeds, expected)?;
+        require("points of the line", found as f64, found >= 2 && fits, expected)?;
+        for coordinate in points.iter().flat_map(|point| [point.x, point.y]) {
+            require_finite("coordinate of the line", coordinate)?;
+        }
+        for (name, values) in [("speed on the line", speeds), ("curvature of the line", curvatures)] {
+            values.iter().try_for_each(|value| require_finite(name, *value))?;
+        }
+        // An open line may end where it begins.
+        let pieces = if closed { found } else { found - 1 };
+        lengths[..pieces].iter().try_for_each(|length| require_positive("length of the line", *length))?;
         Ok(Self { parameters, points, profile, closed, nearest: 0, started: false, reached: !closed })
     }
 
@@ -284,7 +296,11 @@ impl LineTracker {
     /// is none within `farthest` metres.
     pub fn distance_to(&self, thing: Point, aside: f64, farthest: f64) -> Option<f64> {
         let (mut i, mut passed) = (self.nearest, 0.0);
-        while passed < farthest {
+        // After a lap, all points have been compared.
+        for _ in 0..self.points.len() {
+            if passed >= farthest || farthest.is_nan() {
+                return None;
+            }
             if (self.points[i] - thing).norm_squared() < aside * aside {
                 return Some(passed);
             }
@@ -321,10 +337,14 @@ impl LineTracker {
         if self.closed { (i + n - 1) % n } else { i.saturating_sub(1) }
     }
 
-    /// A value along the line, at a distance (m, may be negative) from a fraction of a piece.
+    /// A value along the line, at a distance (m, may be negative) from a fraction of a piece; at most a lap
+    /// away, so that short pieces and a fast car take no longer.
     fn at(&self, values: &[f64], piece: usize, share: f64, beyond: f64) -> f64 {
         let (mut i, mut left) = (piece, beyond + share * self.profile.lengths[piece]);
-        while left < 0.0 {
+        for _ in 0..self.points.len() {
+            if left >= 0.0 {
+                break;
+            }
             let before = self.previous(i);
             if before == i {
                 return values[i];
@@ -332,7 +352,10 @@ impl LineTracker {
             i = before;
             left += self.profile.lengths[i];
         }
-        while left > self.profile.lengths[i] {
+        for _ in 0..self.points.len() {
+            if left <= self.profile.lengths[i] {
+                break;
+            }
             left -= self.profile.lengths[i];
             let next = self.next(i);
             if next == i || (!self.closed && self.next(next) == next) {
@@ -340,7 +363,7 @@ impl LineTracker {
             }
             i = next;
         }
-        let share = left / self.profile.lengths[i];
+        let share = (left / self.profile.lengths[i]).clamp(0.0, 1.0);
         values[i] + (values[self.next(i)] - values[i]) * share
     }
 }
@@ -361,6 +384,34 @@ mod tests {
             assert_eq!(tracker.step(Pose::new(1.0, 0.0, 0.0), Twist::new(wrong, 0.0)), None);
         }
         assert!(tracker.step(Pose::new(1.0, 0.0, 0.0), Twist::new(3.0, 0.0)).is_some());
+    }
+
+    #[test]
+    fn a_profile_of_other_points_is_refused() {
+        let points: Vec<Point> =
+            (0..12).map(|k| Point::origin() + crate::geometry::direction(0.5 * f64::from(k)) * 5.0).collect();
+        let profile = SpeedProfile::closed(&points, &CarLimits::circle(5.0, 3.0, 5.0, 10.0)).unwrap();
+        let error = |change: &dyn Fn(&mut SpeedProfile)| {
+            let mut profile = profile.clone();
+            change(&mut profile);
+            LineTracker::new(points.clone(), profile, true, LineTrackerParameters::rolling()).err()
+        };
+        assert_eq!(error(&|_| ()), None);
+        let name = |change: &dyn Fn(&mut SpeedProfile)| error(change).unwrap().name().to_owned();
+        assert_eq!(name(&|profile| profile.lengths.clear()), "points of the line");
+        assert_eq!(name(&|profile| profile.lengths[3] = 0.0), "length of the line");
+        assert_eq!(name(&|profile| profile.curvatures[3] = f64::NAN), "curvature of the line");
+    }
+
+    #[test]
+    fn a_look_ahead_ends_after_a_lap() {
+        let points: Vec<Point> =
+            (0..12).map(|k| Point::origin() + crate::geometry::direction(0.5 * f64::from(k)) * 5.0).collect();
+        let mut profile = SpeedProfile::closed(&points, &CarLimits::circle(5.0, 3.0, 5.0, 10.0)).unwrap();
+        profile.lengths.fill(1e-300);
+        let mut tracker = LineTracker::new(points, profile, true, LineTrackerParameters::rolling()).unwrap();
+        assert_eq!(tracker.distance_to(Point::new(100.0, 0.0), 1.0, 1e300), None);
+        assert!(tracker.step(Pose::new(5.0, 0.0, 1.6), Twist::new(5.0, 0.0)).is_some());
     }
 
     #[test]

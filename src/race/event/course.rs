@@ -23,12 +23,20 @@ const STRIP: (f64, f64) = (75.0, 25.0);
 const TO_START: f64 = 0.3;
 /// Distance from the nose, ahead and behind, within which the start gate is expected (m).
 const GATE: f64 = 8.0;
+/// Largest distance of an end of a course from its start (m): beyond it, cones are no part of an event.
+const FARTHEST: f64 = 10_000.0;
 /// Length of a course behind the rear axle of a car at the start (m).
 const BEHIND: f64 = 1.0;
 
+/// Whether the ends of a course are near its start.
+fn are_near(ends: [f64; 2]) -> bool {
+    ends.iter().all(|end| end.abs() <= FARTHEST)
+}
+
 impl EventCourse {
-    /// The course among the cones of a track, for a car with an outline. `None` for laps, and if the cones
-    /// match no event. A skidpad is recognised without its orange cones as well.
+    /// The course among the cones of a track, for a car with an outline. `None` for laps, if the cones match
+    /// no event, and if an end of the course would be more than 10 km away. A skidpad is recognised without
+    /// its orange cones as well.
     ///
     /// The timing lines are the gates of the track, or else those between its large cones; for a skidpad, the
     /// line through its centre.
@@ -59,7 +67,11 @@ impl EventCourse {
         let end = mean(&|x| x >= GATE).unwrap_or(begin + STRIP.0);
         let box_end = track.of(ConeColour::Orange).map(along).fold(f64::NEG_INFINITY, f64::max);
         let box_end = if box_end > end { box_end } else { end + STRIP.1 };
-        let points = straight(-nose - BEHIND, box_end);
+        let ends = [-nose - BEHIND, box_end];
+        if !are_near(ends) {
+            return None;
+        }
+        let points = straight(ends[0], ends[1]);
         let station = |x: f64| points.partition_point(|point| point.x < x - 1e-9);
         let timed = vec![[station(begin), station(end)]];
         Self::new(Event::Acceleration, layout, &points, timed)
@@ -71,6 +83,9 @@ impl EventCourse {
         let box_end = track.of(ConeColour::Orange).map(along).fold(f64::NEG_INFINITY, f64::max);
         let ends = [along(start.position()) - BEHIND, if box_end > 10.0 { box_end } else { STRIP.1 }];
         let EventShape::Eight { apart, .. } = layout.shape else { return None };
+        if !are_near(ends) {
+            return None;
+        }
         // Circles that meet at the origin.
         let points = line::eight(apart, apart, ends);
         let lines = crossings(ends);

@@ -170,6 +170,11 @@ fn the_course_is_measured_out_among_the_cones() {
         cone.position = Point::new((7 * k % 23) as f64, (11 * k % 19) as f64);
     }
     assert_eq!(EventCourse::of(&heap, &OUTLINE), None);
+    // Neither a cone far away nor a start far away makes a long course.
+    let mut far = strip(1.5, 5.0, 25.0);
+    far.cones.push(Cone::new(Point::new(1e9, 1.5), ConeColour::Orange));
+    assert_eq!(EventCourse::of(&far, &OUTLINE), None);
+    assert_eq!(EventCourse::of(&strip(1.5, 5.0, 25.0), &CarOutline { nose: 1e300, ..OUTLINE }), None);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 use std::fmt;
 use std::str::FromStr;
 
+use super::filters::LANES;
 use crate::ParameterError;
 use crate::parameter::require;
 
@@ -113,7 +114,8 @@ impl Architecture {
     ///
     /// If there is no layer with weights at the end, a number is 0 or more than 4096, a layer gets fewer rows
     /// or columns than its filters have, a layer that is not dense comes after a dense one, or there are more
-    /// than 64 layers, or 10 million weights or values.
+    /// than 64 layers, or 10 million weights or values. For the weights, the filters of a layer count in full
+    /// groups of 16, as they are stored.
     pub fn new(input: MapSize, layers: Vec<Layer>) -> Result<Self, ParameterError> {
         let number = |what: String, value: usize| {
             let error = || ParameterError::new(what, value as f64, format!("1 to {MOST}"));
@@ -156,13 +158,13 @@ impl Architecture {
         let most = || format!("at most {MOST_VALUES}");
         require("values of all layers", values as f64, values <= MOST_VALUES, most())?;
         let this = Self { layers, sizes };
-        let weights = this.weights();
-        require(
-            "number of weights",
-            weights as f64,
-            weights <= MOST_VALUES,
-            format!("at most {MOST_VALUES}"),
-        )?;
+        let stored = this.filters().flatten().map(|(filters, taps)| {
+            let filters = filters.next_multiple_of(LANES);
+            filters.saturating_mul(taps.saturating_add(1))
+        });
+        let weights = stored.fold(0, usize::saturating_add);
+        let most = format!("at most {MOST_VALUES} in full groups of {LANES} filters");
+        require("number of weights", weights as f64, weights <= MOST_VALUES, most)?;
         Ok(this)
     }
 

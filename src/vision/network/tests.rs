@@ -151,6 +151,10 @@ fn what_is_no_architecture_is_refused() {
     for text in bad {
         assert!(text.parse::<Architecture>().is_err(), "{text}");
     }
+    // Nine million weights, of which each takes the room of 16.
+    let wide = "3000x3000x1 dense1".parse::<Architecture>().unwrap_err();
+    assert_eq!(wide.name(), "number of weights");
+    assert!("512x512x1 dense16".parse::<Architecture>().is_ok());
     let one: Architecture = "1x2x1 dense1".parse().unwrap();
     for weights in [vec![], vec![(vec![1.0], vec![0.0])], vec![(vec![1.0, f32::NAN], vec![0.0])]] {
         assert!(Network::new(one.clone(), weights).is_err());

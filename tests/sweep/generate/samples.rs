@@ -10,10 +10,15 @@ use crate::types::{Argument, Known, is_concrete};
 /// Derives the samples of all types that can be made of known ones, until there are no more.
 pub(crate) fn derive(crate_: &Crate, known: &mut Known) -> String {
     let mut text = String::new();
+    // Values that a file has are varied in all fields that have samples: those of all others come first.
+    let mut others = true;
     loop {
         let before = known.0.len();
         for (name, item) in &crate_.definitions {
             if known.0.contains(name) || !is_concrete(item) || is_open(item) {
+                continue;
+            }
+            if others && known.1.contains(name) && !all_known(crate_, known, item) {
                 continue;
             }
             if let Some(implementation) = implementation(crate_, known, name, item) {
@@ -21,10 +26,18 @@ pub(crate) fn derive(crate_: &Crate, known: &mut Known) -> String {
                 known.0.insert(name.clone());
             }
         }
-        if known.0.len() == before {
+        if known.0.len() != before {
+            others = true;
+        } else if !std::mem::replace(&mut others, false) {
             return text;
         }
     }
+}
+
+/// Whether all fields of a structure have samples.
+fn all_known(crate_: &Crate, known: &Known, item: &Item) -> bool {
+    let Item::Struct(item) = item else { return false };
+    item.fields.iter().all(|field| known.name(crate_, None, &field.ty).is_some())
 }
 
 fn implementation(crate_: &Crate, known: &Known, name: &str, item: &Item) -> Option<String> {
@@ -74,9 +87,11 @@ fn wrap(path: &str, count: &str, nth: &str) -> String {
     )
 }
 
-/// A structure whose fields are all public: as it is by default, or of first samples, but for one field.
+/// A structure whose fields are all public: as a file has it, as it is by default, or of first samples, but
+/// for one field.
 fn structure(crate_: &Crate, known: &Known, name: &str, path: &str, fields: &[&Field]) -> Option<String> {
-    let default = crate_.defaults.contains(name);
+    let varied = known.1.contains(name);
+    let default = varied || crate_.defaults.contains(name);
     let named: Vec<(String, Option<String>)> = fields
         .iter()
         .map(|field| {
@@ -97,9 +112,15 @@ fn structure(crate_: &Crate, known: &Known, name: &str, path: &str, fields: &[&F
             format!("let mut picker = Picker::nth(index, {counts}); Some({path} {{ {} }})", picks.join(", "));
         return Some(wrap(path, &format!("Picker::total({counts})"), &nth));
     }
-    let mut nth = format!(
-        "let mut made = <{path}>::default(); if index == 0 {{ return Some(made); }} let mut index = index - 1;"
-    );
+    let bases = format!("<{path} as crate::sample::Varied>::COUNT");
+    let first = if varied {
+        format!(
+            "let mut made = <{path} as crate::sample::Varied>::base(index % {bases}); let index = index / {bases};"
+        )
+    } else {
+        format!("let mut made = <{path}>::default();")
+    };
+    let mut nth = format!("{first} if index == 0 {{ return Some(made); }} let mut index = index - 1;");
     let mut count = String::from("1");
     for (field, given) in named {
         let Some(given) = given else { continue };
@@ -111,6 +132,7 @@ fn structure(crate_: &Crate, known: &Known, name: &str, path: &str, fields: &[&F
         );
     }
     nth += "None";
+    let count = if varied { format!("{bases} * ({count})") } else { count };
     Some(wrap(path, &count, &nth))
 }
 

@@ -9,8 +9,8 @@ use syn::{GenericArgument, Item, PathArguments, Type, TypeParamBound};
 
 use crate::source::Crate;
 
-/// Names of types with samples.
-pub(crate) struct Known(pub(crate) BTreeSet<String>);
+/// Names of types with samples, and of those whose samples vary values that a file has.
+pub(crate) struct Known(pub(crate) BTreeSet<String>, pub(crate) BTreeSet<String>);
 
 /// Generic types whose samples are made of those of their parts.
 const CONTAINERS: [&str; 4] = ["Vec", "Option", "Arc", "Box"];
@@ -25,12 +25,14 @@ pub(crate) struct Argument {
 impl Known {
     /// The types that are given samples in files.
     pub(crate) fn by_hand(files: &[PathBuf]) -> Self {
-        let mut names = BTreeSet::new();
+        let (mut names, mut varied) = (BTreeSet::new(), BTreeSet::new());
         for file in files {
             let text = fs::read_to_string(file).expect("samples");
             for line in text.lines() {
                 if let Some((name, _)) = line.trim_start().split_once(" => [") {
                     names.insert(name.replace(' ', ""));
+                } else if let Some((name, _)) = line.trim_start().split_once(" => varied [") {
+                    varied.insert(name.into());
                 }
             }
         }
@@ -44,7 +46,7 @@ impl Known {
             assert!(names.contains(other), "{other} has no samples");
             names.insert(own.into());
         }
-        Self(names)
+        Self(names, varied)
     }
 
     /// How to make an argument of a type; `None` if that is not known.

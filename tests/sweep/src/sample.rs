@@ -111,6 +111,31 @@ macro_rules! samples {
 }
 pub(crate) use samples;
 
+/// A type whose samples are some values, and those with one field changed.
+pub(crate) trait Varied: Sized {
+    /// Number of these values.
+    const COUNT: usize;
+
+    /// One of them.
+    fn base(index: usize) -> Self;
+}
+
+/// Implements [`Varied`] by lists of values, for types whose fields are all public and whose first samples
+/// the library would refuse together.
+macro_rules! varied {
+    ($($type:ty => varied [$($value:expr),+ $(,)?];)+) => {$(
+        impl $crate::sample::Varied for $type {
+            const COUNT: usize = [$(stringify!($value)),+].len();
+
+            fn base(index: usize) -> Self {
+                let makers: [fn() -> Self; Self::COUNT] = [$(|| $value),+];
+                makers[index]()
+            }
+        }
+    )+};
+}
+pub(crate) use varied;
+
 samples! {
     f64 => [1.0, f64::NAN, f64::NEG_INFINITY, f64::INFINITY, 0.0, -0.0, -1.0, 1e-9, 1e9, 1e160, 1e300, -1e300],
         list vec![0.0, 1.0, 3.0, 2.0, 5.0, 4.0];

@@ -1,18 +1,18 @@
 //! Samples of types that cannot be made of their public fields or by a constructor.
 
+mod craft;
+mod learned;
+mod logs;
+mod race;
+
 use image::{GrayImage, ImageBuffer, RgbImage, RgbaImage};
 use nalgebra::{Point2, Point3, UnitQuaternion, Vector2, Vector3};
 
 use crate::sample::samples;
-use roverlab::drive::marine::{DepthHold, DepthHoldParameters};
-use roverlab::geometry::{Aabb, Point, Pose, Segment, direction};
+use roverlab::geometry::{Point, Pose, Segment, direction};
 use roverlab::io::sim::{SimOptions, Simulation, Truth};
-use roverlab::kinematics::marine::{Craft, CraftSpec};
-use roverlab::nav::{RampCrossing, SummitParameters, SummitSearch};
-use roverlab::race::Corridor;
-use roverlab::vision::network::{Architecture, Network};
 use roverlab::vision::{GrayView, GrayViewMut, RgbView, RgbViewMut};
-use roverlab::world::{HeightField, RobotSpec, Scene, Wall, World};
+use roverlab::world::{RobotSpec, Scene, Wall, World};
 
 samples! {
     Point2<f64> => [
@@ -68,44 +68,6 @@ samples! {
     RgbaImage => [pattern(16, 12), pattern(1, 1), pattern(0, 0)];
     GrayBuffer => [GrayBuffer(pattern(16, 12)), GrayBuffer(pattern(3, 2)), GrayBuffer(pattern(1, 1)), GrayBuffer(pattern(300, 1))];
     RgbBuffer => [RgbBuffer(pattern(16, 12)), RgbBuffer(pattern(3, 2)), RgbBuffer(pattern(1, 1)), RgbBuffer(pattern(300, 1))];
-}
-
-/// A round hill in the middle of a square.
-fn hill(samples: usize, side: f64, height: f64) -> Option<HeightField> {
-    let area = Aabb::new(Point::origin(), Point::new(side, side));
-    let middle = Point::new(0.5 * side, 0.5 * side);
-    let shape = |at: Point| height * (1.0 - (at - middle).norm() / side);
-    HeightField::from_fn(samples, samples, area, shape).ok()
-}
-
-/// Points on a ring, with distances to its edges.
-fn ring(count: u32, radius: f64, side: f64) -> Vec<(Point, f64, f64)> {
-    let angle = |k: u32| std::f64::consts::TAU * f64::from(k) / f64::from(count);
-    (0..count).map(|k| (Point::origin() + direction(angle(k)) * radius, side, side)).collect()
-}
-
-/// A network with equal weights.
-fn network(architecture: &str, weight: f32) -> Option<Network> {
-    let architecture: Architecture = architecture.parse().ok()?;
-    let filters = architecture.filters().flatten();
-    let weights = filters.map(|(count, taps)| (vec![weight; count * taps], vec![weight; count])).collect();
-    Network::new(architecture, weights).ok()
-}
-
-samples! {
-    HeightField => [hill(41, 2.0, 0.2)?, hill(2, 1e6, 1e6)?, hill(3, 1e-9, -1e6)?, hill(2, 1.0, 0.0)?];
-    Corridor => [
-        Corridor::closed(&ring(60, 20.0, 2.0)).ok()?, Corridor::open(&ring(60, 20.0, 2.0)).ok()?,
-        Corridor::closed(&ring(5, 1.0, 3.0)).ok()?, Corridor::open(&ring(2, 1e3, 1e-3)).ok()?
-    ];
-    Craft => [Craft::new(&CraftSpec::mako(), 0.01).ok()?];
-    DepthHold => [DepthHold::new(&Craft::nth(0)?, 0.5, DepthHoldParameters::default()).ok()?];
-    Network => [
-        network("8x8x1 conv2/3/1 pool2 dense4 dense1", 0.1)?, network("1x1x1 dense1", f32::MAX)?,
-        network("8x8x1 dense3", 0.0)?
-    ];
-    SummitSearch => [SummitSearch::new(SummitParameters::of(&RobotSpec::blizzard())?).ok()?];
-    RampCrossing => [RampCrossing::new(SummitParameters::of(&RobotSpec::blizzard())?).ok()?];
 }
 
 /// The pixels behind a grey view.

@@ -46,6 +46,7 @@ const EXCEPTIONS: &[(&str, &str)] = &[
     ("io::log::visit_messages", CLOSURE),
     ("io::log::LogWriter", ROBOT),
     ("io::log::Recorder", ROBOT),
+    ("io::robios::RobiosRobot", "needs a library of RoBIOS; `robios/` tests it with one"),
     ("io::sim::Fleet", ROBOT),
     ("io::sim::Onlooking", "exists during a tick only"),
     ("io::sim::Simulation::watch", CLOSURE),

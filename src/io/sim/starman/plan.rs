@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-use super::spec::{MOST_STEP, StarmanSpec};
+use super::spec::{StarmanSpec, require_time_step};
 use crate::geometry::{Point, Pose, direction};
 use crate::io::{Error, Result};
 use crate::parameter::{require, require_not_negative, require_positive};
@@ -120,8 +120,7 @@ impl BodyPlan {
         require_positive("friction", self.friction)?;
         require_positive("servo speed", self.servo_speed)?;
         require_positive("servo torque", self.servo_torque)?;
-        require_positive("time step", self.time_step)?;
-        require("time step", self.time_step, self.time_step <= MOST_STEP, "at most 0.02 s")?;
+        require_time_step(self.time_step)?;
         let limbs = self.limbs.len();
         require("number of limbs", limbs as f64, (1..=MOST_LIMBS).contains(&limbs), "1 to 24")?;
         self.limbs.iter().enumerate().try_for_each(|(index, limb)| limb.validate(index))
@@ -157,7 +156,11 @@ impl LimbPlan {
         let whole = |error: crate::ParameterError| Error::from(error.of(&format!("limb {}", index + 1)));
         if let Some(parent) = self.parent.filter(|parent| *parent >= index) {
             let expected = "an earlier limb";
-            return Err(Error::invalid_input(&format!("parent of limb {}", index + 1), parent + 1, expected));
+            return Err(Error::invalid_input(
+                &format!("parent of limb {}", index + 1),
+                parent.saturating_add(1),
+                expected,
+            ));
         }
         let good = self.hinge.iter().all(|place| place.abs() <= 1000.0);
         require("hinge", self.hinge[0].max(self.hinge[1]), good, "at most 1000 m away").map_err(whole)?;

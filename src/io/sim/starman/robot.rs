@@ -180,7 +180,7 @@ signatures! { DepthSensor => lacks!("depth sensor") }
 
 #[cfg(test)]
 mod tests {
-    use super::super::LIMBS;
+    use super::super::{LIMBS, LimbPlan};
     use super::*;
     use crate::io::RobotIo;
 
@@ -272,7 +272,14 @@ mod tests {
             text(StarmanSpec { limb_mass: -1.0, ..book }),
             "limb mass is -1; expected a positive, finite number"
         );
-        assert_eq!(text(StarmanSpec { time_step: 0.1, ..book }), "time step is 0.1; expected at most 0.02 s");
+        assert_eq!(
+            text(StarmanSpec { time_step: 0.1, ..book }),
+            "time step is 0.1; expected 0.00001 to 0.02 s"
+        );
+        assert!(text(StarmanSpec { time_step: 1e-300, ..book }).starts_with("time step is"));
         assert!(text(StarmanSpec { servo_range: 1.0, ..book }).starts_with("servo range is 1; expected"));
+        let orphan = LimbPlan { parent: Some(usize::MAX), ..LimbPlan::default() };
+        let plan = BodyPlan { limbs: vec![orphan], ..BodyPlan::default() };
+        assert!(plan.validate().unwrap_err().to_string().contains("parent of limb 1"));
     }
 }

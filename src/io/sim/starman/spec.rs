@@ -3,7 +3,9 @@ use crate::parameter::{require, require_positive};
 use std::f64::consts::PI;
 
 /// Largest time step (s).
-pub(super) const MOST_STEP: f64 = 0.02;
+const MOST_STEP: f64 = 0.02;
+/// Shortest time step (s): with shorter ones, a run takes forever.
+const LEAST_STEP: f64 = 1e-5;
 
 /// Dimensions and servos of a Starman. Lengths in metres, masses in kilograms, angles in radians.
 ///
@@ -71,14 +73,18 @@ impl StarmanSpec {
             ("servo range", self.servo_range),
             ("servo speed", self.servo_speed),
             ("servo torque", self.servo_torque),
-            ("time step", self.time_step),
         ];
         all.into_iter().try_for_each(|(name, value)| require_positive(name, value))?;
         // With a wider range, neighbours would cross; with a larger time step, the solver cannot hold the
         // hinges.
         require("servo range", self.servo_range, self.servo_range <= PI / 5.0, "at most a tenth of a turn")?;
-        require("time step", self.time_step, self.time_step <= MOST_STEP, "at most 0.02 s")
+        require_time_step(self.time_step)
     }
+}
+
+/// Checks a time step of the physics.
+pub(super) fn require_time_step(step: f64) -> Result<(), ParameterError> {
+    require("time step", step, (LEAST_STEP..=MOST_STEP).contains(&step), "0.00001 to 0.02 s")
 }
 
 impl Default for StarmanSpec {
