@@ -1,7 +1,6 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::filters::LANES;
 use crate::ParameterError;
 use crate::parameter::require;
 
@@ -100,6 +99,9 @@ pub struct Architecture {
     sizes: Vec<MapSize>,
 }
 
+/// Number of filters that are stored and applied at once. As many values more than there are have room after a
+/// layer's results.
+pub(super) const LANES: usize = 16;
 /// Largest number of layers.
 const MOST_LAYERS: usize = 64;
 /// Largest side, number of channels, or stride.

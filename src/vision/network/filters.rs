@@ -1,9 +1,6 @@
-use super::architecture::MapSize;
+use super::architecture::{LANES, MapSize};
 use crate::vision::dispatch::vectorised;
 
-/// Number of filters that are applied at once. As many values more than there are have room after a layer's
-/// results.
-pub(super) const LANES: usize = 16;
 /// Number of places in a row to which the same filters are applied at once.
 const PLACES: usize = 4;
 

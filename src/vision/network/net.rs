@@ -1,5 +1,5 @@
-use super::architecture::{Architecture, Layer, MapSize};
-use super::filters::{Filters, LANES, Pass};
+use super::architecture::{Architecture, LANES, Layer, MapSize};
+use super::filters::{Filters, Pass};
 use crate::ParameterError;
 use crate::geometry::math;
 use crate::parameter::{require_count, require_finite};
