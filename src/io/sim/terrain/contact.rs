@@ -1,4 +1,4 @@
-use nalgebra::{Matrix2, Matrix6, Vector2, Vector6};
+use nalgebra::{Matrix6, Vector2, Vector6};
 
 use super::undercarriage::{Foot, Grip};
 use crate::geometry::{Vector, Vector3};
@@ -29,6 +29,8 @@ pub(super) struct Contact {
     ease: f64,
     guess: Load,
     pub(super) load: Load,
+    /// Speed at which it slides (m/s).
+    slide: Vector2<f64>,
     law: Law,
 }
 
@@ -39,11 +41,12 @@ pub(super) struct Load {
     friction: Vector2<f64>,
 }
 
-/// Friction near a guess as a linear function: `share` of its limit, less `hardness` times the sliding speed.
+/// Friction near a guess as a linear function: `share` of its limit, less `hardness` times the speed of the slide
+/// across it. The share is zero, and any slide is across it, where friction holds the foot.
 #[derive(Debug, Clone, Copy, Default)]
 struct Law {
     share: Vector2<f64>,
-    hardness: Matrix2<f64>,
+    hardness: f64,
 }
 
 /// Where and how a foot meets the ground: its arm from the centre of mass, the ground's normal and its height
@@ -96,15 +99,19 @@ pub(super) fn solve(contacts: &mut [Contact], free: &Motion, start: Motion) -> M
 /// soon.
 fn newton(contacts: &mut [Contact], free: &Motion, start: Motion) -> Option<Motion> {
     let mut motion = start;
+    for contact in contacts.iter_mut() {
+        contact.move_at(&motion);
+    }
     for _ in 0..MOST_STEPS {
         let (mut excess, mut stiffness) = (motion - free, Matrix6::identity());
         for contact in contacts.iter_mut() {
-            contact.resist(&motion, &mut excess, &mut stiffness);
+            contact.resist(&mut excess, &mut stiffness);
         }
         let change = stiffness.lu().solve(&excess)?;
         motion -= change;
         for contact in contacts.iter_mut() {
-            contact.follow(&motion);
+            contact.move_at(&motion);
+            contact.load.friction = contact.friction_by_law();
         }
         if change.amax() < LAST_STEP {
             return Some(motion);
@@ -136,7 +143,6 @@ fn relaxed(contacts: &mut [Contact], free: &Motion) -> Motion {
 impl Contact {
     /// The contact of a foot, the `number`th one; `guess` are its impulses in the last tick.
     pub(super) fn new(number: usize, foot: &Foot, at: &Meeting, ride: &Ride, guess: Load) -> Self {
-        let relaxation = foot.relaxation();
         let (tangents, rim) = held(foot.grip, &at.normal, ride);
         let axis = |direction: Vector3| {
             let moment = at.arm.cross(&direction) * ride.per_radius;
@@ -146,8 +152,8 @@ impl Contact {
         Self {
             foot: number,
             gap: at.gap,
-            least_speed: least_speed(at.gap, ride.tick, relaxation),
-            firmness: ride.tick * (ride.tick + relaxation) / foot.softness,
+            least_speed: least_speed(at.gap, ride.tick, foot.relaxation),
+            firmness: ride.tick * (ride.tick + foot.relaxation) / foot.softness,
             friction: ride.friction,
             normal: axis(at.normal),
             tangents,
@@ -155,53 +161,54 @@ impl Contact {
             ease: 1.0 / (1.0 + tangents[0].norm_squared() + tangents[1].norm_squared()),
             guess,
             load: guess,
+            slide: Vector2::zeros(),
             law: Law::default(),
         }
     }
 
-    /// Subtracts the foot's impulse at a motion of the body from `excess`, and adds what the foot resists a
-    /// change of that motion to `stiffness`.
+    /// Takes over the pressure and the slide at a motion of the body.
     #[inline]
-    fn resist(&mut self, motion: &Motion, excess: &mut Motion, stiffness: &mut Matrix6<f64>) {
-        let pressure = self.pressure(motion);
+    fn move_at(&mut self, motion: &Motion) {
+        self.load.pressure = self.pressure(motion);
+        self.slide = self.slide(motion);
+    }
+
+    /// Subtracts the foot's impulse from `excess`, and adds what the foot resists a change of the body's motion
+    /// to `stiffness`.
+    #[inline]
+    fn resist(&mut self, excess: &mut Motion, stiffness: &mut Matrix6<f64>) {
+        let pressure = self.load.pressure;
         if pressure == 0.0 && self.load.friction == Vector2::zeros() {
             self.law = Law::default();
             return;
         }
-        let (limit, slide) = (self.friction * pressure, self.slide(motion));
-        self.law = self.law(limit, &slide);
+        self.law = self.law();
         let Law { share, hardness } = self.law;
         let [ahead, left] = &self.tangents;
-        let force = share * limit - hardness * slide;
+        let force = self.friction_by_law();
         *excess -= self.normal * pressure + ahead * force.x + left * force.y;
-        let firmness = if pressure > 0.0 { self.firmness } else { 0.0 };
-        // The limit of friction rises with the pressure.
-        let along = self.normal + (ahead * share.x + left * share.y) * self.friction;
-        let axes = [&along, ahead, left];
-        let answers = [
-            self.normal * firmness,
-            ahead * hardness.m11 + left * hardness.m12,
-            ahead * hardness.m21 + left * hardness.m22,
-        ];
-        for (column, sums) in stiffness.data.0.iter_mut().enumerate() {
-            for (row, sum) in sums.iter_mut().enumerate() {
-                *sum += axes[0][row] * answers[0][column]
-                    + axes[1][row] * answers[1][column]
-                    + axes[2][row] * answers[2][column];
-            }
+        if pressure > 0.0 {
+            // The limit of friction rises with the pressure.
+            let along = self.normal + (ahead * share.x + left * share.y) * self.friction;
+            add_product(stiffness, &along, &(self.normal * self.firmness));
+        }
+        if self.law.holds() {
+            add_product(stiffness, ahead, &(ahead * hardness));
+            add_product(stiffness, left, &(left * hardness));
+        } else {
+            let across = left * share.x - ahead * share.y;
+            add_product(stiffness, &across, &(across * hardness));
         }
     }
 
     /// Friction near the present one. A foot that slides is held against its slide only.
-    fn law(&self, limit: f64, slide: &Vector2<f64>) -> Law {
-        let trial = self.trial(slide);
+    fn law(&self) -> Law {
+        let (limit, trial) = (self.friction * self.load.pressure, self.trial(&self.slide));
         let size = trial.norm();
         if size <= limit {
-            return Law { share: Vector2::zeros(), hardness: Matrix2::identity() / CREEP };
+            return Law { share: Vector2::zeros(), hardness: 1.0 / CREEP };
         }
-        let share = trial / size;
-        let aside = Matrix2::identity() - share * share.transpose();
-        Law { share, hardness: aside * (limit * self.ease / (size - limit)) }
+        Law { share: trial / size, hardness: limit * self.ease / (size - limit) }
     }
 
     /// The friction that a slide asks for, without its limit.
@@ -231,13 +238,12 @@ impl Contact {
         *motion += self.impulse() - before;
     }
 
-    /// Takes over the impulses that the linear law has at a new motion.
+    /// Friction that the linear law has at the present pressure and slide.
     #[inline]
-    fn follow(&mut self, motion: &Motion) {
-        let pressure = self.pressure(motion);
-        let limit = self.friction * pressure;
-        let friction = self.law.share * limit - self.law.hardness * self.slide(motion);
-        self.load = Load { pressure, friction };
+    fn friction_by_law(&self) -> Vector2<f64> {
+        let Law { share, hardness } = self.law;
+        let across = self.slide - share * share.dot(&self.slide);
+        share * (self.friction * self.load.pressure) - across * hardness
     }
 
     #[inline]
@@ -255,6 +261,22 @@ impl Contact {
     pub(super) fn strain(&self, foot: &Foot, motion: &Motion, tick: f64) -> f64 {
         let depth = (self.gap + self.normal.dot(motion) * tick).min(0.0);
         0.5 * depth * depth / foot.softness
+    }
+}
+
+impl Law {
+    fn holds(&self) -> bool {
+        self.share == Vector2::zeros()
+    }
+}
+
+/// Adds `column * row^T`.
+#[inline]
+fn add_product(sums: &mut Matrix6<f64>, column: &Motion, row: &Motion) {
+    for (sums, factor) in sums.data.0.iter_mut().zip(row) {
+        for (sum, value) in sums.iter_mut().zip(column) {
+            *sum += value * factor;
+        }
     }
 }
 

@@ -25,6 +25,9 @@ pub(super) struct Foot {
     pub(super) grip: Grip,
     /// Sinking per acceleration of the body that it supports alone (s²).
     pub(super) softness: f64,
+    /// Time constant with which it returns when unloaded (s): its damping over its stiffness. A body that it
+    /// supports alone is damped critically.
+    pub(super) relaxation: f64,
 }
 
 /// Directions of a foot's friction.
@@ -122,7 +125,8 @@ impl Undercarriage {
 impl Foot {
     /// One of `number` feet on which a body sinks by `sag`.
     fn new(place: Vector3, grip: Grip, number: u32, sag: f64) -> Self {
-        Self { place, grip, softness: f64::from(number) * sag / GRAVITY }
+        let softness = f64::from(number) * sag / GRAVITY;
+        Self { place, grip, softness, relaxation: 2.0 * softness.sqrt() }
     }
 
     /// One of `number` stiff feet that bear a body.
@@ -137,13 +141,6 @@ impl Foot {
 
     fn raised(&self, up: f64) -> Self {
         Self { place: self.place + Vector3::z() * up, ..*self }
-    }
-
-    /// Time constant with which it returns when unloaded (s): its damping over its stiffness. A body that it
-    /// supports alone is damped critically.
-    #[inline]
-    pub(super) fn relaxation(&self) -> f64 {
-        2.0 * self.softness.sqrt()
     }
 }
 
