@@ -1,3 +1,5 @@
+use std::ops::Range;
+
 use super::{Object, World};
 use crate::geometry::{Aabb, Point, Vector};
 
@@ -73,24 +75,32 @@ impl World {
     }
 }
 
-/// Splits points at the widest gap along an axis, if it is wide enough, and keeps the larger part.
+/// Splits points at the widest gap along an axis that separates them, and keeps the larger part.
 fn keep_larger(points: &mut Vec<Point>, ends: &[[Point; 2]], along: impl Fn(&Point) -> f64) {
     points.sort_by(|a, b| along(a).total_cmp(&along(b)));
-    let gap = |i: &usize| along(&points[*i]) - along(&points[i - 1]);
-    let Some(at) = (1..points.len()).max_by(|a, b| gap(a).total_cmp(&gap(b))) else { return };
-    let first = 2 * at >= points.len();
-    let part = if first { &points[..at] } else { &points[at..] };
-    let size = along(&part[part.len() - 1]) - along(&part[0]);
-    let middle = 0.5 * (along(&points[at]) + along(&points[at - 1]));
-    let spans = |[a, b]: &&[Point; 2]| (along(a) < middle) != (along(b) < middle);
-    if gap(&at) <= GAP.max(GAP_IN_SIZES * size) || ends.iter().filter(spans).count() > 1 {
-        return;
+    let places: Vec<f64> = points.iter().map(&along).collect();
+    let gap = |at: &usize| places[*at] - places[at - 1];
+    // Each gap is far wider than all that lies within it, so only few are compared with all walls.
+    let is_wide = |at: &usize| {
+        let kept = kept(places.len(), *at);
+        gap(at) > GAP.max(GAP_IN_SIZES * (places[kept.end - 1] - places[kept.start]))
+    };
+    let separates = |at: &usize| {
+        let middle = 0.5 * (places[*at] + places[at - 1]);
+        let spans = |[a, b]: &&[Point; 2]| (along(a) < middle) != (along(b) < middle);
+        ends.iter().filter(spans).count() <= 1
+    };
+    let cuts = (1..places.len()).filter(is_wide).filter(separates);
+    if let Some(at) = cuts.max_by(|a, b| gap(a).total_cmp(&gap(b))) {
+        let kept = kept(places.len(), at);
+        points.truncate(kept.end);
+        points.drain(..kept.start);
     }
-    if first {
-        points.truncate(at);
-    } else {
-        points.drain(..at);
-    }
+}
+
+/// The larger part of a list that is cut before an index.
+fn kept(count: usize, at: usize) -> Range<usize> {
+    if 2 * at >= count { 0..at } else { at..count }
 }
 
 #[cfg(test)]
@@ -117,6 +127,17 @@ mod tests {
                 clearance.raster().cells(),
                 Clearance::new(&World::walled(3.0, 2.0), 0.02, 0.3).unwrap().raster().cells()
             );
+        }
+    }
+
+    /// Also where it is longer than it is far away.
+    #[test]
+    fn a_long_stray_wall_is_no_part_of_the_site() {
+        for end in [2100.0, 1e5] {
+            let mut world = World::walled(3.0, 2.0);
+            world.walls.push(Wall::new(Point::new(1000.0, 1000.0), Point::new(end, end)));
+            world.floor = world.bounds();
+            assert_eq!((world.site(), world.strays()), (World::walled(3.0, 2.0).site(), 1), "{end}");
         }
     }
 

@@ -63,7 +63,7 @@ impl<const BY_RANGE: bool> Default for Circumnavigation<BY_RANGE> {
 impl<const BY_RANGE: bool> Circumnavigation<BY_RANGE> {
     /// Smallest distance from the goal reached by leaving here; `None` if the way is blocked.
     fn merit(&self, sight: &Sight) -> Option<f64> {
-        let free = if BY_RANGE { sight.free.min(sight.distance) * self.doubt.trust() } else { 0.0 };
+        let free = if BY_RANGE { self.doubt.trusted(sight) } else { 0.0 };
         sight.is_open().then_some(sight.distance - free)
     }
 
@@ -110,9 +110,9 @@ impl<const BY_RANGE: bool> Strategy for Circumnavigation<BY_RANGE> {
     fn meet(&mut self, meeting: &Sight) {
         let least_distance = meeting.distance - meeting.free;
         let kept = least_distance <= self.least_distance - 0.5 * meeting.step;
-        let mut doubt = self.doubt;
+        let mut doubt = std::mem::take(&mut self.doubt);
         if !kept {
-            doubt.grow();
+            doubt.grow(meeting.place.point);
         }
         *self = Self { least_distance, doubt, ..Self::default() };
     }

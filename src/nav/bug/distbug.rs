@@ -61,12 +61,11 @@ impl Strategy for DistRule {
     }
 
     /// Records how near to the goal the boundary of a new obstacle begins. If the last leave did not bring
-    /// the robot as much nearer as predicted, free ranges are trusted less; this prevents endless shuttling
-    /// caused by errors.
+    /// the robot as much nearer as predicted, free ranges are trusted less; this prevents endless shuttling.
     fn meet(&mut self, meeting: &Sight) {
         let distance = meeting.distance - meeting.free;
         if distance > self.least_distance - 0.5 * meeting.step && self.least_distance.is_finite() {
-            self.doubt.grow();
+            self.doubt.grow(meeting.place.point);
         }
         self.least_distance = self.least_distance.min(distance);
     }
@@ -76,8 +75,7 @@ impl Strategy for DistRule {
         if !sight.is_open() {
             return Decision::Follow;
         }
-        let free = sight.free.min(sight.distance) * self.doubt.trust();
-        let promising = sight.distance - free <= self.least_distance - sight.step;
+        let promising = sight.distance - self.doubt.trusted(sight) <= self.least_distance - sight.step;
         if promising { Decision::Leave } else { Decision::Follow }
     }
 }

@@ -131,6 +131,7 @@ impl Decider<'_> {
         Some(Sight {
             place: Place { point: body.pose.position(), wall },
             side: following.side,
+            goal: body.goal,
             distance: view.distance,
             free: view.free,
             into_wall: -sense * math::sin(view.bearing),

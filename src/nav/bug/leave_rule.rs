@@ -107,6 +107,7 @@ mod tests {
         Sight {
             place: Place { point, wall: 0.0 },
             side: WallSide::Left,
+            goal: GOAL,
             distance: (GOAL - point).norm(),
             free: 9.0,
             into_wall: -1.0,

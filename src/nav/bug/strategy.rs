@@ -62,6 +62,7 @@ pub(super) enum Decision {
 pub(super) struct Sight {
     pub(super) place: Place,
     pub(super) side: WallSide,
+    pub(super) goal: Point,
     /// Distance to the goal.
     pub(super) distance: f64,
     /// How far the disc can move towards the goal.

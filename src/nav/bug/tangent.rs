@@ -174,10 +174,10 @@ impl Strategy for Tangent {
         let distance = meeting.distance - meeting.free;
         if distance > self.passed - 0.5 * meeting.step && self.passed.is_finite() {
             // The last leave did not lead as near as predicted.
-            self.doubt.grow();
+            self.doubt.grow(meeting.place.point);
         }
         let passed = self.passed.min(distance);
-        let (panorama, doubt) = (std::mem::take(&mut self.panorama), self.doubt);
+        let (panorama, doubt) = (std::mem::take(&mut self.panorama), std::mem::take(&mut self.doubt));
         *self = Self { panorama, passed, doubt, ..Self::default() };
     }
 
