@@ -6,8 +6,10 @@ use std::process::{Command, Stdio};
 use roverlab::world::Scene;
 use roverlab::world::formats::in_any_case;
 
+use super::compiler;
 use super::options::{Options, ends_in, whole};
 use super::place::{home, library};
+use super::stopwatch::Stopwatch;
 use super::work_folder::WorkFolder;
 
 /// A program and the robot it drives.
@@ -186,14 +188,16 @@ fn compile(source: &Path, folder: &WorkFolder, robot: usize) -> Result<PathBuf, 
     Ok(program)
 }
 
-/// Compiles a program with the appropriate script, including other necessary source texts.
+/// Compiles a program with the appropriate script, including other necessary source texts. Fails if that takes
+/// more than [`compiler::LIMIT`].
 pub(crate) fn compile_to(source: &Path, program: &Path) -> Result<(), String> {
-    let Some(mut message) = compile_files(&[source.to_owned()], program)? else { return Ok(()) };
+    let clock = Stopwatch::start();
+    let Some(mut message) = compile_files(&[source.to_owned()], program, &clock)? else { return Ok(()) };
     let mut files = vec![source.to_owned()];
     companions(source, &mut files, MOST_HEADERS);
     if files.len() > 1 && message.contains("undefined reference") {
         // If the complete program fails as well, its error is the relevant one.
-        match compile_files(&files, program)? {
+        match compile_files(&files, program, &clock)? {
             Some(with_companions) => message = with_companions,
             None => return Ok(()),
         }
@@ -207,17 +211,20 @@ pub(crate) fn compile_to(source: &Path, program: &Path) -> Result<(), String> {
     Err(format!("{}: does not compile: {}", source.display(), first.unwrap_or("the compiler says nothing")))
 }
 
-/// Compiles files into a program. Returns the compiler's message on failure.
-fn compile_files(files: &[PathBuf], program: &Path) -> Result<Option<String>, String> {
+/// Compiles files into a program, which was begun with the stopwatch. Returns the compiler's message on failure.
+fn compile_files(files: &[PathBuf], program: &Path, clock: &Stopwatch) -> Result<Option<String>, String> {
     let is_cpp = files.iter().any(|file| CPP.iter().any(|ending| ends_in(file, ending)));
     let script = if is_cpp { "g++sim" } else { "gccsim" };
     let mut command = Command::new(home()?.join("bin").join(script));
     command.arg("-w").args(files).arg("-o").arg(program).stdin(Stdio::null()).stdout(Stdio::null());
     command.env("ROBIOS_LIBRARY_DIR", library()?.parent().unwrap_or(Path::new(".")));
-    let output =
-        command.output().map_err(|error| format!("{script}: {error}; expected a script to compile with"))?;
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
-    Ok((!output.status.success()).then_some(message))
+    let ended = compiler::run(&mut command, clock, compiler::LIMIT)
+        .map_err(|error| format!("{script}: {error}; expected a script to compile with"))?;
+    let (status, message) = ended.ok_or_else(|| {
+        let (file, limit) = (files[0].display(), compiler::LIMIT);
+        format!("{file}: does not compile: the compiler was ended after {limit} real seconds")
+    })?;
+    Ok((!status.success()).then_some(message))
 }
 
 /// Maximum nesting depth of headers searched.
