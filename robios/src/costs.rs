@@ -18,6 +18,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use crate::files;
+
 /// Where a call is handled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -108,9 +110,8 @@ impl Costs {
             "free" => Ok(Self::Free),
             "eyesim" => Ok(Self::Frames(Frames::new(rate))),
             file => {
-                let text = std::fs::read_to_string(Path::new(file)).map_err(|error| {
-                    format!("{file}: {error}; expected eyesim, free, or a file of calls and what they take")
-                })?;
+                let expected = "eyesim, free, or a file of calls and what they take";
+                let text = files::read_text(Path::new(file), expected)?;
                 Ok(Self::Frames(Frames::new(rate).changed(&text, file)?))
             }
         }

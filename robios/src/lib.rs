@@ -53,6 +53,7 @@ pub mod ask;
 pub mod costs;
 #[cfg(feature = "c")]
 mod ffi;
+mod files;
 pub mod identity;
 #[cfg(not(target_family = "wasm"))]
 pub mod keyboard;

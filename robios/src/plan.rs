@@ -10,6 +10,7 @@ use roverlab::world::formats::{self, DiskFiles, FileSource};
 use roverlab::world::{DriveSpec, RobotPlacement, RobotSpec, Scene, World};
 
 use crate::costs::{Costs, Frames};
+use crate::files;
 use crate::walker::is_walker;
 
 /// The world of a run, and the robot driven by the program.
@@ -166,7 +167,10 @@ impl Plan {
     pub fn scene(&self) -> Result<(Scene, Vec<String>), String> {
         let mut warnings = Vec::new();
         let found = self.world.clone().or_else(|| only_world(&self.folder, &mut warnings));
-        let read = |file: &PathBuf| formats::read_file(file).map_err(|error| error.to_string());
+        let read = |file: &PathBuf| {
+            files::require_regular(file)?;
+            formats::read_file(file).map_err(|error| error.to_string())
+        };
         let bytes = found.as_ref().map(read).transpose()?;
         let world = found.as_deref().zip(bytes);
         let scene = self.scene_of(world, &mut DiskFiles::new(), &mut warnings)?;

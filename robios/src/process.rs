@@ -10,14 +10,18 @@ use std::sync::Arc;
 
 use crate::memory::Memory;
 
-/// Starts a program in its own process group, which ends with this process at the latest. The files stay open
-/// in it under their descriptors.
+/// Starts a program in its own process group, which ends with this process at the latest (Linux). The files
+/// stay open in it under their descriptors.
 ///
-/// Its parent is a small process that records the program's exit status in the memory and exits alike; so a
-/// program that kills its parent harms nobody else.
-pub fn start(command: &mut Command, files: &[BorrowedFd<'_>], memory: &Arc<Memory>) -> io::Result<Child> {
+/// Its parent is a small process that records the program's exit status in the memory, if any, and exits
+/// alike; so a program that kills its parent harms nobody else.
+pub fn start(
+    command: &mut Command,
+    files: &[BorrowedFd<'_>],
+    memory: Option<&Arc<Memory>>,
+) -> io::Result<Child> {
     let files: Vec<RawFd> = files.iter().map(AsRawFd::as_raw_fd).collect();
-    let memory = Arc::clone(memory);
+    let memory = memory.cloned();
     command.process_group(0);
     let prepare = move || {
         end_with_parent();
@@ -35,7 +39,7 @@ pub fn start(command: &mut Command, files: &[BorrowedFd<'_>], memory: &Arc<Memor
                 end_with_parent();
                 Ok(())
             }
-            program => stand_by(program, &memory),
+            program => stand_by(program, memory.as_deref()),
         }
     };
     // SAFETY: the closure only calls functions allowed after `fork`, and allocates nothing.
@@ -51,8 +55,27 @@ fn end_with_parent() {
     }
 }
 
+/// Lets the process group of this process end with its parent.
+fn end_group_with_parent() {
+    #[cfg(target_os = "linux")]
+    // SAFETY: sets a handler, which only calls a function that is allowed there, and an attribute of this
+    // process, which has one thread after `fork`.
+    unsafe {
+        libc::signal(libc::SIGTERM, end_group as extern "C" fn(libc::c_int) as libc::sighandler_t);
+        libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGTERM);
+    }
+}
+
+/// Kills the process group of this process.
+#[cfg(target_os = "linux")]
+extern "C" fn end_group(_signal: libc::c_int) {
+    // SAFETY: signals the own process group.
+    unsafe { libc::kill(0, libc::SIGKILL) };
+}
+
 /// Waits for the program, records its exit status, and exits alike.
-fn stand_by(program: libc::pid_t, memory: &Memory) -> ! {
+fn stand_by(program: libc::pid_t, memory: Option<&Memory>) -> ! {
+    end_group_with_parent();
     let mut status = 0;
     // SAFETY: closes descriptors that are no longer needed and used by nobody else; waits for its only child,
     // whose status is written to a variable that outlives the call; and exits.
@@ -68,7 +91,9 @@ fn stand_by(program: libc::pid_t, memory: &Memory) -> ! {
                 break;
             }
         }
-        memory.note_status(status);
+        if let Some(memory) = memory {
+            memory.note_status(status);
+        }
         if libc::WIFSIGNALED(status) {
             // The program has already dumped its core, if at all.
             let none = libc::rlimit { rlim_cur: 0, rlim_max: 0 };

@@ -46,6 +46,7 @@ impl Program {
             return Ok(self.clone());
         }
         let target = folder.path().join("program.x");
+        // The runner ends the compiler at its own limit.
         let output = Command::new(runner()?)
             .args([OsString::from("compile"), source.into(), target.clone().into()])
             .stdin(Stdio::null())

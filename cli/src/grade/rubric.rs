@@ -61,6 +61,10 @@ impl Rubric {
     /// Reads a rubric. Fails with the line and column of what is wrong.
     pub(super) fn read(file: &Path) -> Result<Self, Failure> {
         let name = file.display();
+        // A device may have no end, and whoever writes into a pipe may never come.
+        if fs::metadata(file).is_ok_and(|found| !found.is_file() && !found.is_dir()) {
+            return Err(Failure::input(format!("{name}: is a FIFO or a device; expected a regular file")));
+        }
         let text = fs::read_to_string(file)
             .map_err(|error| Failure::input(format!("{name}: {error}; expected a rubric")))?;
         let mut rubric: Self = toml::from_str(&text).map_err(|error| {

@@ -40,9 +40,9 @@ const MOST_OUTPUT: usize = 1 << 16;
 /// Maximum length of a last line (bytes).
 const MOST_OF_LINE: usize = 500;
 /// How long the runner keeps reading output if another process holds the pipe open.
-const LEFT_OPEN: Duration = Duration::from_secs(1);
+pub(super) const LEFT_OPEN: Duration = Duration::from_secs(1);
 /// Interval of the checks whether a program has ended.
-const LOOK: Duration = Duration::from_millis(1);
+pub(super) const LOOK: Duration = Duration::from_millis(1);
 
 /// Runs a program with its own world in the program's process.
 pub(crate) fn run_alone(
@@ -118,7 +118,7 @@ pub(crate) fn start(
     }
     let files: Vec<BorrowedFd<'_>> =
         [file_of_memory.as_fd()].into_iter().chain(keyboard.iter().chain(&screen).map(AsFd::as_fd)).collect();
-    match process::start(&mut command, &files, &memory) {
+    match process::start(&mut command, &files, Some(&memory)) {
         Err(error) => Ok(Err(format!("{}: cannot be started: {error}", file.display()))),
         Ok(mut child) => {
             let stdout = child.stdout.take().map(Relay::start);

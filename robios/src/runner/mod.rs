@@ -1,6 +1,7 @@
 //! The runner: command line, programs, their processes, their shared world, and the report.
 
 mod children;
+mod compiler;
 mod host;
 mod install;
 mod options;

@@ -1,14 +1,15 @@
-use std::fs::File;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use roverlab::world::Scene;
 use roverlab::world::formats::in_any_case;
 
+use super::compiler;
 use super::options::{Options, ends_in, whole};
 use super::place::{home, library};
+use super::stopwatch::Stopwatch;
 use super::work_folder::WorkFolder;
+use crate::files;
 
 /// A program and the robot it drives.
 #[derive(Debug)]
@@ -32,6 +33,7 @@ pub(crate) struct Program {
 pub(crate) fn of(options: &Options, scene: &Scene, folder: &WorkFolder) -> Result<Vec<Program>, String> {
     if !options.is_script() {
         let program = &options.program;
+        files::require_regular(program)?;
         let Some(file) = source(&whole(program)) else {
             let program = program.display();
             return Err(format!(
@@ -127,9 +129,8 @@ pub(crate) fn is_python(file: &Path) -> bool {
 }
 
 fn first_line(file: &Path) -> std::io::Result<String> {
-    let mut start = [0; 100];
-    let count = File::open(file)?.read(&mut start)?;
-    Ok(String::from_utf8_lossy(&start[..count]).lines().next().unwrap_or_default().to_owned())
+    let start = files::read_beginning(file, 100)?;
+    Ok(String::from_utf8_lossy(&start).lines().next().unwrap_or_default().to_owned())
 }
 
 /// The file of a program: the named one if this system can run it, or one beside it with another extension:
@@ -165,6 +166,7 @@ fn only_source(folder: &Path) -> Option<PathBuf> {
         |file: &Path| file.file_name().is_some_and(|name| name == "eye.py" || name == "eyebot.py");
     let (python, compiled): (Vec<_>, Vec<_>) = files
         .filter(|file| is_source(file) || ends_in(file, "py") && !is_module(file))
+        .filter(|file| file.is_file())
         .partition(|file| ends_in(file, "py"));
     match (compiled.as_slice(), python.as_slice()) {
         ([only], _) | ([], [only]) => Some(only.clone()),
@@ -174,9 +176,8 @@ fn only_source(folder: &Path) -> Option<PathBuf> {
 
 /// Whether this system can start a file: a program of its own format, or a script with an interpreter line.
 fn starts_here(path: &Path) -> bool {
-    let mut magic = [0; 4];
-    let read = File::open(path).and_then(|mut file| file.read(&mut magic));
-    read.is_ok() && (magic == *b"\x7fELF" || magic[..2] == *b"#!" || !cfg!(target_os = "linux"))
+    files::read_beginning(path, 4)
+        .is_ok_and(|magic| magic == *b"\x7fELF" || magic.starts_with(b"#!") || !cfg!(target_os = "linux"))
 }
 
 /// Compiles a program for a robot.
@@ -186,14 +187,17 @@ fn compile(source: &Path, folder: &WorkFolder, robot: usize) -> Result<PathBuf, 
     Ok(program)
 }
 
-/// Compiles a program with the appropriate script, including other necessary source texts.
+/// Compiles a program with the appropriate script, including other necessary source texts. Fails if that takes
+/// more than [`compiler::LIMIT`].
 pub(crate) fn compile_to(source: &Path, program: &Path) -> Result<(), String> {
-    let Some(mut message) = compile_files(&[source.to_owned()], program)? else { return Ok(()) };
+    files::require_regular(source)?;
+    let clock = Stopwatch::start();
+    let Some(mut message) = compile_files(&[source.to_owned()], program, &clock)? else { return Ok(()) };
     let mut files = vec![source.to_owned()];
     companions(source, &mut files, MOST_HEADERS);
     if files.len() > 1 && message.contains("undefined reference") {
         // If the complete program fails as well, its error is the relevant one.
-        match compile_files(&files, program)? {
+        match compile_files(&files, program, &clock)? {
             Some(with_companions) => message = with_companions,
             None => return Ok(()),
         }
@@ -207,25 +211,33 @@ pub(crate) fn compile_to(source: &Path, program: &Path) -> Result<(), String> {
     Err(format!("{}: does not compile: {}", source.display(), first.unwrap_or("the compiler says nothing")))
 }
 
-/// Compiles files into a program. Returns the compiler's message on failure.
-fn compile_files(files: &[PathBuf], program: &Path) -> Result<Option<String>, String> {
+/// Compiles files into a program, which was begun with the stopwatch. Returns the compiler's message on failure.
+fn compile_files(files: &[PathBuf], program: &Path, clock: &Stopwatch) -> Result<Option<String>, String> {
     let is_cpp = files.iter().any(|file| CPP.iter().any(|ending| ends_in(file, ending)));
     let script = if is_cpp { "g++sim" } else { "gccsim" };
     let mut command = Command::new(home()?.join("bin").join(script));
     command.arg("-w").args(files).arg("-o").arg(program).stdin(Stdio::null()).stdout(Stdio::null());
     command.env("ROBIOS_LIBRARY_DIR", library()?.parent().unwrap_or(Path::new(".")));
-    let output =
-        command.output().map_err(|error| format!("{script}: {error}; expected a script to compile with"))?;
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
-    Ok((!output.status.success()).then_some(message))
+    let ended = compiler::run(&mut command, clock, compiler::LIMIT)
+        .map_err(|error| format!("{script}: {error}; expected a script to compile with"))?;
+    let (status, message) = ended.ok_or_else(|| {
+        let (file, limit) = (files[0].display(), compiler::LIMIT);
+        format!("{file}: does not compile: the compiler was ended after {limit} real seconds")
+    })?;
+    Ok((!status.success()).then_some(message))
 }
 
 /// Maximum nesting depth of headers searched.
 const MOST_HEADERS: usize = 3;
 
+/// Length of a text in which headers are searched (bytes).
+const MOST_SEARCHED: u64 = 16 << 20;
+
 /// Adds the source texts beside the headers that a file includes, with the same names.
 fn companions(file: &Path, found: &mut Vec<PathBuf>, depth: usize) {
-    let (Ok(text), Some(folder)) = (std::fs::read(file), file.parent()) else { return };
+    let (Ok(text), Some(folder)) = (files::read_beginning(file, MOST_SEARCHED), file.parent()) else {
+        return;
+    };
     for line in String::from_utf8_lossy(&text).lines() {
         let rest = line.trim_start().strip_prefix('#').map(str::trim_start);
         let name =

@@ -1,4 +1,4 @@
-use std::fs::{self, DirBuilder, File, OpenOptions};
+use std::fs::{self, DirBuilder, File, Metadata, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -22,11 +22,14 @@ impl WorkFolder {
     }
 
     fn within(base: &Path) -> Result<Self, String> {
-        remove_leftovers(base);
         for attempt in 0..100 {
             let path = base.join(format!("{PREFIX}{}-{attempt}", std::process::id()));
             match create(&path) {
-                Ok(Some(lock)) => return Ok(Self { path, _lock: lock }),
+                Ok(Some(lock)) => {
+                    let folder = Self { path, _lock: lock };
+                    remove_leftovers(base, &folder.path);
+                    return Ok(folder);
+                }
                 Ok(None) => {}
                 Err(error) => {
                     return Err(format!("{}: {error}; expected a folder to write to", path.display()));
@@ -79,17 +82,51 @@ fn private() -> DirBuilder {
     DirBuilder::new()
 }
 
-/// Removes the folders of runs that were killed: nobody holds their locks. What cannot be removed belongs to
-/// others.
-fn remove_leftovers(base: &Path) {
+/// Removes the folders of runs that were killed: nobody holds their locks. Only folders of the user to whom
+/// our own belongs count.
+fn remove_leftovers(base: &Path, own: &Path) {
     let entries = fs::read_dir(base).into_iter().flatten().filter_map(Result::ok);
     let named = entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(PREFIX));
-    for entry in named.filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir())) {
-        let lock = OpenOptions::new().write(true).open(entry.path().join(LOCK));
+    for folder in named.map(|entry| entry.path()).filter(|folder| is_alike(folder, own)) {
+        let lock = existing_lock(&folder.join(LOCK));
         if lock.is_ok_and(|lock| lock.try_lock().is_ok()) {
-            let _ = fs::remove_dir_all(entry.path());
+            let _ = fs::remove_dir_all(folder);
         }
     }
+}
+
+/// Whether something is a folder, and belongs to the user to whom our own belongs.
+fn is_alike(folder: &Path, own: &Path) -> bool {
+    match (fs::symlink_metadata(folder), fs::symlink_metadata(own)) {
+        (Ok(folder), Ok(own)) => folder.is_dir() && have_same_user(&folder, &own),
+        _ => false,
+    }
+}
+
+#[cfg(unix)]
+fn have_same_user(one: &Metadata, other: &Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    one.uid() == other.uid()
+}
+
+#[cfg(not(unix))]
+fn have_same_user(_one: &Metadata, _other: &Metadata) -> bool {
+    true
+}
+
+/// Opens a lock that is there, if it is a regular file. Never waits for another process.
+fn existing_lock(name: &Path) -> io::Result<File> {
+    if !fs::symlink_metadata(name)?.is_file() {
+        return Err(io::ErrorKind::Unsupported.into());
+    }
+    let mut options = OpenOptions::new();
+    options.write(true);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::OpenOptionsExt;
+        options.custom_flags(libc::O_NOFOLLOW | libc::O_NONBLOCK);
+    }
+    options.open(name)
 }
 
 #[cfg(test)]
@@ -114,6 +151,24 @@ mod tests {
         {
             use std::os::unix::fs::PermissionsExt;
             assert_eq!(fs::metadata(next.path()).unwrap().permissions().mode() & 0o777, 0o700);
+        }
+        // What others lay in the way is left alone, and not waited for: locks that are pipes, links or folders.
+        #[cfg(unix)]
+        {
+            let strange = ["robios-pipe", "robios-link", "robios-folder"].map(|name| base.join(name));
+            for folder in &strange {
+                fs::create_dir(folder).unwrap();
+            }
+            let pipe = std::process::Command::new("mkfifo").arg(strange[0].join(LOCK)).status().unwrap();
+            assert!(pipe.success());
+            fs::write(base.join("target"), "").unwrap();
+            std::os::unix::fs::symlink(base.join("target"), strange[1].join(LOCK)).unwrap();
+            fs::create_dir(strange[2].join(LOCK)).unwrap();
+            drop(WorkFolder::within(&base).unwrap());
+            assert!(strange.iter().all(|folder| folder.exists()));
+            // Neither do links to folders count.
+            std::os::unix::fs::symlink(&strange[0], base.join("robios-to")).unwrap();
+            assert!(is_alike(&strange[0], next.path()) && !is_alike(&base.join("robios-to"), next.path()));
         }
         let gone = next.path().to_owned();
         drop(next);
