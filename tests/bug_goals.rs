@@ -161,6 +161,22 @@ fn room_beside_the_straight_way_to_the_goal_counts() {
     }
 }
 
+/// A slit that beams from afar see as wide enough, and that is closed to the robot's disc: the bugs that leave
+/// walls by free ranges came back to it for ever.
+#[test]
+fn a_slit_that_seems_open_does_not_mislead_for_ever() {
+    for width in [0.137, 0.1386, 0.145] {
+        let mut world = World::walled(2.0, 2.6);
+        for (from, to) in [(0.0, 1.830_81), (1.830_81 + width, 2.6)] {
+            world.walls.push(Wall::new(Point::new(1.119_32, from), Point::new(1.119_32, to)));
+        }
+        let (start, goal) = (Pose::new(0.3, 0.3, 0.0), Point::new(1.8471, 1.893));
+        for kind in [BugKind::DistBug, BugKind::LeaveBug, BugKind::TangentBug] {
+            assert_eq!(end(kind, &world, start, goal), BugOutcome::Unreachable, "{kind}, {width}");
+        }
+    }
+}
+
 mod campaigns {
     use super::*;
 
