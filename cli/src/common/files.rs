@@ -1,3 +1,4 @@
+use std::fmt::Display;
 use std::path::Path;
 use std::{fs, io};
 
@@ -5,7 +6,7 @@ use roverlab::io::log::{Attachment, Log};
 use roverlab::world::formats::{self, DiskFiles, FileSource, FormatError, Location, Parsed, SourceFile};
 use roverlab::world::{RobotSpec, Scene};
 
-use super::{CommonArgs, onlooker};
+use super::{CommonArgs, Failure, onlooker};
 
 /// Name of an option's file in recordings: that of the option, with the file's extension. A number is no file
 /// but a seed, and stays as it is.
@@ -26,6 +27,16 @@ pub(crate) fn recording_bytes(file: &Path) -> io::Result<Vec<u8>> {
     } else {
         Err(io::Error::other("found a folder or a device"))
     }
+}
+
+/// The reason why a file cannot be recorded to; `name` is that of its option or argument.
+pub(crate) fn unrecordable(name: impl Display, error: &io::Error) -> Failure {
+    let expected = match error.kind() {
+        io::ErrorKind::AlreadyExists => ", or --force",
+        io::ErrorKind::ResourceBusy => "",
+        _ => "; expected a file that can be written",
+    };
+    Failure::input(format!("{name}: {error}{expected}"))
 }
 
 impl CommonArgs {
