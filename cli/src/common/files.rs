@@ -1,6 +1,7 @@
 use std::fmt::Display;
+use std::fs::{self, File};
+use std::io::{self, Read};
 use std::path::Path;
-use std::{fs, io};
 
 use roverlab::io::log::{Attachment, Log};
 use roverlab::world::formats::{self, DiskFiles, FileSource, FormatError, Location, Parsed, SourceFile};
@@ -19,14 +20,44 @@ pub(crate) fn recorded_name(option: &str, path: &Path) -> String {
     if plain { format!("{option}.{}", ending.to_ascii_lowercase()) } else { option.to_owned() }
 }
 
+/// What is wrong with a file that exists and is no regular one: a device may have no end, and whoever is at
+/// the other end of a pipe may never come.
+pub(crate) fn irregular(file: &Path) -> Option<&'static str> {
+    let kind = fs::metadata(file).ok()?.file_type();
+    if kind.is_file() {
+        return None;
+    }
+    if kind.is_dir() {
+        return Some("is a folder");
+    }
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        if kind.is_fifo() {
+            return Some("is a FIFO");
+        }
+        if kind.is_socket() {
+            return Some("is a socket");
+        }
+    }
+    Some("is a device")
+}
+
+/// Opens a regular file for reading.
+pub(crate) fn open_regular(file: &Path) -> io::Result<File> {
+    irregular(file).map_or_else(|| File::open(file), |wrong| Err(io::Error::other(wrong)))
+}
+
+/// The bytes of a regular file.
+pub(crate) fn regular_bytes(file: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    open_regular(file)?.read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
 /// The bytes of a recording's file.
 pub(crate) fn recording_bytes(file: &Path) -> io::Result<Vec<u8>> {
-    // A device may have no end, and whoever writes into a pipe may never come.
-    if fs::metadata(file)?.is_file() {
-        fs::read(file)
-    } else {
-        Err(io::Error::other("found a folder or a device"))
-    }
+    regular_bytes(file)
 }
 
 /// The reason why a file cannot be recorded to; `name` is that of its option or argument.
