@@ -9,6 +9,12 @@ use roverlab::world::{RobotSpec, Scene};
 
 use super::{CommonArgs, Failure, onlooker};
 
+/// The first bytes of recordings and bags, and the one behind them.
+const MAGIC: &[u8] = b"\x89MCAP0\r\n";
+const HEADER: u8 = 1;
+/// Length of a recording, at most (bytes).
+const MOST: u64 = 4 << 30;
+
 /// Name of an option's file in recordings: that of the option, with the file's extension. A number is no file
 /// but a seed, and stays as it is.
 pub(crate) fn recorded_name(option: &str, path: &Path) -> String {
@@ -55,9 +61,22 @@ pub(crate) fn regular_bytes(file: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The bytes of a recording's file.
+/// The bytes of a recording's file, or the first ones of a file that is none: readers of recordings say so.
 pub(crate) fn recording_bytes(file: &Path) -> io::Result<Vec<u8>> {
-    regular_bytes(file)
+    let opened = open_regular(file)?;
+    let length = opened.metadata()?.len();
+    let mut bytes = Vec::new();
+    // Not beyond the length: files of the system that have none, such as /proc/kmsg, may never end.
+    (&opened).take(length.min(MAGIC.len() as u64 + 1)).read_to_end(&mut bytes)?;
+    // If its first bytes are damaged, the recording may be recovered from the header behind them.
+    if !bytes.starts_with(MAGIC) && bytes.get(MAGIC.len()) != Some(&HEADER) {
+        return Ok(bytes);
+    }
+    if length > MOST {
+        return Err(io::Error::other(format!("found {length} bytes, more than the {MOST} that are read")));
+    }
+    (&opened).take(length - bytes.len() as u64).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// The reason why a file cannot be recorded to; `name` is that of its option or argument.
@@ -161,5 +180,31 @@ impl FileSource for Companions {
         };
         self.found.push(attachment(&name, &file.bytes));
         Ok(file)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::support::temporary;
+
+    #[test]
+    fn only_recordings_are_read_to_the_end() {
+        let path = temporary("sparse.mcap");
+        let sparse = |begins: &[u8]| {
+            fs::write(&path, begins).unwrap();
+            File::options().write(true).open(&path).unwrap().set_len(MOST + 1).unwrap();
+            recording_bytes(&path)
+        };
+        assert_eq!(sparse(b"").unwrap(), [0; 9]);
+        let error = sparse(MAGIC).unwrap_err().to_string();
+        assert!(error.contains("found 4294967297 bytes, more than the 4294967296"), "{error}");
+        for bytes in [b"".as_slice(), b"floor", MAGIC, b"\x89MCAP0\r\n\x01more", b"damaged!\x01more"] {
+            fs::write(&path, bytes).unwrap();
+            assert_eq!(recording_bytes(&path).unwrap(), bytes);
+        }
+        fs::write(&path, "Dear all, this is a letter").unwrap();
+        assert_eq!(recording_bytes(&path).unwrap(), b"Dear all,");
+        fs::remove_file(&path).unwrap();
     }
 }
