@@ -1,6 +1,6 @@
 use std::fmt::Display;
 use std::fs::{self, File};
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -13,7 +13,7 @@ use super::library::Library;
 use super::values::{
     GoalOption, parse_animation, parse_goal, parse_noise, parse_picture, parse_pose, parse_seconds,
 };
-use super::{Failure, Origin, Report, is_same_file, onlooker};
+use super::{Failure, Origin, Report, irregular, is_same_file, onlooker};
 
 /// Default folder of files that no option names.
 const UNNAMED: &str = "target/pictures";
@@ -347,10 +347,21 @@ pub(crate) fn check_writable(option: &str, file: &Path) -> Result<(), Failure> {
     if file.is_dir() {
         return refused("a folder of this name".into(), "the name of a file");
     }
+    if let Some(wrong) = irregular(file) {
+        let file = file.display();
+        return Err(Failure::input(format!("{option} {file}: {wrong}; expected a regular file")));
+    }
     // Pictures are written beside an older file and then replace it, so the folder counts.
-    let number = TRIALS.fetch_add(1, Ordering::Relaxed);
-    let trial = folder.join(format!(".roverlab-{}-{number}.tmp", std::process::id()));
-    match File::create(&trial).and_then(|_| fs::remove_file(&trial)) {
+    let tried = loop {
+        let number = TRIALS.fetch_add(1, Ordering::Relaxed);
+        let trial = folder.join(format!(".roverlab-{}-{number}.tmp", std::process::id()));
+        match File::create_new(&trial) {
+            // Whatever has the name belongs to others.
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+            created => break created.and_then(|_| fs::remove_file(&trial)),
+        }
+    };
+    match tried {
         Ok(()) => Ok(()),
         Err(error) => refused(format!("folder {} ({error})", folder.display()), "one that can be written to"),
     }

@@ -1,11 +1,19 @@
+use std::fmt::Display;
+use std::fs::{self, File};
+use std::io::{self, Read};
 use std::path::Path;
-use std::{fs, io};
 
 use roverlab::io::log::{Attachment, Log};
 use roverlab::world::formats::{self, DiskFiles, FileSource, FormatError, Location, Parsed, SourceFile};
 use roverlab::world::{RobotSpec, Scene};
 
-use super::{CommonArgs, onlooker};
+use super::{CommonArgs, Failure, onlooker};
+
+/// The first bytes of recordings and bags, and the one behind them.
+const MAGIC: &[u8] = b"\x89MCAP0\r\n";
+const HEADER: u8 = 1;
+/// Length of a recording, at most (bytes).
+const MOST: u64 = 4 << 30;
 
 /// Name of an option's file in recordings: that of the option, with the file's extension. A number is no file
 /// but a seed, and stays as it is.
@@ -18,14 +26,67 @@ pub(crate) fn recorded_name(option: &str, path: &Path) -> String {
     if plain { format!("{option}.{}", ending.to_ascii_lowercase()) } else { option.to_owned() }
 }
 
-/// The bytes of a recording's file.
-pub(crate) fn recording_bytes(file: &Path) -> io::Result<Vec<u8>> {
-    // A device may have no end, and whoever writes into a pipe may never come.
-    if fs::metadata(file)?.is_file() {
-        fs::read(file)
-    } else {
-        Err(io::Error::other("found a folder or a device"))
+/// What is wrong with a file that exists and is no regular one: a device may have no end, and whoever is at
+/// the other end of a pipe may never come.
+pub(crate) fn irregular(file: &Path) -> Option<&'static str> {
+    let kind = fs::metadata(file).ok()?.file_type();
+    if kind.is_file() {
+        return None;
     }
+    if kind.is_dir() {
+        return Some("is a folder");
+    }
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        if kind.is_fifo() {
+            return Some("is a FIFO");
+        }
+        if kind.is_socket() {
+            return Some("is a socket");
+        }
+    }
+    Some("is a device")
+}
+
+/// Opens a regular file for reading.
+pub(crate) fn open_regular(file: &Path) -> io::Result<File> {
+    irregular(file).map_or_else(|| File::open(file), |wrong| Err(io::Error::other(wrong)))
+}
+
+/// The bytes of a regular file.
+pub(crate) fn regular_bytes(file: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    open_regular(file)?.read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// The bytes of a recording's file, or the first ones of a file that is none: readers of recordings say so.
+pub(crate) fn recording_bytes(file: &Path) -> io::Result<Vec<u8>> {
+    let opened = open_regular(file)?;
+    let length = opened.metadata()?.len();
+    let mut bytes = Vec::new();
+    // Not beyond the length: files of the system that have none, such as /proc/kmsg, may never end.
+    (&opened).take(length.min(MAGIC.len() as u64 + 1)).read_to_end(&mut bytes)?;
+    // If its first bytes are damaged, the recording may be recovered from the header behind them.
+    if !bytes.starts_with(MAGIC) && bytes.get(MAGIC.len()) != Some(&HEADER) {
+        return Ok(bytes);
+    }
+    if length > MOST {
+        return Err(io::Error::other(format!("found {length} bytes, more than the {MOST} that are read")));
+    }
+    (&opened).take(length - bytes.len() as u64).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// The reason why a file cannot be recorded to; `name` is that of its option or argument.
+pub(crate) fn unrecordable(name: impl Display, error: &io::Error) -> Failure {
+    let expected = match error.kind() {
+        io::ErrorKind::AlreadyExists => ", or --force",
+        io::ErrorKind::ResourceBusy => "",
+        _ => "; expected a file that can be written",
+    };
+    Failure::input(format!("{name}: {error}{expected}"))
 }
 
 impl CommonArgs {
@@ -119,5 +180,31 @@ impl FileSource for Companions {
         };
         self.found.push(attachment(&name, &file.bytes));
         Ok(file)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::support::temporary;
+
+    #[test]
+    fn only_recordings_are_read_to_the_end() {
+        let path = temporary("sparse.mcap");
+        let sparse = |begins: &[u8]| {
+            fs::write(&path, begins).unwrap();
+            File::options().write(true).open(&path).unwrap().set_len(MOST + 1).unwrap();
+            recording_bytes(&path)
+        };
+        assert_eq!(sparse(b"").unwrap(), [0; 9]);
+        let error = sparse(MAGIC).unwrap_err().to_string();
+        assert!(error.contains("found 4294967297 bytes, more than the 4294967296"), "{error}");
+        for bytes in [b"".as_slice(), b"floor", MAGIC, b"\x89MCAP0\r\n\x01more", b"damaged!\x01more"] {
+            fs::write(&path, bytes).unwrap();
+            assert_eq!(recording_bytes(&path).unwrap(), bytes);
+        }
+        fs::write(&path, "Dear all, this is a letter").unwrap();
+        assert_eq!(recording_bytes(&path).unwrap(), b"Dear all,");
+        fs::remove_file(&path).unwrap();
     }
 }

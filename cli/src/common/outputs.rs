@@ -2,13 +2,14 @@ use std::path::{Path, PathBuf};
 
 use clap::ArgMatches;
 
-use super::Failure;
+use super::{Failure, irregular};
 
 /// Options with output files.
 pub(super) const OUTPUTS: [&str; 10] =
     ["ros2", "picture", "animation", "record", "output", "lcd", "statistics", "checkpoint", "csv", "out"];
 
-/// Fails if an output file is also an input file, or another option's output.
+/// Fails if a file is a device or a pipe, or if an output file is also an input file, or another option's
+/// output.
 pub(super) fn check_outputs(matches: &ArgMatches) -> Result<(), Failure> {
     if let Some((_, matches)) = matches.subcommand() {
         return check_outputs(matches);
@@ -20,6 +21,11 @@ pub(super) fn check_outputs(matches: &ArgMatches) -> Result<(), Failure> {
             files.into_iter().flatten().map(|file| (id.as_str(), file))
         })
         .collect();
+    for (_, file) in files.iter().filter(|(_, file)| !file.is_dir()) {
+        if let Some(wrong) = irregular(file) {
+            return Err(Failure::input(format!("{}: {wrong}; expected a regular file", file.display())));
+        }
+    }
     for (output, file) in files.iter().filter(|(option, _)| OUTPUTS.contains(option)) {
         let same = |(option, other): &&(&str, &PathBuf)| option != output && is_same_file(file, other);
         if let Some((option, _)) = files.iter().find(same) {

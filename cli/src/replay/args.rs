@@ -51,6 +51,9 @@ pub(crate) enum Command {
         file: PathBuf,
         /// The file to write.
         out: PathBuf,
+        /// Write in the place of a file that is no recording too.
+        #[arg(long)]
+        force: bool,
     },
     /// Shows the content of a recording.
     Info {
@@ -71,6 +74,10 @@ pub(crate) enum Command {
         #[cfg(feature = "ros2")]
         #[arg(long, value_name = "FILE.mcap", conflicts_with_all = ["csv", "picture"])]
         ros2: Option<PathBuf>,
+        /// Write the bag in the place of a file that is neither a recording nor a bag too.
+        #[cfg(feature = "ros2")]
+        #[arg(long, requires = "ros2")]
+        force: bool,
     },
     /// Makes a recording of a bag of ROS 2: scans, odometry, images and commands of one robot.
     #[cfg(feature = "ros2")]
@@ -81,6 +88,9 @@ pub(crate) enum Command {
         /// The recording to write.
         #[arg(long, value_name = "FILE.mcap")]
         out: PathBuf,
+        /// Write in the place of a file that is no recording too.
+        #[arg(long)]
+        force: bool,
         /// Topic of the scans, if there are several.
         #[arg(long, value_name = "TOPIC")]
         scan: Option<String>,

@@ -7,13 +7,15 @@ mod info;
 #[cfg(feature = "ros2")]
 mod ros2;
 
+use std::fmt::Display;
 use std::fs;
+use std::io::Write;
 use std::path::Path;
 
-use roverlab::io::log::{Log, recover};
+use roverlab::io::log::{Log, LogFile, recover};
 use serde_json::{Value, json};
 
-use crate::common::{Failure, Printed, recording_bytes};
+use crate::common::{Failure, Printed, recording_bytes, unrecordable};
 pub(crate) use args::{Args, Command};
 #[cfg(feature = "native")]
 pub(crate) use export::true_path;
@@ -29,19 +31,19 @@ struct Found {
 pub(crate) fn work(args: &Args) -> Result<Printed, Failure> {
     let found = match &args.command {
         Command::Check { file } => check::check(file),
-        Command::Recover { file, out } => recovered(file, out),
+        Command::Recover { file, out, force } => recovered(file, (out, *force)),
         Command::Info { file } => info::info(&read(file)?),
         #[cfg(feature = "ros2")]
-        Command::Export { file, ros2: Some(bag), .. } => ros2::export(&read(file)?, bag),
+        Command::Export { file, ros2: Some(bag), force, .. } => ros2::export(&read(file)?, (bag, *force)),
         #[cfg(feature = "ros2")]
-        Command::Import { ros2, out, scan, odometry, camera, commands } => {
+        Command::Import { ros2, out, force, scan, odometry, camera, commands } => {
             let wanted = ros2::Wanted {
                 scan: scan.as_deref(),
                 odometry: odometry.as_deref(),
                 camera: camera.as_deref(),
                 commands: commands.as_deref(),
             };
-            ros2::import((ros2, &bytes(ros2)?), out, &wanted)
+            ros2::import((ros2, &bytes(ros2)?), (out, *force), &wanted)
         }
         Command::Export { file, csv, picture, .. } => {
             export::export(&read(file)?, csv.as_deref(), picture.as_deref())
@@ -61,15 +63,25 @@ fn read(file: &Path) -> Result<Log, Failure> {
 }
 
 fn write(file: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let refused =
-        |error| Failure::run(format!("{}: {error}; expected a file that can be written", file.display()));
-    fs::write(file, bytes).map_err(refused)
+    fs::write(file, bytes).map_err(|error| unwritable(file.display(), &error))
 }
 
-fn recovered(file: &Path, out: &Path) -> Result<Found, Failure> {
+fn unwritable(name: impl Display, error: &dyn Display) -> Failure {
+    Failure::run(format!("{name}: {error}; expected a file that can be written"))
+}
+
+/// A recording to write, which takes the place of other files only by `force`.
+fn created(name: impl Display, (file, force): (&Path, bool)) -> Result<LogFile, Failure> {
+    let created = if force { LogFile::replace(file) } else { LogFile::create(file) };
+    created.map_err(|error| unrecordable(name, &error))
+}
+
+fn recovered(file: &Path, out: (&Path, bool)) -> Result<Found, Failure> {
     let saved =
         recover(&bytes(file)?).map_err(|error| Failure::input(format!("{}: {error}", file.display())))?;
-    write(out, &saved.bytes)?;
+    let name = out.0.display();
+    let mut sink = created(&name, out)?;
+    sink.write_all(&saved.bytes).and_then(|()| sink.complete()).map_err(|error| unwritable(&name, &error))?;
     let (chunks, messages, header, lost) = (saved.chunks, saved.messages, saved.header, saved.lost);
     let without = if header { "" } else { "; the header is lost, so they cannot be replayed" };
     Ok(Found {

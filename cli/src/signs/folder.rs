@@ -1,11 +1,11 @@
 use std::collections::BTreeSet;
-use std::fs;
+use std::io::{self, BufReader};
 use std::path::Path;
 
 use roverlab::vision::signs::Area;
 
 use super::Marked;
-use crate::common::Failure;
+use crate::common::{Failure, open_regular};
 
 /// Pictures with known signs.
 #[derive(Debug)]
@@ -45,7 +45,8 @@ struct Row {
 pub(super) fn read(folder: &Path, names: Option<&[String]>) -> Result<Folder, Failure> {
     let table = folder.join("boxes.csv");
     let fail = |line: usize, what: String| Failure::input(format!("{}:{line}: {what}", table.display()));
-    let text = fs::read_to_string(&table)
+    let text = open_regular(&table)
+        .and_then(io::read_to_string)
         .map_err(|error| Failure::input(format!("{}: {error}", table.display())))?;
     let rows = rows(&text).map_err(|(line, what)| fail(line, what))?;
     let names = match names {
@@ -118,7 +119,8 @@ fn classes(rows: &[Row]) -> Vec<String> {
 fn picture(folder: &Path, name: &str) -> Result<Marked, String> {
     let file = folder.join(name);
     let said = |error: &dyn std::fmt::Display| format!("{}: {error}", file.display());
-    let reader = image::ImageReader::open(&file).map_err(|error| said(&error))?;
+    let opened = open_regular(&file).map_err(|error| said(&error))?;
+    let reader = image::ImageReader::new(BufReader::new(opened));
     let mut reader = reader.with_guessed_format().map_err(|error| said(&error))?;
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(8 * MOST_PIXELS);

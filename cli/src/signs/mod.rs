@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use roverlab::vision::RgbView;
 use roverlab::vision::signs::{Area, SignFinder, SignModel, SignTrainer};
 
-use crate::common::{Failure, Outcome, PlainArgs, Report, Stopwatch, check_writable};
+use crate::common::{Failure, Outcome, PlainArgs, Report, Stopwatch, check_writable, regular_bytes};
 use evaluation::Evaluation;
 
 /// Command line of `signs`.
@@ -193,7 +193,7 @@ fn learned(trainer: &SignTrainer, finds: bool, seed: u64) -> Result<SignModel, F
 
 fn evaluate(folder: &Path, weights: &Path) -> Result<Evaluation, Failure> {
     let fail = |error: String| Failure::input(format!("--weights {}: {error}", weights.display()));
-    let bytes = fs::read(weights).map_err(|error| fail(error.to_string()))?;
+    let bytes = regular_bytes(weights).map_err(|error| fail(error.to_string()))?;
     let model = SignModel::from_safetensors(&bytes).map_err(|error| fail(error.to_string()))?;
     let folder = folder::read(folder, Some(model.names()))?;
     if folder.finds() && !model.finds() {

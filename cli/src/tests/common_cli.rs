@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use super::support::{said, temporary};
+use super::support::{said, temporary, text};
 use crate::commands::COMMANDS;
 use crate::common::{
     CommonArgs, Failure, Outcome, Report, parse_noise, parse_point, parse_pose, parse_seconds, run,
@@ -265,6 +265,35 @@ fn pictures_that_cannot_be_written_are_refused_before_the_run() {
     }
     assert_eq!(check("free.svg"), Ok(()));
     assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 1, "the check leaves nothing behind");
+}
+
+#[cfg(unix)]
+#[test]
+fn pipes_and_devices_are_no_files() {
+    let pipe = temporary("pipe");
+    let _ = std::fs::remove_file(&pipe);
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let pipe = text(&pipe);
+    let folder = env!("CARGO_MANIFEST_DIR");
+    let cases: [(&str, &[&str]); 8] = [
+        ("a_to_b", &["--record", pipe]),
+        ("distbug", &["--robios", pipe]),
+        ("edges", &["--input", pipe]),
+        ("signs", &["--evaluate", folder, "--weights", pipe]),
+        ("replay", &["info", pipe]),
+        ("replay", &["recover", "run.mcap", pipe]),
+        ("replay", &["export", "run.mcap", "--csv", pipe]),
+        ("navigate", &["--world", pipe]),
+    ];
+    for (command, options) in cases {
+        let (status, _, err) = said(command, options);
+        let expected = "is a FIFO; expected a regular file";
+        assert!(status == 2 && err.contains(expected), "{command} {options:?}: {err}");
+    }
+    if cfg!(feature = "native") {
+        let (status, _, err) = said("grade", &["/dev/zero", "roverlab distbug"]);
+        assert!(status == 2 && err.contains("/dev/zero: is a device; expected a regular file"), "{err}");
+    }
 }
 
 #[test]

@@ -141,7 +141,7 @@ fn what_cannot_be_done_is_refused_before_a_run() {
     assert!(refused(&["--animation", "/no/such/walk.svg"]).contains("found no folder /no/such"));
     assert!(refused(&["--statistics", "rows.txt"]).contains("expected the ending .csv, .svg, .png"));
     assert!(refused(&["--checkpoint", "/no/such/run.json"]).contains("found no folder /no/such"));
-    assert!(refused(&["--checkpoint", "/dev/null"]).contains("/dev/null: a folder or a device; expected"));
+    assert!(refused(&["--checkpoint", "/dev/null"]).contains("/dev/null: is a device; expected"));
     assert!(refused(&["--figure", "snake"]).contains("expected book, planar, biped, hexapod, star, worm"));
     assert!(refused(&["--figure", "no.toml"]).contains("no.toml"));
     assert!(refused(&["--body"]).contains("found the figure book; expected one of limbs"));

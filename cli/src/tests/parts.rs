@@ -211,5 +211,5 @@ fn broken_files_are_refused() {
     fs::remove_file(&broken).unwrap();
     let absent = refused(&[broken]);
     assert!(absent.contains("expected a file that --part and --out wrote"), "{absent}");
-    assert!(refused(&[PathBuf::from("/dev/zero")]).contains("found a folder or a device"));
+    assert!(refused(&[PathBuf::from("/dev/zero")]).contains("is a device"));
 }

@@ -1,5 +1,5 @@
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, BufWriter, Read, Write};
+use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// The file of a recording, which belongs to one recorder at a time.
@@ -41,6 +41,7 @@ const BUFFER: usize = 1 << 16;
 
 impl LogFile {
     /// A file of this name. Fails if there is one already that is no recording, or if somebody records to it.
+    /// Folders, devices and pipes are always refused.
     pub fn create(path: impl AsRef<Path>) -> io::Result<Self> {
         Self::open(path.as_ref(), false)
     }
@@ -60,17 +61,17 @@ impl LogFile {
         // The target of a link is replaced, not the link.
         let path = &fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let named = claimed(path)?;
-        let is_file = named.metadata()?.is_file();
-        if !is_file || named.metadata()?.len() == 0 {
+        if named.metadata()?.len() == 0 {
             let file = BufWriter::with_capacity(BUFFER, named.try_clone()?);
             return Ok(Self { file, aside: None, _name: named, sync: false });
         }
         let part = aside(path);
         if !any {
             is_recording(&named)?;
-            File::open(&part).map_or(Ok(()), |file| is_recording(&file))?;
         }
-        let file = BufWriter::with_capacity(BUFFER, File::create(&part)?);
+        let file = created(&part, any)
+            .map_err(|error| io::Error::new(error.kind(), format!("{}: {error}", part.display())))?;
+        let file = BufWriter::with_capacity(BUFFER, file);
         Ok(Self { file, aside: Some((part, path.to_owned())), _name: named, sync: false })
     }
 
@@ -96,13 +97,21 @@ impl Write for LogFile {
     }
 }
 
+impl Seek for LogFile {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.file.seek(to)
+    }
+}
+
 /// The file of a name, new or as it is, which nobody else writes.
 fn claimed(path: &Path) -> io::Result<File> {
     loop {
+        // A device may have no end, and whoever reads from a pipe may never come.
+        if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
+            return Err(irregular());
+        }
         let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
         match file.try_lock() {
-            // Devices may have no locks.
-            Err(TryLockError::Error(_)) if !file.metadata()?.is_file() => return Ok(file),
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
                 let message = "found somebody who records to it; expected nobody";
@@ -133,6 +142,27 @@ fn has_name(_: &File, path: &Path) -> io::Result<bool> {
 fn aside(path: &Path) -> PathBuf {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     path.with_file_name(format!(".{name}.part"))
+}
+
+/// A new file in the place of one that a recorder left behind. Others of the folder's users may have put
+/// something else there.
+fn created(part: &Path, any: bool) -> io::Result<File> {
+    match fs::symlink_metadata(part) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+        Err(error) => return Err(error),
+        Ok(found) if !found.is_file() => return Err(irregular()),
+        Ok(_) => {
+            if !any {
+                is_recording(&File::open(part)?)?;
+            }
+            fs::remove_file(part)?;
+        }
+    }
+    OpenOptions::new().write(true).create_new(true).open(part)
+}
+
+fn irregular() -> io::Error {
+    io::Error::other("found something that is no regular file")
 }
 
 /// Fails if a file is no recording, nor the beginning of one.
@@ -194,6 +224,46 @@ mod tests {
         file.write_all(b"whatever").unwrap();
         file.complete().unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"whatever");
+        fs::remove_file(path).unwrap();
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_and_pipes_in_its_place_are_refused() {
+        let (path, other) = (path("place"), path("linked"));
+        fs::write(&path, mcap::MAGIC).unwrap();
+        fs::write(&other, mcap::MAGIC).unwrap();
+        std::os::unix::fs::symlink(&other, aside(&path)).unwrap();
+        let refused = |path: &Path| {
+            let errors =
+                [LogFile::create(path), LogFile::replace(path)].map(|file| file.unwrap_err().to_string());
+            assert!(errors.iter().all(|error| error.contains("no regular file")), "{errors:?}");
+            errors
+        };
+        assert!(refused(&path)[0].contains(aside(&path).to_str().unwrap()));
+        assert_eq!(fs::read(&other).unwrap(), mcap::MAGIC);
+        let pipe = |path: &Path| {
+            fs::remove_file(path).unwrap();
+            assert!(std::process::Command::new("mkfifo").arg(path).status().unwrap().success());
+        };
+        pipe(&aside(&path));
+        refused(&path);
+        pipe(&path);
+        refused(&path);
+        refused(Path::new("/dev/null"));
+        for file in [&path, &aside(&path), &other] {
+            fs::remove_file(file).unwrap();
+        }
+    }
+
+    /// A part that a killed recorder left is written anew.
+    #[test]
+    fn what_a_recorder_left_is_written_anew() {
+        let path = path("left");
+        fs::write(&path, mcap::MAGIC).unwrap();
+        fs::write(aside(&path), [mcap::MAGIC, mcap::MAGIC].concat()).unwrap();
+        written(&path, b"new").unwrap().complete().unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"new");
         fs::remove_file(path).unwrap();
     }
 

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::{Part, Portable};
-use crate::common::{Facts, Failure, recording_bytes};
+use crate::common::{Facts, Failure, open_regular, regular_bytes};
 
 /// The first line of a part's file: which part of which campaign.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -51,7 +51,7 @@ impl Header {
     pub(crate) fn new(facts: &Facts, part: Part, runs: u64) -> Result<Self, Failure> {
         let mut files = BTreeMap::new();
         for (option, file) in &facts.inputs {
-            let bytes = recording_bytes(file).map_err(|error| {
+            let bytes = regular_bytes(file).map_err(|error| {
                 Failure::input(format!("--{option} {}: {error}; expected a file", file.display()))
             })?;
             files.insert(option.clone(), format!("{:016x}", checksum(&bytes)));
@@ -247,15 +247,7 @@ struct Lines<'a> {
 
 impl<'a> Lines<'a> {
     fn open(file: &'a Path) -> Result<Self, Failure> {
-        let opened = fs::metadata(file).and_then(|data| {
-            // A device may have no end, and whoever writes into a pipe may never come.
-            if data.is_file() {
-                File::open(file)
-            } else {
-                Err(io::Error::other("found a folder or a device"))
-            }
-        });
-        let reader = BufReader::new(opened.map_err(|error| {
+        let reader = BufReader::new(open_regular(file).map_err(|error| {
             Failure::input(format!(
                 "{}: {error}; expected a file that --part and --out wrote",
                 file.display()

@@ -1,11 +1,9 @@
 //! The recording of a run: written for `--record`, and replayed for `--replay`.
 
-use std::io::ErrorKind;
-
 use roverlab::io::log::{Attachment, Header, LogError, LogFile, LogWriter, Player};
 use roverlab::world::{Scene, formats};
 
-use super::super::{CommonArgs, Failure, Origin};
+use super::super::{CommonArgs, Failure, Origin, unrecordable};
 use super::{Driven, RECORDS, StageTruth};
 
 /// The recording being written, and the one being replayed.
@@ -33,14 +31,9 @@ impl CommonArgs {
         );
         let open = || if self.force { LogFile::replace(file) } else { LogFile::create(file) };
         let open = || if self.fsync { open().map(LogFile::synced) } else { open() };
-        let writer = open().and_then(|sink| LogWriter::new(sink, &header)).map_err(|error| {
-            let expected = match error.kind() {
-                ErrorKind::AlreadyExists => ", or --force",
-                ErrorKind::ResourceBusy => "",
-                _ => "; expected a file that can be written",
-            };
-            Failure::input(format!("--record {}: {error}{expected}", file.display()))
-        })?;
+        let writer = open()
+            .and_then(|sink| LogWriter::new(sink, &header))
+            .map_err(|error| unrecordable(format_args!("--record {}", file.display()), &error))?;
         writer.show(scene);
         recording.writer = Some(writer);
         Ok(recording)

@@ -1,6 +1,5 @@
 use std::collections::{BTreeSet, VecDeque};
-use std::fs::File;
-use std::io::{BufWriter, Seek, Write};
+use std::io::{Seek, Write};
 use std::path::Path;
 
 use image::RgbImage;
@@ -17,7 +16,7 @@ use super::messages::{
     TfMessage, Time, Transform, TransformStamped, Twist, TwistWithCovariance, Vector,
 };
 use crate::common::Failure;
-use crate::replay::Found;
+use crate::replay::{Found, created};
 
 /// The fixed frame.
 const MAP: &str = "map";
@@ -27,20 +26,18 @@ const CELL: f64 = 0.05;
 const CELLS: f64 = 4e6;
 
 /// Writes a recording as a bag of ROS 2.
-pub(in crate::replay) fn export(log: &Log, out: &Path) -> Result<Found, Failure> {
+pub(in crate::replay) fn export(log: &Log, (out, force): (&Path, bool)) -> Result<Found, Failure> {
     let failed = |error: McapError| Failure::run(format!("--ros2 {}: {error}", out.display()));
-    let file = File::create(out).map_err(|error| {
-        Failure::run(format!("--ros2 {}: {error}; expected a file that can be written", out.display()))
-    })?;
     let world = log.header().attachment("scene.wld").map(|file| {
         let parsed = formats::wld::parse(&String::from_utf8_lossy(&file.data), "scene.wld");
         parsed.map(|parsed| parsed.value).map_err(Failure::run)
     });
     let map = world.transpose()?.map(|world| map(&world)).transpose()?;
-    let mut bag = Bag::new(BufWriter::new(file)).map_err(failed)?;
+    let file = created(format_args!("--ros2 {}", out.display()), (out, force))?;
+    let mut bag = Bag::new(file).map_err(failed)?;
     write_all(log, map.as_ref(), &mut bag).map_err(failed)?;
-    let (mut sink, topics) = bag.finish().map_err(failed)?;
-    sink.flush().map_err(|error| failed(error.into()))?;
+    let (sink, topics) = bag.finish().map_err(failed)?;
+    sink.complete().map_err(|error| failed(error.into()))?;
     let messages: u32 = topics.values().sum();
     Ok(Found {
         text: format!("exported {messages} messages on {} topics to {}", topics.len(), out.display()),

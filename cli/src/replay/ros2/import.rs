@@ -15,7 +15,7 @@ use super::cdr::decoded;
 use super::messages::{Image, LaserScan, Message, Odometry, TfMessage, Twist, TwistStamped};
 use super::tree::FrameTree;
 use crate::common::{Failure, millimetres, rounded};
-use crate::replay::Found;
+use crate::replay::{Found, created};
 
 /// What messages are made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -74,7 +74,7 @@ impl<'a> Wanted<'a> {
 /// Makes a recording of a bag of ROS 2.
 pub(in crate::replay) fn import(
     bag: (&Path, &[u8]),
-    out: &Path,
+    (out, force): (&Path, bool),
     wanted: &Wanted<'_>,
 ) -> Result<Found, Failure> {
     let in_bag = |failure: Failure| Failure::input(format!("--ros2 {}: {failure}", bag.0.display()));
@@ -85,7 +85,7 @@ pub(in crate::replay) fn import(
         Failure::run(format!("--out {}: {error}; expected a file that can be written", out.display()))
     };
     let is_new = !out.exists();
-    let file = LogFile::create(out).map_err(cannot)?;
+    let file = created(format_args!("--out {}", out.display()), (out, force))?;
     let writer = LogWriter::new(file, &Header::new("ros2_bag", [""; 0])).map_err(cannot)?;
     let robot = Rc::new(RefCell::new(Recorded::default()));
     let mut import = Import {
