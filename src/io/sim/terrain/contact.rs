@@ -75,7 +75,8 @@ const MOST_STEPS: usize = 10;
 /// Coefficient of friction up to which it is used: with much more, a body can wedge itself between its feet,
 /// which solves the equations too. Up to 4, no run on hills did.
 const MOST_FRICTION: f64 = 5.0;
-/// Change of a speed after which no further step is made (m/s): that one would be about its square.
+/// Change of a speed after which no further step is made (m/s), as that one would be about its square, and
+/// impulse on a unit mass by which friction may exceed its limit.
 const LAST_STEP: f64 = 1e-5;
 /// Rounds over all feet for the others.
 const MOST_ROUNDS: usize = 60;
@@ -113,7 +114,7 @@ fn newton(contacts: &mut [Contact], free: &Motion, start: Motion) -> Option<Moti
             contact.move_at(&motion);
             contact.load.friction = contact.friction_by_law();
         }
-        if change.amax() < LAST_STEP {
+        if change.amax() < LAST_STEP && contacts.iter().all(Contact::is_within_limit) {
             return Some(motion);
         }
     }
@@ -209,6 +210,12 @@ impl Contact {
             return Law { share: Vector2::zeros(), hardness: 1.0 / CREEP };
         }
         Law { share: trial / size, hardness: limit * self.ease / (size - limit) }
+    }
+
+    /// Whether friction keeps within its limit: the linear law of the last step need not. A body at rest hardly
+    /// moves, however much holds it.
+    fn is_within_limit(&self) -> bool {
+        self.load.friction.norm() < self.friction * self.load.pressure + LAST_STEP
     }
 
     /// The friction that a slide asks for, without its limit.

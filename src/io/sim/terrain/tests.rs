@@ -198,6 +198,25 @@ fn a_car_with_four_braked_wheels_slips_at_the_angle_of_friction() {
 }
 
 /// It tips sideways when its centre of mass is above the lower wheels.
+/// At rest it hardly moves, so what holds it is not told by its speed.
+#[test]
+fn a_tracked_robot_at_rest_slides_from_the_angle_of_friction_on() {
+    let spec = RobotSpec::blizzard();
+    let limit = math::atan(Undercarriage::of(&spec).friction).to_degrees();
+    for heading in 0..8 {
+        let slid = |degrees: f64| {
+            let ground = incline(degrees);
+            let pose = Pose::new(0.0, 0.0, f64::from(heading) * std::f64::consts::FRAC_PI_4);
+            let mut robot = Robot::resting(&spec, &ground, pose);
+            let start = robot.pose().position;
+            robot.run(&ground, PlanarTwist::STOP, 1.0);
+            (robot.pose().position - start).norm()
+        };
+        let (below, above) = (slid(limit - 0.3), slid(limit + 0.3));
+        assert!(below < 2e-3 && above > 0.02, "{heading}: {below} {above}");
+    }
+}
+
 #[test]
 fn a_car_tips_where_its_middle_leaves_its_wheels() {
     let spec = RobotSpec::car();
