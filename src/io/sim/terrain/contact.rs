@@ -41,8 +41,8 @@ pub(super) struct Load {
     friction: Vector2<f64>,
 }
 
-/// Friction near a guess as a linear function: `share` of its limit, less `hardness` times the speed of the slide
-/// across it. The share is zero, and any slide is across it, where friction holds the foot.
+/// Friction near a guess as a linear function: `share` of its limit, less `hardness` times the speed of the
+/// slide across it. The share is zero, and any slide is across it, where friction holds the foot.
 #[derive(Debug, Clone, Copy, Default)]
 struct Law {
     share: Vector2<f64>,
@@ -174,8 +174,8 @@ impl Contact {
         self.slide = self.slide(motion);
     }
 
-    /// Subtracts the foot's impulse from `excess`, and adds what the foot resists a change of the body's motion
-    /// to `stiffness`.
+    /// Subtracts the foot's impulse from `excess`, and adds what the foot resists a change of the body's
+    /// motion to `stiffness`.
     #[inline]
     fn resist(&mut self, excess: &mut Motion, stiffness: &mut Matrix6<f64>) {
         let pressure = self.load.pressure;
@@ -212,8 +212,8 @@ impl Contact {
         Law { share: trial / size, hardness: limit * self.ease / (size - limit) }
     }
 
-    /// Whether friction keeps within its limit: the linear law of the last step need not. A body at rest hardly
-    /// moves, however much holds it.
+    /// Whether friction keeps within its limit: the linear law of the last step need not. A body at rest
+    /// hardly moves, however much holds it.
     fn is_within_limit(&self) -> bool {
         self.load.friction.norm() < self.friction * self.load.pressure + LAST_STEP
     }
