@@ -161,8 +161,8 @@ fn room_beside_the_straight_way_to_the_goal_counts() {
     }
 }
 
-/// A slit that beams from afar see as wide enough, and that is closed to the robot's disc: the bugs that leave
-/// walls by free ranges came back to it for ever.
+/// A slit that beams from afar see as wide enough, and that is closed to the robot's disc: the bugs that
+/// leave walls by free ranges came back to it for ever.
 #[test]
 fn a_slit_that_seems_open_does_not_mislead_for_ever() {
     for width in [0.137, 0.1386, 0.145] {

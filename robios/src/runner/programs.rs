@@ -187,8 +187,8 @@ fn compile(source: &Path, folder: &WorkFolder, robot: usize) -> Result<PathBuf, 
     Ok(program)
 }
 
-/// Compiles a program with the appropriate script, including other necessary source texts. Fails if that takes
-/// more than [`compiler::LIMIT`].
+/// Compiles a program with the appropriate script, including other necessary source texts. Fails if that
+/// takes more than [`compiler::LIMIT`].
 pub(crate) fn compile_to(source: &Path, program: &Path) -> Result<(), String> {
     files::require_regular(source)?;
     let clock = Stopwatch::start();
@@ -211,7 +211,8 @@ pub(crate) fn compile_to(source: &Path, program: &Path) -> Result<(), String> {
     Err(format!("{}: does not compile: {}", source.display(), first.unwrap_or("the compiler says nothing")))
 }
 
-/// Compiles files into a program, which was begun with the stopwatch. Returns the compiler's message on failure.
+/// Compiles files into a program, which was begun with the stopwatch. Returns the compiler's message on
+/// failure.
 fn compile_files(files: &[PathBuf], program: &Path, clock: &Stopwatch) -> Result<Option<String>, String> {
     let is_cpp = files.iter().any(|file| CPP.iter().any(|ending| ends_in(file, ending)));
     let script = if is_cpp { "g++sim" } else { "gccsim" };

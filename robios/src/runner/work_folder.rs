@@ -152,7 +152,8 @@ mod tests {
             use std::os::unix::fs::PermissionsExt;
             assert_eq!(fs::metadata(next.path()).unwrap().permissions().mode() & 0o777, 0o700);
         }
-        // What others lay in the way is left alone, and not waited for: locks that are pipes, links or folders.
+        // What others lay in the way is left alone, and not waited for: locks that are pipes, links or
+        // folders.
         #[cfg(unix)]
         {
             let strange = ["robios-pipe", "robios-link", "robios-folder"].map(|name| base.join(name));

@@ -99,8 +99,8 @@ pub struct Architecture {
     sizes: Vec<MapSize>,
 }
 
-/// Number of filters that are stored and applied at once. As many values more than there are have room after a
-/// layer's results.
+/// Number of filters that are stored and applied at once. As many values more than there are have room after
+/// a layer's results.
 pub(super) const LANES: usize = 16;
 /// Largest number of layers.
 const MOST_LAYERS: usize = 64;
