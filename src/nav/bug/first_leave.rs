@@ -13,8 +13,8 @@ impl<R: LeaveRule> Strategy for FirstLeave<R> {
         self.rule.meet(meeting);
     }
 
-    fn consider(&mut self, body: &Body, sight: &Sight) -> Decision {
-        let leave = self.rule.allows(body.goal, sight);
+    fn consider(&mut self, _body: &Body, sight: &Sight) -> Decision {
+        let leave = self.rule.allows(sight);
         if leave { Decision::Leave } else { Decision::Follow }
     }
 }

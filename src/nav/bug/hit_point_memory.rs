@@ -82,9 +82,9 @@ impl<R: LeaveRule, const ALTERNATING: bool> Strategy for HitPointMemory<R, ALTER
         }
     }
 
-    fn consider(&mut self, body: &Body, sight: &Sight) -> Decision {
+    fn consider(&mut self, _body: &Body, sight: &Sight) -> Decision {
         self.side = Some(sight.side);
-        let allowed = self.rule.allows(body.goal, sight);
+        let allowed = self.rule.allows(sight);
         let met = self.meets_remembered(sight);
         if let Course::Back { length, from } = self.course {
             if self.is_back(sight, length, from) {

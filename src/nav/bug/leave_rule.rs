@@ -8,8 +8,8 @@ pub(super) trait LeaveRule: Debug + Clone + Default {
     /// Records that an obstacle has been met.
     fn meet(&mut self, meeting: &Sight);
 
-    /// Whether the obstacle may be left here, for the goal of the run.
-    fn allows(&mut self, goal: Point, sight: &Sight) -> bool;
+    /// Whether the obstacle may be left here.
+    fn allows(&mut self, sight: &Sight) -> bool;
 }
 
 /// Leaves where the way to the goal is open and the robot is nearer to the goal than at earlier blocked
@@ -31,7 +31,7 @@ impl<const EVER: bool> LeaveRule for Nearer<EVER> {
         self.nearest = if EVER { self.nearest.min(meeting.distance) } else { meeting.distance };
     }
 
-    fn allows(&mut self, _goal: Point, sight: &Sight) -> bool {
+    fn allows(&mut self, sight: &Sight) -> bool {
         if sight.is_open() {
             return sight.distance <= self.nearest - sight.step;
         }
@@ -75,12 +75,12 @@ impl<const EVER: bool> LeaveRule for OnMainLine<EVER> {
         (self.hit, self.offset) = (meeting.place.point, 0.0);
     }
 
-    fn allows(&mut self, goal: Point, sight: &Sight) -> bool {
-        let (before, line) = (self.offset, goal - self.hit);
+    fn allows(&mut self, sight: &Sight) -> bool {
+        let (before, line) = (self.offset, sight.goal - self.hit);
         self.offset = cross(line, sight.place.point - self.hit) / line.norm();
         let on_line = self.offset.abs() < LINE_WIDTH || self.offset * before < 0.0;
         // The line ends at the goal.
-        if !on_line || line.dot(&(goal - sight.place.point)) < 0.0 {
+        if !on_line || line.dot(&(sight.goal - sight.place.point)) < 0.0 {
             return false;
         }
         let open = sight.is_open() || sight.free >= OPEN * sight.radius;
@@ -125,13 +125,13 @@ mod tests {
     fn the_main_line_leads_from_the_hit_point_to_the_goal() {
         let mut rule = OnMainLine::<false>::default();
         rule.meet(&sight(1.0, 0.04));
-        assert!(!rule.allows(GOAL, &sight(1.0, 0.04)) && !rule.allows(GOAL, &sight(2.0, -0.1)));
-        assert!(rule.allows(GOAL, &sight(2.0, 0.1)));
+        assert!(!rule.allows(&sight(1.0, 0.04)) && !rule.allows(&sight(2.0, -0.1)));
+        assert!(rule.allows(&sight(2.0, 0.1)));
         rule.meet(&sight(1.0, 0.04));
-        assert!(!rule.allows(GOAL, &sight(2.0, 0.0)) && rule.allows(GOAL, &sight(2.0, 0.018)));
+        assert!(!rule.allows(&sight(2.0, 0.0)) && rule.allows(&sight(2.0, 0.018)));
         // Farther than the hit point, and beyond the goal.
         rule.meet(&sight(1.0, 0.04));
-        assert!(!rule.allows(GOAL, &sight(0.5, -0.1)) && !rule.allows(GOAL, &sight(0.5, 0.2)));
-        assert!(!rule.allows(GOAL, &sight(3.5, 0.1)) && !rule.allows(GOAL, &sight(3.5, -0.1)));
+        assert!(!rule.allows(&sight(0.5, -0.1)) && !rule.allows(&sight(0.5, 0.2)));
+        assert!(!rule.allows(&sight(3.5, 0.1)) && !rule.allows(&sight(3.5, -0.1)));
     }
 }
