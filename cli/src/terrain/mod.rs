@@ -6,7 +6,7 @@ use roverlab::geometry::{Pose, units};
 use roverlab::io::{Mishap, TruthInSpace};
 use roverlab::nav::elevation::{Climber, ElevationMap};
 use roverlab::world::generate::Relief;
-use roverlab::world::{HeightField, RobotSpec, Scene};
+use roverlab::world::{HeightField, RobotSpec, Scene, World};
 
 use crate::common::{CommonArgs, Failure, StandIn, rounded};
 use crate::driving::Run;
@@ -63,8 +63,26 @@ impl Hike {
 
     /// The map for a climber.
     pub(crate) fn map(&self, climber: &Climber) -> Result<ElevationMap, Failure> {
-        ElevationMap::new(&self.ground, climber).map_err(Failure::input)
+        elevation_map(&self.scene.world, &self.ground, climber)
     }
+}
+
+/// Elevation above the water that robots keep (m).
+const SHORE: f64 = 0.02;
+
+/// The elevation below which robots do not drive (m), in a world with water.
+pub(crate) fn shore(world: &World) -> Option<f64> {
+    world.water_level.map(|water| water + SHORE)
+}
+
+/// The map of a world's ground for a climber; what is under water is closed.
+pub(crate) fn elevation_map(
+    world: &World,
+    ground: &HeightField,
+    climber: &Climber,
+) -> Result<ElevationMap, Failure> {
+    let map = ElevationMap::new(ground, climber);
+    map.and_then(|map| map.above(shore(world).unwrap_or(f64::NEG_INFINITY))).map_err(Failure::input)
 }
 
 /// Ground truth of a run on hills.

@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use roverlab::geometry::{Point, units};
-use roverlab::nav::elevation::{ElevationMap, ElevationPath, ElevationPlanner};
+use roverlab::nav::elevation::{ElevationPath, ElevationPlanner};
 use roverlab::nav::grid::PlanError;
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::random::Stream;
@@ -12,7 +12,7 @@ use super::Args;
 use super::args::{Planner, refused};
 use super::campaign::campaign;
 use crate::common::{Failure, Outcome, Report, Stopwatch, millimetres, rounded};
-use crate::terrain::{degrees, percent};
+use crate::terrain::{degrees, elevation_map, percent};
 
 /// Runs the command.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
@@ -25,9 +25,9 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         Failure::input("found a world without hills; expected a line `terrain WIDTH HEIGHT TOP FILE`")
     })?;
     let stopwatch = Stopwatch::start();
-    let map = ElevationMap::new(&ground, &args.climber()).map_err(refused)?;
+    let map = elevation_map(&world, &ground, &args.climber())?;
     let top = map.highest_reachable(start).ok_or_else(|| {
-        Failure::input("found a start too steep or too near to the border; expected gentle ground")
+        Failure::input("found a start too steep, in water, or too near to the border; expected gentle ground")
     })?;
     let goal = args.goal.unwrap_or(top.xy());
     let objective = args.cost.objective(&args.robot);

@@ -1,14 +1,18 @@
+use std::collections::VecDeque;
+
 use super::climber::Climber;
 use crate::ParameterError;
 use crate::geometry::{Point, Point3, Vector, math};
 use crate::nav::grid::GridComponents;
+use crate::parameter::require;
 use crate::world::{BitGrid, GridCell, HeightField};
 
 /// A map of where a robot can stand on a surface. The samples of the surface are the cells of a grid; a cell
 /// is free if the robot can stand there.
 ///
 /// A cell is occupied if the plane through the ground under the robot is too steep, if a step under the robot
-/// is too high, or if the robot would reach beyond the surface.
+/// is too high, if the robot would reach beyond the surface, or if it lies below a
+/// [lowest elevation](Self::above).
 ///
 /// ```
 /// use roverlab::geometry::{Aabb, Point};
@@ -47,6 +51,28 @@ struct Footing {
     steepest: f64,
     /// The most micrometres between neighbours along an axis.
     step: [i64; 2],
+    /// Elevation below which ground is closed.
+    lowest: i64,
+}
+
+/// Running sums over a window: of heights, of their moments along the rows, of heights times their place on
+/// the axis on which the window moves, and of steps that are too high. Surfaces of 1000 km need all the digits.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    height: i128,
+    along: i128,
+    weighted: i128,
+    steps: i128,
+}
+
+impl Sums {
+    /// Adds what is at a place of the axis, or subtracts it (`sign` 1 or -1).
+    fn add(&mut self, place: usize, what: &Self, sign: i128) {
+        self.height += sign * what.height;
+        self.along += sign * what.along;
+        self.weighted += sign * place as i128 * what.height;
+        self.steps += sign * what.steps;
+    }
 }
 
 /// Micrometres per metre.
@@ -59,6 +85,31 @@ impl ElevationMap {
         let footing = Footing::new(field, climber);
         let open = footing.open();
         Ok(Self { field: field.clone(), footing, open })
+    }
+
+    /// The same map with all ground below an elevation closed (m), such as a water level. Fails for NaN.
+    ///
+    /// ```
+    /// # use roverlab::geometry::{Aabb, Point};
+    /// # use roverlab::nav::elevation::{Climber, ElevationMap};
+    /// # use roverlab::world::HeightField;
+    /// // A ridge of 0.2 m along y = 1 m, and another one along y = 3 m.
+    /// let area = Aabb::new(Point::origin(), Point::new(4.0, 4.0));
+    /// let ridges = HeightField::from_fn(81, 81, area, |at| 0.2 * (1.5 * at.y).sin().abs())?;
+    /// let map = ElevationMap::new(&ridges, &Climber { slope: 0.3, step: 0.02, radius: 0.15 })?;
+    /// let water = map.clone().above(0.1)?;
+    /// let is_open = |map: &ElevationMap, y| map.open().is_free(map.cell_at(Point::new(1.0, y)).unwrap());
+    /// assert!(is_open(&map, 2.1) && !is_open(&water, 2.1) && is_open(&water, 1.0) && is_open(&water, 3.0));
+    /// # Ok::<(), roverlab::ParameterError>(())
+    /// ```
+    pub fn above(mut self, lowest: f64) -> Result<Self, ParameterError> {
+        require("lowest elevation", lowest, !lowest.is_nan(), "a number")?;
+        self.footing.lowest = micrometres(lowest);
+        let open: Vec<GridCell> = self.open.free_cells().collect();
+        for cell in open {
+            self.open.set_free(cell, !self.footing.is_under(cell));
+        }
+        Ok(self)
     }
 
     /// The surface.
@@ -144,10 +195,10 @@ impl Footing {
         let step = pitch.map(|pitch| micrometres(climber.step + slope * pitch));
         let sample = |index: usize| micrometres(field.sample(index % columns, index / columns));
         let heights = (0..columns * rows).map(sample).collect();
-        Self { columns, rows, heights, reach, moment, steepest: slope * slope, step }
+        Self { columns, rows, heights, reach, moment, steepest: slope * slope, step, lowest: i64::MIN }
     }
 
-    /// All samples at once, by sums along rows and then along columns.
+    /// All samples at once, by running sums along rows and then along columns.
     fn open(&self) -> BitGrid {
         let [reach_x, reach_y] = self.reach;
         let (columns, rows) = (self.columns, self.rows);
@@ -155,56 +206,78 @@ impl Footing {
         if columns <= 2 * reach_x || rows <= 2 * reach_y {
             return open;
         }
-        // Of each sample's row of the window: the sum, the moment, and how many steps are too high.
-        let mut sums = vec![[0_i64; 3]; columns * rows];
-        for row in 0..rows {
-            let line = &self.heights[row * columns..][..columns];
-            let mut steps = vec![0; columns + 1];
-            for column in 0..columns {
-                steps[column + 1] = steps[column] + i64::from(self.is_step(GridCell::new(column, row)));
+        let mut lines: VecDeque<Vec<Sums>> = VecDeque::new();
+        let mut windows = vec![Sums::default(); columns];
+        for last in 0..rows {
+            let line = self.line(last);
+            for (window, sums) in windows.iter_mut().zip(&line) {
+                window.add(last, sums, 1);
             }
-            for column in reach_x..columns - reach_x {
-                let window = &line[column - reach_x..=column + reach_x];
-                let sum: i64 = window.iter().sum();
-                let moment: i64 = (-(reach_x as i64)..).zip(window).map(|(x, z)| x * z).sum();
-                let count = steps[column + reach_x + 1] - steps[column - reach_x];
-                sums[row * columns + column] = [sum, moment, count];
-            }
-        }
-        for row in reach_y..rows - reach_y {
-            for column in reach_x..columns - reach_x {
-                let (mut along, mut across, mut steps) = (0, 0, 0);
-                for (y, near) in (-(reach_y as i64)..).zip(row - reach_y..=row + reach_y) {
-                    let [sum, moment, count] = sums[near * columns + column];
-                    (along, across, steps) = (along + moment, across + y * sum, steps + count);
-                }
+            lines.push_back(line);
+            let Some(first) = last.checked_sub(2 * reach_y) else { continue };
+            let row = first + reach_y;
+            let inner = windows.iter().enumerate().take(columns - reach_x).skip(reach_x);
+            for (column, &Sums { height, along, weighted, steps }) in inner {
+                let across = weighted - row as i128 * height;
                 open.set_free(GridCell::new(column, row), steps == 0 && self.is_gentle(along, across));
+            }
+            let gone = lines.pop_front().expect("the lines of the window");
+            for (window, sums) in windows.iter_mut().zip(&gone) {
+                window.add(first, sums, -1);
             }
         }
         open
+    }
+
+    /// Sums over the part of each window that lies in a row.
+    fn line(&self, row: usize) -> Vec<Sums> {
+        let reach = self.reach[0];
+        let heights = &self.heights[row * self.columns..][..self.columns];
+        let sample = |column: usize| Sums {
+            height: heights[column].into(),
+            steps: i128::from(self.is_step(GridCell::new(column, row))),
+            ..Sums::default()
+        };
+        let mut line = vec![Sums::default(); self.columns];
+        let mut window = Sums::default();
+        for last in 0..self.columns {
+            window.add(last, &sample(last), 1);
+            let Some(first) = last.checked_sub(2 * reach) else { continue };
+            let column = first + reach;
+            let along = window.weighted - column as i128 * window.height;
+            line[column] = Sums { along, weighted: 0, ..window };
+            window.add(first, &sample(first), -1);
+        }
+        line
     }
 
     /// One sample by itself.
     fn is_open(&self, cell: GridCell) -> bool {
         let [reach_x, reach_y] = self.reach;
         let inside = |at: usize, reach: usize, count: usize| at >= reach && at + reach < count;
-        if !inside(cell.column, reach_x, self.columns) || !inside(cell.row, reach_y, self.rows) {
+        let is_inside = inside(cell.column, reach_x, self.columns) && inside(cell.row, reach_y, self.rows);
+        if !is_inside || self.is_under(cell) {
             return false;
         }
         let (mut along, mut across) = (0, 0);
-        for (y, row) in (-(reach_y as i64)..).zip(cell.row - reach_y..=cell.row + reach_y) {
-            for (x, column) in (-(reach_x as i64)..).zip(cell.column - reach_x..=cell.column + reach_x) {
+        for (y, row) in (-(reach_y as i128)..).zip(cell.row - reach_y..=cell.row + reach_y) {
+            for (x, column) in (-(reach_x as i128)..).zip(cell.column - reach_x..=cell.column + reach_x) {
                 if self.is_step(GridCell::new(column, row)) {
                     return false;
                 }
-                let height = self.heights[row * self.columns + column];
+                let height = i128::from(self.heights[row * self.columns + column]);
                 (along, across) = (along + x * height, across + y * height);
             }
         }
         self.is_gentle(along, across)
     }
 
-    fn is_gentle(&self, along: i64, across: i64) -> bool {
+    /// Whether a sample lies below the lowest elevation.
+    fn is_under(&self, cell: GridCell) -> bool {
+        self.heights[cell.row * self.columns + cell.column] < self.lowest
+    }
+
+    fn is_gentle(&self, along: i128, across: i128) -> bool {
         let slope = Vector::new(along as f64 / self.moment[0], across as f64 / self.moment[1]);
         slope.norm_squared() <= self.steepest
     }
