@@ -224,7 +224,7 @@ fn standing(ground: &HeightField, carriage: &Undercarriage, pose: Pose, elevatio
         return RigidBody::resting(ground, carriage, pose, TICK);
     }
     let level = ground.height(pose.position()).unwrap_or(0.0);
-    RigidBody::new(carriage, &Pose3::level(pose, level + elevation.max(0.0)))
+    RigidBody::above(ground, carriage, &Pose3::level(pose, level + elevation.max(0.0)))
 }
 
 fn speed(motion: PlanarMotion) -> PlanarTwist {

@@ -51,6 +51,13 @@ impl RigidBody {
         }
     }
 
+    /// A body at rest with its robot's frame at a pose, or so far above it that no foot is in the ground.
+    pub(super) fn above(ground: &HeightField, carriage: &Undercarriage, pose: &Pose3) -> Self {
+        let mut body = Self::new(carriage, pose);
+        body.place.z += body.depth(ground, carriage);
+        body
+    }
+
     /// Pose of the robot's frame.
     pub(super) fn pose(&self, carriage: &Undercarriage) -> Pose3 {
         Pose3::new(self.place - self.attitude * carriage.centre, self.attitude)
@@ -202,8 +209,7 @@ impl RigidBody {
         let roll = math::asin((left.z / math::cos(pitch)).clamp(-1.0, 1.0));
         let start = Point3::new(pose.x, pose.y, level);
         // Where it finds no rest, it begins on its lowest feet, and tips over or slides.
-        let mut body = Self::new(carriage, &Pose3::from_angles(start, roll, pitch, pose.heading));
-        body.place.z += body.depth(ground, carriage);
+        let body = Self::above(ground, carriage, &Pose3::from_angles(start, roll, pitch, pose.heading));
         body.settled(ground, carriage, tick).unwrap_or(body)
     }
 

@@ -259,6 +259,20 @@ fn a_drop_ends_on_the_ground() {
 
 /// A wall of one cell's width stops a robot instead of being climbed.
 #[test]
+fn a_robot_placed_into_a_slope_starts_above_it_and_comes_to_rest_on_it() {
+    let ground = incline(12.0);
+    for spec in robots() {
+        let carriage = Undercarriage::of(&spec);
+        let level = Pose3::level(Pose::new(0.0, 0.0, 0.3), 0.005);
+        let mut robot = Robot { body: RigidBody::above(&ground, &carriage, &level), carriage };
+        assert!(robot.pose().position.z > 0.01 && robot.depth(&ground) < 1e-9, "{}", spec.name);
+        robot.run(&ground, PlanarTwist::STOP, 3.0);
+        let tilt = units::to_deg(robot.pose().tilt());
+        assert!((tilt - 12.0).abs() < 1.0 && robot.body.velocity().norm() < 1e-3, "{}: {tilt}", spec.name);
+    }
+}
+
+#[test]
 fn a_steep_face_stops_a_robot() {
     let ground = field(801, |at| if at.x > 0.505 { 0.2 } else { 0.0 });
     for spec in robots() {
