@@ -10,6 +10,8 @@ pub(super) struct Ramp {
     /// Lower and upper end of the visible part, in the middle of the ramp.
     pub(super) foot: Point,
     pub(super) top: Point,
+    /// Half the width over which a robot's middle can drive (m).
+    half_width: f64,
     /// Mean elevation.
     pub(super) height: f64,
 }
@@ -65,6 +67,7 @@ impl Ramp {
         (count * resolution * resolution > AREA && low < high).then_some(Self {
             foot: ends.0,
             top: ends.1,
+            half_width: 0.5 * (far_left - right),
             height: sum / count,
         })
     }
@@ -72,6 +75,14 @@ impl Ramp {
     /// Direction uphill.
     pub(super) fn uphill(&self) -> Vector {
         (self.top - self.foot).normalize()
+    }
+
+    /// Whether it may be a part of a known ramp: it rises the same way, and a robot of a radius on one of them
+    /// could touch the other. A ramp opposite to the known one, straight ahead, rises the other way.
+    pub(super) fn is(&self, known: &Self, radius: f64) -> bool {
+        let aside = known.aside(nalgebra::center(&self.foot, &self.top)).abs();
+        let touching = self.half_width + known.half_width + 2.0 * radius;
+        self.uphill().dot(&known.uphill()) > 0.0 && aside < touching
     }
 
     /// Distance of a place from the middle line, to the left of it (m).

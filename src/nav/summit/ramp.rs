@@ -11,7 +11,7 @@ use crate::io::control::{Behaviour, Decision, Senses, halts};
 use crate::io::{Inertial, Lidar, Odometry, Result};
 use crate::nav::elevation::Climber;
 use crate::nav::grid::{DistanceField, GridComponents, StepCosts, UniformCost};
-use crate::world::{BitGrid, Footprint, GridCell, RobotSpec};
+use crate::world::{Footprint, GridCell, RobotSpec};
 
 /// Crosses a level above the floor: up a ramp, across, and down another ramp (book, section 7.4).
 ///
@@ -55,6 +55,8 @@ pub struct RampCrossing {
     rides: bool,
     /// The ramp that it came up by.
     came_by: Option<Ramp>,
+    /// The other ramp, as it was seen last: where the robot can turn to it, it may be out of sight.
+    other: Option<Ramp>,
 }
 
 /// Part of a crossing.
@@ -107,12 +109,13 @@ const BEFORE: f64 = 0.35;
 const ASIDE: f64 = 0.06;
 /// Deviation from its direction (rad).
 const TURNED: f64 = 0.12;
-/// Distance between the middle lines of different ramps (m): they are wider than the robot.
-const OTHER: f64 = 0.35;
 /// Difference in elevation that counts as none (m): three errors of the map.
 const EVEN: f64 = 0.03;
 /// Distance from a place from which another look shows nothing new (m).
 const VIEW: f64 = 0.2;
+/// Distance from ground on which the robot cannot stand that is the edge of a level (m): the drop itself is
+/// 0.35 m away, and ramps of 22 degrees are in the lidar's sight from 0.5 m.
+const EDGE: f64 = 0.15;
 /// Length of a path that is worth driving (m).
 const LEAST_WAY: f64 = 0.06;
 /// Extra cost of a cell next to unsafe ground, in lengths; it falls with the distance, so that the middle is
@@ -126,7 +129,13 @@ impl RampCrossing {
     ///
     /// If a parameter is out of range.
     pub fn new(parameters: SummitParameters) -> Result<Self> {
-        Ok(Self { explorer: Explorer::on_levels(parameters)?, leg: RampLeg::Up, rides: false, came_by: None })
+        Ok(Self {
+            explorer: Explorer::on_levels(parameters)?,
+            leg: RampLeg::Up,
+            rides: false,
+            came_by: None,
+            other: None,
+        })
     }
 
     /// Parameters for a robot; `None` without a lidar.
@@ -171,7 +180,8 @@ impl RampCrossing {
         let safe = GridComponents::new(&chart.safe);
         let reached: Vec<GridCell> =
             chart.safe.free_cells().filter(|&cell| safe.connected(start, cell)).collect();
-        let look = Look { chart, start, reached };
+        let room = DistanceField::new(&chart.safe);
+        let look = Look { chart, start, reached, room };
         match self.leg {
             RampLeg::Up => self.go_up(time, &look),
             RampLeg::Across | RampLeg::Down => self.go_across(time, &look),
@@ -193,37 +203,41 @@ impl RampCrossing {
     /// To another ramp that leads down, and down; or else to where it has not looked yet.
     fn go_across(&mut self, time: f64, look: &Look) -> ControlFlow<RampOutcome, Twist> {
         let height = self.explorer.reckoning.elevation;
-        let is_other = |ramp: &Ramp| {
-            let middle = nalgebra::center(&ramp.foot, &ramp.top);
-            ramp.height < height && self.came_by.is_none_or(|known| known.aside(middle).abs() > OTHER)
+        let radius = self.explorer.parameters.climber.radius;
+        let is_new = |ramp: &Ramp| self.came_by.is_none_or(|known| !ramp.is(&known, radius));
+        let is_other = |ramp: &Ramp| ramp.height < height && is_new(ramp);
+        let seen = Ramp::all(&self.explorer, &look.chart, &look.reached).into_iter().find(is_other);
+        self.other = seen.or(self.other);
+        let is_even = |&cell: &GridCell| {
+            (self.explorer.height(cell) - height).abs() < EVEN && !is_sloped(&self.explorer, cell)
         };
-        let room = DistanceField::new(&look.chart.safe);
-        let even: Vec<GridCell> = look
-            .reached
-            .iter()
-            .copied()
-            .filter(|&cell| {
-                (self.explorer.height(cell) - height).abs() < EVEN && !is_sloped(&self.explorer, cell)
-            })
-            .collect();
-        let roomiest =
-            |cells: Vec<GridCell>| cells.into_iter().max_by(|&a, &b| room.at(a).total_cmp(&room.at(b)));
-        if let Some(ramp) = Ramp::all(&self.explorer, &look.chart, &look.reached).into_iter().find(is_other) {
-            let on_line = |cell: &GridCell| ramp.aside(self.explorer.map.place(*cell)).abs() < ASIDE;
-            let goal = roomiest(even.into_iter().filter(on_line).collect());
+        let even: Vec<GridCell> = look.reached.iter().copied().filter(is_even).collect();
+        if let Some(ramp) = self.other {
+            let on_line = |cell: &&GridCell| ramp.aside(self.explorer.map.place(**cell)).abs() < ASIDE;
+            let goal = look.roomiest(even.iter().filter(on_line));
             return self.take(time, look, &ramp, -ramp.uphill(), goal);
         }
-        let from_views = |cell: GridCell| {
-            let place = self.explorer.map.place(cell);
-            self.explorer.views.iter().map(|view| (view - place).norm()).fold(f64::INFINITY, f64::min)
-        };
-        let farthest = even.iter().map(|&cell| from_views(cell)).fold(0.0, f64::max);
-        let goal = roomiest(even.into_iter().filter(|&cell| from_views(cell) > farthest - VIEW).collect());
-        let way = goal.and_then(|goal| self.way_to(look, goal)).filter(|_| farthest > VIEW);
+        let way = self.next_view(look, &even).and_then(|view| self.way_to(look, view));
         match way {
-            Some(way) => ControlFlow::Continue(self.explorer.drive(time, &way)),
+            Some(way) => ControlFlow::Continue(self.explorer.drive(time, &look.chart, &way)),
             None => ControlFlow::Break(RampOutcome::NoWayDown),
         }
+    }
+
+    /// The cell on the level from which to look next: near the robot and along the edge, away from where it
+    /// has looked. Only from near an edge can it see whether a ramp leads down there. `None` if it has looked
+    /// all around.
+    fn next_view(&self, look: &Look, even: &[GridCell]) -> Option<GridCell> {
+        let (here, width) = (self.explorer.here(), EDGE / self.explorer.parameters.resolution);
+        let away = |cell: &GridCell| (self.explorer.map.place(*cell) - here).norm();
+        let is_new = |cell: &GridCell| {
+            let place = self.explorer.map.place(*cell);
+            self.explorer.views.iter().all(|view| (view - place).norm() > VIEW)
+        };
+        let new: Vec<GridCell> =
+            even.iter().copied().filter(|cell| look.room.at(*cell) < width && is_new(cell)).collect();
+        let nearest = new.iter().map(away).fold(f64::INFINITY, f64::min);
+        look.roomiest(new.iter().filter(|cell| away(cell) < nearest + VIEW))
     }
 
     /// To the end of a ramp, into its direction, and along it.
@@ -239,7 +253,7 @@ impl RampCrossing {
         let aside = ramp.aside(pose.position()).abs();
         if aside > ASIDE {
             if let Some(way) = end.and_then(|end| self.way_to(look, end)) {
-                return ControlFlow::Continue(self.explorer.drive(time, &way));
+                return ControlFlow::Continue(self.explorer.drive(time, &look.chart, &way));
             }
             if aside > 2.0 * ASIDE {
                 let up = self.leg == RampLeg::Up;
@@ -260,7 +274,7 @@ impl RampCrossing {
 
     /// A path to a cell in the middle of safe ground; `None` if it is not worth driving.
     fn way_to(&self, look: &Look, goal: GridCell) -> Option<Vec<Point>> {
-        let costs = Centred::new(&look.chart.safe);
+        let costs = Centred { room: &look.room };
         let way = self.explorer.way_over(&look.chart.safe, costs, look.start, goal)?;
         (length(&way) > LEAST_WAY).then_some(way)
     }
@@ -272,20 +286,22 @@ struct Look {
     /// The cell of the robot, and those to which a safe path leads from there.
     start: GridCell,
     reached: Vec<GridCell>,
-}
-
-/// Costs of paths that keep away from ground on which the robot cannot stand.
-struct Centred {
+    /// Distance of each cell from ground on which the robot cannot stand.
     room: DistanceField,
 }
 
-impl Centred {
-    fn new(safe: &BitGrid) -> Self {
-        Self { room: DistanceField::new(safe) }
+impl Look {
+    fn roomiest<'a>(&self, cells: impl Iterator<Item = &'a GridCell>) -> Option<GridCell> {
+        cells.copied().max_by(|&a, &b| self.room.at(a).total_cmp(&self.room.at(b)))
     }
 }
 
-impl StepCosts for Centred {
+/// Costs of paths that keep away from ground on which the robot cannot stand.
+struct Centred<'a> {
+    room: &'a DistanceField,
+}
+
+impl StepCosts for Centred<'_> {
     fn cost(&self, from: GridCell, to: GridCell) -> f64 {
         let room = self.room.at(to).max(0.5);
         UniformCost.cost(from, to) * (1.0 + NARROW / room)

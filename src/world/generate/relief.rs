@@ -11,7 +11,7 @@ pub enum ReliefKind {
     Range,
     /// A ring around a hollow filled with water (book, section 7.3).
     Crater,
-    /// A ramp up, a bank and a ramp down, inside a high rim (book, section 7.3).
+    /// A ramp up, a bank and a ramp down beside or opposite to it, inside a high rim (book, section 7.3).
     Ramp,
     /// Terraces with steep faces, each with a ramp up to it.
     Steps,
@@ -72,7 +72,7 @@ pub struct Relief {
     pub world: World,
     /// Start pose on gentle ground near the border; before a ramp, facing up.
     pub start: Pose,
-    /// Centre line of a ramp: foot, top, end of the bank, foot. Empty for other kinds.
+    /// Centre line over ramps: foot, middle of the bank at each ramp, foot. Empty for other kinds.
     pub way: Vec<Point>,
 }
 
@@ -229,10 +229,11 @@ fn is_rim(point: Point, side: f64) -> bool {
 fn ramp(stream: &mut Stream, options: &ReliefOptions) -> Result<Relief, ParameterError> {
     let ReliefOptions { side, top, slope, .. } = *options;
     let (length, width) = (top / math::tan(slope), stream.between(0.13, 0.17) * side);
-    // The ramps lie beside each other, and the second one leads back or on.
+    // The second ramp leads back or on, beside the first one, or straight on.
     let through = 2.0 * length + width <= (ROOM + 0.17) * side;
     let back = stream.chance(0.5) || !through;
-    let apart = stream.between(1.5, 2.0) * width * if stream.chance(0.5) { 1.0 } else { -1.0 };
+    let aside = [1.0, -1.0, 0.0][stream.below(if back { 2 } else { 3 })];
+    let apart = stream.between(1.5, 2.0) * width * aside;
     let heading = std::f64::consts::FRAC_PI_2 * stream.below(4) as f64;
     let depth = if back { length + width } else { 2.0 * length + width };
     let middle = Point::new(0.5 * side, 0.5 * side);
