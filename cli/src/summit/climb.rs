@@ -9,7 +9,7 @@ use super::Args;
 use super::args::Method;
 use crate::common::{Failure, Outcome};
 use crate::driving::{Conditions, Run};
-use crate::terrain::{Hike, Ride, word};
+use crate::terrain::{Hike, Ride, shore, word};
 
 /// How a climb ended, as the robot takes it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,7 +49,7 @@ impl Summit {
         let start = hike.start().position();
         let place = map.highest_reachable(start).ok_or_else(|| {
             Failure::input(
-                "found a start too steep, or too near to the hills' border; expected gentle ground",
+                "found a start too steep, in water, or too near to the hills' border; expected gentle ground",
             )
         })?;
         let mut planner = ElevationPlanner::astar(&map, Objective::Length).map_err(Failure::input)?;
@@ -90,7 +90,7 @@ pub(crate) fn climb(
     if method == Method::Search {
         let parameters = SummitParameters::of(spec)
             .ok_or_else(|| Failure::input("found a robot without a lidar; expected one with a lidar"))?;
-        let lowest = hike.scene.world.water_level.map(|water| water + SHORE - hike.start_height());
+        let lowest = shore(&hike.scene.world).map(|shore| shore - hike.start_height());
         let side = hike.ground.area().size().max();
         let parameters = SummitParameters {
             climber: args.climber(spec),
@@ -139,9 +139,6 @@ pub(crate) fn climb(
         Ok(Ascended { arrival, looks: 0, unknown: 0.0 })
     })
 }
-
-/// Metres above the water that a robot keeps.
-const SHORE: f64 = 0.02;
 
 /// How a climb ended in truth.
 pub(crate) fn outcome(ascended: &Ascended, ride: Option<&Ride>, summit: &Summit) -> Outcome {

@@ -1,6 +1,10 @@
+use std::f64::consts::FRAC_PI_2;
+
 use super::parameters::SummitParameters;
 use super::reckoning::Reckoning;
+use super::sight_map::SightMap;
 use crate::geometry::{Point, Pose, Twist, direction, math, normalize_angle};
+use crate::world::BitGrid;
 
 /// A way that a [`SummitSearch`](super::SummitSearch) drives.
 #[derive(Debug, Clone)]
@@ -14,6 +18,8 @@ pub(super) struct Drive {
     nearest: (f64, f64),
     /// 1 forwards, -1 backwards, while it drives straight to where it can turn.
     freeing: Option<f64>,
+    /// Where the robot can drive for all that it knows.
+    safe: BitGrid,
 }
 
 /// What comes of a step on a way.
@@ -44,15 +50,16 @@ const PATIENCE: f64 = 8.0;
 const TOO_STEEP: f64 = 0.1;
 
 impl Drive {
-    pub(super) fn along(way: &[Point], pose: Pose, time: f64) -> Self {
+    pub(super) fn along(way: &[Point], safe: BitGrid, pose: Pose, time: f64) -> Self {
         let ahead = way.iter().find(|point| pose.distance_to(**point) > AHEAD).or(way.last());
         let bearing = ahead.map_or(0.0, |&point| pose.bearing_to(point));
         Self {
             way: way.to_vec(),
-            backwards: bearing.abs() > std::f64::consts::FRAC_PI_2,
+            backwards: bearing.abs() > FRAC_PI_2,
             passed: 0,
             nearest: (f64::INFINITY, time),
             freeing: None,
+            safe,
         }
     }
 
@@ -67,6 +74,7 @@ impl Drive {
         reckoning: &Reckoning,
         tilt: f64,
         parameters: &SummitParameters,
+        map: &SightMap,
     ) -> Step {
         let pose = reckoning.pose;
         let SummitParameters { speed, turn_rate, climber, .. } = *parameters;
@@ -81,11 +89,18 @@ impl Drive {
         let sign = if self.backwards { -1.0 } else { 1.0 };
         let lost = time - self.nearest.1 > PATIENCE + 4.0 * length(&self.way) / speed;
         if tilt > climber.slope + TOO_STEEP || lost {
-            let ahead = pose.position() + direction(pose.heading) * (sign * AHEAD);
-            return Step::NoWay { ahead, sign };
+            return Step::NoWay { ahead: ahead_of(pose, sign), sign };
         }
         if reckoning.is_locked() {
-            let sign = *self.freeing.get_or_insert_with(|| along_way(&self.way, pose));
+            let sign = self.freeing.unwrap_or_else(|| along_way(&self.way, pose));
+            let is_safe = |sign: &f64| {
+                let cell = map.cell_at(ahead_of(pose, *sign));
+                cell.is_some_and(|cell| self.safe.is_free(cell))
+            };
+            let Some(sign) = [sign, -sign].into_iter().find(is_safe) else {
+                return Step::NoWay { ahead: ahead_of(pose, sign), sign };
+            };
+            self.freeing = Some(sign);
             return Step::Go(Twist::new(sign * speed, 0.0));
         }
         self.freeing = None;
@@ -94,6 +109,11 @@ impl Drive {
         }
         let aside = pose.bearing_to(self.way[self.passed]);
         let bearing = if self.backwards { normalize_angle(aside + std::f64::consts::PI) } else { aside };
+        // Beside the end it would turn round to it, and slide downhill.
+        let is_past = self.passed + 1 == self.way.len() && bearing.abs() > FRAC_PI_2;
+        if is_past && rest < AHEAD {
+            return Step::Arrived;
+        }
         let turn = (2.0 * bearing).clamp(-turn_rate, turn_rate);
         let fast = speed.min(0.03 + 0.8 * rest);
         let ahead = if bearing.abs() > ASIDE { 0.0 } else { sign * fast * math::cos(bearing) };
@@ -101,10 +121,15 @@ impl Drive {
     }
 }
 
+/// The place that the robot comes to next, forwards (1) or backwards (-1).
+fn ahead_of(pose: Pose, sign: f64) -> Point {
+    pose.position() + direction(pose.heading) * (sign * AHEAD)
+}
+
 /// 1 if the way is nearer ahead of the robot than behind it, or else -1.
 fn along_way(way: &[Point], pose: Pose) -> f64 {
     let away = |sign: f64| {
-        let place = pose.position() + direction(pose.heading) * (sign * AHEAD);
+        let place = ahead_of(pose, sign);
         way.iter().map(|point| (point - place).norm_squared()).fold(f64::INFINITY, f64::min)
     };
     if away(1.0) <= away(-1.0) { 1.0 } else { -1.0 }

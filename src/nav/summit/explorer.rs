@@ -43,7 +43,7 @@ pub(super) enum Event {
     Go(Twist),
     /// A look is complete: where to?
     Looked,
-    /// The robot cannot turn, or has looked around too often.
+    /// The robot lies on its side, cannot turn, or has looked around too often.
     Stuck,
 }
 
@@ -267,13 +267,9 @@ impl Explorer {
 
     fn take_in(&mut self, sweep: &Sweep) {
         let robot = self.reckoning.in_space(sweep.attitude());
+        self.map.stand(robot.position);
         for fan in sweep.fans(&robot, &self.parameters.lidar) {
-            self.map.add_fan(fan);
-        }
-        if self.forgets {
-            self.map.stand_on(&robot, self.parameters.climber.radius);
-        } else {
-            self.map.stand(robot.position.xy(), robot.position.z);
+            self.map.add_fan(robot.position, fan);
         }
         self.looked_from = robot.position;
         self.uphill = -robot.up().xy() / robot.up().z.max(MIN_UPRIGHT);
@@ -286,7 +282,8 @@ impl Explorer {
         let is_fit = |share: f64| {
             let cell = self.map.cell_at(self.here() + step * share);
             cell.is_some_and(|cell| {
-                self.map.height(self.map.index_of(cell)).is_some() && chart.elevation.open().is_free(cell)
+                let is_seen = self.map.height(self.map.index_of(cell)).is_some();
+                is_seen && chart.perhaps.is_free(cell) && chart.elevation.open().is_free(cell)
             })
         };
         let gain = 0.5 * STEP_UP * self.uphill.norm();
@@ -351,9 +348,9 @@ impl Explorer {
     }
 
     /// Starts to drive a path.
-    pub(super) fn drive(&mut self, time: f64, way: &[Point]) -> Twist {
+    pub(super) fn drive(&mut self, time: f64, chart: &Chart, way: &[Point]) -> Twist {
         let way = cut(way, 2.0 * self.parameters.stride);
-        self.state = State::Driving(Drive::along(way, self.reckoning.pose, time));
+        self.state = State::Driving(Drive::along(way, chart.safe.clone(), self.reckoning.pose, time));
         Twist::STOP
     }
 
@@ -376,6 +373,9 @@ impl Explorer {
         check_scan(&seen.scan)?;
         let SummitParameters { slide, half_track, .. } = self.parameters;
         self.reckoning.update(seen.odometry, seen.attitude, slide, half_track);
+        if self.reckoning.in_space(seen.attitude).up().z < MIN_UPRIGHT {
+            return Ok(Event::Stuck);
+        }
         let go = |twist| Ok(Event::Go(twist));
         match &mut self.state {
             State::Settling { until } => {
@@ -410,7 +410,7 @@ impl Explorer {
             }
             State::Driving(drive) => {
                 let tilt = self.reckoning.corrected(seen.attitude).frame().tilt();
-                match drive.step(time, &self.reckoning, tilt, &self.parameters) {
+                match drive.step(time, &self.reckoning, tilt, &self.parameters, &self.map) {
                     Step::Go(twist) => go(twist),
                     Step::Arrived => go(self.settle()),
                     Step::NoWay { ahead, sign } => {

@@ -166,7 +166,7 @@ impl SummitSearch {
             if climbs
                 && let Some(way) = self.explorer.way_over(&chart.safe, climbing_costs(&chart), start, top)
             {
-                return ControlFlow::Continue(self.explorer.drive(time, &way));
+                return ControlFlow::Continue(self.explorer.drive(time, &chart, &way));
             }
             let Some(target) = self.next_target(&higher, here) else {
                 return ControlFlow::Break(SummitOutcome::Highest);
@@ -176,7 +176,7 @@ impl SummitSearch {
             let way = way.unwrap_or_else(|| vec![self.explorer.map.place(target)]);
             let known = self.explorer.known_part(&chart, &way);
             if length(known) > LEAST_WAY {
-                return ControlFlow::Continue(self.explorer.drive(time, known));
+                return ControlFlow::Continue(self.explorer.drive(time, &chart, known));
             }
             // It has looked from here, and does not see that it could go on.
             let beyond = way[known.len().min(way.len() - 1)];
@@ -231,7 +231,7 @@ impl SummitSearch {
         }
         // Ways that end on the top, not those that lead to it.
         self.approaches += u32::from(length(&way) < self.explorer.parameters.stride);
-        ControlFlow::Continue(self.explorer.drive(time, &way))
+        ControlFlow::Continue(self.explorer.drive(time, chart, &way))
     }
 
     /// A robot on the top stands level: what it feels of a slope leads on, whatever the map says, while that
@@ -242,7 +242,7 @@ impl SummitSearch {
         match self.explorer.way_up(chart).filter(|(_, gain)| has_risen && *gain > tolerance) {
             Some((way, _)) => {
                 self.climbed_from = elevation;
-                ControlFlow::Continue(self.explorer.drive(time, &way))
+                ControlFlow::Continue(self.explorer.drive(time, chart, &way))
             }
             None => ControlFlow::Break(SummitOutcome::Highest),
         }

@@ -1,6 +1,6 @@
-use super::parameters::SummitParameters;
+use super::parameters::{Fence, SummitParameters};
 use super::sweep::Beam;
-use crate::geometry::{Aabb, Point, Point3, Pose3, Vector, math};
+use crate::geometry::{Aabb, Point, Point3, Vector, math};
 use crate::nav::elevation::{Climber, ElevationMap};
 use crate::nav::grid::GridComponents;
 use crate::world::{BitGrid, GridCell, HeightField};
@@ -137,9 +137,9 @@ impl SightMap {
         *self = Self::new(self.resolution, self.extent, self.gap);
     }
 
-    /// Takes in the beams of one azimuth, from the lowest tilt up.
-    pub(super) fn add_fan(&mut self, beams: impl Iterator<Item = Beam>) {
-        let mut before: Option<Point3> = None;
+    /// Takes in the beams of one azimuth, from the lowest tilt up, from a robot that stands at a place.
+    pub(super) fn add_fan(&mut self, place: Point3, beams: impl Iterator<Item = Beam>) {
+        let mut before = Some(place);
         for beam in beams {
             let end = beam.end();
             self.lower_ceilings(&beam);
@@ -195,21 +195,8 @@ impl SightMap {
     }
 
     /// The ground under a robot that stands.
-    pub(super) fn stand(&mut self, place: Point, elevation: f64) {
-        self.measure(place, elevation, 1.0);
-    }
-
-    /// The plane on which a robot stands, as far as it carries it.
-    pub(super) fn stand_on(&mut self, robot: &Pose3, radius: f64) {
-        let (middle, up) = (robot.position, robot.up());
-        let reach = (radius / self.resolution) as i32;
-        for (x, y) in (-reach..=reach).flat_map(|x| (-reach..=reach).map(move |y| (x, y))) {
-            let away = Vector::new(f64::from(x), f64::from(y)) * self.resolution;
-            if away.norm() <= radius {
-                let rise = -away.dot(&up.xy()) / up.z.max(MIN_UPRIGHT);
-                self.measure(middle.xy() + away, middle.z + rise, 1.0);
-            }
-        }
+    pub(super) fn stand(&mut self, place: Point3) {
+        self.measure(place.xy(), place.z, 1.0);
     }
 
     /// Notes that the robot cannot stand around a place.
@@ -243,22 +230,22 @@ impl SightMap {
             step: parameters.climber.step + NOISE,
             ..parameters.climber
         };
-        let lowest = parameters.lowest.unwrap_or(f64::NEG_INFINITY);
         let Filled { heights, known, away } = self.filled();
         let corner = Point::new(self.extent, self.extent);
         let area = Aabb::new(-corner, corner);
         let field = HeightField::new(self.side, self.side, area, heights).expect("a map of finite heights");
-        let elevation = ElevationMap::new(&field, climber).expect("parameters that have been checked");
+        let lowest = parameters.lowest.unwrap_or(f64::NEG_INFINITY);
+        let elevation = ElevationMap::new(&field, climber).and_then(|map| map.above(lowest));
+        let elevation = elevation.expect("parameters that have been checked");
         let reach = (climber.radius / self.resolution).round() as usize;
         let covered = eroded(&known, self.side, reach + 1);
         let grid = |is_free: &dyn Fn(usize) -> bool| {
             let side = self.side;
             BitGrid::from_fn(side, side, |x, y| is_free(y * side + x)).expect("a map's cells")
         };
-        let dry = |index: usize| !known[index] || f64::from(field_height(&field, index)) >= lowest;
         let open = |index: usize| {
             let cell = GridCell::new(index % self.side, index / self.side);
-            elevation.open().is_free(cell) && dry(index) && !self.shunned[index]
+            elevation.open().is_free(cell) && !self.shunned[index]
         };
         // What lies lower than a slope could lead to that the robot can drive.
         let steepest = math::tan(climber.slope) * self.resolution;
@@ -266,17 +253,19 @@ impl SightMap {
             let least = f64::from(field_height(&field, index)) - steepest * f64::from(away[index]) - DROP;
             !known[index] && self.ceilings[index] < least
         };
+        let margin = climber.radius + CAUTION;
+        let fence = parameters.fence.map(|fence| Fence { area: fence.area.inflated(-margin), ..fence });
         let fenced = |index: usize| {
             let place = self.place(GridCell::new(index % self.side, index / self.side));
-            parameters.fence.is_none_or(|fence| fence.holds(place))
+            fence.is_none_or(|fence| fence.holds(place))
         };
-        let holds: Vec<bool> = (0..known.len()).map(|index| fenced(index) && !drops(index)).collect();
+        let holds: Vec<bool> = (0..known.len()).map(|index| !drops(index)).collect();
         let far_from_drops = eroded(&holds, self.side, reach + (CAUTION / self.resolution).round() as usize);
-        let is_safe = |index: usize| covered[index] && far_from_drops[index] && open(index);
+        let is_safe = |index: usize| fenced(index) && covered[index] && far_from_drops[index] && open(index);
         let safe = grid(&is_safe);
         let perhaps = grid(&|index| {
             let hopeless = self.shunned[index] || (self.given_up[index] && !is_safe(index));
-            !hopeless && holds[index] && (!covered[index] || open(index))
+            !hopeless && fenced(index) && holds[index] && (!covered[index] || open(index))
         });
         let potential = (0..known.len()).map(|index| {
             let slope = f64::from(field_height(&field, index)) + steepest * f64::from(away[index]) + DROP;
@@ -391,7 +380,7 @@ mod tests {
         let cell = map.cell_at(place).unwrap();
         let see = |map: &mut SightMap, low: i32, high: i32| {
             for (x, y) in (low..high).flat_map(|x| (-18..=18).map(move |y| (x, y))) {
-                map.stand(Point::new(f64::from(x), f64::from(y)) * 0.05, 0.0);
+                map.stand(Point3::new(0.05 * f64::from(x), 0.05 * f64::from(y), 0.0));
             }
         };
         see(&mut map, -18, 8);
