@@ -1,12 +1,13 @@
-//! The search for the highest place that can be reached, on generated ranges and a crater.
+//! Behaviours on unknown hills: the search for the highest place that can be reached, and crossings of levels.
 
+use roverlab::geometry::{Aabb, Point, Pose, math, units};
 use roverlab::io::control::run;
 use roverlab::io::sim::{Mishap, SimOptions, Simulation};
 use roverlab::nav::elevation::{Climber, ElevationMap};
-use roverlab::nav::{Fence, SummitOutcome, SummitParameters, SummitSearch};
+use roverlab::nav::{Fence, RampCrossing, RampOutcome, SummitOutcome, SummitParameters, SummitSearch};
 use roverlab::random::Stream;
 use roverlab::world::generate::{ReliefKind, ReliefOptions, relief};
-use roverlab::world::{RobotSpec, Scene};
+use roverlab::world::{HeightField, RobotSpec, Scene, Terrain, World};
 
 /// How a search ended.
 #[derive(Debug)]
@@ -23,14 +24,19 @@ struct Trial {
 
 fn search(kind: ReliefKind, seed: u64, limit: f64) -> Trial {
     let made = relief(&mut Stream::new(seed), &ReliefOptions::of(kind)).unwrap();
-    let (spec, start) = (RobotSpec::blizzard(), made.start);
-    let ground = made.world.terrain.clone().unwrap().surface.unwrap();
-    let map = ElevationMap::new(&ground, &Climber::of(&spec)).unwrap();
+    search_on(made.world, made.start, seed, limit)
+}
+
+fn search_on(world: World, start: Pose, seed: u64, limit: f64) -> Trial {
+    let spec = RobotSpec::blizzard();
+    let ground = world.terrain.clone().unwrap().surface.unwrap();
+    let shore = world.water_level.map_or(f64::NEG_INFINITY, |water| water + 0.02);
+    let map = ElevationMap::new(&ground, &Climber::of(&spec)).unwrap().above(shore).unwrap();
     let top = map.highest_reachable(start.position()).expect("a place to stand");
-    let lowest = made.world.water_level.map(|water| 0.02 + water - ground.height(start.position()).unwrap());
+    let lowest = Some(shore - ground.height(start.position()).unwrap()).filter(|lowest| lowest.is_finite());
     let fence = Some(Fence { area: ground.area(), start });
     let parameters = SummitParameters { lowest, fence, ..SummitParameters::of(&spec).unwrap() };
-    let scene = Scene::with_robot(made.world, spec, start);
+    let scene = Scene::with_robot(world, spec, start);
     let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, seed)).unwrap();
     let mut search = SummitSearch::new(parameters).unwrap();
     let outcome = run(&mut simulation.robot(0).unwrap(), &mut search, limit, |_, _, _| {}).unwrap();
@@ -65,6 +71,71 @@ fn what_is_unknown_is_told_when_the_time_is_over() {
     let trial = search(ReliefKind::Range, SEEDS[0], 15.0);
     assert_eq!(trial.outcome, SummitOutcome::TimedOut);
     assert!(trial.unknown > 1.0, "{trial:?}");
+}
+
+/// Hills by a formula.
+fn hills(width: f64, depth: f64, height: impl FnMut(Point) -> f64) -> World {
+    let area = Aabb::new(Point::origin(), Point::new(width, depth));
+    let [columns, rows] = [width, depth].map(|side| (32.0 * side) as usize + 1);
+    let surface = HeightField::from_fn(columns, rows, area, height).unwrap();
+    World { terrain: Some(Terrain::new("hills.png", surface)), ..World::empty(width, depth) }
+}
+
+fn hill(at: Point, middle: [f64; 2], height: f64, width: f64) -> f64 {
+    height * math::exp(-(at - Point::from(middle)).norm_squared() / (width * width))
+}
+
+/// Belts hold on its shore, and do not turn the robot: it must not drive on into the water.
+#[test]
+fn an_island_is_searched_without_getting_wet() {
+    let height = |at: Point| hill(at, [1.0, 1.0], 0.3, 0.7) + hill(at, [3.0, 3.0], 0.4, 0.8);
+    let world = World { water_level: Some(0.1), ..hills(4.0, 4.0, height) };
+    let trial = search_on(world, Pose::new(1.0, 1.0, 0.0), 1, 600.0);
+    assert_eq!((trial.outcome, trial.mishap), (SummitOutcome::Highest, None), "{trial:?}");
+    assert!(trial.away <= 0.1, "{trial:?}");
+}
+
+/// The hills rise up to their border, behind which the robot would fall.
+#[test]
+fn a_robot_keeps_away_from_the_border_of_its_hills() {
+    let world = hills(4.0, 4.0, |at| 0.02 + 0.05 * at.x + hill(at, [4.0, 4.0], 0.2, 1.0));
+    let trial = search_on(world, Pose::new(1.0, 1.0, 0.0), 1, 600.0);
+    assert_eq!((trial.outcome, trial.mishap), (SummitOutcome::Highest, None), "{trial:?}");
+    assert!(trial.away <= 0.3, "{trial:?}");
+}
+
+/// Crosses a level of 0.15 m, 1.6 m wide; its height along x is a function of the place.
+fn cross(height: impl Fn(f64) -> f64) -> (RampOutcome, Option<Mishap>, Pose) {
+    let level = |at: Point| if (1.2..=2.8).contains(&at.y) { height(at.x).clamp(0.0, 0.15) } else { 0.0 };
+    let (world, spec) = (hills(6.0, 4.0, level), RobotSpec::blizzard());
+    let fence = Some(Fence {
+        area: Aabb::new(Point::origin(), Point::new(6.0, 4.0)),
+        start: Pose::new(0.8, 2.0, 0.0),
+    });
+    let parameters = SummitParameters { fence, ..RampCrossing::parameters(&spec).unwrap() };
+    let scene = Scene::with_robot(world, spec, Pose::new(0.8, 2.0, 0.0));
+    let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1)).unwrap();
+    let mut crossing = RampCrossing::new(parameters).unwrap();
+    let outcome = run(&mut simulation.robot(0).unwrap(), &mut crossing, 400.0, |_, _, _| {}).unwrap();
+    let truth = simulation.truth();
+    (outcome, truth.mishap(0).unwrap(), truth.pose(0).unwrap())
+}
+
+#[test]
+fn a_ramp_down_straight_ahead_is_another_one() {
+    for degrees in [12.0, 20.0] {
+        let rise = math::tan(units::from_deg(degrees));
+        let (outcome, mishap, end) = cross(|x| (rise * (x - 1.5)).min(rise * (5.0 - x)));
+        assert_eq!((outcome, mishap), (RampOutcome::Crossed, None), "{degrees}: {end:?}");
+        assert!(end.x > 4.8, "{degrees}: {end:?}");
+    }
+}
+
+/// Parts of the ramp that it came by are no other ramp, from wherever they are seen.
+#[test]
+fn a_level_with_one_ramp_only_is_a_dead_end() {
+    let (outcome, mishap, end) = cross(|x| if x < 4.5 { 0.25 * (x - 1.5) } else { 0.0 });
+    assert_eq!((outcome, mishap), (RampOutcome::NoWayDown, None), "{end:?}");
 }
 
 mod campaigns {
