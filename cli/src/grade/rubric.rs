@@ -1,6 +1,7 @@
-use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 
+use roverlab::io::open_regular;
 use serde::Deserialize;
 
 use crate::common::Failure;
@@ -61,11 +62,8 @@ impl Rubric {
     /// Reads a rubric. Fails with the line and column of what is wrong.
     pub(super) fn read(file: &Path) -> Result<Self, Failure> {
         let name = file.display();
-        // A device may have no end, and whoever writes into a pipe may never come.
-        if fs::metadata(file).is_ok_and(|found| !found.is_file() && !found.is_dir()) {
-            return Err(Failure::input(format!("{name}: is a FIFO or a device; expected a regular file")));
-        }
-        let text = fs::read_to_string(file)
+        let text = open_regular(file)
+            .and_then(io::read_to_string)
             .map_err(|error| Failure::input(format!("{name}: {error}; expected a rubric")))?;
         let mut rubric: Self = toml::from_str(&text).map_err(|error| {
             let before = &text[..error.span().map_or(0, |span| span.start).min(text.len())];
@@ -126,6 +124,7 @@ fn check(name: &str, value: f64, least: f64, most: f64) -> Result<(), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     /// Every rubric of the project reads, and its worlds exist.
     #[test]
