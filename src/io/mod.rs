@@ -73,6 +73,7 @@ pub mod log;
 #[cfg(feature = "robios")]
 pub mod robios;
 pub mod sim;
+mod temporary_folder;
 mod truth;
 
 pub use actuators::{Encoders, Motors, Servos};
@@ -91,6 +92,7 @@ pub use lidar::{Lidar, LidarScan, LidarSettings};
 pub use mock::{Call, MockRobot, Script};
 pub use psd::{DistanceSensors, Psd};
 pub use radio::{Radio, RadioMessage};
+pub use temporary_folder::TemporaryFolder;
 pub use truth::{GroundTruth, Mishap, RobotTruth, TrailPoint, TruthInSpace};
 
 /// A full robot with every capability.
