@@ -113,8 +113,10 @@ struct Spot {
     told: Twist,
 }
 
-/// Distance from a point within which the robot counts as being there, and length of a way along a wall (m).
+/// Distance from a point within which the robot counts as being there (m).
 const HERE: f64 = 0.2;
+/// Length of the way beside a wall from which on the robot has got along it (m).
+const ALONG: f64 = 0.3;
 /// Turn in one place, or apart from walls, after which the robot counts as blocked (rad): around an obstacle
 /// that it follows, it moves along.
 const ROUND: f64 = 3.0 * std::f64::consts::TAU;
@@ -129,7 +131,7 @@ impl Spot {
             (self.pose, self.turned) = (Pose::default(), 0.0);
         }
         self.along = if is_beside_wall { self.along + length } else { 0.0 };
-        self.turned_apart = if self.along > HERE { 0.0 } else { self.turned_apart + angle };
+        self.turned_apart = if self.along > ALONG { 0.0 } else { self.turned_apart + angle };
         self.turned.abs().max(self.turned_apart.abs()) > ROUND
     }
 }
