@@ -83,6 +83,8 @@ mod report;
 mod run;
 mod stage;
 mod supervision;
+#[cfg(feature = "native")]
+pub(crate) mod toml_places;
 #[cfg(feature = "learn")]
 mod training_store;
 mod trip;
