@@ -187,8 +187,9 @@ impl Budget {
         const PER_BYTE: u64 = 1 << 12;
         /// The same for a long file, whose chunks are rarely all alike.
         const PER_BYTE_OF_LONG: u64 = 1 << 4;
-        /// Bytes for a very short file, and those from which on a file counts as long.
+        /// Bytes for a very short file.
         const LEAST: u64 = 1 << 26;
+        /// Bytes unpacked from which on a file counts as long.
         const LONG: u64 = 1 << 32;
         let length = file.len() as u64;
         let most = LONG.max(PER_BYTE_OF_LONG.saturating_mul(length));

@@ -108,8 +108,9 @@ impl Default for BodyPlan {
 
 /// Largest number of limbs: servos have numbers of a byte, and more would slow the physics down.
 const MOST_LIMBS: usize = 24;
-/// Maximum length (m), and maximum of other values of a body: beyond, the physics overflows.
+/// Maximum length (m).
 const LONGEST: f64 = 1e3;
+/// Maximum of a body's other values, in SI units; far beyond, the physics overflows.
 const MOST: f64 = 1e6;
 /// Widest swing (rad): the limits of joints are checked by sines.
 const WIDEST: f64 = 1.2;
