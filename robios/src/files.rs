@@ -1,8 +1,10 @@
 //! Files that a user names.
 
-use std::fs::{self, File, FileType};
+use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
+
+use roverlab::io::irregular;
 
 /// Maximum length of a text that is read (bytes).
 const LONGEST: u64 = 16 << 20;
@@ -10,28 +12,10 @@ const LONGEST: u64 = 16 << 20;
 /// Refuses what is neither a regular file nor a folder: whoever opens a FIFO may wait for ever, and a device
 /// may have no end. What is not there is left to whoever opens it.
 pub(crate) fn require_regular(file: &Path) -> Result<(), String> {
-    let Ok(found) = fs::metadata(file) else { return Ok(()) };
-    if found.is_file() || found.is_dir() {
-        return Ok(());
+    match irregular(file).filter(|_| !file.is_dir()) {
+        None => Ok(()),
+        Some(wrong) => Err(format!("{}: {wrong}; expected a regular file", file.display())),
     }
-    Err(format!("{}: is {}; expected a regular file", file.display(), kind(found.file_type())))
-}
-
-#[cfg(unix)]
-fn kind(found: FileType) -> &'static str {
-    use std::os::unix::fs::FileTypeExt;
-    if found.is_fifo() {
-        "a FIFO"
-    } else if found.is_socket() {
-        "a socket"
-    } else {
-        "a device"
-    }
-}
-
-#[cfg(not(unix))]
-fn kind(_found: FileType) -> &'static str {
-    "a device"
 }
 
 /// Reads a regular file of limited length; messages end with what is expected.
@@ -59,6 +43,7 @@ pub(crate) fn read_beginning(file: &Path, most: u64) -> io::Result<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     #[test]
     fn only_regular_files_are_read() {
@@ -75,8 +60,8 @@ mod tests {
         #[cfg(unix)]
         {
             assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
-            for (file, found) in [(pipe.as_path(), "a FIFO"), (Path::new("/dev/zero"), "a device")] {
-                let message = format!("{}: is {found}; expected a regular file", file.display());
+            for (file, found) in [(pipe.as_path(), "is a FIFO"), (Path::new("/dev/zero"), "is a device")] {
+                let message = format!("{}: {found}; expected a regular file", file.display());
                 assert_eq!(read_text(file, "costs"), Err(message));
                 assert!(read_beginning(file, 3).is_err());
             }

@@ -23,14 +23,14 @@
 //! # }
 //! ```
 
-use std::fs::{self, File};
-use std::io::{ErrorKind as FileError, Write};
-use std::path::{Path, PathBuf};
+use std::fs;
+use std::io::{ErrorKind as FileError, Read};
+use std::path::Path;
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use crate::io::{Error, ErrorKind, Result};
+use crate::io::{Error, ErrorKind, Result, open_regular, write_whole};
 
 /// Version of the file format.
 const VERSION: u32 = 1;
@@ -57,17 +57,7 @@ pub fn save<S: Serialize>(file: &Path, settings: &str, state: &S) -> Result<()> 
     let text = serde_json::to_vec(&checkpoint).map_err(|error| failed("written", error.into()))?;
     // Replace the target of a symbolic link, not the link.
     let file = &fs::canonicalize(file).unwrap_or_else(|_| file.to_owned());
-    let aside = aside(file);
-    let write = || -> std::io::Result<()> {
-        let mut new = File::create(&aside)?;
-        new.write_all(&text)?;
-        // The data must reach the disk before the rename.
-        new.sync_all()
-    };
-    write().and_then(|()| fs::rename(&aside, file)).map_err(|error| {
-        let _ = fs::remove_file(&aside);
-        failed("written", error)
-    })
+    write_whole(file, &text).map_err(|error| failed("written", error))
 }
 
 /// Reads a state written by [`save`]; `None` if there is no such file.
@@ -80,15 +70,12 @@ pub fn load<S: DeserializeOwned>(file: &Path, settings: &str) -> Result<Option<S
         let message = format!("{}: {found}; expected {expected}", file.display());
         Error::new(ErrorKind::InvalidInput, message)
     };
-    // A device may never end.
-    if fs::metadata(file).is_ok_and(|data| !data.is_file()) {
-        return Err(refused("a folder or a device", "the name of a file"));
-    }
-    let text = match fs::read(file) {
+    let mut text = Vec::new();
+    match open_regular(file).and_then(|mut file| file.read_to_end(&mut text)) {
         Err(error) if error.kind() == FileError::NotFound => return Ok(None),
         Err(error) => return Err(refused(&error.to_string(), "a file that can be read")),
-        Ok(text) => text,
-    };
+        Ok(_) => {}
+    }
     let parsed: std::result::Result<Checkpoint<serde_json::Value>, _> = serde_json::from_slice(&text);
     let checkpoint = parsed.map_err(|error| {
         let place = format!("{}:{}:{}", file.display(), error.line(), error.column());
@@ -106,17 +93,11 @@ pub fn load<S: DeserializeOwned>(file: &Path, settings: &str) -> Result<Option<S
     Ok(Some(state))
 }
 
-/// Temporary file in the same folder, so that the rename is atomic.
-fn aside(file: &Path) -> PathBuf {
-    let mut name = file.file_name().unwrap_or_default().to_owned();
-    name.push(format!(".{}.new", std::process::id()));
-    file.with_file_name(name)
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::{Evolution, Genetic, Population, Recipe, Serial, StopRules, Trial};
     use super::*;
+    use std::path::PathBuf;
 
     fn folder(name: &str) -> PathBuf {
         let folder = std::env::temp_dir().join(format!("roverlab-checkpoint-{name}-{}", std::process::id()));

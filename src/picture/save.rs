@@ -1,8 +1,8 @@
-use std::fs::{self, File};
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use super::Picture;
+use crate::io::write_whole;
 use crate::parameter::debug_as_sentence;
 
 /// File formats of pictures.
@@ -116,20 +116,8 @@ fn png(_: &Picture, path: &Path) -> Result<Vec<u8>, SaveError> {
     Err(SaveError::NoPng { path: path.to_owned() })
 }
 
-/// Writes a temporary file beside the target and renames it once it is complete.
+/// Writes a file whole, with its folder.
 fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let unfinished = path.with_file_name(format!(".{name}.{}.part", std::process::id()));
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let write = || {
-        fs::create_dir_all(folder)?;
-        let mut file = File::create(&unfinished)?;
-        file.write_all(bytes)?;
-        file.sync_all()?;
-        fs::rename(&unfinished, path)
-    };
-    write().inspect_err(|_| {
-        // An incomplete file is useless; the error to report is the one being returned.
-        let _ = fs::remove_file(&unfinished);
-    })
+    fs::create_dir_all(path.parent().unwrap_or(Path::new("")))?;
+    write_whole(path, bytes)
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use roverlab::geometry::Pose;
+use roverlab::io::irregular;
 use roverlab::io::wrappers::Fault;
 use roverlab::picture::{Picture, SaveError};
 use roverlab::world::InertialSpec;
@@ -13,7 +14,7 @@ use super::library::Library;
 use super::values::{
     GoalOption, parse_animation, parse_goal, parse_noise, parse_picture, parse_pose, parse_seconds,
 };
-use super::{Failure, Origin, Report, irregular, is_same_file, onlooker};
+use super::{Failure, Origin, Report, is_same_file, onlooker};
 
 /// Default folder of files that no option names.
 const UNNAMED: &str = "target/pictures";

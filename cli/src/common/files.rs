@@ -1,9 +1,9 @@
 use std::fmt::Display;
-use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 
 use roverlab::io::log::{Attachment, Log};
+use roverlab::io::open_regular;
 use roverlab::world::formats::{self, DiskFiles, FileSource, FormatError, Location, Parsed, SourceFile};
 use roverlab::world::{RobotSpec, Scene};
 
@@ -26,34 +26,6 @@ pub(crate) fn recorded_name(option: &str, path: &Path) -> String {
     if plain { format!("{option}.{}", ending.to_ascii_lowercase()) } else { option.to_owned() }
 }
 
-/// What is wrong with a file that exists and is no regular one: a device may have no end, and whoever is at
-/// the other end of a pipe may never come.
-pub(crate) fn irregular(file: &Path) -> Option<&'static str> {
-    let kind = fs::metadata(file).ok()?.file_type();
-    if kind.is_file() {
-        return None;
-    }
-    if kind.is_dir() {
-        return Some("is a folder");
-    }
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::FileTypeExt;
-        if kind.is_fifo() {
-            return Some("is a FIFO");
-        }
-        if kind.is_socket() {
-            return Some("is a socket");
-        }
-    }
-    Some("is a device")
-}
-
-/// Opens a regular file for reading.
-pub(crate) fn open_regular(file: &Path) -> io::Result<File> {
-    irregular(file).map_or_else(|| File::open(file), |wrong| Err(io::Error::other(wrong)))
-}
-
 /// The bytes of a regular file.
 pub(crate) fn regular_bytes(file: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
@@ -66,7 +38,6 @@ pub(crate) fn recording_bytes(file: &Path) -> io::Result<Vec<u8>> {
     let opened = open_regular(file)?;
     let length = opened.metadata()?.len();
     let mut bytes = Vec::new();
-    // Not beyond the length: files of the system that have none, such as /proc/kmsg, may never end.
     (&opened).take(length.min(MAGIC.len() as u64 + 1)).read_to_end(&mut bytes)?;
     // If its first bytes are damaged, the recording may be recovered from the header behind them.
     if !bytes.starts_with(MAGIC) && bytes.get(MAGIC.len()) != Some(&HEADER) {
@@ -187,6 +158,7 @@ impl FileSource for Companions {
 mod tests {
     use super::*;
     use crate::tests::support::temporary;
+    use std::fs::{self, File};
 
     #[test]
     fn only_recordings_are_read_to_the_end() {

@@ -3,12 +3,12 @@ use std::path::Path;
 
 use image::codecs::pnm::{PnmEncoder, PnmSubtype, SampleEncoding};
 use image::{DynamicImage, ImageError, ImageFormat, ImageResult};
+use roverlab::io::write_whole;
 
 /// Writes an image in the format of the file's extension, completely or with an error.
 pub(crate) fn write_image(image: &DynamicImage, file: &Path) -> Result<(), ImageError> {
     let bytes = encoded(image, ImageFormat::from_path(file)?)?;
-    // A buffered writer would lose the errors of its last bytes.
-    std::fs::write(file, bytes).map_err(ImageError::IoError)
+    write_whole(file, &bytes).map_err(ImageError::IoError)
 }
 
 fn encoded(image: &DynamicImage, format: ImageFormat) -> ImageResult<Vec<u8>> {

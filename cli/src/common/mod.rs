@@ -83,6 +83,8 @@ mod report;
 mod run;
 mod stage;
 mod supervision;
+#[cfg(feature = "native")]
+pub(crate) mod toml_places;
 #[cfg(feature = "learn")]
 mod training_store;
 mod trip;
@@ -97,7 +99,7 @@ pub(crate) use args::{CommonArgs, PlainArgs};
 pub(crate) use campaign::{CampaignArgs, campaign_report, wrong_seeds};
 pub(crate) use command_line::is_setting;
 pub(crate) use failure::Failure;
-pub(crate) use files::{irregular, open_regular, recording_bytes, regular_bytes, unrecordable};
+pub(crate) use files::{recording_bytes, regular_bytes, unrecordable};
 pub(crate) use free_floor::FreeFloor;
 pub(crate) use heed::{Heeds, OF_A_CAMPAIGN, OF_ONE_RUN, Unheeded};
 pub(crate) use images::write_image;

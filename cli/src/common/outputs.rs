@@ -1,8 +1,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::ArgMatches;
+use roverlab::io::irregular;
 
-use super::{Failure, irregular};
+use super::Failure;
 
 /// Options with output files.
 pub(super) const OUTPUTS: [&str; 10] =

@@ -2,7 +2,9 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::Failure;
+use roverlab::io::write_whole;
+
+use super::{Failure, regular_bytes};
 
 /// What is learned so far, in a folder beside the file to be written.
 pub(crate) struct TrainingStore {
@@ -81,17 +83,15 @@ impl TrainingStore {
     }
 
     fn read(&self, name: &str) -> Result<Option<Vec<u8>>, Failure> {
-        match fs::read(self.folder.join(name)) {
+        match regular_bytes(&self.folder.join(name)) {
             Ok(bytes) => Ok(Some(bytes)),
             Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
             Err(error) => Err(self.failure(&error)),
         }
     }
 
-    /// Writes a file anew and renames it, so that there is always a whole one.
     fn write(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
-        let (file, new) = (self.folder.join(name), self.folder.join(format!("{name}.new")));
-        fs::write(&new, bytes).and_then(|()| fs::rename(&new, &file)).map_err(|error| self.failure(&error))
+        write_whole(self.folder.join(name), bytes).map_err(|error| self.failure(&error))
     }
 
     fn failure(&self, error: &std::io::Error) -> Failure {

@@ -54,9 +54,10 @@ JSON fields:
   mapped                                               whether the whole track was planned after the first lap, or the
                                                        event's layout was found
   other_cones_hit, touched                             with a second car
-  place, lead_m, passed, overtakings,                  with a rival: place of this car; its distance ahead at the end; whether
-  rival_off_course                                     the faster car, which starts behind, is ahead at the end; times, and
-                                                       who overtook; how often the rival left the course
+  place, lead_m, passed, overtaken,                    with a rival: place of this car; its distance ahead at the end; whether
+  overtakings, rival_off_course                        it, or the rival, has overtaken and is ahead at the end; times, and who
+                                                       overtook; how often the rival left the course. The laps are those that
+                                                       this car has completed when the first car has driven all of its own
   tracks, clean, clean_share, finished                 of a campaign: finished are all races with complete laps, clean are
                                                        those without hit cones, leaving the course or contacts
   laps, cones_hit, off_course                          of a campaign: of all tracks, by the referee
@@ -218,12 +219,12 @@ fn for_places(
     let mut fleet = common.fleet(&rival.scene(course), settings.options())?;
     let contest = rival::race(course, settings, rival, &mut *fleet)?;
     drop(fleet);
-    let report = places(report(course, &contest.outcome), &contest, rival);
+    let report = places(report(course, &contest.outcome), &contest);
     Ok(common.draw(report, "cone_race.svg", || drawing::picture(course, &contest.outcome)))
 }
 
 /// Adds places and overtakings to a report.
-fn places(report: Report, contest: &Contest, rival: Rival) -> Report {
+fn places(report: Report, contest: &Contest) -> Report {
     let won = contest.places[0] == 1;
     let outcome = match &contest.outcome.ending {
         Ok(Ending::Finished) => Outcome::verdict(if won { "won" } else { "beaten" }),
@@ -238,7 +239,8 @@ fn places(report: Report, contest: &Contest, rival: Rival) -> Report {
     Report { outcome, ..report }
         .field("place", contest.places[0])
         .field("lead_m", rounded(contest.lead))
-        .field("passed", contest.is_passed(rival))
+        .field("passed", contest.has_passed(false))
+        .field("overtaken", contest.has_passed(true))
         .field("overtakings", overtakings)
         .field("rival_off_course", contest.rival_off_course)
 }

@@ -51,8 +51,12 @@ pub(crate) struct Contest {
 impl Contest {
     /// Whether the faster car, which starts behind, is ahead at the end.
     pub(crate) fn is_passed(&self, rival: Rival) -> bool {
-        let faster = usize::from(rival.is_faster());
-        self.places[faster] == 1 && self.overtakings.iter().any(|(_, by)| *by == rival.is_faster())
+        self.has_passed(rival.is_faster())
+    }
+
+    /// Whether this car, or the rival, has overtaken the other one and is ahead at the end.
+    pub(crate) fn has_passed(&self, rival: bool) -> bool {
+        self.places[usize::from(rival)] == 1 && self.overtakings.iter().any(|(_, by)| *by == rival)
     }
 }
 

@@ -1,6 +1,7 @@
 use std::fs;
 use std::path::Path;
 
+use roverlab::io::write_whole;
 use roverlab::world::formats::sim::{self, SimFile};
 use roverlab::world::formats::wld;
 
@@ -35,5 +36,5 @@ pub(crate) fn save(trial: &Trial, folder: &Path) -> Result<(), Failure> {
 }
 
 fn write(file: &Path, text: &str) -> Result<(), Failure> {
-    fs::write(file, text).map_err(|error| Failure::run(format!("{}: {error}", file.display())))
+    write_whole(file, text.as_bytes()).map_err(|error| Failure::run(format!("{}: {error}", file.display())))
 }

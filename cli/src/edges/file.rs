@@ -1,8 +1,10 @@
 //! A kernel on an image file.
 
+use std::io::BufReader;
 use std::path::Path;
 
 use image::{DynamicImage, RgbImage};
+use roverlab::io::open_regular;
 
 use super::checks::refused;
 use super::kernel::Runner;
@@ -49,7 +51,8 @@ fn load(option: &str, file: &Path) -> Result<RgbImage, Failure> {
     let wrong = |error: &dyn std::fmt::Display| {
         Failure::input(format!("{option} {}: {error}; expected a PNG, PNM or BMP image", file.display()))
     };
-    let reader = image::ImageReader::open(file).map_err(|error| wrong(&error))?;
+    let opened = open_regular(file).map_err(|error| wrong(&error))?;
+    let reader = image::ImageReader::new(BufReader::new(opened));
     let reader = reader.with_guessed_format().map_err(|error| wrong(&error))?;
     let image = eight_bits(reader.decode().map_err(|error| wrong(&error))?);
     if image.width() == 0 || image.height() == 0 {

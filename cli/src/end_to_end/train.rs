@@ -1,6 +1,5 @@
 //! Training in rounds.
 
-use std::fs;
 use std::num::NonZero;
 use std::path::Path;
 
@@ -9,6 +8,7 @@ use roverlab::drive::lane_keeping::LaneKeeperParameters;
 use roverlab::drive::traffic::{FreeDrive, FreeDriveRules};
 use roverlab::io::control::{run, until};
 use roverlab::io::sim::Simulation;
+use roverlab::io::write_whole;
 use roverlab::learn::{Loss, Trainer, TrainerOptions};
 use roverlab::random::Stream;
 use roverlab::vision::network::Network;
@@ -81,7 +81,7 @@ pub(super) fn train(args: &Args, out: &Path) -> Result<Report, Failure> {
         args.common.tell(row.text(round));
         rows.push(row.json());
     }
-    fs::write(out, &bytes).map_err(|error| Failure::run(format!("--out {}: {error}", out.display())))?;
+    write_whole(out, &bytes).map_err(|error| Failure::run(format!("--out {}: {error}", out.display())))?;
     store.close((0..MOST_ROUNDS).map(file_of))?;
     Ok(Report::new(Outcome::verdict("learned"))
         .field("architecture", args.architecture.to_string())

@@ -1,6 +1,6 @@
-use std::fs;
 use std::path::PathBuf;
 
+use roverlab::io::write_whole;
 use roverlab::picture::Picture;
 
 use super::Args;
@@ -50,7 +50,8 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     lines.extend(graded.iter().map(|program| program.line(&places)));
     if let Some(file) = &args.html {
         let text = page(&rubric, &places, &graded);
-        fs::write(file, text).map_err(|error| Failure::run(format!("--html {}: {error}", file.display())))?;
+        write_whole(file, text.as_bytes())
+            .map_err(|error| Failure::run(format!("--html {}: {error}", file.display())))?;
     }
     let rows: Vec<_> = graded.iter().map(|program| program.value(&places)).collect();
     let report = Report::new(Outcome::verdict("graded"))

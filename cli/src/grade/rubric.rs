@@ -1,9 +1,10 @@
-use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 
+use roverlab::io::open_regular;
 use serde::Deserialize;
 
-use crate::common::Failure;
+use crate::common::{Failure, toml_places};
 
 /// What programs have to do, and under which conditions.
 #[derive(Debug, Clone, Deserialize)]
@@ -61,19 +62,17 @@ impl Rubric {
     /// Reads a rubric. Fails with the line and column of what is wrong.
     pub(super) fn read(file: &Path) -> Result<Self, Failure> {
         let name = file.display();
-        // A device may have no end, and whoever writes into a pipe may never come.
-        if fs::metadata(file).is_ok_and(|found| !found.is_file() && !found.is_dir()) {
-            return Err(Failure::input(format!("{name}: is a FIFO or a device; expected a regular file")));
-        }
-        let text = fs::read_to_string(file)
+        let text = open_regular(file)
+            .and_then(io::read_to_string)
             .map_err(|error| Failure::input(format!("{name}: {error}; expected a rubric")))?;
         let mut rubric: Self = toml::from_str(&text).map_err(|error| {
-            let before = &text[..error.span().map_or(0, |span| span.start).min(text.len())];
-            let line = before.matches('\n').count() + 1;
-            let column = before.len() - before.rfind('\n').map_or(0, |end| end + 1) + 1;
-            Failure::input(format!("{name}:{line}:{column}: {}", error.message().replace('\n', ", ")))
+            let place = toml_places::of_byte(&text, error.span().map_or(0, |span| span.start));
+            Failure::input(format!("{name}:{place}: {}", error.message().replace('\n', ", ")))
         })?;
-        rubric.check().map_err(|message| Failure::input(format!("{name}: {message}")))?;
+        rubric.check().map_err(|Wrong { path, message }| {
+            let place = toml_places::of_value(&text, &path);
+            Failure::input(format!("{name}:{place}: {message}"))
+        })?;
         let folder = file.parent().unwrap_or(Path::new("."));
         for task in &mut rubric.worlds {
             task.file = folder.join(&task.file);
@@ -84,7 +83,7 @@ impl Rubric {
         Ok(rubric)
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), Wrong> {
         let numbers = [
             ("seeds", self.seeds as f64, 1.0, 1000.0),
             ("noise", self.noise, 0.0, 5.0),
@@ -93,39 +92,59 @@ impl Rubric {
         ];
         numbers.into_iter().try_for_each(|(name, value, least, most)| check(name, value, least, most))?;
         if self.worlds.is_empty() {
-            return Err("found no world; expected at least one table [[world]]".into());
+            let message = "found no world; expected at least one table [[world]]";
+            return Err(Wrong { path: vec!["world".into()], message: message.into() });
         }
-        self.worlds.iter().try_for_each(Task::check)
+        self.worlds.iter().enumerate().try_for_each(|(index, task)| {
+            task.check().map_err(|wrong| {
+                let path = ["world".into(), index.to_string()].into_iter().chain(wrong.path).collect();
+                Wrong { path, ..wrong }
+            })
+        })
     }
 }
 
 impl Task {
-    fn check(&self) -> Result<(), String> {
-        for place in self.visit.iter().chain(&self.end) {
-            check("radius of a place", place[2], 1.0, 1e6)?;
-        }
-        let places = self.visit.iter().chain(&self.end).chain([&self.start]);
-        for number in places.flatten() {
-            check("coordinate", *number, -1e6, 1e6)?;
+    fn check(&self) -> Result<(), Wrong> {
+        let visits = self.visit.iter().map(|place| ("visit", place));
+        let end = self.end.iter().map(|place| ("end", place));
+        for (key, place) in visits.chain(end).chain([("start", &self.start)]) {
+            let at = |wrong| Wrong { path: vec![key.into()], ..wrong };
+            if key != "start" {
+                check("radius of a place", place[2], 1.0, 1e6).map_err(at)?;
+            }
+            for number in place {
+                check("coordinate", *number, -1e6, 1e6).map_err(at)?;
+            }
         }
         check("cover", self.cover.unwrap_or(0.0), 0.0, 100.0)?;
         if self.visit.is_empty() && self.end.is_none() && self.cover.is_none() {
-            return Err("a world has no visit, end or cover; expected at least one of them".into());
+            let message = "a world has no visit, end or cover; expected at least one of them";
+            return Err(Wrong { path: Vec::new(), message: message.into() });
         }
         Ok(())
     }
 }
 
-fn check(name: &str, value: f64, least: f64, most: f64) -> Result<(), String> {
+/// What is wrong with a rubric, and the path to it.
+#[derive(Debug)]
+struct Wrong {
+    path: Vec<String>,
+    message: String,
+}
+
+fn check(key: &str, value: f64, least: f64, most: f64) -> Result<(), Wrong> {
     if (least..=most).contains(&value) {
         return Ok(());
     }
-    Err(format!("{name}: found {value}; expected {least} to {most}"))
+    let message = format!("{key}: found {value}; expected {least} to {most}");
+    Err(Wrong { path: vec![key.into()], message })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     /// Every rubric of the project reads, and its worlds exist.
     #[test]
@@ -151,9 +170,9 @@ mod tests {
         let whole = "title = 'x'\nseeds = 3\ntime_limit = 9\n[[world]]\nfile = 'a.wld'\nstart = [0, 0, 0]\n";
         for (text, expected) in [
             (format!("{whole}frob = 1\n"), "wrong.toml:7:1: unknown field `frob`"),
-            (whole.to_owned(), "no visit, end or cover"),
-            (format!("{whole}end = [1, 1, 0]\n"), "radius of a place: found 0"),
-            (whole.replace("seeds = 3", "seeds = 0"), "seeds: found 0; expected 1 to 1000"),
+            (whole.to_owned(), "wrong.toml:4:1: a world has no visit, end or cover"),
+            (format!("{whole}end = [1, 1, 0]\n"), "wrong.toml:7:7: radius of a place: found 0"),
+            (whole.replace("seeds = 3", "seeds = 0"), "wrong.toml:2:9: seeds: found 0; expected 1 to 1000"),
             ("title = 'x'".into(), "missing field"),
         ] {
             fs::write(&file, text).unwrap();

@@ -1,5 +1,4 @@
 use std::ffi::OsString;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -11,7 +10,7 @@ use super::place::Place;
 use super::program::{Kind, Program, runner};
 use super::rubric::Rubric;
 use super::workplace::Workplace;
-use crate::common::own_program;
+use crate::common::{own_program, recording_bytes};
 use crate::replay::true_path;
 
 /// Result of one run of a program.
@@ -149,7 +148,7 @@ fn lab(words: &[String], folder: &Workplace, terms: &Terms<'_>) -> Result<Ran, S
     command.args(options.iter().flat_map(|(name, value)| [OsString::from(name), value.clone()]));
     let (report, said) = answer(&mut command, folder)?;
     let outcome = report["outcome"].as_str().unwrap_or_default();
-    let read = fs::read(&log).ok().and_then(|bytes| Log::read(bytes).ok());
+    let read = recording_bytes(&log).ok().and_then(|bytes| Log::read(bytes).ok());
     Ok(Ran {
         // What a command calls its success is its own word.
         outcome: if report.is_null() { "failed" } else { word(outcome) },

@@ -2,12 +2,13 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
+
+use roverlab::io::TemporaryFolder;
 
 /// A folder for one run, removed with all that is in it.
 #[derive(Debug)]
 pub(super) struct Workplace {
-    path: PathBuf,
+    folder: TemporaryFolder,
     /// What was there before the run.
     known: BTreeSet<String>,
 }
@@ -18,15 +19,11 @@ const MOST: u64 = 10_000_000;
 impl Workplace {
     /// Creates an empty folder.
     pub(super) fn new() -> io::Result<Self> {
-        static NEXT: AtomicU64 = AtomicU64::new(0);
-        let number = NEXT.fetch_add(1, Ordering::Relaxed);
-        let path = std::env::temp_dir().join(format!("roverlab-grade-{}-{number}", std::process::id()));
-        fs::create_dir(&path)?;
-        Ok(Self { path, known: BTreeSet::new() })
+        Ok(Self { folder: TemporaryFolder::new("roverlab-grade-")?, known: BTreeSet::new() })
     }
 
     pub(super) fn path(&self) -> &Path {
-        &self.path
+        self.folder.path()
     }
 
     /// Copies a program and the files beside its source text, without other programs to grade. Returns its
@@ -38,25 +35,18 @@ impl Workplace {
             let file = entry.path();
             let fits = entry.metadata().is_ok_and(|about| about.is_file() && about.len() <= MOST);
             if fits && !others.contains(&file) {
-                fs::copy(&file, self.path.join(entry.file_name()))?;
+                fs::copy(&file, self.path().join(entry.file_name()))?;
             }
         }
-        let own = self.path.join(program.file_name().unwrap_or_default());
+        let own = self.path().join(program.file_name().unwrap_or_default());
         fs::copy(program, &own)?;
-        self.known = names(&self.path).into_iter().collect();
+        self.known = names(self.path()).into_iter().collect();
         Ok(own)
     }
 
     /// Names of the files that have come since.
     pub(super) fn written(&self) -> Vec<String> {
-        names(&self.path).into_iter().filter(|name| !self.known.contains(name)).collect()
-    }
-}
-
-impl Drop for Workplace {
-    fn drop(&mut self) {
-        // What cannot be removed stays in the system's folder for such files.
-        let _ = fs::remove_dir_all(&self.path);
+        names(self.path()).into_iter().filter(|name| !self.known.contains(name)).collect()
     }
 }
 

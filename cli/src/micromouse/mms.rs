@@ -136,13 +136,14 @@ impl Program {
         let name = words.next().ok_or_else(|| {
             Failure::input("--mms-run: found no name; expected a program and its arguments")
         })?;
-        let mut child =
-            Command::new(name).args(words).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().map_err(
-                |error| {
-                    let expected = "expected a program that can be started";
-                    Failure::input(format!("--mms-run {name}: found {error}; {expected}"))
-                },
-            )?;
+        let mut command = Command::new(name);
+        command.args(words).stdin(Stdio::piped()).stdout(Stdio::piped());
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        let mut child = command.spawn().map_err(|error| {
+            let expected = "expected a program that can be started";
+            Failure::input(format!("--mms-run {name}: found {error}; {expected}"))
+        })?;
         let (say, said) = sync_channel(PIPE);
         let (answers, to_answer) = sync_channel::<String>(PIPE);
         if let Some(output) = child.stdout.take() {
@@ -235,7 +236,12 @@ fn ended(name: &str, status: ExitStatus) -> Result<(), String> {
 
 impl Drop for Program {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // It may have ended by itself, without those that it started.
+        #[cfg(unix)]
+        let _ = rustix::process::kill_process_group(
+            rustix::process::Pid::from_child(&self.child),
+            rustix::process::Signal::KILL,
+        );
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

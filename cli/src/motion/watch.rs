@@ -71,7 +71,12 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         let run = approach::run(&conditions, &scene, &camera, paced(common))?;
         let report = report(&run, &scene, seconds, |seen| approach::outcome(seen.is_reached))
             .field("distance_mm", approach::distance(&run, &scene).map(|metres| rounded(1e3 * metres)));
-        return Ok(common.draw(report, "motion.svg", || picture(&scene, &run)));
+        let title = match &run.ending {
+            Ok(seen) if seen.is_reached => "Driving to what moves: reached",
+            Ok(_) => "Driving to what moves: timed out",
+            Err(_) => "Driving to what moves: the robot failed",
+        };
+        return Ok(common.draw(report, "motion.svg", || picture(title, &scene, &run)));
     }
     let parameters = MotionWatchParameters::new(camera.field_of_view);
     let mut watch = MotionWatch::new(parameters).map_err(Failure::input)?;
@@ -87,7 +92,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     })?;
     let run = run.lasting(seconds);
     let report = report(&run, &scene, seconds, |_| Outcome::verdict("watched"));
-    Ok(common.draw(report, "motion.svg", || picture(&scene, &run)))
+    Ok(common.draw(report, "motion.svg", || picture("Watching for motion", &scene, &run)))
 }
 
 /// Report on a run.
@@ -104,11 +109,11 @@ fn report(run: &Run<Seen>, scene: &Scene, seconds: f64, outcome: impl Fn(&Seen) 
 }
 
 /// The other robot's path, and the sector of each alarm at the robot's pose.
-fn picture(scene: &Scene, run: &Run<Seen>) -> Picture {
+fn picture(title: &str, scene: &Scene, run: &Run<Seen>) -> Picture {
     let spec = &scene.robots[0].spec;
     let mut drawing = Picture::new(&scene.world);
     let alarms = run.ending.as_ref().map_or(&[][..], |seen| &seen.alarms);
-    drawing.title("Watching for motion").caption(format!(
+    drawing.title(title).caption(format!(
         "{} alarms, turned by {:.0} deg in {:.0} s",
         alarms.len(),
         units::to_deg(angle_difference(run.truth.pose.heading, scene.robots[0].pose.heading)),

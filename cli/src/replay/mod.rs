@@ -8,11 +8,11 @@ mod info;
 mod ros2;
 
 use std::fmt::Display;
-use std::fs;
 use std::io::Write;
 use std::path::Path;
 
 use roverlab::io::log::{Log, LogFile, recover};
+use roverlab::io::write_whole;
 use serde_json::{Value, json};
 
 use crate::common::{Failure, Printed, recording_bytes, unrecordable};
@@ -63,7 +63,7 @@ fn read(file: &Path) -> Result<Log, Failure> {
 }
 
 fn write(file: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    fs::write(file, bytes).map_err(|error| unwritable(file.display(), &error))
+    write_whole(file, bytes).map_err(|error| unwritable(file.display(), &error))
 }
 
 fn unwritable(name: impl Display, error: &dyn Display) -> Failure {

@@ -2,10 +2,11 @@ use std::collections::BTreeSet;
 use std::io::{self, BufReader};
 use std::path::Path;
 
+use roverlab::io::open_regular;
 use roverlab::vision::signs::Area;
 
 use super::Marked;
-use crate::common::{Failure, open_regular};
+use crate::common::Failure;
 
 /// Pictures with known signs.
 #[derive(Debug)]

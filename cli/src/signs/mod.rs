@@ -8,10 +8,10 @@ mod frames;
 #[cfg(feature = "learn")]
 mod network;
 
-use std::fs;
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
 
+use roverlab::io::write_whole;
 use roverlab::vision::RgbView;
 use roverlab::vision::signs::{Area, SignFinder, SignModel, SignTrainer};
 
@@ -139,7 +139,8 @@ fn train(args: &Args, from: &Path, out: &Path) -> Result<Report, Failure> {
     let finds = model.finds();
     let write = |model: SignModel| {
         let bytes = model.to_safetensors().map_err(Failure::run)?;
-        fs::write(out, &bytes).map_err(|error| Failure::run(format!("--out {}: {error}", out.display())))?;
+        write_whole(out, &bytes)
+            .map_err(|error| Failure::run(format!("--out {}: {error}", out.display())))?;
         Ok(bytes)
     };
     let bytes = if args.network {

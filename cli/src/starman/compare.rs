@@ -42,7 +42,9 @@ pub(crate) fn work(args: &Args, seeds: u32) -> Result<Report, Failure> {
         let wins = rows.iter().filter(|row| row.init == name && row.together > Some(row.best_last));
         args.body.then_some(wins.count())
     };
-    Ok(Report::new(Outcome::verdict("compared"))
+    let is_better = ["neutral", "uniform"].iter().all(|name| 2 * better(name) > seeds as usize);
+    let outcome = if is_better { Outcome::verdict("better") } else { Outcome::failure("no_better") };
+    Ok(Report::new(outcome)
         .field("seeds", seeds)
         .field("better_neutral", better("neutral"))
         .field("better_uniform", better("uniform"))

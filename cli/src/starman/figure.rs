@@ -6,7 +6,7 @@ use roverlab::io::Result;
 use roverlab::io::sim::starman::{BodyPlan, LIMBS, LimbPlan, Starman, StarmanSpec};
 use serde::Deserialize;
 
-use crate::common::{CommonArgs, Failure};
+use crate::common::{CommonArgs, Failure, toml_places};
 
 /// Body that learns to walk.
 #[derive(Debug, Clone, PartialEq)]
@@ -99,12 +99,15 @@ impl Figure {
     /// A body from a file's text.
     pub(crate) fn parse(text: &str, name: &str) -> std::result::Result<Self, Failure> {
         let file: File = toml::from_str(text).map_err(|error| {
-            let before = &text[..error.span().map_or(0, |span| span.start).min(text.len())];
-            let line = before.matches('\n').count() + 1;
-            Failure::input(format!("{name}:{line}: {}", error.message().replace('\n', ", ")))
+            let place = toml_places::of_byte(text, error.span().map_or(0, |span| span.start));
+            Failure::input(format!("{name}:{place}: {}", error.message().replace('\n', ", ")))
         })?;
         let plan = file.plan();
-        plan.validate().map_err(|error| Failure::input(format!("{name}: {error}")))?;
+        plan.validate().map_err(|error| {
+            let message = error.to_string();
+            let place = toml_places::of_value(text, &path(&message));
+            Failure::input(format!("{name}:{place}: {message}"))
+        })?;
         Ok(Self::Tree(plan))
     }
 
@@ -145,6 +148,25 @@ impl Figure {
             Self::Star(spec) => (0.0, spec.body_radius),
             Self::Tree(plan) => (0.5 * plan.length, plan.radius),
         }
+    }
+}
+
+/// Path in a file of the parameter that an error of a plan begins with.
+fn path(message: &str) -> Vec<String> {
+    let name = message.split(" is ").next().unwrap_or_default();
+    let of_limb = |number: &str, key: &str| {
+        let index = number.parse::<usize>().unwrap_or_default().saturating_sub(1);
+        vec!["limb".into(), index.to_string(), key.into()]
+    };
+    if let Some(number) = name.strip_prefix("parent of limb ") {
+        return of_limb(number, "on");
+    }
+    match name.strip_prefix("limb ").and_then(|rest| rest.split_once(": ")) {
+        Some((number, key)) => of_limb(number, key),
+        None => match name.strip_prefix("body ") {
+            Some(key) => vec!["body".into(), key.into()],
+            None => vec![name.replace(' ', "_")],
+        },
     }
 }
 
@@ -252,9 +274,14 @@ mod tests {
             (text.replace("friction", "frction"), "unknown field `frction`"),
             (text.replacen("on = 1", "on = 7", 1), "parent of limb"),
             (text.replacen("mass = ", "mass = -", 1), "body mass"),
+            (text.replacen("mass = ", "mass = 1e300 #", 1), "body mass"),
+            (text.replacen("friction = ", "friction = 1e300 #", 1), "friction"),
+            (text.replacen("range = ", "range = 1e300 #", 1), "limb 1: range"),
         ] {
+            let changed = text.lines().zip(KNOWN[0].1.lines()).take_while(|(new, old)| new == old).count();
             let error = Figure::parse(&text, "x.toml").unwrap_err().to_string();
-            assert!(error.starts_with("x.toml") && error.contains(expected), "{error}");
+            let place = format!("x.toml:{}:", changed + 1);
+            assert!(error.starts_with(&place) && error.contains(expected), "{error}");
         }
     }
 }

@@ -8,9 +8,11 @@ mod steps;
 mod strip;
 
 use std::ffi::OsString;
+use std::io;
 
 use roverlab::evolve::{GenerationStatistics, chart, serve, table};
 use roverlab::geometry::units;
+use roverlab::io::{open_regular, write_whole};
 
 use crate::common::{Failure, Outcome, Report, rounded};
 use figure::Figure;
@@ -24,12 +26,11 @@ pub(crate) fn work_for_another(words: &[OsString]) -> Option<u8> {
     let words: Vec<&str> = words.iter().skip(1).map(|word| word.to_str()).collect::<Option<_>>()?;
     let [WORKER, seconds, leading, evolves, figure] = words.as_slice() else { return None };
     let (seconds, leading) = seconds.parse().ok().zip(leading.parse().ok())?;
-    let read = || Figure::parse(&std::fs::read_to_string(figure).ok()?, figure).ok();
+    let read = || Figure::parse(&io::read_to_string(open_regular(figure).ok()?).ok()?, figure).ok();
     let figure = Figure::named(figure).or_else(read)?.into();
     let evolves = *evolves == "true";
     let trials = evolution::Trials { figure, evolves, seconds, leading, ..evolution::Trials::default() };
-    let ended =
-        serve(std::io::stdin().lock(), std::io::stdout().lock(), |bytes: &Vec<u8>, _| trials.fitness(bytes));
+    let ended = serve(io::stdin().lock(), io::stdout().lock(), |bytes: &Vec<u8>, _| trials.fitness(bytes));
     Some(u8::from(ended.is_err()))
 }
 
@@ -74,7 +75,7 @@ fn keep_statistics(args: &Args, history: &[GenerationStatistics]) -> Result<(), 
     let Some(file) = &args.statistics else { return Ok(()) };
     let told = |error: &dyn std::fmt::Display| format!("--statistics {}: {error}", file.display());
     if file.extension().is_some_and(|ending| ending == "csv") {
-        std::fs::write(file, table(history)).map_err(|error| told(&error))
+        write_whole(file, table(history).as_bytes()).map_err(|error| told(&error))
     } else {
         chart(history).save(file).map_err(|error| told(&error))
     }

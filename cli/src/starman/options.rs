@@ -31,7 +31,8 @@ JSON fields:
 With --compare, `rows`: seed, best_first, best_last, ratio, random (the best of as many random gaits), together (with --body:
 body and gait evolved with as many evaluations), and the number of seeds in which either is better. With --steps, `rows`: time step, and of the gaits that move more than 5 mm their number and the
 median change of the distance when the step is halved.
-Outcomes: evolved, compared, failed."
+Outcomes: evolved; better (with --compare: from either beginning, the evolved gait is better than the best random one in more
+than half of the seeds), no_better; compared (with --steps), failed."
 )]
 pub(crate) struct Args {
     /// Number of individuals in a generation.

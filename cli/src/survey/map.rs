@@ -1,10 +1,10 @@
 use std::fmt::Write as _;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use image::{Rgb, RgbImage};
 use roverlab::drive::marine::DepthMap;
 use roverlab::geometry::units::to_mm;
+use roverlab::io::write_whole;
 use roverlab::picture::ramp;
 
 use crate::common::{Failure, rounded};
@@ -26,8 +26,8 @@ pub(super) fn save(map: &DepthMap, cell: f64, picture: &Path) -> Result<(), Fail
         Failure::run(format!("--map {}: {error}", file.display()))
     };
     painted(map).save(&png).map_err(|error| failed(&png, &error))?;
-    fs::write(&asc, grid(map, cell)).map_err(|error| failed(&asc, &error))?;
-    fs::write(&csv, table(map)).map_err(|error| failed(&csv, &error))
+    write_whole(&asc, grid(map, cell).as_bytes()).map_err(|error| failed(&asc, &error))?;
+    write_whole(&csv, table(map).as_bytes()).map_err(|error| failed(&csv, &error))
 }
 
 /// The shallowest and the deepest cell.

@@ -290,6 +290,10 @@ fn pipes_and_devices_are_no_files() {
         let expected = "is a FIFO; expected a regular file";
         assert!(status == 2 && err.contains(expected), "{command} {options:?}: {err}");
     }
+    if std::path::Path::new("/proc/self").exists() {
+        let (status, _, err) = said("navigate", &["--world", "/proc/self/status"]);
+        assert!(status == 2 && err.contains("is a file of the system; expected a regular file"), "{err}");
+    }
     if cfg!(feature = "native") {
         let (status, _, err) = said("grade", &["/dev/zero", "roverlab distbug"]);
         assert!(status == 2 && err.contains("/dev/zero: is a device; expected a regular file"), "{err}");

@@ -203,7 +203,9 @@ fn two_racers_of_different_kinds_race_for_places() {
         let (_, report, err) = race(&["--seed", "1", "--laps", "2", "--rival", rival]);
         assert_eq!(err, "", "{report}");
         assert!(report["outcome"] == outcome && report["touched"] == false, "{report}");
-        assert!(report["passed"] == true && report["rival_off_course"] == 0, "{report}");
+        let passed = [&report["passed"], &report["overtaken"]].map(|passed| passed == true);
+        assert_eq!(passed, [rival == "gap", rival == "recorded"], "{report}");
+        assert_eq!(report["rival_off_course"], 0, "{report}");
     }
     for option in [&["--sensors", "camera"][..], &["--supervised"], &["--fault", "stuck@3"]] {
         let (status, _, err) = race(&[&["--rival", "gap"], option].concat());

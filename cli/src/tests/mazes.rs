@@ -4,8 +4,14 @@
 //! that contains `micromouse/`.
 
 use std::fs;
+#[cfg(unix)]
+use std::{
+    process::{Command, Stdio},
+    thread,
+    time::Duration,
+};
 
-use super::support::{self, Ended, published, temporary};
+use super::support::{self, Ended, published, temporary, text};
 use crate::micromouse;
 use roverlab::maze::files::{self, MazeFormat};
 use roverlab::maze::{Preference, Unknown, distances_from_start, distances_to_goal, shortest_route};
@@ -165,6 +171,16 @@ fn hostile_mice_are_stopped_and_named() {
         assert_eq!((status, &report["outcome"]), (1, &"failed".into()), "{name}");
         assert!(err.contains(expected), "{name}: {err}");
         assert_eq!(report["score"], 2000.0);
+    }
+    // What a mouse has started ends with it.
+    let (pid, forks) = (temporary("fork.pid"), "sleep 60 >&- & echo $! > PID; echo mazeWidth; exec sleep 60");
+    run_script("forks", &forks.replace("PID", text(&pid)));
+    let child = fs::read_to_string(&pid).unwrap();
+    let is_alive = || Command::new("kill").args(["-0", child.trim()]).stderr(Stdio::null()).status().unwrap();
+    let mut looks = 0..500;
+    while is_alive().success() {
+        assert!(looks.next().is_some(), "process {child} goes on");
+        thread::sleep(Duration::from_millis(10));
     }
     let dawdles = temporary("dawdles.sh");
     fs::write(&dawdles, "while :; do echo mazeWidth; read -r answer; sleep 0.1; done").unwrap();

@@ -16,6 +16,7 @@ use crate::plan::{BUILD, Plan, names};
 use crate::process;
 use crate::report::{Report, Stage};
 use crate::verdict::{Ending, Truth, Verdict};
+use roverlab::io::TemporaryFolder;
 use roverlab::world::Scene;
 
 use super::options::{Options, whole};
@@ -23,7 +24,6 @@ use super::panels::Panels;
 use super::place::{home, library};
 use super::programs::{Program, is_python};
 use super::stopwatch::Stopwatch;
-use super::work_folder::WorkFolder;
 
 /// A running program.
 #[derive(Debug)]
@@ -50,7 +50,7 @@ pub(crate) fn run_alone(
     plan: &Plan,
     scene: &Scene,
     options: &Options,
-    folder: &WorkFolder,
+    folder: &TemporaryFolder,
 ) -> Result<Vec<Verdict>, String> {
     let mut plan = plan.clone();
     plan.index = program.robot;
@@ -77,7 +77,7 @@ pub(crate) fn start(
     program: &Program,
     variables: BTreeMap<&'static str, OsString>,
     options: &Options,
-    folder: &WorkFolder,
+    folder: &TemporaryFolder,
     stopwatch: Stopwatch,
     panels: Option<&Panels>,
 ) -> Result<Result<Running, String>, String> {
@@ -184,11 +184,11 @@ fn search_path(name: &str, first: &[&Path]) -> OsString {
 }
 
 /// A link to the library under its other name, for programs linked against the real robot's.
-fn second_name(library: &Path, folder: &WorkFolder) {
+fn second_name(library: &Path, folder: &TemporaryFolder) {
     let name = library.file_name().map(|name| name.to_string_lossy().replace("eyesim", "eyebot"));
     if let Some(name) = name {
         // It may exist already, and most programs do not need it.
-        let _ = std::os::unix::fs::symlink(library, folder.file(&name));
+        let _ = std::os::unix::fs::symlink(library, folder.path().join(&name));
     }
 }
 

@@ -15,7 +15,7 @@ use crate::wire::{Answer, LONGEST_REQUEST, Question};
 use roverlab::geometry::Pose;
 use roverlab::io::log::{Header, LogFile, LogWriter};
 use roverlab::io::sim::{SimOptions, Simulation, TICK, Truth as World};
-use roverlab::io::{self, Clock, ErrorKind, RobotIo};
+use roverlab::io::{self, Clock, ErrorKind, RobotIo, TemporaryFolder};
 use roverlab::world::Scene;
 use roverlab_view::serve::Beside;
 
@@ -25,7 +25,6 @@ use super::panels::Panels;
 use super::picture;
 use super::programs::Program;
 use super::stopwatch::Stopwatch;
-use super::work_folder::WorkFolder;
 
 /// The end of a program from its host's perspective.
 #[derive(Debug)]
@@ -53,7 +52,7 @@ pub(crate) fn run_together(
     plan: &Plan,
     scene: &Scene,
     options: &Options,
-    folder: &WorkFolder,
+    folder: &TemporaryFolder,
     page: Option<&Beside>,
 ) -> Result<Vec<Verdict>, String> {
     let trail = options.trail.or(options.picture.is_some().then_some(TRAIL));

@@ -10,7 +10,6 @@ mod picture;
 mod place;
 mod programs;
 mod stopwatch;
-mod work_folder;
 
 use std::ffi::OsString;
 use std::io::Write;
@@ -21,6 +20,7 @@ use clap::Parser;
 use crate::verdict::{self, Summary, Verdict};
 use options::{Command, Options};
 pub use place::Place;
+use roverlab::io::TemporaryFolder;
 use roverlab_view::serve::{Beside, Opening};
 use stopwatch::Stopwatch;
 
@@ -110,7 +110,7 @@ fn run(options: &Options, warnings: &mut Vec<String>) -> Result<Summary, String>
             ["--cpu-time: what a program computes is charged, so runs are not reproducible".into()],
         );
     }
-    let folder = work_folder::WorkFolder::new()?;
+    let folder = TemporaryFolder::new("robios-").map_err(|error| error.to_string())?;
     let programs = programs::of(options, &scene, &folder)?;
     warn(warnings, programs.iter().filter_map(|program| program.warning.clone()));
     let page = options.view.map(|port| page(options, port)).transpose()?;

@@ -1,6 +1,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use roverlab::io::TemporaryFolder;
 use roverlab::world::Scene;
 use roverlab::world::formats::in_any_case;
 
@@ -8,7 +9,6 @@ use super::compiler;
 use super::options::{Options, ends_in, whole};
 use super::place::{home, library};
 use super::stopwatch::Stopwatch;
-use super::work_folder::WorkFolder;
 use crate::files;
 
 /// A program and the robot it drives.
@@ -30,7 +30,7 @@ pub(crate) struct Program {
 }
 
 /// The programs of a run. Fails if a file is missing.
-pub(crate) fn of(options: &Options, scene: &Scene, folder: &WorkFolder) -> Result<Vec<Program>, String> {
+pub(crate) fn of(options: &Options, scene: &Scene, folder: &TemporaryFolder) -> Result<Vec<Program>, String> {
     if !options.is_script() {
         let program = &options.program;
         files::require_regular(program)?;
@@ -61,7 +61,7 @@ pub(crate) fn of(options: &Options, scene: &Scene, folder: &WorkFolder) -> Resul
 
 /// A program named in a script: relative to the script, in the script's own folder, or else the only source
 /// text of that folder, with a warning. Programs outside the script's folder need the user's leave.
-fn named(base: &Path, name: &str, robot: usize, options: &Options, folder: &WorkFolder) -> Program {
+fn named(base: &Path, name: &str, robot: usize, options: &Options, folder: &TemporaryFolder) -> Program {
     let path = base.join(name.replace('\\', "/"));
     let beside = path.file_name().map(|file| base.join(file));
     let may_start = |file: &PathBuf| options.allow_outside || is_inside(file, base);
@@ -100,7 +100,7 @@ fn prepared(
     found: Result<PathBuf, String>,
     robot: usize,
     options: &Options,
-    folder: &WorkFolder,
+    folder: &TemporaryFolder,
 ) -> Program {
     let own_folder = found.as_ref().ok().and_then(|file| file.parent()).map(Path::to_owned);
     let file = found.and_then(|file| if is_source(&file) { compile(&file, folder, robot) } else { Ok(file) });
@@ -181,8 +181,8 @@ fn starts_here(path: &Path) -> bool {
 }
 
 /// Compiles a program for a robot.
-fn compile(source: &Path, folder: &WorkFolder, robot: usize) -> Result<PathBuf, String> {
-    let program = folder.file(&format!("program{robot}.x"));
+fn compile(source: &Path, folder: &TemporaryFolder, robot: usize) -> Result<PathBuf, String> {
+    let program = folder.path().join(format!("program{robot}.x"));
     compile_to(source, &program)?;
     Ok(program)
 }

@@ -67,7 +67,8 @@ pub enum WallOutcome {
     Stopped,
     /// The time limit came first.
     TimedOut,
-    /// The drive has stalled, or the robot keeps turning on the spot for lack of room.
+    /// The drive has stalled, or the robot keeps turning for lack of room: on the spot, or without getting
+    /// along a wall.
     Blocked,
 }
 
@@ -99,31 +100,39 @@ pub struct AlongWall<C> {
     spot: Spot,
 }
 
-/// Dead reckoning by commands since a place: displacement and total turn.
+/// Dead reckoning by commands since a place: displacement and total turn. The same since the robot was last
+/// along a wall.
 #[derive(Debug, Clone, Copy, Default)]
 struct Spot {
     /// Pose in the frame of the place.
     pose: Pose,
     turned: f64,
+    /// Length of the way along a wall without an interruption, and total turn since a long one.
+    along: f64,
+    turned_apart: f64,
     told: Twist,
 }
 
 /// Distance from a point within which the robot counts as being there (m).
 const HERE: f64 = 0.2;
-/// Turn in one place after which the robot counts as blocked (rad): around an obstacle that it follows, it
-/// moves along.
+/// Length of the way beside a wall from which on the robot has got along it (m).
+const ALONG: f64 = 0.3;
+/// Turn in one place, or apart from walls, after which the robot counts as blocked (rad): around an obstacle
+/// that it follows, it moves along.
 const ROUND: f64 = 3.0 * std::f64::consts::TAU;
 
 impl Spot {
     /// Integrates the commanded velocity. Returns whether the robot only turns round.
-    fn advance(&mut self, seconds: f64) -> bool {
-        let angle = self.told.angular * seconds;
-        self.pose = advance(self.pose, Displacement { length: self.told.linear * seconds, angle });
+    fn advance(&mut self, seconds: f64, is_beside_wall: bool) -> bool {
+        let (length, angle) = (self.told.linear * seconds, self.told.angular * seconds);
+        self.pose = advance(self.pose, Displacement { length, angle });
         self.turned += angle;
         if self.pose.distance_to(Point::origin()) > HERE {
-            *self = Self { told: self.told, ..Self::default() };
+            (self.pose, self.turned) = (Pose::default(), 0.0);
         }
-        self.turned.abs() > ROUND
+        self.along = if is_beside_wall { self.along + length } else { 0.0 };
+        self.turned_apart = if self.along > ALONG { 0.0 } else { self.turned_apart + angle };
+        self.turned.abs().max(self.turned_apart.abs()) > ROUND
     }
 }
 
@@ -160,7 +169,7 @@ impl<C: FollowsWalls> Behaviour for AlongWall<C> {
             return Ok(ControlFlow::Break(WallOutcome::Blocked));
         }
         let seconds = last.map_or(0.0, |last| time - last);
-        if self.spot.advance(seconds) {
+        if self.spot.advance(seconds, self.controller.is_beside_wall()) {
             return Ok(ControlFlow::Break(WallOutcome::Blocked));
         }
         self.spot.told = self.controller.steer(&now.seen, seconds)?;

@@ -1,7 +1,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::*;
-use crate::geometry::{Point, Pose, Twist};
+use crate::geometry::{Point, Pose, Twist, direction};
 use crate::io::control::run;
 use crate::io::sim::{SimOptions, SimRobot, Simulation};
 use crate::random::Stream;
@@ -181,4 +181,14 @@ fn without_room_a_robot_is_blocked() {
     let mut robot = simulation().robot(0).unwrap();
     let pid = PidWallFollower::new(PidWallFollowerParameters::default()).unwrap();
     blocked(run(&mut robot, &mut AlongWall::new(pid), 60.0, |_, _, _| {}).unwrap());
+    // Seven walls around a metre leave room to drive in circles, but not along any of them.
+    let corner = |k: u32| Point::new(0.48, 0.48) + direction(f64::from(k % 7) * 2.0 * PI / 7.0) * 0.48;
+    let walls = (0..7).map(|k| Wall::new(corner(k), corner(k + 1)));
+    let world = World { walls: walls.collect(), ..World::walled(0.96, 0.96) };
+    let scene = Scene::with_robot(world, RobotSpec::s4(), Pose::new(0.48, 0.48, 310_f64.to_radians()));
+    let simulation = Simulation::new(&scene, SimOptions::with_noise(0.0, 4)).unwrap();
+    let pid = PidWallFollower::new(PidWallFollowerParameters::default()).unwrap();
+    let mut robot = simulation.robot(0).unwrap();
+    blocked(run(&mut robot, &mut AlongWall::new(pid), 150.0, |_, _, _| {}).unwrap());
+    assert_eq!(simulation.truth().robot(0).unwrap().contacts, 0);
 }

@@ -2,6 +2,8 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use crate::io::irregular;
+
 /// The file of a recording, which belongs to one recorder at a time.
 ///
 /// A new file is written in place, so that [`recover`](super::recover) finds in it what was recorded until a
@@ -107,8 +109,8 @@ impl Seek for LogFile {
 fn claimed(path: &Path) -> io::Result<File> {
     loop {
         // A device may have no end, and whoever reads from a pipe may never come.
-        if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
-            return Err(irregular());
+        if irregular(path).is_some() {
+            return Err(strange());
         }
         let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
         match file.try_lock() {
@@ -150,7 +152,7 @@ fn created(part: &Path, any: bool) -> io::Result<File> {
     match fs::symlink_metadata(part) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => {}
         Err(error) => return Err(error),
-        Ok(found) if !found.is_file() => return Err(irregular()),
+        Ok(found) if !found.is_file() => return Err(strange()),
         Ok(_) => {
             if !any {
                 is_recording(&File::open(part)?)?;
@@ -161,7 +163,7 @@ fn created(part: &Path, any: bool) -> io::Result<File> {
     OpenOptions::new().write(true).create_new(true).open(part)
 }
 
-fn irregular() -> io::Error {
+fn strange() -> io::Error {
     io::Error::other("found something that is no regular file")
 }
 

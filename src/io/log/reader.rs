@@ -171,12 +171,13 @@ pub(super) fn has_checksum(chunk: &Framed<'_>) -> bool {
     chunk.body.get(24..28).is_some_and(|crc| crc != [0; 4])
 }
 
-/// An upper limit of the uncompressed size of all chunks together.
+/// Upper limits of the uncompressed size of all chunks together, and of the number of their records.
 ///
-/// A file of a few kilobytes may hold gigabytes of zeros.
+/// A file of a few kilobytes may hold gigabytes of zeros, or of empty messages.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Budget {
     left: u64,
+    records: u64,
 }
 
 impl Budget {
@@ -184,9 +185,28 @@ impl Budget {
     pub(super) fn of(file: &[u8]) -> Self {
         /// Bytes per byte of the file: more than a chunk of a recording can be compressed, with its index.
         const PER_BYTE: u64 = 1 << 12;
+        /// The same for a long file, whose chunks are rarely all alike.
+        const PER_BYTE_OF_LONG: u64 = 1 << 4;
         /// Bytes for a very short file.
         const LEAST: u64 = 1 << 26;
-        Self { left: LEAST.saturating_add(PER_BYTE.saturating_mul(file.len() as u64)) }
+        /// Bytes unpacked from which on a file counts as long.
+        const LONG: u64 = 1 << 32;
+        let length = file.len() as u64;
+        let most = LONG.max(PER_BYTE_OF_LONG.saturating_mul(length));
+        let left = LEAST.saturating_add(PER_BYTE.saturating_mul(length).min(most));
+        // Messages differ in their times and numbers, which takes a byte each however they are packed.
+        Self { left, records: length }
+    }
+
+    /// Whether nothing is left.
+    pub(super) fn is_spent(self) -> bool {
+        self.left == 0 || self.records == 0
+    }
+
+    /// Spends what another budget, which has been this one, has spent.
+    pub(super) fn spend_as(&mut self, other: Self, spent: Self) {
+        self.left = self.left.saturating_sub(other.left - spent.left);
+        self.records = self.records.saturating_sub(other.records - spent.records);
     }
 
     /// Fails if less than some bytes is left.
@@ -220,7 +240,7 @@ pub(super) fn contents<'a>(record: &Framed<'a>, budget: &mut Budget) -> Result<C
         "" => data,
         name => {
             budget.spend(header.uncompressed_size)?;
-            Cow::Owned(unpacked(record, name, header.uncompressed_size)?)
+            Cow::Owned(unpacked(record, (name, header.uncompressed_size), &mut budget.records)?)
         }
     };
     if header.uncompressed_size != data.len() as u64 {
@@ -230,8 +250,9 @@ pub(super) fn contents<'a>(record: &Framed<'a>, budget: &mut Budget) -> Result<C
     Ok(data)
 }
 
-/// Decompresses a chunk, whose content has this number of bytes.
-fn unpacked(chunk: &Framed<'_>, name: &str, size: u64) -> Result<Vec<u8>, LogError> {
+/// Decompresses a chunk, given the name of the compression and the number of bytes of the content, and counts
+/// its records down from `records`.
+fn unpacked(chunk: &Framed<'_>, (name, size): (&str, u64), records: &mut u64) -> Result<Vec<u8>, LogError> {
     let damaged = |error: &dyn std::fmt::Display| {
         LogError::damaged(format!("{error} in the chunk at byte {}", chunk.start))
     };
@@ -254,6 +275,8 @@ fn unpacked(chunk: &Framed<'_>, name: &str, size: u64) -> Result<Vec<u8>, LogErr
                 if plain.len() + FRAME + data.len() > size as usize {
                     return Err(damaged(&"more than its length says"));
                 }
+                let more = || damaged(&"more records than the file has bytes");
+                *records = records.checked_sub(1).ok_or_else(more)?;
                 plain.push(opcode);
                 plain.extend_from_slice(&(data.len() as u64).to_le_bytes());
                 plain.extend_from_slice(data);

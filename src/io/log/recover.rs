@@ -1,3 +1,5 @@
+use std::borrow::Cow;
+
 use mcap::records::{Record, op};
 use mcap::write::NoSeek;
 use mcap::{McapError, Writer};
@@ -56,20 +58,56 @@ pub fn recover(bytes: &[u8]) -> Result<Recovery, LogError> {
     let mut at = mcap::MAGIC.len();
     let mut patience = PATIENCE * bytes.len();
     while at < bytes.len() {
-        let Some(record) = reader::record_at(bytes, at).filter(|record| is_sound(record, saving.budget))
-        else {
-            let next = next_guarded(bytes, at + 1, &mut patience, saving.budget);
-            saving.lost += next - at;
-            at = next;
-            continue;
+        let here = reader::record_at(bytes, at).and_then(|record| saving.limits.sound(record));
+        let found = here.or_else(|| next_guarded(bytes, at + 1, &mut patience, &mut saving.limits));
+        let Some(found) = found else {
+            saving.lost += bytes.len() - at;
+            break;
         };
-        at = record.end();
-        if record.opcode == op::DATA_END {
+        saving.lost += found.record.start - at;
+        at = found.record.end();
+        if found.record.opcode == op::DATA_END {
             break;
         }
-        saving.add(&record)?;
+        saving.add(&found)?;
     }
     saving.finish()
+}
+
+/// A record that can be parsed, with the uncompressed content of a chunk.
+struct Sound<'a> {
+    record: Framed<'a>,
+    contents: Cow<'a, [u8]>,
+}
+
+/// Limits of unpacking: what sound chunks have left, and what is left for others, so that damage costs no
+/// sound ones.
+struct Limits {
+    sound: Budget,
+    unsound: Budget,
+}
+
+impl Limits {
+    /// Checks a record, and unpacks it if it is a chunk.
+    fn sound<'a>(&mut self, record: Framed<'a>) -> Option<Sound<'a>> {
+        if record.opcode != op::CHUNK {
+            return is_sound(&record).then_some(Sound { record, contents: Cow::Borrowed(&[]) });
+        }
+        if self.unsound.is_spent() {
+            return None;
+        }
+        let before = self.sound;
+        let contents = reader::contents(&record, &mut self.sound).ok();
+        let are_sound = |contents: &Cow<'_, [u8]>| {
+            reader::inner(contents).all(|record| record.is_ok_and(|record| record.parse().is_ok()))
+        };
+        let contents = contents.filter(are_sound);
+        if contents.is_none() {
+            self.unsound.spend_as(before, self.sound);
+            self.sound = before;
+        }
+        contents.map(|contents| Sound { record, contents })
+    }
 }
 
 /// An empty recording like a damaged one. Fails if the file begins neither as an MCAP file nor with a record
@@ -84,7 +122,8 @@ fn begin(bytes: &[u8]) -> Result<Saving<'_>, LogError> {
         _ if bytes.len() == first => return Err(LogError::Truncated { at: bytes.len() as u64 }),
         _ => (String::new(), LIBRARY.to_owned()),
     };
-    let mut saving = Saving::new(&profile, &library, compression(bytes, first), Budget::of(bytes))?;
+    let limits = Limits { sound: Budget::of(bytes), unsound: Budget::of(bytes) };
+    let mut saving = Saving::new(&profile, &library, compression(bytes, first), limits)?;
     saving.declarations = reader::declarations(bytes);
     Ok(saving)
 }
@@ -100,16 +139,15 @@ fn compression(bytes: &[u8], start: usize) -> Compression {
     named.flatten().next().unwrap_or_default()
 }
 
-/// Whether a record and all its content can be parsed, and its length matches the content: a wrong length
-/// would swallow the following records.
-fn is_sound(record: &Framed<'_>, budget: Budget) -> bool {
+/// Whether a record that is no chunk can be parsed, and its length matches the content: a wrong length would
+/// swallow the following records.
+fn is_sound(record: &Framed<'_>) -> bool {
     // Kinds added by future formats or other programs.
     if record.opcode >= 0x80 {
         return true;
     }
     let Ok(parsed) = record.parse() else { return false };
     let length = match &parsed {
-        Record::Chunk { .. } => return is_sound_chunk(record, budget),
         Record::Header(header) => 4 + header.profile.len() + 4 + header.library.len(),
         Record::Metadata(metadata) => {
             if metadata.name == METADATA && Header::read(&metadata.metadata).is_none() {
@@ -128,27 +166,25 @@ fn is_sound(record: &Framed<'_>, budget: Budget) -> bool {
     length == record.body.len()
 }
 
-fn is_sound_chunk(record: &Framed<'_>, mut budget: Budget) -> bool {
-    let Ok(contents) = reader::contents(record, &mut budget) else { return false };
-    reader::inner(&contents).all(|record| record.is_ok_and(|record| record.parse().is_ok()))
-}
-
 /// Maximum number of passes over the bytes of a file: in a malicious file, every position seems to start a
 /// record that reaches to the end.
 const PATIENCE: usize = 100;
 
-/// Position of the next record with a valid checksum; the end of the file if there is none or the limit on
-/// passes is exceeded.
-fn next_guarded(bytes: &[u8], start: usize, patience: &mut usize, budget: Budget) -> usize {
-    for at in start..bytes.len() {
-        let Some(record) = reader::record_at(bytes, at).filter(is_guarded) else { continue };
-        let Some(rest) = patience.checked_sub(record.body.len()) else { break };
-        *patience = rest;
-        if is_sound(&record, budget) {
-            return at;
+/// The next record with a valid checksum, unless the limit on passes is exceeded.
+fn next_guarded<'a>(
+    bytes: &'a [u8],
+    start: usize,
+    patience: &mut usize,
+    limits: &mut Limits,
+) -> Option<Sound<'a>> {
+    let mut guarded = (start..bytes.len()).filter_map(|at| reader::record_at(bytes, at).filter(is_guarded));
+    guarded.find_map(|record| match patience.checked_sub(record.body.len()) {
+        None => Some(None),
+        Some(rest) => {
+            *patience = rest;
+            limits.sound(record).map(Some)
         }
-    }
-    bytes.len()
+    })?
 }
 
 /// Whether a record that is sound cannot be so by chance.
@@ -168,8 +204,7 @@ struct Saving<'a> {
     file: Writer<NoSeek<Vec<u8>>>,
     /// Schemas and channels from the file's summary, for messages whose own declaration is lost.
     declarations: Vec<Framed<'a>>,
-    /// The limit for further chunks.
-    budget: Budget,
+    limits: Limits,
     chunks: usize,
     messages: u64,
     header: bool,
@@ -177,13 +212,13 @@ struct Saving<'a> {
 }
 
 impl Saving<'_> {
-    fn new(profile: &str, library: &str, compression: Compression, budget: Budget) -> Result<Self, LogError> {
+    fn new(profile: &str, library: &str, compression: Compression, limits: Limits) -> Result<Self, LogError> {
         let options = write_options(compression)?.profile(profile).library(library);
         let file = options.create(NoSeek::new(Vec::new())).map_err(|error| damaged(&error))?;
-        Ok(Self { file, declarations: Vec::new(), budget, chunks: 0, messages: 0, header: false, lost: 0 })
+        Ok(Self { file, declarations: Vec::new(), limits, chunks: 0, messages: 0, header: false, lost: 0 })
     }
 
-    fn add(&mut self, record: &Framed<'_>) -> Result<(), LogError> {
+    fn add(&mut self, Sound { record, contents }: &Sound<'_>) -> Result<(), LogError> {
         let written = match record.parse()? {
             Record::Metadata(metadata) => {
                 let is_header = metadata.name == METADATA;
@@ -202,9 +237,8 @@ impl Saving<'_> {
                 data,
             }),
             Record::Chunk { .. } => {
-                let contents = reader::contents(record, &mut self.budget)?;
                 let lost_before = self.lost;
-                reader::inner(&contents).try_for_each(|inner| self.add_inner(&inner?))?;
+                reader::inner(contents).try_for_each(|inner| self.add_inner(&inner?))?;
                 self.chunks += usize::from(self.lost == lost_before);
                 self.file.flush()
             }

@@ -13,9 +13,11 @@ mod picture;
 mod tests;
 
 use crate::ParameterError;
+use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 use super::{Defect, Maze, defects};
+use crate::io::open_regular;
 use crate::world::formats::{FormatError, Location};
 
 /// A maze read from a file.
@@ -81,15 +83,17 @@ pub fn load(path: impl AsRef<Path>) -> Result<MazeFile, FormatError> {
     let name = path.display().to_string();
     let error = |found: String, expected: &str| FormatError::new(&name, Location::START, found, expected);
     let unreadable = |e: std::io::Error| match e.kind() {
-        std::io::ErrorKind::NotFound => error("no such file".into(), "a file that exists"),
+        ErrorKind::NotFound => error("no such file".into(), "a file that exists"),
+        ErrorKind::IsADirectory | ErrorKind::Unsupported => {
+            error(format!("a file that {e}"), "a regular file")
+        }
         kind => error(format!("a file that cannot be read ({kind})"), "a readable file"),
     };
-    let metadata = std::fs::metadata(path).map_err(unreadable)?;
-    if !metadata.is_file() {
-        return Err(error("something that is no regular file".into(), "a file"));
-    }
-    require_length(metadata.len(), &name)?;
-    parse(&std::fs::read(path).map_err(unreadable)?, &name)
+    let mut bytes = Vec::new();
+    let opened = open_regular(path).map_err(unreadable)?;
+    require_length(opened.metadata().map_err(unreadable)?.len(), &name)?;
+    opened.take(LONGEST + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    parse(&bytes, &name)
 }
 
 /// Reads a maze in any format; messages use `file` as its name.

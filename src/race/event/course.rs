@@ -1,4 +1,4 @@
-use super::layout::{EventLayout, EventShape};
+use super::layout::{AT_EDGE, EventLayout, EventShape};
 use super::line::{self, crossings, straight};
 use crate::geometry::{Point, Pose};
 use crate::race::cone::{ConeColour, ConeTrack, Event};
@@ -42,12 +42,12 @@ impl EventCourse {
     /// line through its centre.
     pub fn of(track: &ConeTrack, outline: &CarOutline) -> Option<Self> {
         let start = track.start_pose()?;
-        match track.event() {
+        let skidpad = Self::skidpad(track, start).filter(|course| course.layout.has_circles(&track.cones));
+        if track.event() == Event::Laps {
             // Without the orange cones of its lanes, a skidpad is one if all other cones say so.
-            Event::Laps => Self::skidpad(track, start).filter(|course| course.layout.is_whole(&track.cones)),
-            Event::Acceleration => Self::acceleration(track, start, outline.nose),
-            Event::Skidpad => Self::skidpad(track, start),
+            return skidpad.filter(|course| course.layout.is_whole(&track.cones));
         }
+        skidpad.or_else(|| Self::acceleration(track, start, outline.nose))
     }
 
     fn acceleration(track: &ConeTrack, start: Pose, nose: f64) -> Option<Self> {
@@ -65,9 +65,7 @@ impl EventCourse {
         };
         let begin = mean(&|x| x.abs() < GATE).unwrap_or(TO_START);
         let end = mean(&|x| x >= GATE).unwrap_or(begin + STRIP.0);
-        let box_end = track.of(ConeColour::Orange).map(along).fold(f64::NEG_INFINITY, f64::max);
-        let box_end = if box_end > end { box_end } else { end + STRIP.1 };
-        let ends = [-nose - BEHIND, box_end];
+        let ends = [-nose - BEHIND, Self::lane_end(track, &layout, end)];
         if !are_near(ends) {
             return None;
         }
@@ -77,11 +75,20 @@ impl EventCourse {
         Self::new(Event::Acceleration, layout, &points, timed)
     }
 
+    /// End of the lane behind a finish: where orange cones stand across it. Others beside it show that it
+    /// reaches to there at least, as the rules do.
+    fn lane_end(track: &ConeTrack, layout: &EventLayout, finish: f64) -> f64 {
+        let orange = || track.of(ConeColour::Orange).map(|place| layout.pose.to_local(place));
+        let last = orange().map(|place| place.x).fold(f64::NEG_INFINITY, f64::max);
+        let inside = layout.shape.half_width() - AT_EDGE;
+        let is_closed = orange().any(|place| place.x > last - AT_EDGE && place.y.abs() < inside);
+        if is_closed && last > finish { last } else { last.max(finish + STRIP.1) }
+    }
+
     fn skidpad(track: &ConeTrack, start: Pose) -> Option<Self> {
         let layout = EventLayout::find(&track.cones, start, EventShape::EIGHT)?;
         let along = |place: Point| layout.pose.to_local(place).x;
-        let box_end = track.of(ConeColour::Orange).map(along).fold(f64::NEG_INFINITY, f64::max);
-        let ends = [along(start.position()) - BEHIND, if box_end > 10.0 { box_end } else { STRIP.1 }];
+        let ends = [along(start.position()) - BEHIND, Self::lane_end(track, &layout, 0.0)];
         let EventShape::Eight { apart, .. } = layout.shape else { return None };
         if !are_near(ends) {
             return None;

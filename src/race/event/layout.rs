@@ -110,7 +110,7 @@ pub struct EventLayout {
 }
 
 /// Distance from an edge within which a cone belongs to it (m).
-const AT_EDGE: f64 = 0.4;
+pub(super) const AT_EDGE: f64 = 0.4;
 /// The same distance while a layout is being searched (m).
 const GATE: f64 = 0.8;
 /// Placement error of cones at an edge, and the error beyond which they count less (m).
@@ -221,14 +221,20 @@ impl EventLayout {
         on(1.0) >= fewest && on(-1.0) >= fewest
     }
 
-    /// Whether nearly all cones are at the edges of a skidpad, also beyond the centres of both circles.
+    /// Whether nearly all cones are at the edges.
     pub(super) fn is_whole(&self, cones: &[Cone]) -> bool {
+        self.holds(cones, SHARES[2])
+    }
+
+    /// Whether there are cones at the edges of a skidpad beyond the centres of both circles: those of its
+    /// lanes could be a strip's.
+    pub(super) fn has_circles(&self, cones: &[Cone]) -> bool {
         let EventShape::Eight { apart, .. } = self.shape else { return false };
         let beyond = |side: f64| {
             let aside = |cone: &&Cone| side * self.pose.to_local(cone.position).y > apart;
             self.at_edges(cones).filter(aside).count()
         };
-        self.holds(cones, SHARES[2]) && beyond(1.0) >= FEWEST && beyond(-1.0) >= FEWEST
+        beyond(1.0) >= FEWEST && beyond(-1.0) >= FEWEST
     }
 
     /// Follows the cones of a map, whose frame drifts.

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::*;
-use crate::geometry::{Point, Pose, direction};
+use crate::geometry::{Point, Pose, Vector, direction};
 use crate::io::sim::{SimOptions, Simulation, TICK};
 use crate::io::{Camera, Clock, Drive, Lidar, LidarScan, Odometry, Resolution, control};
 use crate::race::{
@@ -170,6 +170,22 @@ fn the_course_is_measured_out_among_the_cones() {
         cone.position = Point::new((7 * k % 23) as f64, (11 * k % 19) as f64);
     }
     assert_eq!(EventCourse::of(&heap, &OUTLINE), None);
+    // False cones beside a strip make no skidpad of it, and a lane that nothing closes is as long as by the rules.
+    for seed in 0..20 {
+        let mut random = crate::random::Stream::new(seed);
+        let mut false_cone = |cone: &Cone| {
+            let [x, y] = [(); 2].map(|()| random.between(-3.0, 3.0));
+            random.chance(0.15).then(|| Cone { position: cone.position + Vector::new(x, y), ..*cone })
+        };
+        let mut track = strip(1.5, 5.0, 25.0);
+        let painted = |cone: &&Cone| cone.colour.side() != 0;
+        let added: Vec<Cone> = track.cones.iter().filter(painted).filter_map(&mut false_cone).collect();
+        track.cones.extend(added);
+        track.cones.retain(|cone| cone.position.x < 85.0);
+        let course = EventCourse::of(&track, &OUTLINE).unwrap();
+        assert_eq!(course.event(), Event::Acceleration, "{seed}");
+        assert!((course.corridor().length() - 103.3).abs() < 1.0, "{}", course.corridor().length());
+    }
     // Neither a cone far away nor a start far away makes a long course.
     let mut far = strip(1.5, 5.0, 25.0);
     far.cones.push(Cone::new(Point::new(1e9, 1.5), ConeColour::Orange));

@@ -30,6 +30,7 @@ use super::source::{DiskFiles, FileSource, check_length, decode, read_limited, u
 use super::yaml::{self, Scalar, Value};
 use crate::ParameterError;
 use crate::geometry::Pose;
+use crate::io::write_whole;
 use crate::world::{OccupancyGrid, World};
 
 /// Conversion of pixels to occupancies.
@@ -419,7 +420,7 @@ pub fn save(map: &RosMap, path: impl AsRef<Path>) -> Result<(), FormatError> {
     let path = path.as_ref();
     let image = print_image(map)?;
     let write = |path: &Path, bytes: &[u8]| {
-        std::fs::write(path, bytes).map_err(|error| {
+        write_whole(path, bytes).map_err(|error| {
             let found = format!("a file that cannot be written ({})", error.kind());
             FormatError::new(&path.display().to_string(), Location::START, found, "a folder to write to")
         })

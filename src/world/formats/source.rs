@@ -1,10 +1,10 @@
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 
 use super::error::{FormatError, Location, Notes};
 use super::limits::MAX_TEXT_BYTES;
+use crate::io::open_regular;
 
 /// A file that was read.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -236,15 +236,8 @@ impl FileSource for MemoryFiles {
 
 /// Reads a regular file of up to `limit` bytes.
 pub(super) fn read_limited(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
-    // A pipe or device could block or never end.
-    if path.is_dir() {
-        return Err(io::ErrorKind::IsADirectory.into());
-    }
-    if path.exists() && !path.is_file() {
-        return Err(io::ErrorKind::Unsupported.into());
-    }
     let mut bytes = Vec::new();
-    File::open(path)?.take(limit + 1).read_to_end(&mut bytes)?;
+    open_regular(path)?.take(limit + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > limit {
         return Err(io::ErrorKind::FileTooLarge.into());
     }
@@ -258,6 +251,10 @@ pub(super) fn unreadable(error: &io::Error, name: &str, file: &str, at: Location
         io::ErrorKind::NotFound => (format!("{name}, which does not exist"), "a file that exists".into()),
         io::ErrorKind::FileTooLarge => {
             (format!("{name}, a larger file"), format!("a file of at most {} MiB", limit >> 20))
+        }
+        // In the words of `open_regular`.
+        io::ErrorKind::IsADirectory | io::ErrorKind::Unsupported => {
+            (format!("{name}, which {error}"), "a regular file".into())
         }
         kind => (format!("{name}, which cannot be read ({kind})"), "a readable file".into()),
     };

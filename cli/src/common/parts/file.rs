@@ -1,14 +1,14 @@
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{BufRead, BufReader, BufWriter, Read, Write};
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
-use std::{fs, io};
 
+use roverlab::io::{open_regular, write_whole};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::{Part, Portable};
-use crate::common::{Facts, Failure, open_regular, regular_bytes};
+use crate::common::{Facts, Failure, regular_bytes};
 
 /// The first line of a part's file: which part of which campaign.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -118,7 +118,7 @@ pub(crate) struct PartFile<'a> {
 }
 
 impl PartFile<'_> {
-    /// Writes the results of the part, under another name first: a file of that name is complete.
+    /// Writes the results of the part. The file is complete, or not there.
     pub(crate) fn write<T: Portable>(&self, results: &[T]) -> Result<(), Failure> {
         let failed = |error: String| {
             Failure::run(format!("--out {}: {error}; expected to save the results", self.file.display()))
@@ -130,14 +130,7 @@ impl PartFile<'_> {
             T::unpacked(&result).map_err(|error| failed(format!("found a result that is lost: {error}")))?;
             text.push_str(&line(&Line { run: part.run(index), result }).map_err(failed)?);
         }
-        let mut name = self.file.file_name().unwrap_or_default().to_owned();
-        name.push(format!(".{}.tmp", std::process::id()));
-        let unfinished = self.file.with_file_name(name);
-        save(&unfinished, &text).and_then(|()| fs::rename(&unfinished, self.file)).map_err(|error| {
-            // What cannot be written can often not be removed either.
-            let _ = fs::remove_file(&unfinished);
-            failed(format!("found {error}"))
-        })
+        write_whole(self.file, text.as_bytes()).map_err(|error| failed(format!("found {error}")))
     }
 
     /// The results of all parts of a campaign, in the order of its runs. `own` is the header that a campaign
@@ -161,12 +154,6 @@ fn line(value: &impl Serialize) -> Result<String, String> {
     } else {
         Err(format!("found a line of {} bytes, more than the {LONGEST} that are read", text.len()))
     }
-}
-
-fn save(file: &Path, text: &str) -> io::Result<()> {
-    let mut file = BufWriter::new(File::create(file)?);
-    file.write_all(text.as_bytes())?;
-    file.into_inner()?.sync_all()
 }
 
 /// The files in the order of their parts: all parts of one campaign, each once.

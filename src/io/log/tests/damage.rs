@@ -191,29 +191,52 @@ fn a_length_beyond_its_record_is_damage() {
     assert!(saved.header && Log::read(saved.bytes).is_ok());
 }
 
-/// A small file may hold gigabytes of nothing.
+/// A file with compressed chunks, each of some equal messages.
 #[cfg(feature = "zstd")]
-#[test]
-fn a_file_that_unpacks_to_far_more_than_files_do_is_refused() {
+fn monotonous(chunks: u32, messages: u32, nothing: &[u8]) -> Vec<u8> {
     let metadata = header().metadata();
     let options = mcap::WriteOptions::new().compression(Some(mcap::Compression::Zstd)).chunk_size(None);
     let mut file = options.create(io::Cursor::new(Vec::new())).unwrap();
     file.write_metadata(&mcap::records::Metadata { name: "roverlab".into(), metadata }).unwrap();
     let schema = file.add_schema("nothing", "protobuf", &[]).unwrap();
     let channel_id = file.add_channel(schema, "/nothing", "protobuf", &BTreeMap::new()).unwrap();
-    let nothing = vec![0; 20 << 20];
-    for sequence in 0..20 {
+    for sequence in 0..chunks {
         let times = mcap::records::MessageHeader { channel_id, sequence, log_time: 0, publish_time: 0 };
-        file.write_to_known_channel(&times, &nothing).unwrap();
+        for _ in 0..messages {
+            file.write_to_known_channel(&times, nothing).unwrap();
+        }
         file.flush().unwrap();
     }
     file.finish().unwrap();
-    let bytes = file.into_inner().into_inner();
+    file.into_inner().into_inner()
+}
+
+/// A small file may hold gigabytes of nothing.
+#[cfg(feature = "zstd")]
+#[test]
+fn a_file_that_unpacks_to_far_more_than_files_do_is_refused() {
+    let bytes = monotonous(20, 1, &vec![0; 20 << 20]);
     assert!(bytes.len() < 60_000, "{}", bytes.len());
     let error = Log::read(bytes.clone()).unwrap_err().to_string();
     assert!(error.contains("uncompressed bytes; expected at most"), "{error}");
     let saved = recover(&bytes).unwrap();
     assert!(saved.header && (1..20).contains(&saved.chunks), "{}", saved.chunks);
+}
+
+/// Nor does it hold more messages than bytes. (The indices of messages, which have bytes for each, are left
+/// out.)
+#[cfg(feature = "zstd")]
+#[test]
+fn a_file_of_far_more_messages_than_bytes_is_refused() {
+    let whole = monotonous(2, 200_000, &[]);
+    let is_index = |record: &super::reader::Framed<'_>| record.opcode == mcap::records::op::MESSAGE_INDEX;
+    let kept = super::reader::records(&whole, mcap::MAGIC.len()).flatten().filter(|record| !is_index(record));
+    let kept: Vec<&[u8]> = kept.map(|record| &whole[record.start..record.end()]).collect();
+    let bytes = [mcap::MAGIC, &kept.concat()].concat();
+    assert!(bytes.len() < 10_000, "{}", bytes.len());
+    let saved = recover(&bytes).unwrap();
+    assert!(saved.header && saved.messages == 0 && saved.lost > 0, "{saved:?}");
+    assert!(recover(&whole).unwrap().messages == 400_000);
 }
 
 proptest! {

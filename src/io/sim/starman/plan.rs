@@ -3,7 +3,7 @@ use std::f64::consts::PI;
 use super::spec::{StarmanSpec, require_time_step};
 use crate::geometry::{Point, Pose, direction};
 use crate::io::{Error, Result};
-use crate::parameter::{require, require_not_negative, require_positive};
+use crate::parameter::{require, require_not_negative, require_positive, require_up_to};
 
 /// A body with limbs, which may have limbs themselves: a tree with a servo in every joint. Lengths in metres,
 /// masses in kilograms, angles in radians.
@@ -108,6 +108,10 @@ impl Default for BodyPlan {
 
 /// Largest number of limbs: servos have numbers of a byte, and more would slow the physics down.
 const MOST_LIMBS: usize = 24;
+/// Maximum length (m).
+const LONGEST: f64 = 1e3;
+/// Maximum of a body's other values, in SI units; far beyond, the physics overflows.
+const MOST: f64 = 1e6;
 /// Widest swing (rad): the limits of joints are checked by sines.
 const WIDEST: f64 = 1.2;
 
@@ -115,11 +119,12 @@ impl BodyPlan {
     /// Checks every value; the error names the one out of range, and the limb that it belongs to.
     pub fn validate(&self) -> Result<()> {
         require_not_negative("body length", self.length)?;
-        require_positive("body radius", self.radius)?;
-        require_positive("body mass", self.mass)?;
-        require_positive("friction", self.friction)?;
-        require_positive("servo speed", self.servo_speed)?;
-        require_positive("servo torque", self.servo_torque)?;
+        require("body length", self.length, self.length <= LONGEST, "at most 1000 m")?;
+        require_up_to("body radius", self.radius, LONGEST)?;
+        require_up_to("body mass", self.mass, MOST)?;
+        require_up_to("friction", self.friction, MOST)?;
+        require_up_to("servo speed", self.servo_speed, MOST)?;
+        require_up_to("servo torque", self.servo_torque, MOST)?;
         require_time_step(self.time_step)?;
         let limbs = self.limbs.len();
         require("number of limbs", limbs as f64, (1..=MOST_LIMBS).contains(&limbs), "1 to 24")?;
@@ -162,13 +167,13 @@ impl LimbPlan {
                 expected,
             ));
         }
-        let good = self.hinge.iter().all(|place| place.abs() <= 1000.0);
+        let good = self.hinge.iter().all(|place| place.abs() <= LONGEST);
         require("hinge", self.hinge[0].max(self.hinge[1]), good, "at most 1000 m away").map_err(whole)?;
         require("rest", self.rest, self.rest.abs() <= 2.0 * PI, "at most a turn either way")
             .map_err(whole)?;
-        require_positive("length", self.length).map_err(whole)?;
-        require_positive("radius", self.radius).map_err(whole)?;
-        require_positive("mass", self.mass).map_err(whole)?;
+        require_up_to("length", self.length, LONGEST).map_err(whole)?;
+        require_up_to("radius", self.radius, LONGEST).map_err(whole)?;
+        require_up_to("mass", self.mass, MOST).map_err(whole)?;
         require_positive("range", self.range).map_err(whole)?;
         require("range", self.range, self.range <= WIDEST, "at most 1.2 rad").map_err(whole)
     }

@@ -2,62 +2,70 @@ use std::fs::{self, DirBuilder, File, Metadata, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// A temporary folder of this run, which only its user may enter. It is removed at the end of the run, or by
-/// a later run if this one is killed.
+/// A temporary folder, which only its user may enter. It is removed when dropped; if the process is killed,
+/// by the next one that makes a folder with the same prefix.
+///
+/// ```
+/// use roverlab::io::TemporaryFolder;
+/// let folder = TemporaryFolder::new("example-")?;
+/// std::fs::write(folder.path().join("notes.txt"), "a letter")?;
+/// let path = folder.path().to_owned();
+/// drop(folder);
+/// assert!(!path.exists());
+/// # Ok::<(), std::io::Error>(())
+/// ```
 #[derive(Debug)]
-pub(crate) struct WorkFolder {
+pub struct TemporaryFolder {
     path: PathBuf,
-    /// Locked as long as the run lasts: the system unlocks it whatever ends the run.
+    /// Locked as long as the folder is used: the system unlocks it whatever ends the process.
     _lock: File,
 }
 
-/// Beginning of the names of these folders.
-const PREFIX: &str = "robios-";
-/// File in them that is locked.
+/// File in these folders that is locked.
 const LOCK: &str = "lock";
+/// Number of names that are tried.
+const NAMES: usize = 1000;
 
-impl WorkFolder {
-    pub(crate) fn new() -> Result<Self, String> {
-        Self::within(&std::env::temp_dir())
+impl TemporaryFolder {
+    /// A new folder in the system's one for temporary files, with a name that begins with `prefix`.
+    pub fn new(prefix: &str) -> io::Result<Self> {
+        Self::within(std::env::temp_dir(), prefix)
     }
 
-    fn within(base: &Path) -> Result<Self, String> {
-        for attempt in 0..100 {
-            let path = base.join(format!("{PREFIX}{}-{attempt}", std::process::id()));
-            match create(&path) {
-                Ok(Some(lock)) => {
-                    let folder = Self { path, _lock: lock };
-                    remove_leftovers(base, &folder.path);
-                    return Ok(folder);
-                }
-                Ok(None) => {}
-                Err(error) => {
-                    return Err(format!("{}: {error}; expected a folder to write to", path.display()));
-                }
+    /// A new folder in another one.
+    pub fn within(base: impl AsRef<Path>, prefix: &str) -> io::Result<Self> {
+        let base = base.as_ref();
+        let named = |error: io::Error, path: &Path| {
+            io::Error::new(
+                error.kind(),
+                format!("{}: {error}; expected a folder to write to", path.display()),
+            )
+        };
+        for attempt in 0..NAMES {
+            let path = base.join(format!("{prefix}{}-{attempt}", std::process::id()));
+            if let Some(lock) = create(&path).map_err(|error| named(error, &path))? {
+                let folder = Self { path, _lock: lock };
+                remove_leftovers(base, prefix, &folder.path);
+                return Ok(folder);
             }
         }
-        Err(format!("{}: no name is free for a folder", base.display()))
-    }
-
-    /// Path of a file in it.
-    pub(crate) fn file(&self, name: &str) -> PathBuf {
-        self.path.join(name)
+        Err(named(io::ErrorKind::AlreadyExists.into(), base))
     }
 
     /// Path of the folder.
-    pub(crate) fn path(&self) -> &Path {
+    pub fn path(&self) -> &Path {
         &self.path
     }
 }
 
-impl Drop for WorkFolder {
+impl Drop for TemporaryFolder {
     fn drop(&mut self) {
-        // If removal fails, a later run does it.
+        // If removal fails, a later process does it.
         let _ = fs::remove_dir_all(&self.path);
     }
 }
 
-/// Creates a folder and locks it; `None` if the name is taken, or another run has just removed it.
+/// Creates a folder and locks it; `None` if the name is taken, or another process has just removed it.
 fn create(path: &Path) -> io::Result<Option<File>> {
     match private().create(path) {
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => return Ok(None),
@@ -82,11 +90,11 @@ fn private() -> DirBuilder {
     DirBuilder::new()
 }
 
-/// Removes the folders of runs that were killed: nobody holds their locks. Only folders of the user to whom
-/// our own belongs count.
-fn remove_leftovers(base: &Path, own: &Path) {
+/// Removes the folders of processes that were killed: nobody holds their locks. Only folders of the user to
+/// whom our own belongs count.
+fn remove_leftovers(base: &Path, prefix: &str, own: &Path) {
     let entries = fs::read_dir(base).into_iter().flatten().filter_map(Result::ok);
-    let named = entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(PREFIX));
+    let named = entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(prefix));
     for folder in named.map(|entry| entry.path()).filter(|folder| is_alike(folder, own)) {
         let lock = existing_lock(&folder.join(LOCK));
         if lock.is_ok_and(|lock| lock.try_lock().is_ok()) {
@@ -114,19 +122,12 @@ fn have_same_user(_one: &Metadata, _other: &Metadata) -> bool {
     true
 }
 
-/// Opens a lock that is there, if it is a regular file. Never waits for another process.
+/// Opens a lock that is there, if it is a regular file.
 fn existing_lock(name: &Path) -> io::Result<File> {
     if !fs::symlink_metadata(name)?.is_file() {
         return Err(io::ErrorKind::Unsupported.into());
     }
-    let mut options = OpenOptions::new();
-    options.write(true);
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::OpenOptionsExt;
-        options.custom_flags(libc::O_NOFOLLOW | libc::O_NONBLOCK);
-    }
-    options.open(name)
+    OpenOptions::new().write(true).open(name)
 }
 
 #[cfg(test)]
@@ -135,9 +136,9 @@ mod tests {
 
     #[test]
     fn folders_of_killed_runs_are_removed_by_the_next_one() {
-        let base = std::env::temp_dir().join(format!("work-folders-{}", std::process::id()));
+        let base = std::env::temp_dir().join(format!("roverlab-folders-{}", std::process::id()));
         fs::create_dir_all(&base).unwrap();
-        let alive = WorkFolder::within(&base).unwrap();
+        let alive = TemporaryFolder::within(&base, "robios-").unwrap();
         // A killed run leaves a lock that nobody holds. Others' folders have none.
         let (killed, other) = (base.join("robios-1-0"), base.join("robios-cache"));
         for folder in [&killed, &other] {
@@ -145,7 +146,7 @@ mod tests {
             fs::write(folder.join("program0.x"), "text").unwrap();
         }
         fs::write(killed.join(LOCK), "").unwrap();
-        let next = WorkFolder::within(&base).unwrap();
+        let next = TemporaryFolder::within(&base, "robios-").unwrap();
         assert!(!killed.exists() && other.exists() && alive.path().exists() && next.path() != alive.path());
         #[cfg(unix)]
         {
@@ -165,7 +166,7 @@ mod tests {
             fs::write(base.join("target"), "").unwrap();
             std::os::unix::fs::symlink(base.join("target"), strange[1].join(LOCK)).unwrap();
             fs::create_dir(strange[2].join(LOCK)).unwrap();
-            drop(WorkFolder::within(&base).unwrap());
+            drop(TemporaryFolder::within(&base, "robios-").unwrap());
             assert!(strange.iter().all(|folder| folder.exists()));
             // Neither do links to folders count.
             std::os::unix::fs::symlink(&strange[0], base.join("robios-to")).unwrap();
