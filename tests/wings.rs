@@ -13,27 +13,28 @@ use std::path::Path;
 use source::Source;
 
 /// What each wing may use. All of it stands further up, so arrows between wings point down and in no circle.
-const WINGS: [(&str, &str); 20] = [
+const WINGS: [(&str, &str); 21] = [
+    ("files", ""),
     ("parameter", ""),
     ("geometry", ""),
     ("random", "parameter geometry"),
     ("kinematics", "parameter geometry random"),
-    ("world", "parameter geometry random kinematics"),
+    ("world", "files parameter geometry random kinematics"),
     ("vision", "parameter geometry random"),
     ("learn", "parameter random vision"),
-    ("picture", "parameter geometry world"),
-    ("io", "parameter geometry random kinematics world"),
+    ("picture", "files parameter geometry world"),
+    ("io", "files parameter geometry random kinematics world"),
     ("io::sim", "parameter geometry random kinematics world io"),
     // It simulates to check that a program does the same again.
-    ("io::log", "parameter geometry random world io io::sim"),
+    ("io::log", "files parameter geometry random world io io::sim"),
     ("io::robios", "parameter geometry world io"),
     ("scan", "parameter geometry random kinematics world io"),
     ("drive", "parameter geometry random kinematics world vision learn io scan"),
-    ("maze", "parameter geometry random kinematics world io drive"),
+    ("maze", "files parameter geometry random kinematics world io drive"),
     ("nav", "parameter geometry random kinematics world io scan"),
     ("race", "parameter geometry random kinematics world vision io"),
     ("safety", "parameter geometry random kinematics world io"),
-    ("evolve", "parameter geometry random kinematics world picture io"),
+    ("evolve", "files parameter geometry random kinematics world picture io"),
     ("testing", "parameter geometry random world maze nav race"),
 ];
 

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use roverlab::io::irregular;
+use roverlab::files::irregular;
 
 /// Maximum length of a text that is read (bytes).
 const LONGEST: u64 = 16 << 20;

@@ -30,7 +30,8 @@ use std::path::Path;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use crate::io::{Error, ErrorKind, Result, open_regular, write_whole};
+use crate::files::{open_regular, write_whole};
+use crate::io::{Error, ErrorKind, Result};
 
 /// Version of the file format.
 const VERSION: u32 = 1;

@@ -56,7 +56,6 @@ mod depth;
 mod display;
 mod drive;
 pub(crate) mod error;
-mod files;
 mod inertial;
 mod keys;
 mod lcd;
@@ -73,7 +72,6 @@ pub mod log;
 #[cfg(feature = "robios")]
 pub mod robios;
 pub mod sim;
-mod temporary_folder;
 mod truth;
 
 pub use actuators::{Encoders, Motors, Servos};
@@ -83,7 +81,6 @@ pub use depth::DepthSensor;
 pub use display::{Display, DisplayImage, DisplayOption, Fill, Font, FontFamily, FontStyle, Pixel, Viewport};
 pub use drive::{Drive, Manoeuvres, Odometry, StallDetector};
 pub use error::{Error, ErrorKind, Result};
-pub use files::{irregular, open_regular, write_whole};
 pub use fleet::{FleetIo, FleetStep};
 pub use inertial::{Attitude, Inertial};
 pub use keys::{Key, Keys};
@@ -92,7 +89,6 @@ pub use lidar::{Lidar, LidarScan, LidarSettings};
 pub use mock::{Call, MockRobot, Script};
 pub use psd::{DistanceSensors, Psd};
 pub use radio::{Radio, RadioMessage};
-pub use temporary_folder::TemporaryFolder;
 pub use truth::{GroundTruth, Mishap, RobotTruth, TrailPoint, TruthInSpace};
 
 /// A full robot with every capability.

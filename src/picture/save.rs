@@ -2,7 +2,7 @@ use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 use super::Picture;
-use crate::io::write_whole;
+use crate::files::write_whole;
 use crate::parameter::debug_as_sentence;
 
 /// File formats of pictures.

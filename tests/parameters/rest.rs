@@ -148,8 +148,7 @@ fn a_walking_robot() {
           Bounded: servo_range, time_step; });
     let body = |limb: LimbPlan| BodyPlan { limbs: vec![limb], ..BodyPlan::default() };
     check!(BodyPlan = body(LimbPlan::default()), |p| Starman::of(&p)?,
-        { NotNegative: length; Positive: radius, mass, friction, servo_speed, servo_torque; Bounded: time_step; }
-        but limbs);
+        { BoundedFromZero: length; Bounded: radius, mass, friction, servo_speed, servo_torque, time_step; } but limbs);
     check!(LimbPlan = LimbPlan::default(), |p| Starman::of(&body(p))?,
-        { AroundZero: hinge, rest; Positive: length, radius, mass; Bounded: range; } but parent);
+        { AroundZero: hinge, rest; Bounded: length, radius, mass, range; } but parent);
 }

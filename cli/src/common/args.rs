@@ -4,8 +4,8 @@ use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use roverlab::files::irregular;
 use roverlab::geometry::Pose;
-use roverlab::io::irregular;
 use roverlab::io::wrappers::Fault;
 use roverlab::picture::{Picture, SaveError};
 use roverlab::world::InertialSpec;

@@ -2,8 +2,8 @@ use std::fmt::Display;
 use std::io::{self, Read};
 use std::path::Path;
 
+use roverlab::files::open_regular;
 use roverlab::io::log::{Attachment, Log};
-use roverlab::io::open_regular;
 use roverlab::world::formats::{self, DiskFiles, FileSource, FormatError, Location, Parsed, SourceFile};
 use roverlab::world::{RobotSpec, Scene};
 

@@ -3,7 +3,7 @@ use std::path::Path;
 
 use image::codecs::pnm::{PnmEncoder, PnmSubtype, SampleEncoding};
 use image::{DynamicImage, ImageError, ImageFormat, ImageResult};
-use roverlab::io::write_whole;
+use roverlab::files::write_whole;
 
 /// Writes an image in the format of the file's extension, completely or with an error.
 pub(crate) fn write_image(image: &DynamicImage, file: &Path) -> Result<(), ImageError> {

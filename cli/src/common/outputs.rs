@@ -1,7 +1,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::ArgMatches;
-use roverlab::io::irregular;
+use roverlab::files::irregular;
 
 use super::Failure;
 

@@ -2,7 +2,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use roverlab::io::write_whole;
+use roverlab::files::write_whole;
 
 use super::{Failure, regular_bytes};
 

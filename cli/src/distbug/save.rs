@@ -1,7 +1,7 @@
 use std::fs;
 use std::path::Path;
 
-use roverlab::io::write_whole;
+use roverlab::files::write_whole;
 use roverlab::world::formats::sim::{self, SimFile};
 use roverlab::world::formats::wld;
 

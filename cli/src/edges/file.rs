@@ -4,7 +4,7 @@ use std::io::BufReader;
 use std::path::Path;
 
 use image::{DynamicImage, RgbImage};
-use roverlab::io::open_regular;
+use roverlab::files::open_regular;
 
 use super::checks::refused;
 use super::kernel::Runner;

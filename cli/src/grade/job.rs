@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-use roverlab::io::write_whole;
+use roverlab::files::write_whole;
 use roverlab::picture::Picture;
 
 use super::Args;

@@ -1,7 +1,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use roverlab::io::open_regular;
+use roverlab::files::open_regular;
 use serde::Deserialize;
 
 use crate::common::{Failure, toml_places};

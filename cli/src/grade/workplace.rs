@@ -3,7 +3,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use roverlab::io::TemporaryFolder;
+use roverlab::files::TemporaryFolder;
 
 /// A folder for one run, removed with all that is in it.
 #[derive(Debug)]

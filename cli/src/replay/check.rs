@@ -1,7 +1,7 @@
 use std::ffi::OsString;
 use std::path::Path;
 
-use roverlab::io::TemporaryFolder;
+use roverlab::files::TemporaryFolder;
 use roverlab::io::log::{Difference, Log};
 use serde_json::json;
 

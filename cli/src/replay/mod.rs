@@ -11,8 +11,8 @@ use std::fmt::Display;
 use std::io::Write;
 use std::path::Path;
 
+use roverlab::files::write_whole;
 use roverlab::io::log::{Log, LogFile, recover};
-use roverlab::io::write_whole;
 use serde_json::{Value, json};
 
 use crate::common::{Failure, Printed, recording_bytes, unrecordable};

@@ -2,7 +2,7 @@ use std::collections::BTreeSet;
 use std::io::{self, BufReader};
 use std::path::Path;
 
-use roverlab::io::open_regular;
+use roverlab::files::open_regular;
 use roverlab::vision::signs::Area;
 
 use super::Marked;

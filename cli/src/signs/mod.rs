@@ -11,7 +11,7 @@ mod network;
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
 
-use roverlab::io::write_whole;
+use roverlab::files::write_whole;
 use roverlab::vision::RgbView;
 use roverlab::vision::signs::{Area, SignFinder, SignModel, SignTrainer};
 

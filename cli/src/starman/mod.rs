@@ -11,8 +11,8 @@ use std::ffi::OsString;
 use std::io;
 
 use roverlab::evolve::{GenerationStatistics, chart, serve, table};
+use roverlab::files::{open_regular, write_whole};
 use roverlab::geometry::units;
-use roverlab::io::{open_regular, write_whole};
 
 use crate::common::{Failure, Outcome, Report, rounded};
 use figure::Figure;

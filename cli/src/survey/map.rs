@@ -3,8 +3,8 @@ use std::path::{Path, PathBuf};
 
 use image::{Rgb, RgbImage};
 use roverlab::drive::marine::DepthMap;
+use roverlab::files::write_whole;
 use roverlab::geometry::units::to_mm;
-use roverlab::io::write_whole;
 use roverlab::picture::ramp;
 
 use crate::common::{Failure, rounded};

@@ -69,7 +69,7 @@ fn equal_seeds_train_equal_weights_after_an_interruption_too() {
     fs::remove_file(kept.join("diary.txt")).unwrap();
     let options = "8x20x1 conv4/5/2 dense10; lessons 1, epochs 2, disturbance 1.5, seed 1, noise 1\n";
     fs::write(kept.join("options.txt"), options).unwrap();
-    let obstacle = kept.join("round-1.safetensors.new");
+    let obstacle = kept.join("round-1.safetensors");
     fs::create_dir(&obstacle).unwrap();
     let ((status, ..), _) = train("again.safetensors", "2", "1");
     assert!(status == 1 && kept.join("state.safetensors").exists());

@@ -16,7 +16,7 @@ use crate::plan::{BUILD, Plan, names};
 use crate::process;
 use crate::report::{Report, Stage};
 use crate::verdict::{Ending, Truth, Verdict};
-use roverlab::io::TemporaryFolder;
+use roverlab::files::TemporaryFolder;
 use roverlab::world::Scene;
 
 use super::options::{Options, whole};

@@ -12,10 +12,11 @@ use crate::report::{Report, Stance};
 use crate::seat::{Seat, Terms, Walked};
 use crate::verdict::{Ending, Truth, Verdict};
 use crate::wire::{Answer, LONGEST_REQUEST, Question};
+use roverlab::files::TemporaryFolder;
 use roverlab::geometry::Pose;
 use roverlab::io::log::{Header, LogFile, LogWriter};
 use roverlab::io::sim::{SimOptions, Simulation, TICK, Truth as World};
-use roverlab::io::{self, Clock, ErrorKind, RobotIo, TemporaryFolder};
+use roverlab::io::{self, Clock, ErrorKind, RobotIo};
 use roverlab::world::Scene;
 use roverlab_view::serve::Beside;
 

@@ -20,7 +20,7 @@ use clap::Parser;
 use crate::verdict::{self, Summary, Verdict};
 use options::{Command, Options};
 pub use place::Place;
-use roverlab::io::TemporaryFolder;
+use roverlab::files::TemporaryFolder;
 use roverlab_view::serve::{Beside, Opening};
 use stopwatch::Stopwatch;
 

@@ -1,7 +1,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use roverlab::io::TemporaryFolder;
+use roverlab::files::TemporaryFolder;
 use roverlab::world::Scene;
 use roverlab::world::formats::in_any_case;
 

@@ -2,7 +2,7 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use crate::io::irregular;
+use crate::files::irregular;
 
 /// The file of a recording, which belongs to one recorder at a time.
 ///

@@ -17,7 +17,7 @@ use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 use super::{Defect, Maze, defects};
-use crate::io::open_regular;
+use crate::files::open_regular;
 use crate::world::formats::{FormatError, Location};
 
 /// A maze read from a file.

@@ -29,8 +29,8 @@ use super::number;
 use super::source::{DiskFiles, FileSource, check_length, decode, read_limited, unreadable};
 use super::yaml::{self, Scalar, Value};
 use crate::ParameterError;
+use crate::files::write_whole;
 use crate::geometry::Pose;
-use crate::io::write_whole;
 use crate::world::{OccupancyGrid, World};
 
 /// Conversion of pixels to occupancies.

@@ -4,7 +4,7 @@ use std::path::{Component, Path, PathBuf};
 
 use super::error::{FormatError, Location, Notes};
 use super::limits::MAX_TEXT_BYTES;
-use crate::io::open_regular;
+use crate::files::open_regular;
 
 /// A file that was read.
 #[derive(Debug, Clone, PartialEq, Eq)]

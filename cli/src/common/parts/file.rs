@@ -3,7 +3,7 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
-use roverlab::io::{open_regular, write_whole};
+use roverlab::files::{open_regular, write_whole};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 /// by the next one that makes a folder with the same prefix.
 ///
 /// ```
-/// use roverlab::io::TemporaryFolder;
+/// use roverlab::files::TemporaryFolder;
 /// let folder = TemporaryFolder::new("example-")?;
 /// std::fs::write(folder.path().join("notes.txt"), "a letter")?;
 /// let path = folder.path().to_owned();

@@ -10,7 +10,7 @@ const SYSTEM: [&str; 2] = ["/proc", "/sys"];
 /// the other end of a FIFO may never come.
 ///
 /// ```
-/// use roverlab::io::irregular;
+/// use roverlab::files::irregular;
 /// assert_eq!(irregular("src"), Some("is a folder"));
 /// assert_eq!((irregular("src/lib.rs"), irregular("no-such-file")), (None, None));
 /// ```
@@ -40,6 +40,12 @@ pub fn irregular(file: impl AsRef<Path>) -> Option<&'static str> {
 }
 
 /// Opens a regular file for reading. Fails for anything that is [`irregular`], and never blocks.
+///
+/// ```
+/// use roverlab::files::open_regular;
+/// assert!(open_regular("src/lib.rs").is_ok());
+/// assert_eq!(open_regular("src").unwrap_err().to_string(), "is a folder");
+/// ```
 pub fn open_regular(file: impl AsRef<Path>) -> io::Result<File> {
     let file = file.as_ref();
     irregular(file).map_or_else(|| File::open(file), |wrong| Err(refusal(file, wrong)))
@@ -57,7 +63,7 @@ fn refusal(file: &Path, wrong: &str) -> io::Error {
 /// use std::fs;
 /// let file = std::env::temp_dir().join(format!("whole-{}.txt", std::process::id()));
 /// fs::write(&file, "a letter")?;
-/// roverlab::io::write_whole(&file, b"another one")?;
+/// roverlab::files::write_whole(&file, b"another one")?;
 /// assert_eq!(fs::read(&file)?, b"another one");
 /// # fs::remove_file(&file)
 /// ```
