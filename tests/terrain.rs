@@ -277,6 +277,21 @@ fn things_slide_and_roll_down_to_what_is_in_their_way() {
     }
 }
 
+/// It is moved out of the wall, but gets no speed from that.
+#[test]
+fn a_robot_placed_into_a_wall_is_not_thrown() {
+    let wall = Wall::new(Point::new(2.08, 1.0), Point::new(2.08, 3.0));
+    for spec in [RobotSpec::s4(), RobotSpec::blizzard()] {
+        let name = spec.name.clone();
+        let world = World { walls: vec![wall], ..world(65, ramp) };
+        let simulation = simulation(world, spec, Pose::new(2.0, 2.0, 0.3));
+        simulation.robot(0).unwrap().wait(1.0).unwrap();
+        let truth = simulation.truth();
+        let moved = (truth.pose(0).unwrap().position() - Point::new(2.0, 2.0)).norm();
+        assert!(moved < 0.25 && truth.mishap(0).unwrap().is_none(), "{name}: {moved}");
+    }
+}
+
 #[test]
 fn a_robot_that_drives_over_a_cliff_falls() {
     let cliff = |at: Point| if at.x < 2.0 { 0.4 } else { 0.0 };

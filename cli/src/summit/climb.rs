@@ -41,6 +41,8 @@ pub(crate) struct Summit {
 /// So many metres from the highest reachable place, or this share of the relief below it, counts as reached.
 const NEAR: f64 = 0.1;
 const BELOW: f64 = 0.02;
+/// Difference in elevation that counts as none (m).
+const LEVEL: f64 = 1e-3;
 
 impl Summit {
     /// The highest place that a robot can reach.
@@ -64,7 +66,7 @@ impl Summit {
     }
 
     pub(crate) fn is_reached(&self, end: &TruthInSpace) -> bool {
-        self.distance(end) <= NEAR || self.place.z - end.pose.position.z <= BELOW * self.relief
+        self.distance(end) <= NEAR || self.place.z - end.pose.position.z <= LEVEL + BELOW * self.relief
     }
 }
 

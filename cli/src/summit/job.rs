@@ -10,7 +10,7 @@ use super::campaign;
 use super::climb::{Ascended, Summit, climb, equipped, outcome};
 use crate::common::{Failure, Report, millimetres};
 use crate::driving::{Conditions, Run, paced};
-use crate::terrain::{Hike, Ride, degrees, percent};
+use crate::terrain::{Hike, Ride, degrees, percent, word};
 
 /// Simulated seconds of a climb.
 pub(super) const SECONDS: f64 = 1200.0;
@@ -61,8 +61,13 @@ fn fields(report: Report, run: &Run<Ascended>, ride: Option<Ride>, summit: &Summ
 
 fn picture(method: Method, hike: &Hike, run: &Run<Ascended>, summit: &Summit, ride: Option<Ride>) -> Picture {
     let mut picture = Picture::new(&hike.scene.world);
-    let reached = ride.is_some_and(|ride| summit.is_reached(&ride.end));
-    let title = if reached { "on the highest place that can be reached" } else { "not on the highest place" };
+    let title = match ride.and_then(|ride| ride.end.mishap) {
+        Some(mishap) => word(mishap),
+        None if ride.is_some_and(|ride| summit.is_reached(&ride.end)) => {
+            "on the highest place that can be reached"
+        }
+        None => "not on the highest place",
+    };
     picture.title(format!(
         "{}: {title}",
         if method == Method::Search { "Summit search" } else { "Steepest ascent" }

@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use roverlab::geometry::{Point, units};
+use roverlab::geometry::{Point, Point3, units};
 use roverlab::nav::elevation::{ElevationPath, ElevationPlanner};
 use roverlab::nav::grid::PlanError;
 use roverlab::picture::{Mark, Picture, Style};
@@ -41,7 +41,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let planned = stopwatch.seconds() - prepared;
     let back = plan(&mut planner, args.planner, goal, start).ok();
     let report = match &path {
-        Ok(path) => found(args, path, back.as_ref()),
+        Ok(path) => found(args, &ground, path, back.as_ref()),
         Err(PlanError::Unreachable { .. } | PlanError::Blocked { .. }) => {
             Report::new(Outcome::verdict("unreachable"))
         }
@@ -92,9 +92,10 @@ pub(super) fn plan(
     }
 }
 
-fn found(args: &Args, path: &ElevationPath, back: Option<&ElevationPath>) -> Report {
+fn found(args: &Args, ground: &HeightField, path: &ElevationPath, back: Option<&ElevationPath>) -> Report {
     let (factor, unit) = args.cost.unit(&args.robot);
-    let steps = || path.points.windows(2).map(|pair| pair[1] - pair[0]);
+    let along = along_ground(ground, path);
+    let steps = || along.windows(2).map(|pair| pair[1] - pair[0]);
     let climb: f64 = steps().map(|step| step.z.max(0.0)).sum();
     Report::new(Outcome::verdict("found"))
         .field("cost", rounded(factor * path.cost))
@@ -104,6 +105,20 @@ fn found(args: &Args, path: &ElevationPath, back: Option<&ElevationPath>) -> Rep
         .field("climb_mm", millimetres(climb))
         .field("turns", path.points.len())
         .field("expanded", path.statistics.expanded)
+}
+
+/// Points of a path, a sample apart at most: between its turns the ground rises and falls.
+fn along_ground(ground: &HeightField, path: &ElevationPath) -> Vec<Point3> {
+    let mut along: Vec<Point3> = path.points.first().copied().into_iter().collect();
+    for pair in path.points.windows(2) {
+        let way = pair[1] - pair[0];
+        let parts = (way.xy().norm() / ground.pitch().min()).ceil().max(1.0) as usize;
+        along.extend((1..=parts).map(|part| {
+            let at = pair[0] + way * (part as f64 / parts as f64);
+            Point3::new(at.x, at.y, ground.height(at.xy()).unwrap_or(at.z))
+        }));
+    }
+    along
 }
 
 fn picture(world: &World, args: &Args, path: Option<&ElevationPath>, start: Point, goal: Point) -> Picture {

@@ -48,6 +48,7 @@ mod options;
 mod pushing;
 mod robot;
 mod robot_traits;
+mod shove;
 mod simulation;
 mod sliding;
 #[cfg(feature = "physics")]

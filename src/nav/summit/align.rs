@@ -23,7 +23,7 @@ const OUTLIER: f64 = 0.02;
 const ENOUGH: usize = 100;
 /// How far dead reckoning may be off, as standard deviations: along both axes, upwards, about the upright
 /// axis.
-const EXPECTED: [f64; 4] = [0.3, 0.3, 0.1, 0.01];
+const EXPECTED: [f64; 4] = [0.3, 0.3, 0.1, 0.05];
 /// Shares of its way since the last look by which a robot may have slipped back, the likeliest first.
 const SLIPPED: [f64; 6] = [0.0, 0.25, 0.5, 0.75, 1.0, 1.25];
 /// By how much more of the ground has to lie on the map for all of its way to be believed to be slip.

@@ -93,13 +93,11 @@ impl Drive {
         }
         if reckoning.is_locked() {
             let sign = self.freeing.unwrap_or_else(|| along_way(&self.way, pose));
-            let is_safe = |sign: &f64| {
-                let cell = map.cell_at(ahead_of(pose, *sign));
+            let is_safe = |sign: f64| {
+                let cell = map.cell_at(ahead_of(pose, sign));
                 cell.is_some_and(|cell| self.safe.is_free(cell))
             };
-            let Some(sign) = [sign, -sign].into_iter().find(is_safe) else {
-                return Step::NoWay { ahead: ahead_of(pose, sign), sign };
-            };
+            let sign = if !is_safe(sign) && is_safe(-sign) { -sign } else { sign };
             self.freeing = Some(sign);
             return Step::Go(Twist::new(sign * speed, 0.0));
         }

@@ -280,11 +280,11 @@ impl Explorer {
     pub(super) fn way_up(&self, chart: &Chart) -> Option<([Point; 2], f64)> {
         let step = self.uphill.try_normalize(f64::MIN_POSITIVE)? * STEP_UP;
         let is_fit = |share: f64| {
-            let cell = self.map.cell_at(self.here() + step * share);
-            cell.is_some_and(|cell| {
-                let is_seen = self.map.height(self.map.index_of(cell)).is_some();
-                is_seen && chart.perhaps.is_free(cell) && chart.elevation.open().is_free(cell)
-            })
+            let place = self.here() + step * share;
+            let is_open = |cell: GridCell| {
+                self.map.height(self.map.index_of(cell)).is_some() && chart.elevation.open().is_free(cell)
+            };
+            self.parameters.holds(place) && self.map.cell_at(place).is_some_and(is_open)
         };
         let gain = 0.5 * STEP_UP * self.uphill.norm();
         (is_fit(0.5) && is_fit(1.0)).then_some(([self.here(), self.here() + step], gain))

@@ -53,6 +53,8 @@ impl Fence {
     }
 }
 
+/// Distance that the robot keeps from a drop or a fence, beside its own size (m).
+pub(super) const CAUTION: f64 = 0.05;
 /// The most cells of a map along an axis.
 const MOST_CELLS: f64 = 2000.0;
 
@@ -82,6 +84,13 @@ impl SummitParameters {
             fence: None,
             period: 0.05,
         })
+    }
+
+    /// Whether the robot keeps its own size and a margin away from the fence at a place.
+    pub(super) fn holds(&self, place: Point) -> bool {
+        let margin = self.climber.radius + CAUTION;
+        let inside = |fence: Fence| Fence { area: fence.area.inflated(-margin), ..fence }.holds(place);
+        self.fence.is_none_or(inside)
     }
 
     /// Checks every parameter; the error names the one out of range.

@@ -53,7 +53,7 @@ pub struct RampCrossing {
     leg: RampLeg,
     /// Whether it drives along a ramp.
     rides: bool,
-    /// The ramp that it came up by.
+    /// The ramp that it came up by, or is to come up by, as it was seen last.
     came_by: Option<Ramp>,
     /// The other ramp, as it was seen last: where the robot can turn to it, it may be out of sight.
     other: Option<Ramp>,
@@ -111,6 +111,8 @@ const ASIDE: f64 = 0.06;
 const TURNED: f64 = 0.12;
 /// Difference in elevation that counts as none (m): three errors of the map.
 const EVEN: f64 = 0.03;
+/// Number of looks, all around, after which there is no ramp up.
+const FIRST_LOOKS: u32 = 6;
 /// Distance from a place from which another look shows nothing new (m).
 const VIEW: f64 = 0.2;
 /// Distance from ground on which the robot cannot stand that is the edge of a level (m): the drop itself is
@@ -194,7 +196,14 @@ impl RampCrossing {
         let ramps = Ramp::all(&self.explorer, &look.chart, &look.reached).into_iter();
         let away = |ramp: &Ramp| (ramp.foot - here).norm();
         let nearest = ramps.filter(|ramp| ramp.height > height).min_by(|a, b| away(a).total_cmp(&away(b)));
-        let Some(ramp) = nearest else { return ControlFlow::Break(RampOutcome::NoWayUp) };
+        let Some(ramp) = nearest.or(self.came_by) else {
+            // A gentle ramp rises little more than the map's errors: not every look shows it.
+            if self.explorer.looks() >= FIRST_LOOKS {
+                return ControlFlow::Break(RampOutcome::NoWayUp);
+            }
+            let ahead = self.explorer.reckoning.pose.forward();
+            return ControlFlow::Continue(self.explorer.turn(Vector::new(-ahead.y, ahead.x)));
+        };
         let goal = self.explorer.map.cell_at(ramp.foot - ramp.uphill() * BEFORE);
         self.came_by = Some(ramp);
         self.take(time, look, &ramp, ramp.uphill(), goal)
@@ -208,19 +217,36 @@ impl RampCrossing {
         let is_other = |ramp: &Ramp| ramp.height < height && is_new(ramp);
         let seen = Ramp::all(&self.explorer, &look.chart, &look.reached).into_iter().find(is_other);
         self.other = seen.or(self.other);
-        let is_even = |&cell: &GridCell| {
-            (self.explorer.height(cell) - height).abs() < EVEN && !is_sloped(&self.explorer, cell)
-        };
-        let even: Vec<GridCell> = look.reached.iter().copied().filter(is_even).collect();
+        let even = self.even(look);
         if let Some(ramp) = self.other {
             let on_line = |cell: &&GridCell| ramp.aside(self.explorer.map.place(**cell)).abs() < ASIDE;
             let goal = look.roomiest(even.iter().filter(on_line));
             return self.take(time, look, &ramp, -ramp.uphill(), goal);
         }
-        let way = self.next_view(look, &even).and_then(|view| self.way_to(look, view));
-        match way {
+        let view = self.next_view(look, &even);
+        self.go_to(time, look, view, RampOutcome::NoWayDown)
+    }
+
+    /// The cells that it can reach and that are level with it.
+    fn even(&self, look: &Look) -> Vec<GridCell> {
+        let height = self.explorer.reckoning.elevation;
+        let is_even = |&cell: &GridCell| {
+            (self.explorer.height(cell) - height).abs() < EVEN && !is_sloped(&self.explorer, cell)
+        };
+        look.reached.iter().copied().filter(is_even).collect()
+    }
+
+    /// To a cell; ends if there is none, or no way there that is worth driving.
+    fn go_to(
+        &mut self,
+        time: f64,
+        look: &Look,
+        cell: Option<GridCell>,
+        or: RampOutcome,
+    ) -> ControlFlow<RampOutcome, Twist> {
+        match cell.and_then(|cell| self.way_to(look, cell)) {
             Some(way) => ControlFlow::Continue(self.explorer.drive(time, &look.chart, &way)),
-            None => ControlFlow::Break(RampOutcome::NoWayDown),
+            None => ControlFlow::Break(or),
         }
     }
 

@@ -1,4 +1,4 @@
-use super::parameters::{Fence, SummitParameters};
+use super::parameters::{CAUTION, SummitParameters};
 use super::sweep::Beam;
 use crate::geometry::{Aabb, Point, Point3, Vector, math};
 use crate::nav::elevation::{Climber, ElevationMap};
@@ -62,8 +62,6 @@ const NOISE: f64 = 0.01;
 const PATCH: f64 = 0.02;
 /// Depth below what a slope could lead to from which ground is a drop (m).
 const DROP: f64 = 0.04;
-/// Distance that the robot keeps from a drop, beside its own size (m).
-const CAUTION: f64 = 0.05;
 
 impl SightMap {
     pub(super) fn new(resolution: f64, extent: f64, gap: f64) -> Self {
@@ -253,12 +251,8 @@ impl SightMap {
             let least = f64::from(field_height(&field, index)) - steepest * f64::from(away[index]) - DROP;
             !known[index] && self.ceilings[index] < least
         };
-        let margin = climber.radius + CAUTION;
-        let fence = parameters.fence.map(|fence| Fence { area: fence.area.inflated(-margin), ..fence });
-        let fenced = |index: usize| {
-            let place = self.place(GridCell::new(index % self.side, index / self.side));
-            fence.is_none_or(|fence| fence.holds(place))
-        };
+        let fenced =
+            |index: usize| parameters.holds(self.place(GridCell::new(index % self.side, index / self.side)));
         let holds: Vec<bool> = (0..known.len()).map(|index| !drops(index)).collect();
         let far_from_drops = eroded(&holds, self.side, reach + (CAUTION / self.resolution).round() as usize);
         let is_safe = |index: usize| fenced(index) && covered[index] && far_from_drops[index] && open(index);

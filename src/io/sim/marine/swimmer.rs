@@ -1,6 +1,7 @@
 use super::{CraftDrive, Waters};
 use crate::geometry::{Aabb, Point, Point3, Pose, Pose3, Vector, Vector3, math};
 use crate::io::sim::TICK;
+use crate::io::sim::shove::stopping;
 use crate::kinematics::marine::{Craft, CraftMotion, CraftState, HullPart, Wrench};
 use crate::world::HeightField;
 
@@ -187,8 +188,10 @@ impl Swimmer {
         let turn = Pose3::level(Pose::new(0.0, 0.0, turned), 0.0).attitude;
         self.state.attitude = turn * self.state.attitude;
         self.state.position = pose.position + way + self.state.attitude * self.craft.middle().coords;
-        self.state.velocity.linear += self.state.attitude.inverse() * (way / TICK);
-        self.state.velocity.angular += self.state.attitude.inverse() * Vector3::new(0.0, 0.0, turned / TICK);
+        let own = self.state.attitude.inverse();
+        let CraftMotion { linear, angular } = &mut self.state.velocity;
+        *linear += stopping(linear, &(own * (way / TICK)));
+        *angular += stopping(angular, &(own * Vector3::new(0.0, 0.0, turned / TICK)));
         self.clearance = 0.0;
     }
 

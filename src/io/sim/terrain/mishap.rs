@@ -21,8 +21,8 @@ pub(super) struct Watch {
     gone: bool,
 }
 
-/// Cosine of the angle to the vertical beyond which a robot lies: 70 degrees.
-const LYING: f64 = 0.342;
+/// Cosine of the angle to the vertical beyond which a robot lies, or hangs over an edge: 60 degrees.
+const LYING: f64 = 0.5;
 /// Ticks of an observation for stuck robots.
 const LOOK: u32 = 200;
 /// Smallest fraction of its way that a robot makes if it is not stuck.

@@ -2,7 +2,8 @@ use nalgebra::{Quaternion, UnitQuaternion};
 
 use super::contact::{Contact, Load, Meeting, Motion, Ride, solve};
 use super::undercarriage::{Foot, GRAVITY, Undercarriage};
-use crate::geometry::{Point3, Pose, Pose3, Vector3, math};
+use crate::geometry::{Point3, Pose, Pose3, Vector, Vector3, math};
+use crate::io::sim::shove::stopping;
 use crate::kinematics::PlanarTwist;
 use crate::world::HeightField;
 
@@ -188,15 +189,20 @@ impl RigidBody {
         }
     }
 
-    /// Displaces the body like an obstacle in the way of its outline, and removes the speed in that
-    /// direction.
-    pub(super) fn shove(&mut self, aside: crate::geometry::Vector, turned: f64, tick: f64) {
+    /// Displaces the body like an obstacle in the way of its outline, and removes the speed that led there.
+    pub(super) fn shove(&mut self, aside: Vector, turned: f64, tick: f64) {
         let way = Vector3::new(aside.x, aside.y, 0.0);
         self.place += way;
         self.attitude = turn(Vector3::z() * turned) * self.attitude;
         self.asleep = false;
-        self.velocity += way / tick;
-        self.spin.z += turned / tick;
+        self.velocity += stopping(&self.velocity, &(way / tick));
+        self.spin += stopping(&self.spin, &(Vector3::z() * (turned / tick)));
+    }
+
+    /// Throws the body.
+    #[cfg(test)]
+    pub(super) fn throw(&mut self, velocity: Vector3, spin: Vector3) {
+        (self.velocity, self.spin) = (velocity, spin);
     }
 
     /// A body at rest on the ground with its robot's frame at a pose in the plane. Beyond the ground it
