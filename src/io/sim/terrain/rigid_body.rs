@@ -2,7 +2,7 @@ use nalgebra::{Quaternion, UnitQuaternion};
 
 use super::contact::{Contact, Load, Meeting, Motion, Ride, solve};
 use super::undercarriage::{Foot, GRAVITY, Undercarriage};
-use crate::geometry::{Point3, Pose, Pose3, Vector, Vector3, math};
+use crate::geometry::{Point3, Pose, Pose3, Vector, Vector3, angle_difference, math};
 use crate::io::sim::shove::stopping;
 use crate::kinematics::PlanarTwist;
 use crate::world::HeightField;
@@ -231,15 +231,17 @@ impl RigidBody {
     /// This body at rest, to which it has come without sliding; `None` if it finds no rest.
     fn settled(&self, ground: &HeightField, carriage: &Undercarriage, tick: f64) -> Option<Self> {
         let held = Undercarriage { friction: f64::MAX, ..carriage.clone() };
-        let goal = self.pose(carriage).position.xy();
+        let goal = self.pose(carriage).pose();
         let mut body = self.clone();
         for _ in 0..MOST_SETTLING {
-            let before = body.place;
             body.advance(ground, &held, &PlanarTwist::STOP, tick);
-            // A tilt about the centre of mass moves the robot's origin aside.
-            let aside = goal - body.pose(carriage).position.xy();
+            let still = body.velocity.norm() * tick < 1e-9;
+            // A tilt about the centre of mass moves the robot's origin aside, and may turn it.
+            let now = body.pose(carriage).pose();
+            body.attitude = turn(Vector3::z() * angle_difference(goal.heading, now.heading)) * body.attitude;
+            let aside = goal.position() - body.pose(carriage).position.xy();
             body.place += Vector3::new(aside.x, aside.y, 0.0);
-            if (body.place - before).norm() < 1e-9 && body.is_carried() {
+            if still && aside.norm() < 1e-9 && body.is_carried() {
                 (body.velocity, body.spin) = (Vector3::zeros(), Vector3::zeros());
                 return Some(body);
             }
