@@ -65,7 +65,8 @@ fn refusal(file: &Path, wrong: &str) -> io::Error {
 /// fs::write(&file, "a letter")?;
 /// roverlab::files::write_whole(&file, b"another one")?;
 /// assert_eq!(fs::read(&file)?, b"another one");
-/// # fs::remove_file(&file)
+/// # fs::remove_file(&file)?;
+/// # Ok::<(), std::io::Error>(())
 /// ```
 pub fn write_whole(file: impl AsRef<Path>, bytes: &[u8]) -> io::Result<()> {
     let file = file.as_ref();
