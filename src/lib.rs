@@ -63,7 +63,8 @@
 //!
 //! Besides the chapters: [`ParameterError`] is the error of constructors; [`geometry`] has poses and angles,
 //! [`geometry::units`] conversions, and [`geometry::math`] functions with equal bits on every platform;
-//! [`random`] has seeded streams; [`files`] reads and writes safely; [`picture`] draws worlds and runs; `io::log` records and replays them;
+//! [`random`] has seeded streams; [`files`] reads and writes safely; [`picture`] draws worlds and runs;
+//! `io::log` records and replays them;
 //! `io::robios` drives a real EyeBot; `testing` helps to test your own planners. Those without a link are
 //! features that are off by default.
 //!
@@ -75,8 +76,8 @@
 //! # Features
 //!
 //! Each wing is a feature of its name and enables those that it depends on. `io` includes [`world`];
-//! [`files`], [`geometry`], [`kinematics`] and [`random`] are always present. All wings are on by default, and so is
-//! `picture`. With `default-features = false, features = ["vision"]` only the kernels of [`vision`] are
+//! [`files`], [`geometry`], [`kinematics`] and [`random`] are always present. All wings are on by default, and
+//! so is `picture`. With `default-features = false, features = ["vision"]` only the kernels of [`vision`] are
 //! compiled; `image` adds views of that crate's images.
 //!
 //! Off by default: `log` (recordings), `png` (pictures as PNG), `testing` (property-test strategies and

@@ -1,4 +1,5 @@
-//! Behaviours on unknown hills: the search for the highest place that can be reached, and crossings of levels.
+//! Behaviours on unknown hills: the search for the highest place that can be reached, and crossings of
+//! levels.
 
 use roverlab::geometry::{Aabb, Point, Pose, math, units};
 use roverlab::io::control::run;

@@ -9,8 +9,8 @@ pub(crate) fn of_byte(text: &str, byte: usize) -> String {
     format!("{line}:{column}")
 }
 
-/// The same of the value at a path of keys and indices in a TOML text, or of the last part of the path that is
-/// there.
+/// The same of the value at a path of keys and indices in a TOML text, or of the last part of the path that
+/// is there.
 pub(crate) fn of_value(text: &str, path: &[String]) -> String {
     let Ok(table) = DeTable::parse(text) else { return of_byte(text, 0) };
     let mut here: Option<&Spanned<DeValue<'_>>> = None;

@@ -56,7 +56,8 @@ struct Footing {
 }
 
 /// Running sums over a window: of heights, of their moments along the rows, of heights times their place on
-/// the axis on which the window moves, and of steps that are too high. Surfaces of 1000 km need all the digits.
+/// the axis on which the window moves, and of steps that are too high. Surfaces of 1000 km need all
+/// the digits.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sums {
     height: i128,

@@ -77,8 +77,8 @@ impl Ramp {
         (self.top - self.foot).normalize()
     }
 
-    /// Whether it may be a part of a known ramp: it rises the same way, and a robot of a radius on one of them
-    /// could touch the other. A ramp opposite to the known one, straight ahead, rises the other way.
+    /// Whether it may be a part of a known ramp: it rises the same way, and a robot of a radius on one of
+    /// them could touch the other. A ramp opposite to the known one, straight ahead, rises the other way.
     pub(super) fn is(&self, known: &Self, radius: f64) -> bool {
         let aside = known.aside(nalgebra::center(&self.foot, &self.top)).abs();
         let touching = self.half_width + known.half_width + 2.0 * radius;

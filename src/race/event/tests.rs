@@ -170,7 +170,8 @@ fn the_course_is_measured_out_among_the_cones() {
         cone.position = Point::new((7 * k % 23) as f64, (11 * k % 19) as f64);
     }
     assert_eq!(EventCourse::of(&heap, &OUTLINE), None);
-    // False cones beside a strip make no skidpad of it, and a lane that nothing closes is as long as by the rules.
+    // False cones beside a strip make no skidpad of it, and a lane that nothing closes is as long as by the
+    // rules.
     for seed in 0..20 {
         let mut random = crate::random::Stream::new(seed);
         let mut false_cone = |cone: &Cone| {

@@ -20,8 +20,8 @@
 //!
 //! Motors are as strong as friction. There is no restitution, only Mecanum wheels have a suspension, and the
 //! ground is never soft. The body rotates like a ball of its mean radius of gyration, without precession. Feet
-//! do not detect the ground between them: a post or a wall as thin as the gap between two belts passes through
-//! the body. Air and water exert no forces. A belt touches the ground at eight
+//! do not detect the ground between them: a post or a wall as thin as the gap between two belts passes
+//! through the body. Air and water exert no forces. A belt touches the ground at eight
 //! points. How its load is shared among them decides how a tracked robot turns: beside belts of road wheels on
 //! springs, curves of 1.9 m end 0.6 to 6.4 mm apart, and beside rigid belts, which a crest carries at one
 //! line, 17 mm to 1.8 m apart (`benches/judge`).
