@@ -9,7 +9,7 @@ use super::Args;
 use super::args::Method;
 use crate::common::{Failure, Outcome};
 use crate::driving::{Conditions, Run};
-use crate::terrain::{Hike, Ride, shore, word};
+use crate::terrain::{Hike, Ride, shore, unfit, word};
 
 /// How a climb ended, as the robot takes it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,11 +49,7 @@ impl Summit {
     pub(crate) fn of(hike: &Hike, args: &Args) -> Result<Self, Failure> {
         let map = hike.map(&args.climber(hike.spec()))?;
         let start = hike.start().position();
-        let place = map.highest_reachable(start).ok_or_else(|| {
-            Failure::input(
-                "found a start too steep, in water, or too near to the hills' border; expected gentle ground",
-            )
-        })?;
+        let place = map.highest_reachable(start).ok_or_else(|| unfit(start))?;
         let mut planner = ElevationPlanner::astar(&map, Objective::Length).map_err(Failure::input)?;
         let way = planner.plan_any_angle(start, place.xy()).ok().map(|way| way.cost);
         let relief = hike.ground.highest() - hike.ground.lowest();

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use roverlab::geometry::{Pose, units};
+use roverlab::geometry::{Point, Pose, units};
 use roverlab::io::{Mishap, TruthInSpace};
 use roverlab::nav::elevation::{Climber, ElevationMap};
 use roverlab::world::generate::Relief;
-use roverlab::world::{HeightField, RobotSpec, Scene, World};
+use roverlab::world::{DriveSpec, HeightField, RobotSpec, Scene, World};
 
 use crate::common::{CommonArgs, Failure, StandIn, rounded};
 use crate::driving::Run;
@@ -27,6 +27,12 @@ impl Hike {
     ) -> Result<Self, Failure> {
         let stand_in = StandIn { spec: Arc::new(spec.clone()), suits: |_| true };
         let scene = common.placed_of(&stand_in, own)?;
+        if matches!(scene.robots[0].spec.drive, DriveSpec::Craft(_)) {
+            let robot = &scene.robots[0].spec.name;
+            return Err(Failure::input(format!(
+                "found `{robot}`, a craft; expected a robot that drives on land"
+            )));
+        }
         let surface = scene.world.terrain.as_ref().and_then(|terrain| terrain.surface.clone());
         let name = common.world.as_ref().map_or(String::new(), |file| format!("{}: ", file.display()));
         let Some(ground) = surface else {
@@ -83,6 +89,14 @@ pub(crate) fn elevation_map(
 ) -> Result<ElevationMap, Failure> {
     let map = ElevationMap::new(ground, climber);
     map.and_then(|map| map.above(shore(world).unwrap_or(f64::NEG_INFINITY))).map_err(Failure::input)
+}
+
+/// The failure for a start on which a robot cannot stand.
+pub(crate) fn unfit(start: Point) -> Failure {
+    let [x, y] = [start.x, start.y].map(|metres| rounded(1000.0 * metres));
+    Failure::input(format!(
+        "found a start at {x}, {y} mm: too steep, in water, or too near to the border; expected gentle ground"
+    ))
 }
 
 /// Ground truth of a run on hills.

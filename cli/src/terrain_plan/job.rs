@@ -12,7 +12,7 @@ use super::Args;
 use super::args::{Planner, refused};
 use super::campaign::campaign;
 use crate::common::{Failure, Outcome, Report, Stopwatch, millimetres, rounded};
-use crate::terrain::{degrees, elevation_map, percent};
+use crate::terrain::{degrees, elevation_map, percent, unfit};
 
 /// Runs the command.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
@@ -26,9 +26,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     })?;
     let stopwatch = Stopwatch::start();
     let map = elevation_map(&world, &ground, &args.climber())?;
-    let top = map.highest_reachable(start).ok_or_else(|| {
-        Failure::input("found a start too steep, in water, or too near to the border; expected gentle ground")
-    })?;
+    let top = map.highest_reachable(start).ok_or_else(|| unfit(start))?;
     let goal = args.goal.unwrap_or(top.xy());
     let objective = args.cost.objective(&args.robot);
     let mut planner = match args.planner {

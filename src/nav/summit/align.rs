@@ -11,6 +11,8 @@ pub(super) struct Shift {
     pub(super) up: f64,
     pub(super) turn: f64,
     pub(super) tilt: Vector,
+    /// Standard deviation of the place along the axis of which the ground tells least (m).
+    pub(super) doubt: f64,
 }
 
 /// Metres from the map at which a point counts half, by rounds of the fit: many count at first, so that a
@@ -45,7 +47,7 @@ pub(super) fn align(
     let mut fits = fits.peekable();
     if fits.peek().is_none() {
         // So little of it has been seen before that it may lie anywhere.
-        return Some(Shift::default());
+        return Some(Shift { doubt: f64::INFINITY, ..Shift::default() });
     }
     fits.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(share, _)| *share > MOST).map(|(_, shift)| shift)
 }
@@ -56,6 +58,7 @@ fn fit(map: &SightMap, robot: Point3, points: &[Point3], tilt: f64, guess: Vecto
     let prior = [EXPECTED[0], EXPECTED[1], EXPECTED[2], EXPECTED[3], tilt, tilt];
     let guess = SVector::<f64, 6>::from([guess.x, guess.y, guess.z, 0.0, 0.0, 0.0]);
     let mut fit = guess;
+    let mut doubt = f64::INFINITY;
     for outlier in OUTLIERS {
         let mut normal = SMatrix::<f64, 6, 6>::zeros();
         let mut right = SVector::<f64, 6>::zeros();
@@ -84,14 +87,17 @@ fn fit(map: &SightMap, robot: Point3, points: &[Point3], tilt: f64, guess: Vecto
             normal[(index, index)] += weight;
             right[index] -= (fit[index] - guess[index]) * weight;
         }
-        let Some(step) = normal.cholesky().map(|factors| factors.solve(&right)) else { break };
-        fit += step;
+        let Some(factors) = normal.cholesky() else { break };
+        fit += factors.solve(&right);
+        let covariance = factors.inverse() * PRIOR;
+        doubt = covariance.fixed_view::<2, 2>(0, 0).symmetric_eigenvalues().max().sqrt();
     }
     Some(Shift {
         place: Vector::new(fit[0], fit[1]),
         up: fit[2],
         turn: fit[3],
         tilt: Vector::new(fit[4], fit[5]),
+        doubt,
     })
 }
 

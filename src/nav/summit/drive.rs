@@ -16,10 +16,12 @@ pub(super) struct Drive {
     passed: usize,
     /// The least distance to the end so far, and since when.
     nearest: (f64, f64),
-    /// 1 forwards, -1 backwards, while it drives straight to where it can turn.
-    freeing: Option<f64>,
+    /// Where it could not turn, and 1 forwards, -1 backwards, while it drives straight on from there.
+    freeing: Option<(Point, f64)>,
     /// Where the robot can drive for all that it knows.
     safe: BitGrid,
+    /// How well it knew its place when it set off (m).
+    doubt: f64,
 }
 
 /// What comes of a step on a way.
@@ -29,6 +31,11 @@ pub(super) enum Step {
     Go(Twist),
     /// It is at the end.
     Arrived,
+    /// It could not turn at a place, and has driven straight on from there.
+    Freed {
+        /// The place.
+        from: Point,
+    },
     /// It does not get on, or the ground is too steep.
     NoWay {
         /// The place that it does not get to.
@@ -46,11 +53,14 @@ const ARRIVED: f64 = 0.04;
 const ASIDE: f64 = 0.9;
 /// Seconds without getting nearer after which it does not get on.
 const PATIENCE: f64 = 8.0;
+/// Growth of the doubt about its place at which it looks around again (m).
+const MOST_DOUBT: f64 = 0.15;
 /// Radians above the slope limit at which it backs off.
 const TOO_STEEP: f64 = 0.1;
 
 impl Drive {
-    pub(super) fn along(way: &[Point], safe: BitGrid, pose: Pose, time: f64) -> Self {
+    pub(super) fn along(way: &[Point], safe: BitGrid, reckoning: &Reckoning, time: f64) -> Self {
+        let pose = reckoning.pose;
         let ahead = way.iter().find(|point| pose.distance_to(**point) > AHEAD).or(way.last());
         let bearing = ahead.map_or(0.0, |&point| pose.bearing_to(point));
         Self {
@@ -60,6 +70,7 @@ impl Drive {
             nearest: (f64::INFINITY, time),
             freeing: None,
             safe,
+            doubt: reckoning.doubt,
         }
     }
 
@@ -86,22 +97,28 @@ impl Drive {
         if rest < self.nearest.0 - 0.02 {
             self.nearest = (rest, time);
         }
+        let holds = |doubt: f64| parameters.holds(pose.position(), doubt);
+        if reckoning.doubt > self.doubt + MOST_DOUBT || holds(self.doubt) && !holds(reckoning.doubt) {
+            return Step::Arrived;
+        }
         let sign = if self.backwards { -1.0 } else { 1.0 };
         let lost = time - self.nearest.1 > PATIENCE + 4.0 * length(&self.way) / speed;
         if tilt > climber.slope + TOO_STEEP || lost {
             return Step::NoWay { ahead: ahead_of(pose, sign), sign };
         }
         if reckoning.is_locked() {
-            let sign = self.freeing.unwrap_or_else(|| along_way(&self.way, pose));
+            let (from, sign) = self.freeing.unwrap_or_else(|| (pose.position(), along_way(&self.way, pose)));
             let is_safe = |sign: f64| {
                 let cell = map.cell_at(ahead_of(pose, sign));
                 cell.is_some_and(|cell| self.safe.is_free(cell))
             };
             let sign = if !is_safe(sign) && is_safe(-sign) { -sign } else { sign };
-            self.freeing = Some(sign);
+            self.freeing = Some((from, sign));
             return Step::Go(Twist::new(sign * speed, 0.0));
         }
-        self.freeing = None;
+        if let Some((from, _)) = self.freeing {
+            return Step::Freed { from };
+        }
         while self.passed + 1 < self.way.len() && pose.distance_to(self.way[self.passed]) < AHEAD {
             self.passed += 1;
         }

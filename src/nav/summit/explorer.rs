@@ -2,7 +2,7 @@ use std::ops::ControlFlow;
 
 use super::align::{Shift, align};
 use super::drive::{Drive, Step, cut};
-use super::parameters::SummitParameters;
+use super::parameters::{CAUTION, SummitParameters};
 use super::reckoning::Reckoning;
 use super::sight_map::{Chart, MIN_UPRIGHT, SightMap};
 use super::straight::Straight;
@@ -103,11 +103,13 @@ const ALIGNED: f64 = 0.1;
 /// Distance that it backs off (m).
 const BACK: f64 = 0.15;
 /// Drive by the wheels from which a robot should have got on (m).
-const TURNED: f64 = 0.2;
+const TURNED: f64 = 0.1;
 /// The least part of a drive by the wheels that a robot makes if it gets on.
 const GOT_ON: f64 = 0.25;
 /// Distance to the place that a robot does not get to (m).
 const IN_FRONT: f64 = 0.18;
+/// Radius around a place where the robot cannot stand or turn (m).
+const SHUNNED: f64 = 0.1;
 /// Distance within which a look is compared with the map (m).
 const NEAR: f64 = 4.0;
 /// Error of the inertial unit before its calibration (rad).
@@ -181,6 +183,11 @@ impl Explorer {
         self.reckoning.pose.position()
     }
 
+    /// Where the robot can drive for all that it knows.
+    pub(super) fn chart(&self) -> Chart {
+        self.map.chart(&self.parameters, self.reckoning.doubt)
+    }
+
     fn settle(&mut self) -> Twist {
         self.state = State::Settling { until: None };
         Twist::STOP
@@ -201,10 +208,10 @@ impl Explorer {
                 if let Some(shift) = self.align(sweep, UNCALIBRATED) {
                     self.calibrate(shift.tilt);
                 }
-                self.map.clear();
+                self.begin_map();
             }
             MOST_LOOKS => return Event::Stuck,
-            _ if self.forgets => self.map.clear(),
+            _ if self.forgets => self.begin_map(),
             _ => {
                 let believed = self.here();
                 // What does not lie on the map is not put there; once more, and the map is wrong.
@@ -226,12 +233,18 @@ impl Explorer {
         Event::Looked
     }
 
+    /// A new map begins where the robot takes itself to be.
+    fn begin_map(&mut self) {
+        self.map.clear();
+        self.reckoning.doubt = 0.0;
+    }
+
     /// If belts have turned and the robot has not got on, it does not try the same again.
     fn note_slip(&mut self, believed: Point) {
         let before = self.looked_from.xy();
         let told = believed - before;
         if told.norm() > TURNED && (self.here() - before).norm() < GOT_ON * told.norm() {
-            self.map.shun(self.here() + told.normalize() * IN_FRONT, 0.1);
+            self.map.shun(self.here() + told.normalize() * IN_FRONT, SHUNNED);
         }
     }
 
@@ -284,7 +297,8 @@ impl Explorer {
             let is_open = |cell: GridCell| {
                 self.map.height(self.map.index_of(cell)).is_some() && chart.elevation.open().is_free(cell)
             };
-            self.parameters.holds(place) && self.map.cell_at(place).is_some_and(is_open)
+            self.parameters.holds(place, CAUTION + self.reckoning.doubt)
+                && self.map.cell_at(place).is_some_and(is_open)
         };
         let gain = 0.5 * STEP_UP * self.uphill.norm();
         (is_fit(0.5) && is_fit(1.0)).then_some(([self.here(), self.here() + step], gain))
@@ -350,7 +364,7 @@ impl Explorer {
     /// Starts to drive a path.
     pub(super) fn drive(&mut self, time: f64, chart: &Chart, way: &[Point]) -> Twist {
         let way = cut(way, 2.0 * self.parameters.stride);
-        self.state = State::Driving(Drive::along(way, chart.safe.clone(), self.reckoning.pose, time));
+        self.state = State::Driving(Drive::along(way, chart.safe.clone(), &self.reckoning, time));
         Twist::STOP
     }
 
@@ -373,6 +387,7 @@ impl Explorer {
         check_scan(&seen.scan)?;
         let SummitParameters { slide, half_track, .. } = self.parameters;
         self.reckoning.update(seen.odometry, seen.attitude, slide, half_track);
+        self.map.tread(self.here());
         if self.reckoning.in_space(seen.attitude).up().z < MIN_UPRIGHT {
             return Ok(Event::Stuck);
         }
@@ -413,8 +428,12 @@ impl Explorer {
                 match drive.step(time, &self.reckoning, tilt, &self.parameters, &self.map) {
                     Step::Go(twist) => go(twist),
                     Step::Arrived => go(self.settle()),
+                    Step::Freed { from } => {
+                        self.map.shun(from, SHUNNED);
+                        go(self.settle())
+                    }
                     Step::NoWay { ahead, sign } => {
-                        self.map.shun(ahead, 0.1);
+                        self.map.shun(ahead, SHUNNED);
                         self.state = State::BackingOff { from: self.reckoning.pose.position(), sign };
                         go(Twist::STOP)
                     }
@@ -425,7 +444,7 @@ impl Explorer {
                 match straight.step(self.reckoning.pose, tilt, &self.parameters) {
                     Step::Go(twist) => go(twist),
                     Step::Arrived => go(self.settle()),
-                    Step::NoWay { .. } => Ok(Event::Stuck),
+                    Step::Freed { .. } | Step::NoWay { .. } => Ok(Event::Stuck),
                 }
             }
             State::BackingOff { from, sign } => {

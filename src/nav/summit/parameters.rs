@@ -86,9 +86,9 @@ impl SummitParameters {
         })
     }
 
-    /// Whether the robot keeps its own size and a margin away from the fence at a place.
-    pub(super) fn holds(&self, place: Point) -> bool {
-        let margin = self.climber.radius + CAUTION;
+    /// Whether the robot keeps its own size and a distance (m) away from the fence at a place.
+    pub(super) fn holds(&self, place: Point, distance: f64) -> bool {
+        let margin = self.climber.radius + distance;
         let inside = |fence: Fence| Fence { area: fence.area.inflated(-margin), ..fence }.holds(place);
         self.fence.is_none_or(inside)
     }

@@ -175,7 +175,7 @@ impl RampCrossing {
                 RampLeg::Up | RampLeg::Across => self.leg = RampLeg::Across,
             }
         }
-        let mut chart = self.explorer.map.chart(&self.explorer.parameters);
+        let mut chart = self.explorer.chart();
         let Some(start) = self.explorer.footing(&mut chart, self.explorer.here()) else {
             return ControlFlow::Break(RampOutcome::Stuck);
         };

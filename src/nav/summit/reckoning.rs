@@ -17,6 +17,8 @@ pub(super) struct Reckoning {
     before: Option<Pose>,
     /// The unit's yaw where the heading is 0.
     north: f64,
+    /// Distance by which the place may be wrong, as belts slip on slopes (m).
+    pub(super) doubt: f64,
     /// Turn of the last seconds by the wheels that the robot did not make (rad).
     unturned: f64,
     locked: bool,
@@ -27,6 +29,9 @@ pub(super) struct Reckoning {
 const TRUST: f64 = 0.25;
 /// Turn by the wheels that the robot does not make, up to which that is noise of the unit (rad).
 const NOISE: f64 = 0.01;
+/// Distance by which the place may be wrong, per metre that belts run on a slope of 1. Where a robot cannot
+/// turn, it errs by 0.4 m in 4 m on 15 to 20 degrees.
+const SLIP: f64 = 0.5;
 /// Rise per metre from which the lower belt holds.
 const HELD: f64 = 0.1;
 /// The share of a turn not made that a step remembers: half of it for 1.4 s.
@@ -60,6 +65,7 @@ impl Reckoning {
         let up = self.in_space(attitude).up();
         let downhill = Vector::new(up.x, up.y) / up.z.max(0.1);
         let place = place + downhill * (slide * turned.abs());
+        self.doubt += SLIP * downhill.norm() * (length.abs() + half_track * told.abs());
         self.pose = Pose::new(place.x, place.y, normalize_angle(self.pose.heading + turned));
         self.elevation += length * rise - downhill.norm_squared() * slide * turned.abs();
     }
@@ -76,6 +82,7 @@ impl Reckoning {
         self.pose = Pose::new(place.x, place.y, normalize_angle(heading + shift.turn));
         self.north -= shift.turn;
         self.elevation += shift.up;
+        self.doubt = self.doubt.min(shift.doubt);
     }
 
     /// Roll and pitch without their constant errors.

@@ -51,6 +51,8 @@ pub struct SummitSearch {
     explorer: Explorer,
     /// How often it has been next to the top.
     approaches: u32,
+    /// How often it has tried again where it had not got on.
+    retries: u32,
     /// What it wanted to see when it looked last.
     target: Option<Point>,
     unknown: usize,
@@ -88,6 +90,8 @@ const VIEW: f64 = 0.4;
 const WORTH_CLIMBING: f64 = 0.04;
 /// Metres from what it is after that belong to it.
 const SAME: f64 = 0.4;
+/// How often it tries again where it had not got on, before it takes a place for the highest.
+const MOST_RETRIES: u32 = 3;
 /// The most ways on the top, each after another look.
 const MOST_APPROACHES: u32 = 16;
 
@@ -102,6 +106,7 @@ impl SummitSearch {
         Ok(Self {
             explorer,
             approaches: 0,
+            retries: 0,
             target: None,
             unknown: 0,
             highest: 0.0,
@@ -145,12 +150,12 @@ impl SummitSearch {
     }
 
     fn decide(&mut self, time: f64) -> ControlFlow<SummitOutcome, Twist> {
-        let mut chart = self.explorer.map.chart(&self.explorer.parameters);
-        let here = self.explorer.reckoning.pose.position();
-        let Some(start) = self.explorer.footing(&mut chart, here) else {
-            return ControlFlow::Break(SummitOutcome::Stuck);
-        };
+        let here = self.explorer.here();
         loop {
+            let mut chart = self.explorer.chart();
+            let Some(start) = self.explorer.footing(&mut chart, here) else {
+                return ControlFlow::Break(SummitOutcome::Stuck);
+            };
             let top = self.top(&chart, start);
             let level = self.explorer.height(top);
             self.highest = level;
@@ -161,6 +166,10 @@ impl SummitSearch {
             let new = self.explorer.views.iter().all(|view| (view - place).norm() > VIEW);
             let climbs = new && above > WORTH_CLIMBING;
             if higher.is_empty() {
+                if self.retries < MOST_RETRIES && self.explorer.map.forget_shunned() {
+                    self.retries += 1;
+                    continue;
+                }
                 return self.approach(time, &chart, start, top);
             }
             if climbs
@@ -181,10 +190,6 @@ impl SummitSearch {
             // It has looked from here, and does not see that it could go on.
             let beyond = way[known.len().min(way.len() - 1)];
             self.explorer.map.give_up(beyond, LOST_SIGHT);
-            chart = self.explorer.map.chart(&self.explorer.parameters);
-            if self.explorer.footing(&mut chart, here).is_none() {
-                return ControlFlow::Break(SummitOutcome::Stuck);
-            }
         }
     }
 
@@ -226,7 +231,7 @@ impl SummitSearch {
         let way = self.explorer.way_over(&chart.safe, climbing_costs(chart), start, top).unwrap_or_default();
         let gain = self.explorer.height(top) - self.explorer.reckoning.elevation;
         // Not by how near it is: on a slope, half a cell is worth several tolerances.
-        if gain < self.explorer.parameters.tolerance || self.approaches >= MOST_APPROACHES {
+        if gain < self.explorer.parameters.tolerance || way.len() < 2 || self.approaches >= MOST_APPROACHES {
             return self.climb_on(time, chart);
         }
         // Ways that end on the top, not those that lead to it.

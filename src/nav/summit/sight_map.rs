@@ -19,6 +19,9 @@ pub(super) struct SightMap {
     ceilings: Vec<f64>,
     /// Cells on which the robot has found that it cannot stand.
     shunned: Vec<bool>,
+    /// Cells on which the robot has stood, and those beside them: it can go back the way that it came, however
+    /// steep the ground seems to be.
+    trodden: Vec<bool>,
     /// Cells that the robot did not see well enough from beside them: it does not go there to look again.
     given_up: Vec<bool>,
 }
@@ -74,6 +77,7 @@ impl SightMap {
             seen: vec![(0.0, 0.0); side * side],
             ceilings: vec![f64::INFINITY; side * side],
             shunned: vec![false; side * side],
+            trodden: vec![false; side * side],
             given_up: vec![false; side * side],
         }
     }
@@ -189,6 +193,10 @@ impl SightMap {
             // The beam is lowest in the cell at one of its edges.
             let height = beam.origin.z + slope * away + 0.5 * slope.abs() * self.resolution;
             self.ceilings[index] = self.ceilings[index].min(height);
+            // What a beam passes below is no ground: the robot was not where it took itself to be.
+            if self.height(index).is_some_and(|ground| ground - DROP > height) {
+                self.seen[index] = (0.0, 0.0);
+            }
         }
     }
 
@@ -197,11 +205,28 @@ impl SightMap {
         self.measure(place.xy(), place.z, 1.0);
     }
 
+    /// Notes that the robot is at a place.
+    pub(super) fn tread(&mut self, place: Point) {
+        let Some(index) = self.index(place) else { return };
+        self.trodden[index] = true;
+        for near in self.neighbours(index) {
+            self.trodden[near] = true;
+        }
+    }
+
     /// Notes that the robot cannot stand around a place.
     pub(super) fn shun(&mut self, place: Point, radius: f64) {
         for index in self.around(place, radius) {
             self.shunned[index] = true;
         }
+    }
+
+    /// Forgets where the robot could not stand: it may have come there the wrong way. Whether there was such
+    /// a place.
+    pub(super) fn forget_shunned(&mut self) -> bool {
+        let any = self.shunned.contains(&true);
+        self.shunned.fill(false);
+        any
     }
 
     /// Notes that a look from beside a place shows no way on. Ground there that is seen from elsewhere is as
@@ -220,8 +245,8 @@ impl SightMap {
         (0..self.seen.len()).filter(is_near).collect()
     }
 
-    /// Where the robot can drive, and where it perhaps can.
-    pub(super) fn chart(&self, parameters: &SummitParameters) -> Chart {
+    /// Where a robot can drive, and where it perhaps can. It does not know its place better than a distance (m).
+    pub(super) fn chart(&self, parameters: &SummitParameters, doubt: f64) -> Chart {
         // Ground that is just gentle enough may seem steeper than it is.
         let climber = &Climber {
             slope: parameters.climber.slope + MEASURED,
@@ -251,15 +276,20 @@ impl SightMap {
             let least = f64::from(field_height(&field, index)) - steepest * f64::from(away[index]) - DROP;
             !known[index] && self.ceilings[index] < least
         };
-        let fenced =
-            |index: usize| parameters.holds(self.place(GridCell::new(index % self.side, index / self.side)));
+        let fenced = |index: usize| {
+            parameters.holds(self.place(GridCell::new(index % self.side, index / self.side)), CAUTION + doubt)
+        };
         let holds: Vec<bool> = (0..known.len()).map(|index| !drops(index)).collect();
         let far_from_drops = eroded(&holds, self.side, reach + (CAUTION / self.resolution).round() as usize);
-        let is_safe = |index: usize| fenced(index) && covered[index] && far_from_drops[index] && open(index);
+        let is_safe = |index: usize| {
+            let is_even = covered[index] && open(index) || self.trodden[index] && !self.shunned[index];
+            fenced(index) && far_from_drops[index] && is_even
+        };
         let safe = grid(&is_safe);
         let perhaps = grid(&|index| {
-            let hopeless = self.shunned[index] || (self.given_up[index] && !is_safe(index));
-            !hopeless && fenced(index) && holds[index] && (!covered[index] || open(index))
+            let is_hopeless = self.shunned[index] || self.given_up[index];
+            let may_be_even = !covered[index] || open(index);
+            is_safe(index) || fenced(index) && holds[index] && may_be_even && !is_hopeless
         });
         let potential = (0..known.len()).map(|index| {
             let slope = f64::from(field_height(&field, index)) + steepest * f64::from(away[index]) + DROP;
@@ -362,6 +392,7 @@ fn eroded(flags: &[bool], side: usize, reach: usize) -> Vec<bool> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Vector3;
     use crate::world::RobotSpec;
 
     /// A look that shows no way on gives up ground only until it is seen from elsewhere.
@@ -378,14 +409,66 @@ mod tests {
             }
         };
         see(&mut map, -18, 8);
-        let chart = map.chart(&parameters);
+        let chart = map.chart(&parameters, 0.0);
         assert!(chart.perhaps.is_free(cell) && !chart.safe.is_free(cell));
         map.give_up(place, 0.15);
-        assert!(!map.chart(&parameters).perhaps.is_free(cell));
+        assert!(!map.chart(&parameters, 0.0).perhaps.is_free(cell));
         see(&mut map, 8, 19);
-        let chart = map.chart(&parameters);
+        let chart = map.chart(&parameters, 0.0);
         assert!(chart.perhaps.is_free(cell) && chart.safe.is_free(cell));
         map.shun(place, 0.15);
-        assert!(!map.chart(&parameters).safe.is_free(cell));
+        assert!(!map.chart(&parameters, 0.0).safe.is_free(cell));
+    }
+
+    /// Sees ground of an elevation all around the start.
+    fn ground(parameters: &SummitParameters, height: impl Fn(f64) -> f64) -> SightMap {
+        let mut map = SightMap::new(parameters.resolution, parameters.extent, 0.35);
+        for (x, y) in (-18..=18).flat_map(|x| (-18..=18).map(move |y| (x, y))) {
+            let at = [x, y].map(|cell| 0.05 * f64::from(cell));
+            map.stand(Point3::new(at[0], at[1], height(at[0])));
+        }
+        map
+    }
+
+    /// The robot can go back the way that it came over ground that seems too steep, unless it slips there.
+    #[test]
+    fn where_it_came_by_is_safe() {
+        let parameters =
+            SummitParameters { extent: 1.0, ..SummitParameters::of(&RobotSpec::blizzard()).unwrap() };
+        let mut map = ground(&parameters, |x| 0.7 * x);
+        let (way, aside) = (Point::new(0.1, 0.0), Point::new(0.1, 0.3));
+        let is_safe =
+            |map: &SightMap, at: Point| map.chart(&parameters, 0.0).safe.is_free(map.cell_at(at).unwrap());
+        assert!(!is_safe(&map, way));
+        map.tread(way);
+        assert!(is_safe(&map, way) && !is_safe(&map, aside));
+        map.shun(way, 0.1);
+        assert!(!is_safe(&map, way));
+        assert!(map.forget_shunned() && !map.forget_shunned());
+        assert!(is_safe(&map, way));
+    }
+
+    /// Ground that was mapped in a wrong place goes when a beam passes below it.
+    #[test]
+    fn what_beams_pass_below_is_no_ground() {
+        let parameters =
+            SummitParameters { extent: 1.0, ..SummitParameters::of(&RobotSpec::blizzard()).unwrap() };
+        let mut map = ground(&parameters, |_| 0.0);
+        let origin = Point3::new(0.0, 0.0, 0.15);
+        let beam = |slope: f64, range: f64| Beam {
+            origin,
+            direction: Vector3::new(1.0, 0.0, slope).normalize(),
+            range,
+        };
+        let known = |map: &SightMap| {
+            let cell = |column| GridCell::new(column, map.cell_at(Point::origin()).unwrap().row);
+            (21..39).filter(|&column| map.height(map.index_of(cell(column))).is_some()).count()
+        };
+        let before = known(&map);
+        map.add_fan(origin, [beam(-0.3, 0.5)].into_iter());
+        assert_eq!(known(&map), before);
+        map.add_fan(origin, [beam(-0.3, f64::INFINITY)].into_iter());
+        // From 0.64 m on it is more than 4 cm below the ground, over whole cells.
+        assert!((5..8).contains(&(before - known(&map))), "{before} {}", known(&map));
     }
 }

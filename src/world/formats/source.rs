@@ -157,7 +157,12 @@ pub fn in_any_case(folder: &Path, path: &Path) -> Option<PathBuf> {
 
 impl FileSource for DiskFiles {
     fn read(&mut self, reference: &str, referrer: &str, limit: u64) -> io::Result<SourceFile> {
-        let path = self.find(reference, referrer).ok_or(io::ErrorKind::NotFound)?;
+        // What has the name and is no file is refused by its kind.
+        let beside = || {
+            let folder = Path::new(referrer).parent().unwrap_or(Path::new(""));
+            Some(folder.join(self.plain(reference))).filter(|place| place.exists())
+        };
+        let path = self.find(reference, referrer).or_else(beside).ok_or(io::ErrorKind::NotFound)?;
         Ok(SourceFile { name: path.display().to_string(), bytes: read_limited(&path, limit)? })
     }
 }

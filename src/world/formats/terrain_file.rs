@@ -90,7 +90,7 @@ fn heights(image: DynamicImage, top: f64) -> Vec<f32> {
 
 /// The error for an invalid size, located in the world's file.
 fn misplaced(error: &ParameterError, (file, at): (&str, Location)) -> FormatError {
-    let found = format!("a terrain whose {} is {}", error.name(), error.value());
+    let found = format!("{} {}", error.name(), error.value());
     FormatError::new(file, at, found, error.expected())
 }
 
@@ -186,7 +186,7 @@ mod tests {
         );
         let pixel = encoded(&DynamicImage::new_luma8(1, 1), ImageFormat::Png);
         let flat = message("terrain 0 1000 50 a.png", "a.png", &pixel);
-        assert_eq!(flat, "hills.wld:1:19: found a terrain whose terrain width is 0; expected more than 0");
+        assert_eq!(flat, "hills.wld:1:19: found terrain width 0; expected more than 0");
         let grid = message("terrain 1000 1000 50 a.asc", "a.asc", b"ncols 2\nnrows x");
         assert!(grid.starts_with("a.asc:2:7: found `x`"), "{grid}");
         let tolerant = read("terrain 1000 1000 50 a.png", ("a.png", b"broken".to_vec()), true).unwrap();
