@@ -216,7 +216,7 @@ fn suppress(rows: &[Gradients; 3], marks: &mut [u8], CannyThresholds { low, high
         w in b, magnitude in b[1..], e in b[2..],
         sw in c, s in c[1..], se in c[2..] => {
         let (along, up) = (dx.unsigned_abs(), dy.unsigned_abs());
-        // // `tan(22.5°) |dx|` is an integer only where `dx` is 0, so rounding down keeps the order.
+        // `tan(22.5°) |dx|` is an integer only where `dx` is 0, so rounding down keeps the order.
         let flat = ((u32::from(2 * along) * 13_573) >> 16) as u16;
         let (horizontal, vertical) = (up <= flat, up > flat + 2 * along);
         let rising = (dx ^ dy) < 0;

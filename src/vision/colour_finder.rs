@@ -113,7 +113,7 @@ impl ColourFinder {
         else {
             return Ok(None);
         };
-        // // Neighbouring columns that are at least half as full as the fullest.
+        // Neighbouring columns that are at least half as full as the fullest.
         let full = |count: &&u32| 2 * **count >= most;
         let left = peak - self.columns[..peak].iter().rev().take_while(full).count();
         let right = peak + self.columns[peak + 1..].iter().take_while(full).count();
@@ -197,7 +197,7 @@ pub fn teach_hue<'a>(
             }
         }
     }
-    // // Nearer hues weigh more, so that a single hue yields itself.
+    // Nearer hues weigh more, so that a single hue yields itself.
     let around = |hue: usize, weight: &dyn Fn(usize) -> u32| {
         let near = (0..=2 * REACH).map(|step| (step, (hue + CIRCLE + step - REACH) % CIRCLE));
         near.map(|(step, place)| weight(step.abs_diff(REACH)) * counts[place]).sum::<u32>()

@@ -156,7 +156,7 @@ impl Group {
         self.area += length;
         self.min = (self.min.0.min(from), self.min.1);
         self.max = (self.max.0.max(to - 1), y);
-        // // Sum of the columns: their number times the mean of the first and the last.
+        // Sum of the columns: their number times the mean of the first and the last.
         self.sum.0 += (length * (from + to - 1) / 2) as u64;
         self.sum.1 += (length * y) as u64;
     }

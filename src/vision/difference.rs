@@ -24,7 +24,7 @@ pub fn absolute_difference_into(
     require_size("second image", second.size(), first.size())?;
     output.require_size(first.size())?;
     let (second, mut output) = if first.is_flat() { flatten(second, output) } else { (second, output) };
-    // // Either all three images as one long row, or none.
+    // Either all three images as one long row, or none.
     let first = if second.height() == first.height() { first } else { first.flat() };
     subtract(first, second, &mut output);
     Ok(())
@@ -41,7 +41,7 @@ pub fn absolute_difference_into(
 pub fn mean_difference(first: GrayView<'_>, second: GrayView<'_>) -> Result<f64, ImageError> {
     require_size("second image", second.size(), first.size())?;
     let (width, height) = first.size();
-    // // Either both images as one long row, or none.
+    // Either both images as one long row, or none.
     let (first, second) =
         if first.is_flat() && second.is_flat() { (first.flat(), second.flat()) } else { (first, second) };
     let total = sum(first, second, 0, first.width());

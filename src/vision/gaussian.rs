@@ -114,7 +114,7 @@ pub(super) fn three_portable(input: GrayView<'_>, output: &mut GrayViewMut<'_>) 
     stencil(input, output, Border::Mirror, binomial);
 }
 
-// // Small integer weights keep the sums within 16 bits.
+// Small integer weights keep the sums within 16 bits.
 
 #[inline(always)]
 pub(super) fn five_portable(input: GrayView<'_>, output: &mut GrayViewMut<'_>) {
@@ -137,7 +137,7 @@ pub(super) fn smooth_portable(input: GrayView<'_>, output: &mut GrayViewMut<'_>,
 #[inline(always)]
 fn binomial([[nw, n, ne], [w, c, e], [sw, s, se]]: [[u16; 3]; 3]) -> u16 {
     let (west, middle, east) = (nw + 2 * w + sw, n + 2 * c + s, ne + 2 * e + se);
-    // // The sum of two adjacent columns also serves the next pixel.
+    // The sum of two adjacent columns also serves the next pixel.
     ((west + middle + 8) + (middle + east)) >> 4
 }
 
@@ -155,7 +155,7 @@ fn filter<const R: usize, const SMALL: bool>(
     let mut sums: Sums = [0; STRIP + 6];
     for start in (0..width).step_by(STRIP) {
         let end = (start + STRIP).min(width);
-        // // Columns that the strip needs and the image has.
+        // Columns that the strip needs and the image has.
         let (from, to) = (start.saturating_sub(R), (end + R).min(width));
         let offset = from + R - start;
         for y in 0..height {
@@ -222,7 +222,7 @@ fn mirror_columns<const R: usize>(sums: &mut Sums, start: usize, end: usize, wid
             sums[R - i] = sums[column(-(i as isize))];
         }
     }
-    // // The strip may end up to `R` columns before the image does.
+    // The strip may end up to `R` columns before the image does.
     for x in width..end + R {
         sums[x + R - start] = sums[column(x as isize)];
     }
@@ -270,7 +270,7 @@ fn across_32<const R: usize>(sums: &[u16], out: &mut [u8], weights: [u32; 4]) {
     }
 }
 
-// // One function each: with several loops in one, the compiler keeps pointers and weights in memory.
+// One function each: with several loops in one, the compiler keeps pointers and weights in memory.
 
 vectorised_filter! {
     fn smooth_three(input: GrayView<'_>, output: &mut GrayViewMut<'_>) {
@@ -284,7 +284,7 @@ vectorised_filter! {
     }
 }
 
-// // For seven pixels, `vectorised_filter!` is a tenth slower, as measured.
+// For seven pixels, `vectorised_filter!` is a tenth slower, as measured.
 vectorised! {
     fn smooth(input: GrayView<'_>, output: &mut GrayViewMut<'_>, kernel: GaussianKernel) {
         smooth_portable(input, output, kernel);

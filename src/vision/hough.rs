@@ -59,7 +59,7 @@ impl HoughLines {
             let found = angles as f64;
             return Err(ParameterError::new("angles", found, "1 to 3600").into());
         }
-        // // Accumulated in single precision, as the step's inverse: this reproduces OpenCV's votes.
+        // Accumulated in single precision, as the step's inverse: this reproduces OpenCV's votes.
         let step = (PI / angles as f64) as f32;
         let mut angle = 0.0_f32;
         let inverse = f64::from(1.0 / rho_step as f32);
@@ -82,14 +82,14 @@ impl HoughLines {
     pub fn find(&mut self, edges: GrayView<'_>, threshold: u32) -> Vec<HoughLine> {
         self.gather(edges);
         let (width, height) = edges.size();
-        // // One entry per `rho` from minus to plus the largest distance, and an empty one at either end.
+        // One entry per `rho` from minus to plus the largest distance, and an empty one at either end.
         let reach = ((width + height) as f64 / self.rho_step).ceil() as usize + 1;
         for votes in &mut self.votes {
             votes.clear();
             votes.resize(2 * reach + 1, 0);
         }
         let mut lines = Vec::new();
-        // // Peaks of an angle need the votes of the next one; after the last angle there are none.
+        // Peaks of an angle need the votes of the next one; after the last angle there are none.
         for angle in 0..=self.directions.len() {
             self.votes.rotate_left(1);
             let [before, votes, after] = &mut self.votes;
@@ -104,7 +104,7 @@ impl HoughLines {
                 lines.push(HoughLine { rho, theta, votes: votes[place] });
             });
         }
-        // // A stable sort keeps lines with equal votes in the order of their angles.
+        // A stable sort keeps lines with equal votes in the order of their angles.
         lines.sort_by_key(|line| std::cmp::Reverse(line.votes));
         lines
     }

@@ -88,7 +88,7 @@ impl HoughSegments {
             let found = angles as f64;
             return Err(ParameterError::new("angles", found, "1 to 3600").into());
         }
-        // // Multiples of a step in single precision reproduce OpenCV's votes.
+        // Multiples of a step in single precision reproduce OpenCV's votes.
         let step = f64::from((PI / angles as f64) as f32);
         let direction = |angle: usize| {
             let (sin, cos) = math::sin_cos(step * angle as f64);
