@@ -193,8 +193,10 @@ impl SightMap {
             // The beam is lowest in the cell at one of its edges.
             let height = beam.origin.z + slope * away + 0.5 * slope.abs() * self.resolution;
             self.ceilings[index] = self.ceilings[index].min(height);
-            // What a beam passes below is no ground: the robot was not where it took itself to be.
-            if self.height(index).is_some_and(|ground| ground - DROP > height) {
+            // What a beam passes below is no ground: the robot was not where it took itself to be. At the edge
+            // of a level, a beam comes from above it and leaves the cell below it.
+            let highest = beam.origin.z + slope * away + slope.abs() * self.resolution;
+            if self.height(index).is_some_and(|ground| ground - DROP > highest) {
                 self.seen[index] = (0.0, 0.0);
             }
         }
