@@ -3,7 +3,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// A temporary folder, which only its user may enter. It is removed when dropped; if the process is killed,
-/// by the next one that makes a folder with the same prefix.
+/// by the next one that makes a folder with the same prefix. Its name is the prefix and two numbers.
 ///
 /// ```
 /// use roverlab::files::TemporaryFolder;
@@ -32,9 +32,13 @@ impl TemporaryFolder {
         Self::within(std::env::temp_dir(), prefix)
     }
 
-    /// A new folder in another one.
+    /// A new folder in another one. Fails if the prefix leads elsewhere.
     pub fn within(base: impl AsRef<Path>, prefix: &str) -> io::Result<Self> {
         let base = base.as_ref();
+        if prefix.contains(std::path::is_separator) {
+            let message = format!("prefix of a folder: found `{prefix}`; expected part of a name");
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+        }
         let named = |error: io::Error, path: &Path| {
             io::Error::new(
                 error.kind(),
@@ -94,13 +98,20 @@ fn private() -> DirBuilder {
 /// whom our own belongs count.
 fn remove_leftovers(base: &Path, prefix: &str, own: &Path) {
     let entries = fs::read_dir(base).into_iter().flatten().filter_map(Result::ok);
-    let named = entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(prefix));
+    let named = entries.filter(|entry| is_name(&entry.file_name().to_string_lossy(), prefix));
     for folder in named.map(|entry| entry.path()).filter(|folder| is_alike(folder, own)) {
         let lock = existing_lock(&folder.join(LOCK));
         if lock.is_ok_and(|lock| lock.try_lock().is_ok()) {
             let _ = fs::remove_dir_all(folder);
         }
     }
+}
+
+/// Whether a name is one of a temporary folder. Others' folders hold files `lock` as well.
+fn is_name(name: &str, prefix: &str) -> bool {
+    let numbers = name.strip_prefix(prefix).and_then(|rest| rest.split_once('-'));
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    numbers.is_some_and(|(process, attempt)| is_number(process) && is_number(attempt))
 }
 
 /// Whether something is a folder, and belongs to the user to whom our own belongs.
@@ -157,7 +168,7 @@ mod tests {
         // folders.
         #[cfg(unix)]
         {
-            let strange = ["robios-pipe", "robios-link", "robios-folder"].map(|name| base.join(name));
+            let strange = ["robios-2-0", "robios-2-1", "robios-2-2"].map(|name| base.join(name));
             for folder in &strange {
                 fs::create_dir(folder).unwrap();
             }
@@ -169,13 +180,31 @@ mod tests {
             drop(TemporaryFolder::within(&base, "robios-").unwrap());
             assert!(strange.iter().all(|folder| folder.exists()));
             // Neither do links to folders count.
-            std::os::unix::fs::symlink(&strange[0], base.join("robios-to")).unwrap();
-            assert!(is_alike(&strange[0], next.path()) && !is_alike(&base.join("robios-to"), next.path()));
+            std::os::unix::fs::symlink(&strange[0], base.join("robios-2-3")).unwrap();
+            assert!(is_alike(&strange[0], next.path()) && !is_alike(&base.join("robios-2-3"), next.path()));
         }
         let gone = next.path().to_owned();
         drop(next);
         assert!(!gone.exists());
         drop(alive);
+        fs::remove_dir_all(&base).unwrap();
+    }
+
+    /// Others lock their folders too, and forget some: an empty prefix is no leave to remove these.
+    #[test]
+    fn folders_with_other_names_are_never_removed() {
+        let base = std::env::temp_dir().join(format!("roverlab-others-{}", std::process::id()));
+        let others = ["cache", "2-0-cache", "-0", "2-", "2.0"].map(|name| base.join(name));
+        for folder in &others {
+            fs::create_dir_all(folder).unwrap();
+            fs::write(folder.join(LOCK), "").unwrap();
+        }
+        drop(TemporaryFolder::within(&base, "").unwrap());
+        assert!(others.iter().all(|folder| folder.exists()));
+        for prefix in ["/", "../", "cache/"] {
+            let refused = TemporaryFolder::within(&base, prefix).unwrap_err();
+            assert_eq!(refused.kind(), io::ErrorKind::InvalidInput);
+        }
         fs::remove_dir_all(&base).unwrap();
     }
 }

@@ -1,5 +1,6 @@
 //! The command `wall-following` as a whole.
 
+use std::f64::consts::TAU;
 use std::fs;
 
 use super::support;
@@ -7,6 +8,7 @@ use super::support::{Ended, number, temporary};
 use crate::wall_following;
 use crate::wall_following::{Args, Controller, Row};
 use clap::Parser;
+use roverlab::geometry::direction;
 use serde_json::Value;
 
 fn run(options: &[&str]) -> Ended {
@@ -56,6 +58,38 @@ fn worlds_from_files_are_followed_as_well() {
     let (status, report, err) = run(&["--world", world, "--fault", "link@4"]);
     assert_eq!((status, report["outcome"].as_str()), (1, Some("failed")), "{report}");
     assert!(err.contains("link"), "{err}");
+}
+
+/// Rooms whose walls are too short to be followed for long: who gets round has followed them, who has no room
+/// for that is blocked, and nobody drives until the time is over.
+#[test]
+fn small_rooms_are_followed_round_or_end_as_blocked() {
+    let world = temporary("small.wld");
+    let ended = |walls: u32, radius: f64, options: &[&str]| {
+        let corner = |wall: u32| {
+            let away = direction(f64::from(wall) * TAU / f64::from(walls) + 0.1) * radius;
+            format!("{:.1} {:.1}", 1000.0 + away.x, 1000.0 + away.y)
+        };
+        let room: String =
+            (0..walls).map(|wall| format!("{} {}\n", corner(wall), corner(wall + 1))).collect();
+        fs::write(&world, format!("width 2000\nheight 2000\n{room}")).unwrap();
+        let place = ["--world", world.to_str().unwrap(), "--start", "1000,1000,34"];
+        let (_, report, _) = run(&[&place[..], options].concat());
+        (report["outcome"].as_str().unwrap_or("refused").to_owned(), report)
+    };
+    for controller in ["psd", "pid", "lidar"] {
+        for (walls, radius) in [(4, 505.0), (5, 506.0), (7, 480.0)] {
+            for noise in ["0", "1"] {
+                let (outcome, report) =
+                    ended(walls, radius, &["--controller", controller, "--noise", noise, "--seed", "740"]);
+                assert_eq!(outcome, "followed", "{report}");
+                assert!(number(&report, "rms_error_everywhere_mm") < 100.0, "{report}");
+                assert!(number(&report, "lap_length_mm") > 800.0, "{report}");
+            }
+        }
+        let (outcome, report) = ended(4, 300.0, &["--controller", controller]);
+        assert_eq!(outcome, "blocked", "{report}");
+    }
 }
 
 #[test]

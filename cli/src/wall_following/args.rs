@@ -11,7 +11,8 @@ Without --world, the room is random, by the seed: corners of 60 to 300 degrees, 
 laps.
 
 Errors are those of the true distance from the robot's centre to the nearest wall on the followed side, once it has
-driven 300 mm along a wall. Away from corners means farther from a corner than the robot's path round it plus 150 mm.
+driven 300 mm along a wall, or once round along shorter ones. Away from
+corners means farther from a corner than the robot's path round it plus 150 mm. A lap is at least 180 mm wide.
 
 With --campaign, many rooms instead of one, also with the book's controller, and a table.
 

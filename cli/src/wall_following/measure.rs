@@ -1,8 +1,8 @@
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::ops::ControlFlow;
 
 use roverlab::drive::WallSide;
-use roverlab::geometry::{Pose, angle_difference};
+use roverlab::geometry::{Point, Pose, angle_difference, direction};
 use roverlab::world::Scene;
 use roverlab::world::space::{Scanner, Solid, Space};
 
@@ -39,6 +39,26 @@ impl Errors {
     }
 }
 
+/// Extent of some points in several directions.
+#[derive(Debug, Clone, Copy, Default)]
+struct Extent([Option<(f64, f64)>; 8]);
+
+impl Extent {
+    fn add(&mut self, point: Point) {
+        let directions = self.0.len() as f64;
+        for (k, span) in self.0.iter_mut().enumerate() {
+            let along = direction(PI * k as f64 / directions).dot(&point.coords);
+            let (low, high) = span.unwrap_or((along, along));
+            *span = Some((low.min(along), high.max(along)));
+        }
+    }
+
+    /// Distance of the two points farthest from each other, to within 2 % (m).
+    fn width(&self) -> f64 {
+        self.0.iter().flatten().map(|(low, high)| high - low).fold(0.0, f64::max)
+    }
+}
+
 /// Observes a robot on its way round.
 #[derive(Debug)]
 pub(crate) struct Watch {
@@ -54,9 +74,16 @@ pub(crate) struct Watch {
     driven: f64,
     /// Pose where the wall was found, and distance driven by then (m).
     begin: Option<(Pose, f64)>,
-    /// Whether the robot has left the start of the lap, and how far it has turned since (rad).
-    away: bool,
+    /// Whether the lap has begun there.
+    settled: bool,
+    /// Distance driven beside walls (m) and turn (rad) since the first one, until the lap begins.
+    beside: f64,
+    round: f64,
+    /// Where the robot has been since the start of the lap, and how far it has turned (rad).
+    extent: Extent,
     turned: f64,
+    /// Distance driven far from walls in the lap (m).
+    apart: f64,
     pub(crate) laps: u32,
     pub(crate) lap_length: Option<f64>,
     pub(crate) away_from_corners: Errors,
@@ -75,8 +102,14 @@ const FARTHEST: f64 = 4.0;
 /// Distance driven after finding the wall from which errors count (m).
 const SETTLING: f64 = 0.3;
 /// Maximum distance (m) and heading difference (rad) from the start of a lap at its end, once the robot has
-/// been farther away and has turned round.
+/// turned round.
 const LAP: (f64, f64) = (0.2, 0.8);
+/// Width of a lap (m). Smaller rounds end the drive as blocked.
+const LEAST_WIDTH: f64 = 0.18;
+/// Distance beyond which a robot does not follow a wall, as a multiple of the wished one, and the greatest
+/// share of the way at such distances of a robot that follows walls.
+const FAR: f64 = 1.5;
+const APART: f64 = 0.1;
 
 impl Watch {
     pub(crate) fn new(scene: &Scene, distance: f64, laps: u32) -> Self {
@@ -103,8 +136,12 @@ impl Watch {
             last: scene.robots[0].pose,
             driven: 0.0,
             begin: None,
-            away: false,
+            settled: false,
+            beside: 0.0,
+            round: 0.0,
+            extent: Extent::default(),
             turned: 0.0,
+            apart: 0.0,
             laps: 0,
             lap_length: None,
             away_from_corners: Errors::default(),
@@ -115,39 +152,64 @@ impl Watch {
 
     /// Records the robot's pose. Breaks after the last lap.
     pub(crate) fn see(&mut self, pose: Pose, beside: Beside) -> ControlFlow<()> {
-        let beside_wall = beside.wall;
+        let (step, turn) =
+            (pose.distance_to(self.last.position()), angle_difference(pose.heading, self.last.heading));
         self.side = beside.side.or(self.side);
-        self.driven += pose.distance_to(self.last.position());
-        self.turned += angle_difference(pose.heading, self.last.heading);
+        self.driven += step;
+        self.turned += turn;
         self.last = pose;
-        let Some((begin, since)) = self.begin else {
-            if beside_wall {
-                self.begin = Some((pose, self.driven));
-            }
+        if !self.settled {
+            self.settle(pose, beside.wall, step, turn);
+        }
+        let Some((begin, since)) = self.begin.filter(|_| self.settled) else {
             return ControlFlow::Continue(());
         };
-        let way = self.driven - since;
-        if way < SETTLING {
-            // The lap begins once the robot has been beside the wall for a while.
-            self.begin = beside_wall.then_some((pose, since));
-            (self.away, self.turned) = (false, 0.0);
-            return ControlFlow::Continue(());
-        }
-        self.measure(pose);
+        let gap = self.measure(pose);
+        self.apart += if gap > FAR * self.distance { step } else { 0.0 };
+        self.extent.add(pose.position());
         let (near, alike) = LAP;
-        let is_near = pose.distance_to(begin.position()) < near;
-        self.away |= !is_near;
-        let back = is_near && angle_difference(pose.heading, begin.heading).abs() < alike;
-        if back && self.away && self.turned.abs() > PI {
-            (self.away, self.turned) = (false, 0.0);
-            self.laps += 1;
-            self.lap_length.get_or_insert(way - SETTLING);
-            self.begin = Some((begin, self.driven - SETTLING));
+        let back = pose.distance_to(begin.position()) < near
+            && angle_difference(pose.heading, begin.heading).abs() < alike;
+        if back && self.turned.abs() > PI {
+            if self.extent.width() > LEAST_WIDTH {
+                self.laps += 1;
+                self.lap_length.get_or_insert(self.driven - since - SETTLING);
+            }
+            self.start_lap(begin);
+        } else if self.turned.abs() > 2.0 * TAU && self.apart < APART * (self.driven - since - SETTLING) {
+            // The robot follows walls, but has left the one at which the lap began.
+            self.start_lap(pose);
         }
         if self.laps >= self.wanted { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
-    fn measure(&mut self, pose: Pose) {
+    fn start_lap(&mut self, begin: Pose) {
+        (self.extent, self.turned, self.apart) = (Extent::default(), 0.0, 0.0);
+        self.begin = Some((begin, self.driven - SETTLING));
+    }
+
+    /// The lap begins once the robot has been beside a wall for a while, or, where all walls are short, once
+    /// it has turned round beside them.
+    fn settle(&mut self, pose: Pose, beside_wall: bool, step: f64, turn: f64) {
+        if beside_wall {
+            self.beside += step;
+        }
+        self.round += if self.beside > 0.0 { turn } else { 0.0 };
+        match self.begin {
+            Some((_, since)) if self.driven - since >= SETTLING => self.settled = true,
+            begin => {
+                self.begin = beside_wall.then(|| (pose, begin.map_or(self.driven, |(_, since)| since)));
+                self.turned = 0.0;
+            }
+        }
+        if !self.settled && beside_wall && self.beside >= SETTLING && self.round.abs() > TAU {
+            self.start_lap(pose);
+            self.settled = true;
+        }
+    }
+
+    /// Measures the distance to the nearest wall on the followed side (m).
+    fn measure(&mut self, pose: Pose) -> f64 {
         let turn = if self.side == Some(WallSide::Right) { -FRAC_PI_2 } else { FRAC_PI_2 };
         let eye = Pose { heading: pose.heading + turn, ..pose };
         self.space.scan(&mut self.scanner, &eye, None, &mut self.ranges);
@@ -155,11 +217,12 @@ impl Watch {
         let error = nearest - self.distance;
         self.everywhere.add(error);
         if self.corners.iter().any(|corner| pose.distance_to(corner.place) < corner.reach) {
-            return;
+            return nearest;
         }
         if error.abs() > self.away_from_corners.worst {
             self.worst_place = Some(pose);
         }
         self.away_from_corners.add(error);
+        nearest
     }
 }

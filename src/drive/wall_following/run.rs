@@ -67,8 +67,8 @@ pub enum WallOutcome {
     Stopped,
     /// The time limit came first.
     TimedOut,
-    /// The drive has stalled, or the robot keeps turning for lack of room: on the spot, or without getting
-    /// along a wall.
+    /// The drive has stalled, or the robot keeps turning for lack of room or of walls: in one place, or
+    /// without getting along any.
     Blocked,
 }
 
@@ -100,14 +100,14 @@ pub struct AlongWall<C> {
     spot: Spot,
 }
 
-/// Dead reckoning by commands since a place: displacement and total turn. The same since the robot was last
-/// along a wall.
+/// Dead reckoning by commands since a place: displacement and total turn; and the total turn since the robot
+/// last got along walls.
 #[derive(Debug, Clone, Copy, Default)]
 struct Spot {
     /// Pose in the frame of the place.
     pose: Pose,
     turned: f64,
-    /// Length of the way along a wall without an interruption, and total turn since a long one.
+    /// Length of the way beside walls, and total turn, since the robot last got along them.
     along: f64,
     turned_apart: f64,
     told: Twist,
@@ -115,10 +115,10 @@ struct Spot {
 
 /// Distance from a point within which the robot counts as being there (m).
 const HERE: f64 = 0.2;
-/// Length of the way beside a wall from which on the robot has got along it (m).
-const ALONG: f64 = 0.3;
-/// Turn in one place, or apart from walls, after which the robot counts as blocked (rad): around an obstacle
-/// that it follows, it moves along.
+/// Length of the way beside walls, in all, after which the robot has got along them (m): where all walls are
+/// short, most of the way is in corners.
+const ALONG: f64 = 0.1;
+/// Turn in one place, or apart from walls, after which the robot counts as blocked (rad).
 const ROUND: f64 = 3.0 * std::f64::consts::TAU;
 
 impl Spot {
@@ -130,8 +130,11 @@ impl Spot {
         if self.pose.distance_to(Point::origin()) > HERE {
             (self.pose, self.turned) = (Pose::default(), 0.0);
         }
-        self.along = if is_beside_wall { self.along + length } else { 0.0 };
-        self.turned_apart = if self.along > ALONG { 0.0 } else { self.turned_apart + angle };
+        self.along += if is_beside_wall { length } else { 0.0 };
+        self.turned_apart += angle;
+        if self.along > ALONG {
+            (self.along, self.turned_apart) = (0.0, 0.0);
+        }
         self.turned.abs().max(self.turned_apart.abs()) > ROUND
     }
 }

@@ -1,7 +1,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::*;
-use crate::geometry::{Point, Pose, Twist, direction};
+use crate::geometry::{Point, Pose, Twist};
 use crate::io::control::run;
 use crate::io::sim::{SimOptions, SimRobot, Simulation};
 use crate::random::Stream;
@@ -181,14 +181,45 @@ fn without_room_a_robot_is_blocked() {
     let mut robot = simulation().robot(0).unwrap();
     let pid = PidWallFollower::new(PidWallFollowerParameters::default()).unwrap();
     blocked(run(&mut robot, &mut AlongWall::new(pid), 60.0, |_, _, _| {}).unwrap());
-    // Seven walls around a metre leave room to drive in circles, but not along any of them.
-    let corner = |k: u32| Point::new(0.48, 0.48) + direction(f64::from(k % 7) * 2.0 * PI / 7.0) * 0.48;
-    let walls = (0..7).map(|k| Wall::new(corner(k), corner(k + 1)));
-    let world = World { walls: walls.collect(), ..World::walled(0.96, 0.96) };
-    let scene = Scene::with_robot(world, RobotSpec::s4(), Pose::new(0.48, 0.48, 310_f64.to_radians()));
-    let simulation = Simulation::new(&scene, SimOptions::with_noise(0.0, 4)).unwrap();
-    let pid = PidWallFollower::new(PidWallFollowerParameters::default()).unwrap();
-    let mut robot = simulation.robot(0).unwrap();
-    blocked(run(&mut robot, &mut AlongWall::new(pid), 150.0, |_, _, _| {}).unwrap());
-    assert_eq!(simulation.truth().robot(0).unwrap().contacts, 0);
+}
+
+/// Drives in circles of a quarter of a metre, with a wall beside some of the way.
+#[derive(Debug)]
+struct Circles {
+    time: f64,
+    /// Share of the time beside a wall.
+    beside: f64,
+}
+
+impl FollowsWalls for Circles {
+    type Observation = WallObservation;
+
+    fn steer(&mut self, _seen: &WallObservation, seconds: f64) -> crate::io::Result<Twist> {
+        self.time += seconds;
+        Ok(Twist::new(0.2, 0.8))
+    }
+
+    fn period(&self) -> f64 {
+        0.05
+    }
+
+    fn is_beside_wall(&self) -> bool {
+        self.time.fract() < self.beside
+    }
+
+    fn wall_side(&self) -> Option<WallSide> {
+        None
+    }
+}
+
+/// Where all walls are shorter than 0.3 m, rounds beside them are rounds, and rounds beside none are none.
+#[test]
+fn rounds_count_beside_walls_only_however_short_these_are() {
+    let outcome = |beside: f64| {
+        let scene = Scene::with_robot(World::walled(3.0, 3.0), RobotSpec::s4(), Pose::new(1.5, 1.5, 0.0));
+        let simulation = Simulation::new(&scene, SimOptions::with_noise(0.0, 1)).unwrap();
+        let mut circles = AlongWall::new(Circles { time: 0.0, beside });
+        run(&mut simulation.robot(0).unwrap(), &mut circles, 60.0, |_, _, _| {}).unwrap()
+    };
+    assert_eq!([0.0, 0.5].map(outcome), [WallOutcome::Blocked, WallOutcome::TimedOut]);
 }

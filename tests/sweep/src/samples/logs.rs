@@ -1,8 +1,10 @@
 //! Recordings.
 
+use std::{env, fs, process};
+
 use crate::sample::samples;
 use roverlab::geometry::{Pose, Twist};
-use roverlab::io::log::{Attachment, Compression, Header, Log, LogWriter, recover};
+use roverlab::io::log::{Attachment, Compression, Header, Log, LogFile, LogWriter, recover};
 use roverlab::io::sim::{Fleet, SimOptions, Simulation};
 use roverlab::io::{
     Camera, Clock, DistanceSensors, Drive, FleetIo, GroundTruth, Keys, Lidar, MockRobot, Odometry, Psd,
@@ -87,7 +89,22 @@ fn packed(compression: Compression) -> Header {
     }
 }
 
+/// The file of a recording, in the place of an older one if there are bytes of one. Nothing of it stays.
+fn log_file(older: &[u8]) -> Option<LogFile> {
+    let name = format!("roverlab-sweep-{}.mcap", process::id());
+    let [path, aside] = [name.clone(), format!(".{name}.part")].map(|name| env::temp_dir().join(name));
+    if !older.is_empty() {
+        fs::write(&path, older).ok()?;
+    }
+    let file = LogFile::create(&path).ok();
+    for path in [path, aside] {
+        let _ = fs::remove_file(path);
+    }
+    file
+}
+
 samples! {
+    LogFile => [log_file(&[])?, log_file(&recorded(&Header::default(), |_| Ok(()))?)?];
     Log => [
         Log::read(robots(0..4, 0.5, 0.2)?).ok()?,
         Log::read(recorded(&Header::default(), |_| Ok(()))?).ok()?,
