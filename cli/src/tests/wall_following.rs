@@ -70,9 +70,10 @@ fn small_rooms_are_followed_round_or_end_as_blocked() {
             let away = direction(f64::from(wall) * TAU / f64::from(walls) + 0.1) * radius;
             format!("{:.1} {:.1}", 1000.0 + away.x, 1000.0 + away.y)
         };
-        let room: String =
-            (0..walls).map(|wall| format!("{} {}\n", corner(wall), corner(wall + 1))).collect();
-        fs::write(&world, format!("width 2000\nheight 2000\n{room}")).unwrap();
+        let room = (0..walls).map(|wall| format!("{} {}", corner(wall), corner(wall + 1)));
+        let lines: Vec<String> =
+            ["width 2000", "height 2000"].map(String::from).into_iter().chain(room).collect();
+        fs::write(&world, lines.join("\n")).unwrap();
         let place = ["--world", world.to_str().unwrap(), "--start", "1000,1000,34"];
         let (_, report, _) = run(&[&place[..], options].concat());
         (report["outcome"].as_str().unwrap_or("refused").to_owned(), report)
