@@ -20,6 +20,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
     let hike = Hike::of(common, &RobotSpec::blizzard(), || levels(common.seed).scene)?;
+    hike.require_dry_ground()?;
     let conditions = Conditions::new(common, SECONDS)?;
     common.tell(format_args!(
         "{} at {:.0} mm, friction {:.2}",

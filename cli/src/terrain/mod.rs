@@ -67,6 +67,14 @@ impl Hike {
         self.ground.height(self.start().position()).unwrap_or(0.0)
     }
 
+    /// Refuses a start in water or over the border.
+    pub(crate) fn require_dry_ground(&self) -> Result<(), Failure> {
+        let start = self.start().position();
+        let inside = self.ground.area().inflated(-self.spec().footprint.bounding_radius());
+        let is_wet = shore(&self.scene.world).is_some_and(|shore| self.start_height() < shore);
+        if is_wet || !inside.contains(start) { Err(unfit(start)) } else { Ok(()) }
+    }
+
     /// The map for a climber.
     pub(crate) fn map(&self, climber: &Climber) -> Result<ElevationMap, Failure> {
         elevation_map(&self.scene.world, &self.ground, climber)

@@ -48,6 +48,30 @@ fn a_robot_finds_the_summit_of_a_world() {
     }
 }
 
+/// Errors of a start have its place, and those of a robot its name.
+#[test]
+fn starts_and_robots_that_are_unfit_for_hills_are_refused() {
+    let world = hill("unfit");
+    let wet = temporary("wet.wld");
+    fs::write(&wet, fs::read_to_string(&world).unwrap() + "water_level 100\n").unwrap();
+    let folder = temporary("folder.png");
+    fs::create_dir_all(&folder).unwrap();
+    let foldered = temporary("foldered.wld");
+    fs::write(&foldered, "terrain 3000 3000 250 folder.png\n").unwrap();
+    let [wet, foldered] = [&wet, &foldered].map(|file| file.to_str().unwrap());
+    for command in ["summit", "ramp"] {
+        for (file, start, robot, expected) in [
+            (world.as_str(), "50,1500,0", "Blizzard", "a start at 50, 1500 mm"),
+            (wet, "500,500,0", "Blizzard", "a start at 500, 500 mm"),
+            (world.as_str(), "1500,1500,0", "Mako", "found `Mako`, a craft"),
+            (foldered, "1500,1500,0", "Blizzard", "`folder.png`, which is a folder"),
+        ] {
+            let (status, report, err) = run(command, &["--world", file, "--start", start, "--robot", robot]);
+            assert!(status == 2 && err.contains(expected), "{command} {start}: {report} {err}");
+        }
+    }
+}
+
 #[test]
 fn what_is_no_hill_is_refused() {
     let flat = temporary("flat.wld");

@@ -1,6 +1,6 @@
 use std::f64::consts::FRAC_PI_2;
 
-use super::parameters::SummitParameters;
+use super::parameters::{CAUTION, SummitParameters};
 use super::reckoning::Reckoning;
 use super::sight_map::SightMap;
 use crate::geometry::{Point, Pose, Twist, direction, math, normalize_angle};
@@ -97,8 +97,7 @@ impl Drive {
         if rest < self.nearest.0 - 0.02 {
             self.nearest = (rest, time);
         }
-        let holds = |doubt: f64| parameters.holds(pose.position(), doubt);
-        if reckoning.doubt > self.doubt + MOST_DOUBT || holds(self.doubt) && !holds(reckoning.doubt) {
+        if self.is_in_doubt(reckoning, parameters) {
             return Step::Arrived;
         }
         let sign = if self.backwards { -1.0 } else { 1.0 };
@@ -133,6 +132,14 @@ impl Drive {
         let fast = speed.min(0.03 + 0.8 * rest);
         let ahead = if bearing.abs() > ASIDE { 0.0 } else { sign * fast * math::cos(bearing) };
         Step::Go(Twist::new(ahead, turn))
+    }
+
+    /// Whether it has to look where it is: belts may have slipped far, or towards the fence by more than it
+    /// keeps away from that in any case.
+    fn is_in_doubt(&self, reckoning: &Reckoning, parameters: &SummitParameters) -> bool {
+        let holds = |doubt: f64| parameters.holds(reckoning.pose.position(), doubt);
+        let grown = reckoning.doubt - self.doubt;
+        grown > MOST_DOUBT || grown > CAUTION && holds(self.doubt) && !holds(reckoning.doubt)
     }
 }
 

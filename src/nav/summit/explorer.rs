@@ -2,7 +2,7 @@ use std::ops::ControlFlow;
 
 use super::align::{Shift, align};
 use super::drive::{Drive, Step, cut};
-use super::parameters::{CAUTION, SummitParameters};
+use super::parameters::SummitParameters;
 use super::reckoning::Reckoning;
 use super::sight_map::{Chart, MIN_UPRIGHT, SightMap};
 use super::straight::Straight;
@@ -297,8 +297,7 @@ impl Explorer {
             let is_open = |cell: GridCell| {
                 self.map.height(self.map.index_of(cell)).is_some() && chart.elevation.open().is_free(cell)
             };
-            self.parameters.holds(place, CAUTION + self.reckoning.doubt)
-                && self.map.cell_at(place).is_some_and(is_open)
+            self.parameters.holds(place, self.reckoning.doubt) && self.map.cell_at(place).is_some_and(is_open)
         };
         let gain = 0.5 * STEP_UP * self.uphill.norm();
         (is_fit(0.5) && is_fit(1.0)).then_some(([self.here(), self.here() + step], gain))

@@ -86,9 +86,9 @@ impl SummitParameters {
         })
     }
 
-    /// Whether the robot keeps its own size and a distance (m) away from the fence at a place.
-    pub(super) fn holds(&self, place: Point, distance: f64) -> bool {
-        let margin = self.climber.radius + distance;
+    /// Whether a robot that knows its place to within a doubt (m) keeps away from the fence there.
+    pub(super) fn holds(&self, place: Point, doubt: f64) -> bool {
+        let margin = self.climber.radius + CAUTION.max(doubt);
         let inside = |fence: Fence| Fence { area: fence.area.inflated(-margin), ..fence }.holds(place);
         self.fence.is_none_or(inside)
     }

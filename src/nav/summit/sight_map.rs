@@ -279,7 +279,7 @@ impl SightMap {
             !known[index] && self.ceilings[index] < least
         };
         let fenced = |index: usize| {
-            parameters.holds(self.place(GridCell::new(index % self.side, index / self.side)), CAUTION + doubt)
+            parameters.holds(self.place(GridCell::new(index % self.side, index / self.side)), doubt)
         };
         let holds: Vec<bool> = (0..known.len()).map(|index| !drops(index)).collect();
         let far_from_drops = eroded(&holds, self.side, reach + (CAUTION / self.resolution).round() as usize);

@@ -41,7 +41,8 @@ impl Straight {
         if self.tilted && self.level > ARRIVED {
             return Step::Arrived;
         }
-        if self.driven > LONGEST {
+        // Ramps do not lead over the border.
+        if self.driven > LONGEST || !parameters.holds(here, 0.0) {
             return Step::NoWay { ahead: here, sign: 1.0 };
         }
         let along = self.line.to_local(here).x + AHEAD;
