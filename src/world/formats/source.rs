@@ -159,8 +159,8 @@ impl FileSource for DiskFiles {
     fn read(&mut self, reference: &str, referrer: &str, limit: u64) -> io::Result<SourceFile> {
         // What has the name and is no file is refused by its kind.
         let beside = || {
-            let folder = Path::new(referrer).parent().unwrap_or(Path::new(""));
-            Some(folder.join(self.plain(reference))).filter(|place| place.exists())
+            let (plain, folder) = (self.plain(reference), Path::new(referrer).parent()?);
+            Some(folder.join(&plain)).filter(|place| !plain.is_empty() && place.exists())
         };
         let path = self.find(reference, referrer).or_else(beside).ok_or(io::ErrorKind::NotFound)?;
         Ok(SourceFile { name: path.display().to_string(), bytes: read_limited(&path, limit)? })
@@ -375,9 +375,10 @@ mod tests {
         ] {
             assert_eq!(read(reference).as_deref(), Ok(expected), "{reference}");
         }
-        for nowhere in ["c.wld", r"C:\worlds\c.wld", r"C:\", "worlds", "", "%sim%", "%€"] {
+        for nowhere in ["c.wld", r"C:\worlds\c.wld", r"C:\", "", "%sim%", "%€"] {
             assert_eq!(read(nowhere), Err(io::ErrorKind::NotFound), "{nowhere}");
         }
+        assert_eq!(read("worlds"), Err(io::ErrorKind::IsADirectory));
     }
 
     #[test]
