@@ -77,8 +77,8 @@
 //!
 //! Each wing is a feature of its name and enables those that it depends on. `io` includes [`world`];
 //! [`files`], [`geometry`], [`kinematics`] and [`random`] are always present. All wings are on by default, and
-//! so is `picture`. With `default-features = false, features = ["vision"]` only the kernels of [`vision`] are
-//! compiled; `image` adds views of that crate's images.
+//! so is `picture`. With `default-features = false, features = ["vision"]` only the kernels of [`vision`]
+//! are compiled; `image` adds views of that crate's images.
 //!
 //! Off by default: `log` (recordings), `png` (pictures as PNG), `testing` (property-test strategies and
 //! checks for your own planners), `petgraph` (search on that crate's graphs), `rayon` (vision kernels and

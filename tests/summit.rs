@@ -63,8 +63,8 @@ fn the_highest_place_of_a_range_is_found() {
     }
 }
 
-/// Seeds of ranges: two with a way to the top of moderate length, and three with hollows in which belts do not
-/// turn the robot, so that it could be cut off from the top by what it takes for too steep.
+/// Seeds of ranges: two with a way to the top of moderate length, and three with hollows in which belts do
+/// not turn the robot, so that it could be cut off from the top by what it takes for too steep.
 const SEEDS: [u64; 5] = [1, 2, 27, 115, 187];
 
 #[test]
@@ -105,8 +105,8 @@ fn a_robot_keeps_away_from_the_border_of_its_hills() {
     assert!(trial.away <= 0.3, "{trial:?}");
 }
 
-/// The bank of a straight river is the same everywhere: nothing there tells how far belts have slipped along
-/// it, so that the robot must not trust its place beside the border.
+/// The bank of a straight river is the same everywhere: nothing there tells how far belts have slipped
+/// along it, so that the robot must not trust its place beside the border.
 #[test]
 fn a_robot_that_does_not_know_its_place_keeps_away_from_the_border() {
     let height = |at: Point| 0.2 - 0.25 * math::exp(-((at.x - 2.5) / 0.5) * ((at.x - 2.5) / 0.5));

@@ -5,8 +5,8 @@ use crate::nav::elevation::{Climber, ElevationMap};
 use crate::nav::grid::GridComponents;
 use crate::world::{BitGrid, GridCell, HeightField};
 
-/// What has been seen of the ground: the elevation of cells that beams met, and of all cells the most that it
-/// can be, as beams passed over them.
+/// What has been seen of the ground: the elevation of cells that beams met, and of all cells the most that
+/// it can be, as beams passed over them.
 #[derive(Debug, Clone)]
 pub(super) struct SightMap {
     side: usize,
@@ -19,8 +19,8 @@ pub(super) struct SightMap {
     ceilings: Vec<f64>,
     /// Cells on which the robot has found that it cannot stand.
     shunned: Vec<bool>,
-    /// Cells on which the robot has stood, and those beside them: it can go back the way that it came, however
-    /// steep the ground seems to be.
+    /// Cells on which the robot has stood, and those beside them: it can go back the way that it came,
+    /// however steep the ground seems to be.
     trodden: Vec<bool>,
     /// Cells that the robot did not see well enough from beside them: it does not go there to look again.
     given_up: Vec<bool>,
@@ -193,8 +193,8 @@ impl SightMap {
             // The beam is lowest in the cell at one of its edges.
             let height = beam.origin.z + slope * away + 0.5 * slope.abs() * self.resolution;
             self.ceilings[index] = self.ceilings[index].min(height);
-            // What a beam passes below is no ground: the robot was not where it took itself to be. At the edge
-            // of a level, a beam comes from above it and leaves the cell below it.
+            // What a beam passes below is no ground: the robot was not where it took itself to be. At the
+            // edge of a level, a beam comes from above it and leaves the cell below it.
             let highest = beam.origin.z + slope * away + slope.abs() * self.resolution;
             if self.height(index).is_some_and(|ground| ground - DROP > highest) {
                 self.seen[index] = (0.0, 0.0);
@@ -223,16 +223,16 @@ impl SightMap {
         }
     }
 
-    /// Forgets where the robot could not stand: it may have come there the wrong way. Whether there was such
-    /// a place.
+    /// Forgets where the robot could not stand: it may have come there the wrong way. Whether there was
+    /// such a place.
     pub(super) fn forget_shunned(&mut self) -> bool {
         let any = self.shunned.contains(&true);
         self.shunned.fill(false);
         any
     }
 
-    /// Notes that a look from beside a place shows no way on. Ground there that is seen from elsewhere is as
-    /// good as any.
+    /// Notes that a look from beside a place shows no way on. Ground there that is seen from elsewhere is
+    /// as good as any.
     pub(super) fn give_up(&mut self, place: Point, radius: f64) {
         for index in self.around(place, radius) {
             self.given_up[index] = true;
@@ -247,7 +247,8 @@ impl SightMap {
         (0..self.seen.len()).filter(is_near).collect()
     }
 
-    /// Where a robot can drive, and where it perhaps can. It does not know its place better than a distance (m).
+    /// Where a robot can drive, and where it perhaps can. It does not know its place better than a distance
+    /// (m).
     pub(super) fn chart(&self, parameters: &SummitParameters, doubt: f64) -> Chart {
         // Ground that is just gentle enough may seem steeper than it is.
         let climber = &Climber {
@@ -344,8 +345,8 @@ impl SightMap {
             .filter(move |&near| near != index)
     }
 
-    /// The cells that may be higher than a level and may be reached from a cell, in patches that are worth a
-    /// look.
+    /// The cells that may be higher than a level and may be reached from a cell, in patches that are worth
+    /// a look.
     pub(super) fn higher(&self, chart: &Chart, from: GridCell, level: f64) -> Vec<Vec<GridCell>> {
         let perhaps = GridComponents::new(&chart.perhaps);
         let safe = GridComponents::new(&chart.safe);
