@@ -145,7 +145,7 @@ impl Explorer {
     fn of(parameters: SummitParameters, gap: f64, forgets: bool) -> Result<Self> {
         parameters.validate()?;
         Ok(Self {
-            map: SightMap::new(parameters.resolution, parameters.extent, gap),
+            map: SightMap::new(&parameters, gap),
             lost: false,
             parameters,
             reckoning: Reckoning::default(),

@@ -12,11 +12,16 @@ pub(super) struct SightMap {
     side: usize,
     resolution: f64,
     extent: f64,
+    /// What the robot can drive over, as the map shows it: ground that is just gentle enough may seem
+    /// steeper than it is.
+    climber: Climber,
     /// Two beams above each other that meet the ground less than this many metres apart show what is between.
     gap: f64,
     /// The weight of what was measured, and its mean.
     seen: Vec<(f64, f64)>,
     ceilings: Vec<f64>,
+    /// The weight of what was measured on faces that are steeper and higher than the robot climbs.
+    faces: Vec<f64>,
     /// Cells on which the robot has found that it cannot stand.
     shunned: Vec<bool>,
     /// Cells on which the robot has stood, and those beside them: it can go back the way that it came,
@@ -63,19 +68,25 @@ const MEASURED: f64 = 0.06;
 const NOISE: f64 = 0.01;
 /// Area of a patch that is worth a look (m²), unless it is seen to be higher by more than a step's error.
 const PATCH: f64 = 0.02;
+/// The part of what was measured of a cell that lies on a face if the cell does: ground before it counts too.
+const FACE: f64 = 0.25;
 /// Depth below what a slope could lead to from which ground is a drop (m).
 const DROP: f64 = 0.04;
 
 impl SightMap {
-    pub(super) fn new(resolution: f64, extent: f64, gap: f64) -> Self {
+    pub(super) fn new(parameters: &SummitParameters, gap: f64) -> Self {
+        let SummitParameters { resolution, extent, climber, .. } = *parameters;
         let side = (2.0 * extent / resolution).round() as usize + 1;
+        let climber = Climber { slope: climber.slope + MEASURED, step: climber.step + NOISE, ..climber };
         Self {
             side,
             resolution,
             extent,
+            climber,
             gap,
             seen: vec![(0.0, 0.0); side * side],
             ceilings: vec![f64::INFINITY; side * side],
+            faces: vec![0.0; side * side],
             shunned: vec![false; side * side],
             trodden: vec![false; side * side],
             given_up: vec![false; side * side],
@@ -136,24 +147,43 @@ impl SightMap {
 
     /// Forgets all that was seen.
     pub(super) fn clear(&mut self) {
-        *self = Self::new(self.resolution, self.extent, self.gap);
+        for flags in [&mut self.shunned, &mut self.trodden, &mut self.given_up] {
+            flags.fill(false);
+        }
+        self.seen.fill((0.0, 0.0));
+        self.ceilings.fill(f64::INFINITY);
+        self.faces.fill(0.0);
     }
 
     /// Takes in the beams of one azimuth, from the lowest tilt up, from a robot that stands at a place.
     pub(super) fn add_fan(&mut self, place: Point3, beams: impl Iterator<Item = Beam>) {
         let mut before = Some(place);
+        let mut face = Face::default();
         for beam in beams {
             let end = beam.end();
             self.lower_ceilings(&beam);
             if let Some(end) = end {
                 let away = (end - beam.origin).norm();
-                self.measure(end.xy(), end.z, 1.0 / (1.0 + (away / FAR) * (away / FAR)));
+                let weight = 1.0 / (1.0 + (away / FAR) * (away / FAR));
+                self.measure(end.xy(), end.z, weight);
                 if let Some(before) = before {
                     self.bridge(before, end);
                 }
+                for (place, weight) in face.add(end, weight, &self.climber) {
+                    if let Some(index) = self.index(place) {
+                        self.faces[index] += weight;
+                    }
+                }
+            } else {
+                face = Face::default();
             }
             before = end;
         }
+    }
+
+    /// Whether a good part of what was measured of a cell lies on a face.
+    fn is_face(&self, index: usize) -> bool {
+        self.faces[index] > FACE * self.seen[index].0
     }
 
     fn measure(&mut self, place: Point, height: f64, weight: f64) {
@@ -198,6 +228,7 @@ impl SightMap {
             let highest = beam.origin.z + slope * away + slope.abs() * self.resolution;
             if self.height(index).is_some_and(|ground| ground - DROP > highest) {
                 self.seen[index] = (0.0, 0.0);
+                self.faces[index] = 0.0;
             }
         }
     }
@@ -250,12 +281,7 @@ impl SightMap {
     /// Where a robot can drive, and where it perhaps can. It does not know its place better than a distance
     /// (m).
     pub(super) fn chart(&self, parameters: &SummitParameters, doubt: f64) -> Chart {
-        // Ground that is just gentle enough may seem steeper than it is.
-        let climber = &Climber {
-            slope: parameters.climber.slope + MEASURED,
-            step: parameters.climber.step + NOISE,
-            ..parameters.climber
-        };
+        let climber = &self.climber;
         let Filled { heights, known, away } = self.filled();
         let corner = Point::new(self.extent, self.extent);
         let area = Aabb::new(-corner, corner);
@@ -265,13 +291,15 @@ impl SightMap {
         let elevation = elevation.expect("parameters that have been checked");
         let reach = (climber.radius / self.resolution).round() as usize;
         let covered = eroded(&known, self.side, reach + 1);
+        let even: Vec<bool> = (0..known.len()).map(|index| !self.is_face(index)).collect();
+        let far_from_faces = eroded(&even, self.side, reach);
         let grid = |is_free: &dyn Fn(usize) -> bool| {
             let side = self.side;
             BitGrid::from_fn(side, side, |x, y| is_free(y * side + x)).expect("a map's cells")
         };
         let open = |index: usize| {
             let cell = GridCell::new(index % self.side, index / self.side);
-            elevation.open().is_free(cell) && !self.shunned[index]
+            elevation.open().is_free(cell) && far_from_faces[index] && !self.shunned[index]
         };
         // What lies lower than a slope could lead to that the robot can drive.
         let steepest = math::tan(climber.slope) * self.resolution;
@@ -370,6 +398,34 @@ impl SightMap {
     }
 }
 
+/// The ends of the beams of a fan, one above the other, that may lie on a face.
+#[derive(Default)]
+struct Face {
+    ends: Vec<(Point3, f64)>,
+    /// Height beyond what a slope could lead up to from the lowest of them (m).
+    excess: f64,
+}
+
+impl Face {
+    /// Takes in the next end above, with its weight. Places and weights that are found to lie on a face.
+    fn add(&mut self, end: Point3, weight: f64, climber: &Climber) -> Vec<(Point, f64)> {
+        let was_face = self.excess > climber.step;
+        if let Some((before, _)) = self.ends.last() {
+            let way = end - before;
+            self.excess += way.z - math::tan(climber.slope) * way.xy().norm();
+        }
+        if self.excess <= 0.0 {
+            (self.excess, self.ends) = (0.0, Vec::new());
+        }
+        self.ends.push((end, weight));
+        if self.excess <= climber.step {
+            return Vec::new();
+        }
+        let new = if was_face { self.ends.len() - 1 } else { 0 };
+        self.ends[new..].iter().map(|(end, weight)| (end.xy(), *weight)).collect()
+    }
+}
+
 fn field_height(field: &HeightField, index: usize) -> f32 {
     field.sample(index % field.columns(), index / field.columns()) as f32
 }
@@ -403,7 +459,7 @@ mod tests {
     fn what_was_given_up_is_safe_once_it_is_seen() {
         let mut parameters = SummitParameters::of(&RobotSpec::blizzard()).unwrap();
         parameters.extent = 1.0;
-        let mut map = SightMap::new(parameters.resolution, parameters.extent, 0.35);
+        let mut map = SightMap::new(&parameters, 0.35);
         let place = Point::new(0.5, 0.0);
         let cell = map.cell_at(place).unwrap();
         let see = |map: &mut SightMap, low: i32, high: i32| {
@@ -425,7 +481,7 @@ mod tests {
 
     /// Sees ground of an elevation all around the start.
     fn ground(parameters: &SummitParameters, height: impl Fn(f64) -> f64) -> SightMap {
-        let mut map = SightMap::new(parameters.resolution, parameters.extent, 0.35);
+        let mut map = SightMap::new(parameters, 0.35);
         for (x, y) in (-18..=18).flat_map(|x| (-18..=18).map(move |y| (x, y))) {
             let at = [x, y].map(|cell| 0.05 * f64::from(cell));
             map.stand(Point3::new(at[0], at[1], height(at[0])));
