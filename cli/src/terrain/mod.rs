@@ -89,21 +89,23 @@ pub(crate) fn shore(world: &World) -> Option<f64> {
     world.water_level.map(|water| water + SHORE)
 }
 
-/// The map of a world's ground for a climber; what is under water is closed.
+/// The map of a world's ground for a climber; what is under water or at a wall is closed.
 pub(crate) fn elevation_map(
     world: &World,
     ground: &HeightField,
     climber: &Climber,
 ) -> Result<ElevationMap, Failure> {
     let map = ElevationMap::new(ground, climber);
-    map.and_then(|map| map.above(shore(world).unwrap_or(f64::NEG_INFINITY))).map_err(Failure::input)
+    map.and_then(|map| map.above(shore(world).unwrap_or(f64::NEG_INFINITY)))
+        .and_then(|map| map.clear_of(world))
+        .map_err(Failure::input)
 }
 
 /// The failure for a start on which a robot cannot stand.
 pub(crate) fn unfit(start: Point) -> Failure {
     let [x, y] = [start.x, start.y].map(|metres| rounded(1000.0 * metres));
     Failure::input(format!(
-        "found a start at {x}, {y} mm: too steep, in water, or too near to the border; expected gentle ground"
+        "found a start at {x}, {y} mm: too steep, in water, or too near to a wall or the border; expected gentle ground"
     ))
 }
 

@@ -5,14 +5,14 @@ use crate::ParameterError;
 use crate::geometry::{Point, Point3, Vector, math};
 use crate::nav::grid::GridComponents;
 use crate::parameter::require;
-use crate::world::{BitGrid, GridCell, HeightField};
+use crate::world::{BitGrid, Clearance, GridCell, HeightField, World};
 
 /// A map of where a robot can stand on a surface. The samples of the surface are the cells of a grid; a cell
 /// is free if the robot can stand there.
 ///
 /// A cell is occupied if the plane through the ground under the robot is too steep, if a step under the robot
-/// is too high, if the robot would reach beyond the surface, or if it lies below a
-/// [lowest elevation](Self::above).
+/// is too high, if the robot would reach beyond the surface, if it lies below a
+/// [lowest elevation](Self::above), or if [walls](Self::clear_of) are too near.
 ///
 /// ```
 /// use roverlab::geometry::{Aabb, Point};
@@ -53,6 +53,10 @@ struct Footing {
     step: [i64; 2],
     /// Elevation below which ground is closed.
     lowest: i64,
+    /// Radius of the robot (m).
+    radius: f64,
+    /// The samples at which the robot touches no wall or object, if there are any of these.
+    clear: Option<BitGrid>,
 }
 
 /// Running sums over a window: of heights, of their moments along the rows, of heights times their place on
@@ -106,11 +110,52 @@ impl ElevationMap {
     pub fn above(mut self, lowest: f64) -> Result<Self, ParameterError> {
         require("lowest elevation", lowest, !lowest.is_nan(), "a number")?;
         self.footing.lowest = micrometres(lowest);
+        self.close(Footing::is_under);
+        Ok(self)
+    }
+
+    /// The same map with all ground closed on which the robot would touch a wall or an object of a world.
+    /// Fails if the samples are too far apart or too many to measure that.
+    ///
+    /// ```
+    /// # use roverlab::geometry::{Aabb, Point, Segment};
+    /// # use roverlab::nav::elevation::{Climber, ElevationMap};
+    /// # use roverlab::world::{HeightField, Wall, World};
+    /// // A slope that rises along x, with a wall across it at x = 2 m.
+    /// let area = Aabb::new(Point::origin(), Point::new(4.0, 4.0));
+    /// let slope = HeightField::from_fn(81, 81, area, |at| 0.1 * at.x)?;
+    /// let wall = Wall::new(Segment::new(Point::new(2.0, 0.0), Point::new(2.0, 4.0)));
+    /// let world = World { walls: vec![wall], ..World::empty(4.0, 4.0) };
+    /// let map = ElevationMap::new(&slope, &Climber { slope: 0.3, step: 0.02, radius: 0.15 })?;
+    /// let top = |map: &ElevationMap| map.highest_reachable(Point::new(1.0, 1.0)).unwrap().x;
+    /// assert!(top(&map) > 3.8);
+    /// assert!(top(&map.clear_of(&world)?) < 1.85);
+    /// # Ok::<(), roverlab::ParameterError>(())
+    /// ```
+    pub fn clear_of(mut self, world: &World) -> Result<Self, ParameterError> {
+        if world.walls.is_empty() && world.objects.is_empty() && world.map.is_none() {
+            return Ok(self);
+        }
+        let pitch = self.field.pitch().min();
+        let area = self.field.area().inflated(0.5 * pitch);
+        let radius = self.footing.radius;
+        let clearance = Clearance::over(world, area, pitch, radius)?;
+        let is_clear = |column: usize, row: usize| {
+            let place = self.place(Point::new(column as f64, row as f64));
+            clearance.at_point(place).is_none_or(|distance| distance >= radius)
+        };
+        let clear = BitGrid::from_fn(self.footing.columns, self.footing.rows, is_clear);
+        self.footing.clear = Some(clear.expect("as many cells as the map has"));
+        self.close(Footing::is_obstructed);
+        Ok(self)
+    }
+
+    /// Closes open cells by a rule.
+    fn close(&mut self, is_closed: impl Fn(&Footing, GridCell) -> bool) {
         let open: Vec<GridCell> = self.open.free_cells().collect();
         for cell in open {
-            self.open.set_free(cell, !self.footing.is_under(cell));
+            self.open.set_free(cell, !is_closed(&self.footing, cell));
         }
-        Ok(self)
     }
 
     /// The surface.
@@ -196,7 +241,18 @@ impl Footing {
         let step = pitch.map(|pitch| micrometres(climber.step + slope * pitch));
         let sample = |index: usize| micrometres(field.sample(index % columns, index / columns));
         let heights = (0..columns * rows).map(sample).collect();
-        Self { columns, rows, heights, reach, moment, steepest: slope * slope, step, lowest: i64::MIN }
+        Self {
+            columns,
+            rows,
+            heights,
+            reach,
+            moment,
+            steepest: slope * slope,
+            step,
+            lowest: i64::MIN,
+            radius: climber.radius,
+            clear: None,
+        }
     }
 
     /// All samples at once, by running sums along rows and then along columns.
@@ -257,7 +313,7 @@ impl Footing {
         let [reach_x, reach_y] = self.reach;
         let inside = |at: usize, reach: usize, count: usize| at >= reach && at + reach < count;
         let is_inside = inside(cell.column, reach_x, self.columns) && inside(cell.row, reach_y, self.rows);
-        if !is_inside || self.is_under(cell) {
+        if !is_inside || self.is_under(cell) || self.is_obstructed(cell) {
             return false;
         }
         let (mut along, mut across) = (0, 0);
@@ -276,6 +332,10 @@ impl Footing {
     /// Whether a sample lies below the lowest elevation.
     fn is_under(&self, cell: GridCell) -> bool {
         self.heights[cell.row * self.columns + cell.column] < self.lowest
+    }
+
+    fn is_obstructed(&self, cell: GridCell) -> bool {
+        self.clear.as_ref().is_some_and(|clear| !clear.is_free(cell))
     }
 
     fn is_gentle(&self, along: i128, across: i128) -> bool {

@@ -23,25 +23,31 @@ const OUTLIERS: [f64; 14] =
 const OUTLIER: f64 = 0.02;
 /// The fewest points that count.
 const ENOUGH: usize = 100;
-/// How far dead reckoning may be off, as standard deviations: along both axes, upwards, about the upright
-/// axis.
-const EXPECTED: [f64; 4] = [0.3, 0.3, 0.1, 0.05];
+/// How far dead reckoning may be off on even ground, and upwards (m), and about the upright axis (rad), as standard
+/// deviations.
+const ALONG: f64 = 0.05;
+const UPWARDS: f64 = 0.1;
+const ABOUT: f64 = 0.05;
 /// Shares of its way since the last look by which a robot may have slipped back, the likeliest first.
 const SLIPPED: [f64; 6] = [0.0, 0.25, 0.5, 0.75, 1.0, 1.25];
 /// By how much more of the ground has to lie on the map for all of its way to be believed to be slip.
 const UNLIKELY: f64 = 0.05;
 
 /// Fits points around a robot to the map. `before` is where it looked last: belts may slip on the way from
-/// there. `tilt` is by how much the look may be tilted, in radians. `None` if they do not lie on the map.
+/// there. `tilt` is by how much the look may be tilted, in radians, and `doubt` by how much the robot may be elsewhere, in
+/// metres. `None` if they do not lie on the map.
 pub(super) fn align(
     map: &SightMap,
     robot: Point3,
     before: Point3,
     points: &[Point3],
     tilt: f64,
+    doubt: f64,
 ) -> Option<Shift> {
+    let along = ALONG.max(doubt);
+    let prior = [along, along, UPWARDS, ABOUT, tilt, tilt];
     let fits = SLIPPED.iter().filter_map(|slipped| {
-        let shift = fit(map, robot, points, tilt, (before - robot) * *slipped)?;
+        let shift = fit(map, robot, points, &prior, (before - robot) * *slipped)?;
         Some((lies(map, robot, points, &shift) - UNLIKELY * slipped, shift))
     });
     let mut fits = fits.peekable();
@@ -54,8 +60,7 @@ pub(super) fn align(
 
 /// The least squares of the heights, with little weight for outliers, from a first guess on. `None` if too
 /// few of the points are within the map.
-fn fit(map: &SightMap, robot: Point3, points: &[Point3], tilt: f64, guess: Vector3) -> Option<Shift> {
-    let prior = [EXPECTED[0], EXPECTED[1], EXPECTED[2], EXPECTED[3], tilt, tilt];
+fn fit(map: &SightMap, robot: Point3, points: &[Point3], prior: &[f64; 6], guess: Vector3) -> Option<Shift> {
     let guess = SVector::<f64, 6>::from([guess.x, guess.y, guess.z, 0.0, 0.0, 0.0]);
     let mut fit = guess;
     let mut doubt = f64::INFINITY;

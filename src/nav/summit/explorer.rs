@@ -255,7 +255,7 @@ impl Explorer {
         let robot = self.reckoning.in_space(sweep.attitude());
         let near = sweep.fans(&robot, &lidar).flatten().filter(|beam| beam.range < NEAR);
         let points: Vec<Point3> = near.filter_map(|beam| beam.end()).collect();
-        let shift = align(&self.map, robot.position, self.looked_from, &points, tilt)?;
+        let shift = align(&self.map, robot.position, self.looked_from, &points, tilt, self.reckoning.doubt)?;
         self.reckoning.correct(&shift);
         Some(shift)
     }

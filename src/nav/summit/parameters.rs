@@ -53,7 +53,7 @@ impl Fence {
     }
 }
 
-/// Distance that the robot keeps from a drop or a fence, beside its own size (m).
+/// Distance that the robot keeps from a drop, beside its own size (m).
 pub(super) const CAUTION: f64 = 0.05;
 /// The most cells of a map along an axis.
 const MOST_CELLS: f64 = 2000.0;
@@ -86,9 +86,10 @@ impl SummitParameters {
         })
     }
 
-    /// Whether a robot that knows its place to within a doubt (m) keeps away from the fence there.
+    /// Whether a robot that knows its place to within a doubt (m), and drives to within half a cell, keeps away from
+    /// the fence there.
     pub(super) fn holds(&self, place: Point, doubt: f64) -> bool {
-        let margin = self.climber.radius + CAUTION.max(doubt);
+        let margin = self.climber.radius + doubt.max(0.5 * self.resolution);
         let inside = |fence: Fence| Fence { area: fence.area.inflated(-margin), ..fence }.holds(place);
         self.fence.is_none_or(inside)
     }

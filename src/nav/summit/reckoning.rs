@@ -22,13 +22,17 @@ pub(super) struct Reckoning {
     /// Turn of the last seconds by the wheels that the robot did not make (rad).
     unturned: f64,
     locked: bool,
+    /// Turn per step by the wheels, and by the robot, without noise.
+    turning: [f64; 2],
 }
 
 /// The share of a difference between the headings of wheels and unit that a step takes over: belts turn a
 /// robot by a third more or less than they should, while the unit's error is half a degree.
 const TRUST: f64 = 0.25;
-/// Turn by the wheels that the robot does not make, up to which that is noise of the unit (rad).
-const NOISE: f64 = 0.01;
+/// Slip downhill in a turn ahead, and that ahead for a slope across, as multiples of the slip sideways. Measured
+/// on planes of 5 to 25 degrees.
+const AHEAD: f64 = 1.8;
+const LOWER: f64 = 0.46;
 /// Distance by which the place may be wrong, per metre that belts run on a slope of 1. Where a robot cannot
 /// turn, it errs by 0.4 m in 4 m on 15 to 20 degrees.
 const SLIP: f64 = 0.5;
@@ -58,16 +62,29 @@ impl Reckoning {
         let turned = told + TRUST * angle_difference(attitude.yaw - self.north, heading);
         self.unturned = MEMORY * (self.unturned + told - turned);
         self.locked = self.unturned.abs() > LOCKED[usize::from(self.locked)];
+        for (mean, new) in self.turning.iter_mut().zip([told, turned]) {
+            *mean += 0.15 * (new - *mean);
+        }
+        let [wheels, robot] = self.turning.map(f64::abs);
         let (rise, run) = math::sin_cos(-(attitude.pitch - self.bias[1]));
-        let lower = (-rise / HELD).clamp(-1.0, 1.0);
-        let length = length + lower * half_track * ((told - turned).abs() - NOISE).max(0.0);
-        let place = self.pose.position() + direction(self.pose.heading + 0.5 * turned) * (length * run);
         let up = self.in_space(attitude).up();
         let downhill = Vector::new(up.x, up.y) / up.z.max(0.1);
-        let place = place + downhill * (slide * turned.abs());
+        let ahead = direction(self.pose.heading + 0.5 * turned);
+        let left = Vector::new(-ahead.y, ahead.x);
+        let (down_ahead, down_left) = (downhill.dot(&ahead), downhill.dot(&left));
+        // In turns, the belts let the robot slide down, ahead more than sideways, and it follows the lower one.
+        let slides = (AHEAD * slide * down_ahead.abs()).min(half_track) * wheels;
+        let slips = half_track
+            * (down_ahead.abs() / HELD).min(1.0)
+            * (1.0 - MEMORY)
+            * (self.unturned.abs() - 0.1).max(0.0);
+        let along = slides.max(slips).copysign(down_ahead) - LOWER * slide * down_left * told;
+        let aside = slide * down_left * robot;
+        let way = ahead * (length * run + along) + left * aside;
         self.doubt += SLIP * downhill.norm() * (length.abs() + half_track * told.abs());
+        self.elevation += length * rise - downhill.dot(&(ahead * along + left * aside));
+        let place = self.pose.position() + way;
         self.pose = Pose::new(place.x, place.y, normalize_angle(self.pose.heading + turned));
-        self.elevation += length * rise - downhill.norm_squared() * slide * turned.abs();
     }
 
     /// Whether the wheels do not turn the robot.

@@ -128,7 +128,7 @@ impl SightMap {
         Some(sum / count)
     }
 
-    /// Elevation and gradient at a place all around which the ground has been seen.
+    /// Elevation and gradient at a place all around which the ground has been seen, and is no face.
     pub(super) fn surface(&self, place: Point) -> Option<(f64, Vector)> {
         let cell = self.cell_at(place)?;
         let inside = |at: usize| at > 0 && at + 1 < self.side;
@@ -136,7 +136,8 @@ impl SightMap {
             return None;
         }
         let index = self.index_of(cell);
-        let known = |index: usize| (self.seen[index].0 >= KNOWN).then(|| self.seen[index].1);
+        let known =
+            |index: usize| (self.seen[index].0 >= KNOWN && !self.is_face(index)).then(|| self.seen[index].1);
         let (middle, width) = (known(index)?, 2.0 * self.resolution);
         let rise = Vector::new(
             (known(index + 1)? - known(index - 1)?) / width,
@@ -290,7 +291,13 @@ impl SightMap {
         let elevation = ElevationMap::new(&field, climber).and_then(|map| map.above(lowest));
         let elevation = elevation.expect("parameters that have been checked");
         let reach = (climber.radius / self.resolution).round() as usize;
-        let covered = eroded(&known, self.side, reach + 1);
+        // The fence has a margin of its own, whatever is beyond it.
+        let is_beyond = |index: usize| {
+            let place = self.place(GridCell::new(index % self.side, index / self.side));
+            parameters.fence.is_some_and(|fence| !fence.holds(place))
+        };
+        let covered: Vec<bool> = (0..known.len()).map(|index| known[index] || is_beyond(index)).collect();
+        let covered = eroded(&covered, self.side, reach + 1);
         let even: Vec<bool> = (0..known.len()).map(|index| !self.is_face(index)).collect();
         let far_from_faces = eroded(&even, self.side, reach);
         let grid = |is_free: &dyn Fn(usize) -> bool| {
@@ -310,7 +317,7 @@ impl SightMap {
         let fenced = |index: usize| {
             parameters.holds(self.place(GridCell::new(index % self.side, index / self.side)), doubt)
         };
-        let holds: Vec<bool> = (0..known.len()).map(|index| !drops(index)).collect();
+        let holds: Vec<bool> = (0..known.len()).map(|index| !drops(index) || is_beyond(index)).collect();
         let far_from_drops = eroded(&holds, self.side, reach + (CAUTION / self.resolution).round() as usize);
         let is_safe = |index: usize| {
             let is_even = covered[index] && open(index) || self.trodden[index] && !self.shunned[index];
