@@ -8,13 +8,14 @@ use roverlab::nav::elevation::{Climber, ElevationMap};
 use roverlab::nav::{Fence, RampCrossing, RampOutcome, SummitOutcome, SummitParameters, SummitSearch};
 use roverlab::random::Stream;
 use roverlab::world::generate::{ReliefKind, ReliefOptions, relief};
-use roverlab::world::{HeightField, RobotSpec, Scene, Terrain, World};
+use roverlab::world::{HeightField, RobotSpec, Scene, Terrain, Wall, World};
 
 /// How a search ended.
 #[derive(Debug)]
 struct Trial {
     outcome: SummitOutcome,
     mishap: Option<Mishap>,
+    contacts: u32,
     /// Metres from the highest reachable place over the map, and below it as a share of the relief.
     away: f64,
     below: f64,
@@ -33,6 +34,7 @@ fn search_on(world: World, start: Pose, seed: u64, limit: f64) -> Trial {
     let ground = world.terrain.clone().unwrap().surface.unwrap();
     let shore = world.water_level.map_or(f64::NEG_INFINITY, |water| water + 0.02);
     let map = ElevationMap::new(&ground, &Climber::of(&spec)).unwrap().above(shore).unwrap();
+    let map = map.clear_of(&world).unwrap();
     let top = map.highest_reachable(start.position()).expect("a place to stand");
     let lowest = Some(shore - ground.height(start.position()).unwrap()).filter(|lowest| lowest.is_finite());
     let fence = Some(Fence { area: ground.area(), start });
@@ -46,6 +48,7 @@ fn search_on(world: World, start: Pose, seed: u64, limit: f64) -> Trial {
     Trial {
         outcome,
         mishap: truth.mishap(0).unwrap(),
+        contacts: truth.robot(0).unwrap().contacts,
         away: (end.xy() - top.xy()).norm(),
         below: (top.z - end.z) / (ground.highest() - ground.lowest()),
         unknown: search.unknown_area(),
@@ -102,7 +105,37 @@ fn a_robot_keeps_away_from_the_border_of_its_hills() {
     let world = hills(4.0, 4.0, |at| 0.02 + 0.05 * at.x + hill(at, [4.0, 4.0], 0.2, 1.0));
     let trial = search_on(world, Pose::new(1.0, 1.0, 0.0), 1, 600.0);
     assert_eq!((trial.outcome, trial.mishap), (SummitOutcome::Highest, None), "{trial:?}");
-    assert!(trial.away <= 0.3, "{trial:?}");
+    assert!(trial.away <= 0.2, "{trial:?}");
+}
+
+/// A wall parts the hills, and the higher one is behind it.
+#[test]
+fn a_hill_behind_a_wall_cannot_be_reached() {
+    let height = |at: Point| hill(at, [1.2, 1.2], 0.2, 0.7) + hill(at, [3.8, 3.8], 0.35, 0.8);
+    let wall = Wall::new(Point::new(0.0, 2.6), Point::new(5.0, 2.4));
+    let world = World { walls: vec![wall], ..hills(5.0, 5.0, height) };
+    for seed in [1, 2] {
+        let trial = search_on(world.clone(), Pose::new(0.6, 0.8, 0.0), seed, 600.0);
+        assert_eq!((trial.outcome, trial.mishap), (SummitOutcome::Highest, None), "{seed}: {trial:?}");
+        assert!(trial.away <= 0.1 && trial.contacts == 0, "{seed}: {trial:?}");
+    }
+}
+
+/// Ramps lead up to a level on two sides. Where they begin, their sides are no higher than what is between two
+/// beams, and too high for the robot; the ground around tells little of where it is.
+#[test]
+fn a_robot_keeps_off_the_sides_of_ramps() {
+    let height = |at: Point| {
+        let beyond = (at.x - 3.0).abs() - 0.8;
+        let on_level = beyond <= 0.0 && (at.y - 3.0).abs() <= 0.8;
+        let on_ramp = (at.y - 3.0).abs() <= 0.5;
+        if on_level || on_ramp { (0.3 - 0.287 * beyond.max(0.0)).max(0.0) } else { 0.0 }
+    };
+    for (seed, start) in [(5, Pose::new(3.0, 0.9, 0.8)), (6, Pose::new(3.0, 5.1, 0.2))] {
+        let trial = search_on(hills(6.0, 6.0, height), start, seed, 600.0);
+        assert_eq!((trial.outcome, trial.mishap), (SummitOutcome::Highest, None), "{seed}: {trial:?}");
+        assert!(trial.below <= 0.02 && trial.looks < 40, "{seed}: {trial:?}");
+    }
 }
 
 /// The bank of a straight river is the same everywhere: nothing there tells how far belts have slipped

@@ -28,7 +28,7 @@ pub(crate) struct CommonArgs {
     #[arg(long, value_name = "FILE")]
     pub(crate) world: Option<PathBuf>,
 
-    /// Robot description, or the name of a built-in robot [default: S4].
+    /// Robot description, or the name of a built-in robot [default: S4; on hills: Blizzard].
     #[arg(long, value_name = "FILE.robi")]
     pub(crate) robot: Option<PathBuf>,
 

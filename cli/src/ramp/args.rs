@@ -17,7 +17,7 @@ JSON fields:
   height_mm                   true elevation at the end
   level_mm                    highest true elevation
   max_tilt_deg                the most that the robot was tilted
-  slip_percent                how far it moved otherwise than its wheels said, as a share of their way
+  slip_percent                motion that the wheels did not report, relative to theirs, or null if these hardly moved
   friction                    coefficient of friction
   looks                       how often it has looked around
   time_limit_s, picture

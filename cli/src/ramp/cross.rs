@@ -66,7 +66,7 @@ pub(crate) fn cross(
 /// Ground truth of a crossing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Passage {
-    /// Whether it led up and down, at different places.
+    /// Whether it led up and down, at different places, and the robot still stands.
     pub(crate) crossed: bool,
     /// Highest elevation (m).
     pub(crate) level: f64,
@@ -85,7 +85,9 @@ impl Passage {
             .is_some_and(|[up, down]| (up - down).norm() > 2.0 * spec.footprint.bounding_radius());
         let end = run.in_space.last().map_or(level, |space| space.pose.position.z);
         let low = level - end > LEVEL && level - hike.start_height() > LEVEL;
-        Self { crossed: low && apart, level, edge_distance }
+        let is_whole =
+            run.in_space.last().is_some_and(|end| end.mishap.is_none_or(|mishap| mishap == Mishap::Stuck));
+        Self { crossed: is_whole && low && apart, level, edge_distance }
     }
 }
 

@@ -43,7 +43,7 @@ fn fields(report: Report, hike: &Hike, run: &Run<Crossed>, ride: Option<Ride>, p
         .field("height_mm", ride.map(|ride| millimetres(ride.height())))
         .field("level_mm", passage.level.is_finite().then(|| millimetres(passage.level)))
         .field("max_tilt_deg", ride.map(|ride| degrees(ride.max_tilt)))
-        .field("slip_percent", ride.map(|ride| percent(ride.slip)))
+        .field("slip_percent", ride.and_then(|ride| ride.slip).map(percent))
         .field("friction", rounded(hike.spec().friction))
         .field("looks", run.ending.as_ref().ok().map(|ended| ended.looks))
 }

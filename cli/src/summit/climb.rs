@@ -24,8 +24,8 @@ pub(crate) enum Arrival {
 pub(crate) struct Ascended {
     pub(crate) arrival: Arrival,
     pub(crate) looks: u32,
-    /// Square metres.
-    pub(crate) unknown: f64,
+    /// Square metres; `None` before the first map, and for a method that has none.
+    pub(crate) unknown: Option<f64>,
 }
 
 /// What could be reached.
@@ -41,6 +41,8 @@ pub(crate) struct Summit {
 /// So many metres from the highest reachable place, or this share of the relief below it, counts as reached.
 const NEAR: f64 = 0.1;
 const BELOW: f64 = 0.02;
+/// Looks after which a search has a map.
+const FIRST_MAP: u32 = 2;
 /// Difference in elevation that counts as none (m).
 const LEVEL: f64 = 1e-3;
 
@@ -119,7 +121,9 @@ pub(crate) fn climb(
                 SummitOutcome::Stuck => Arrival::Stuck,
                 _ => Arrival::TimedOut,
             };
-            Ok(Ascended { arrival, looks: search.looks(), unknown: search.unknown_area() })
+            let has_map = search.looks() >= FIRST_MAP;
+            let unknown = has_map.then(|| search.unknown_area());
+            Ok(Ascended { arrival, looks: search.looks(), unknown })
         });
     }
     let sensor = if method == Method::Psd { SlopeSensor::psds(spec) } else { SlopeSensor::lidar(spec) };
@@ -134,7 +138,7 @@ pub(crate) fn climb(
             AscentOutcome::TooSteep => Arrival::Stuck,
             _ => Arrival::TimedOut,
         };
-        Ok(Ascended { arrival, looks: 0, unknown: 0.0 })
+        Ok(Ascended { arrival, looks: 0, unknown: None })
     })
 }
 

@@ -53,10 +53,10 @@ fn fields(report: Report, run: &Run<Ascended>, ride: Option<Ride>, summit: &Summ
         .field("highest_reachable_mm", millimetres(summit.place.z))
         .field("distance_mm", ride.map(|ride| millimetres(summit.distance(&ride.end))))
         .field("max_tilt_deg", ride.map(|ride| degrees(ride.max_tilt)))
-        .field("slip_percent", ride.map(|ride| percent(ride.slip)))
+        .field("slip_percent", ride.and_then(|ride| ride.slip).map(percent))
         .field("planned_length_mm", summit.way.map(millimetres))
         .field("looks", ended.map(|ended| ended.looks))
-        .field("unknown_m2", ended.map(|ended| (100.0 * ended.unknown).round() / 100.0))
+        .field("unknown_m2", ended.and_then(|ended| ended.unknown).map(|area| (100.0 * area).round() / 100.0))
 }
 
 fn picture(method: Method, hike: &Hike, run: &Run<Ascended>, summit: &Summit, ride: Option<Ride>) -> Picture {

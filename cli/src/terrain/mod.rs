@@ -115,9 +115,13 @@ pub(crate) struct Ride {
     pub(crate) end: TruthInSpace,
     /// Angle (rad).
     pub(crate) max_tilt: f64,
-    /// Slip: motion of the robot that its wheels did not report (fraction of the distance by the wheels).
-    pub(crate) slip: f64,
+    /// Slip: motion of the robot that its wheels did not report (fraction of the distance by the wheels); `None` if
+    /// they hardly moved.
+    pub(crate) slip: Option<f64>,
 }
+
+/// Distance by the wheels from which slip is told (m).
+const MOVED: f64 = 0.05;
 
 impl Ride {
     pub(crate) fn of<T>(run: &Run<T>) -> Option<Self> {
@@ -131,7 +135,7 @@ impl Ride {
             slid += (moved - turned).abs();
             driven += turned;
         }
-        Some(Self { end, max_tilt, slip: slid / f64::max(driven, 1e-3) })
+        Some(Self { end, max_tilt, slip: (driven > MOVED).then(|| slid / driven) })
     }
 
     pub(crate) fn height(&self) -> f64 {

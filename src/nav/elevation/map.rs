@@ -118,13 +118,13 @@ impl ElevationMap {
     /// Fails if the samples are too far apart or too many to measure that.
     ///
     /// ```
-    /// # use roverlab::geometry::{Aabb, Point, Segment};
+    /// # use roverlab::geometry::{Aabb, Point};
     /// # use roverlab::nav::elevation::{Climber, ElevationMap};
     /// # use roverlab::world::{HeightField, Wall, World};
     /// // A slope that rises along x, with a wall across it at x = 2 m.
     /// let area = Aabb::new(Point::origin(), Point::new(4.0, 4.0));
     /// let slope = HeightField::from_fn(81, 81, area, |at| 0.1 * at.x)?;
-    /// let wall = Wall::new(Segment::new(Point::new(2.0, 0.0), Point::new(2.0, 4.0)));
+    /// let wall = Wall::new(Point::new(2.0, 0.0), Point::new(2.0, 4.0));
     /// let world = World { walls: vec![wall], ..World::empty(4.0, 4.0) };
     /// let map = ElevationMap::new(&slope, &Climber { slope: 0.3, step: 0.02, radius: 0.15 })?;
     /// let top = |map: &ElevationMap| map.highest_reachable(Point::new(1.0, 1.0)).unwrap().x;

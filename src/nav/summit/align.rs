@@ -27,7 +27,7 @@ const ENOUGH: usize = 100;
 /// deviations.
 const ALONG: f64 = 0.05;
 const UPWARDS: f64 = 0.1;
-const ABOUT: f64 = 0.05;
+const ABOUT: f64 = 0.01;
 /// Shares of its way since the last look by which a robot may have slipped back, the likeliest first.
 const SLIPPED: [f64; 6] = [0.0, 0.25, 0.5, 0.75, 1.0, 1.25];
 /// By how much more of the ground has to lie on the map for all of its way to be believed to be slip.

@@ -48,7 +48,7 @@ pub(super) enum Step {
 /// Metres ahead on its way that the robot steers to.
 const AHEAD: f64 = 0.18;
 /// Metres to the end of a way at which it has arrived.
-const ARRIVED: f64 = 0.04;
+pub(super) const ARRIVED: f64 = 0.04;
 /// Radians beyond which it turns on the spot.
 const ASIDE: f64 = 0.9;
 /// Seconds without getting nearer after which it does not get on.

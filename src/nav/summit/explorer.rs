@@ -253,7 +253,9 @@ impl Explorer {
     fn align(&mut self, sweep: &Sweep, tilt: f64) -> Option<Shift> {
         let lidar = self.parameters.lidar;
         let robot = self.reckoning.in_space(sweep.attitude());
-        let near = sweep.fans(&robot, &lidar).flatten().filter(|beam| beam.range < NEAR);
+        let beams = sweep.fans(&robot, &lidar, &self.map.climber).flatten();
+        // On faces, heights say nothing of the place.
+        let near = beams.filter(|beam| beam.range < NEAR && !beam.is_on_face);
         let points: Vec<Point3> = near.filter_map(|beam| beam.end()).collect();
         let shift = align(&self.map, robot.position, self.looked_from, &points, tilt, self.reckoning.doubt)?;
         self.reckoning.correct(&shift);
@@ -281,8 +283,9 @@ impl Explorer {
     fn take_in(&mut self, sweep: &Sweep) {
         let robot = self.reckoning.in_space(sweep.attitude());
         self.map.stand(robot.position);
-        for fan in sweep.fans(&robot, &self.parameters.lidar) {
-            self.map.add_fan(robot.position, fan);
+        let climber = self.map.climber;
+        for fan in sweep.fans(&robot, &self.parameters.lidar, &climber) {
+            self.map.add_fan(robot.position, &fan);
         }
         self.looked_from = robot.position;
         self.uphill = -robot.up().xy() / robot.up().z.max(MIN_UPRIGHT);

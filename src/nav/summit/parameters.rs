@@ -53,7 +53,7 @@ impl Fence {
     }
 }
 
-/// Distance that the robot keeps from a drop, beside its own size (m).
+/// Distance that the robot keeps from drops and faces, beside its own size (m).
 pub(super) const CAUTION: f64 = 0.05;
 /// The most cells of a map along an axis.
 const MOST_CELLS: f64 = 2000.0;

@@ -22,17 +22,23 @@ pub(super) struct Reckoning {
     /// Turn of the last seconds by the wheels that the robot did not make (rad).
     unturned: f64,
     locked: bool,
-    /// Turn per step by the wheels, and by the robot, without noise.
+    /// Turns of a step by the wheels and by the robot, smoothed (rad).
     turning: [f64; 2],
 }
 
 /// The share of a difference between the headings of wheels and unit that a step takes over: belts turn a
 /// robot by a third more or less than they should, while the unit's error is half a degree.
 const TRUST: f64 = 0.25;
-/// Slip downhill in a turn ahead, and that ahead for a slope across, as multiples of the slip sideways. Measured
-/// on planes of 5 to 25 degrees.
+/// How far belts slide ahead on ground that falls ahead, as a multiple of how far they slide aside on such that falls
+/// to the side. Measured on planes of 5 to 25 degrees, as the next one.
 const AHEAD: f64 = 1.8;
-const LOWER: f64 = 0.46;
+/// How far belts slide backwards in a turn to the left on ground that falls to the left, as such a multiple.
+const ACROSS: f64 = 0.46;
+/// The share of a step's turn that its smoothed value takes over: what the unit's noise adds to single steps would add
+/// up, as robots slide downhill in turns to either side.
+const SMOOTH: f64 = 0.15;
+/// Turn by the wheels that the robot does not make, up to which that is noise (rad).
+const NOISE: f64 = 0.1;
 /// Distance by which the place may be wrong, per metre that belts run on a slope of 1. Where a robot cannot
 /// turn, it errs by 0.4 m in 4 m on 15 to 20 degrees.
 const SLIP: f64 = 0.5;
@@ -63,28 +69,31 @@ impl Reckoning {
         self.unturned = MEMORY * (self.unturned + told - turned);
         self.locked = self.unturned.abs() > LOCKED[usize::from(self.locked)];
         for (mean, new) in self.turning.iter_mut().zip([told, turned]) {
-            *mean += 0.15 * (new - *mean);
+            *mean += SMOOTH * (new - *mean);
         }
-        let [wheels, robot] = self.turning.map(f64::abs);
         let (rise, run) = math::sin_cos(-(attitude.pitch - self.bias[1]));
         let up = self.in_space(attitude).up();
         let downhill = Vector::new(up.x, up.y) / up.z.max(0.1);
         let ahead = direction(self.pose.heading + 0.5 * turned);
         let left = Vector::new(-ahead.y, ahead.x);
-        let (down_ahead, down_left) = (downhill.dot(&ahead), downhill.dot(&left));
-        // In turns, the belts let the robot slide down, ahead more than sideways, and it follows the lower one.
-        let slides = (AHEAD * slide * down_ahead.abs()).min(half_track) * wheels;
-        let slips = half_track
-            * (down_ahead.abs() / HELD).min(1.0)
-            * (1.0 - MEMORY)
-            * (self.unturned.abs() - 0.1).max(0.0);
-        let along = slides.max(slips).copysign(down_ahead) - LOWER * slide * down_left * told;
-        let aside = slide * down_left * robot;
-        let way = ahead * (length * run + along) + left * aside;
+        let slid = self.slid(downhill.dot(&ahead), downhill.dot(&left), told, slide, half_track);
+        let slid = ahead * slid.x + left * slid.y;
         self.doubt += SLIP * downhill.norm() * (length.abs() + half_track * told.abs());
-        self.elevation += length * rise - downhill.dot(&(ahead * along + left * aside));
-        let place = self.pose.position() + way;
+        self.elevation += length * rise - downhill.dot(&slid);
+        let place = self.pose.position() + ahead * (length * run) + slid;
         self.pose = Pose::new(place.x, place.y, normalize_angle(self.pose.heading + turned));
+    }
+
+    /// How far belts that turn by `told` slide ahead and to the left, on ground that falls by so much ahead and to
+    /// the left per metre.
+    fn slid(&self, falls_ahead: f64, falls_left: f64, told: f64, slide: f64, half_track: f64) -> Vector {
+        let [wheels, robot] = self.turning.map(f64::abs);
+        let free = (AHEAD * slide * falls_ahead.abs()).min(half_track) * wheels;
+        // Of a steady turn that is not made, `unturned` remembers that of so many steps.
+        let not_made = (1.0 - MEMORY) * (self.unturned.abs() - NOISE).max(0.0);
+        let held = (falls_ahead.abs() / HELD).min(1.0) * half_track * not_made;
+        let ahead = free.max(held).copysign(falls_ahead) - ACROSS * slide * falls_left * told;
+        Vector::new(ahead, slide * falls_left * robot)
     }
 
     /// Whether the wheels do not turn the robot.

@@ -1,6 +1,6 @@
 use std::ops::ControlFlow;
 
-use super::drive::length;
+use super::drive::{ARRIVED, length};
 use super::explorer::{Explorer, SummitObservation, SummitPhase, climbing_costs};
 use super::parameters::SummitParameters;
 use super::sight_map::Chart;
@@ -230,8 +230,10 @@ impl SummitSearch {
     ) -> ControlFlow<SummitOutcome, Twist> {
         let way = self.explorer.way_over(&chart.safe, climbing_costs(chart), start, top).unwrap_or_default();
         let gain = self.explorer.height(top) - self.explorer.reckoning.elevation;
-        // Not by how near it is: on a slope, half a cell is worth several tolerances.
-        if gain < self.explorer.parameters.tolerance || way.len() < 2 || self.approaches >= MOST_APPROACHES {
+        // On a slope, half a cell is worth several tolerances.
+        let is_there = (self.explorer.here() - self.explorer.map.place(top)).norm() < ARRIVED;
+        let is_level = gain < self.explorer.parameters.tolerance;
+        if is_there || is_level || way.len() < 2 || self.approaches >= MOST_APPROACHES {
             return self.climb_on(time, chart);
         }
         // Ways that end on the top, not those that lead to it.

@@ -14,7 +14,7 @@ pub(super) struct SightMap {
     extent: f64,
     /// What the robot can drive over, as the map shows it: ground that is just gentle enough may seem
     /// steeper than it is.
-    climber: Climber,
+    pub(super) climber: Climber,
     /// Two beams above each other that meet the ground less than this many metres apart show what is between.
     gap: f64,
     /// The weight of what was measured, and its mean.
@@ -157,12 +157,11 @@ impl SightMap {
     }
 
     /// Takes in the beams of one azimuth, from the lowest tilt up, from a robot that stands at a place.
-    pub(super) fn add_fan(&mut self, place: Point3, beams: impl Iterator<Item = Beam>) {
+    pub(super) fn add_fan(&mut self, place: Point3, fan: &[Beam]) {
         let mut before = Some(place);
-        let mut face = Face::default();
-        for beam in beams {
+        for beam in fan {
             let end = beam.end();
-            self.lower_ceilings(&beam);
+            self.lower_ceilings(beam);
             if let Some(end) = end {
                 let away = (end - beam.origin).norm();
                 let weight = 1.0 / (1.0 + (away / FAR) * (away / FAR));
@@ -170,13 +169,11 @@ impl SightMap {
                 if let Some(before) = before {
                     self.bridge(before, end);
                 }
-                for (place, weight) in face.add(end, weight, &self.climber) {
-                    if let Some(index) = self.index(place) {
-                        self.faces[index] += weight;
-                    }
+                if beam.is_on_face
+                    && let Some(index) = self.index(end.xy())
+                {
+                    self.faces[index] += weight;
                 }
-            } else {
-                face = Face::default();
             }
             before = end;
         }
@@ -298,15 +295,13 @@ impl SightMap {
         };
         let covered: Vec<bool> = (0..known.len()).map(|index| known[index] || is_beyond(index)).collect();
         let covered = eroded(&covered, self.side, reach + 1);
-        let even: Vec<bool> = (0..known.len()).map(|index| !self.is_face(index)).collect();
-        let far_from_faces = eroded(&even, self.side, reach);
         let grid = |is_free: &dyn Fn(usize) -> bool| {
             let side = self.side;
             BitGrid::from_fn(side, side, |x, y| is_free(y * side + x)).expect("a map's cells")
         };
         let open = |index: usize| {
             let cell = GridCell::new(index % self.side, index / self.side);
-            elevation.open().is_free(cell) && far_from_faces[index] && !self.shunned[index]
+            elevation.open().is_free(cell) && !self.shunned[index]
         };
         // What lies lower than a slope could lead to that the robot can drive.
         let steepest = math::tan(climber.slope) * self.resolution;
@@ -317,11 +312,12 @@ impl SightMap {
         let fenced = |index: usize| {
             parameters.holds(self.place(GridCell::new(index % self.side, index / self.side)), doubt)
         };
-        let holds: Vec<bool> = (0..known.len()).map(|index| !drops(index) || is_beyond(index)).collect();
-        let far_from_drops = eroded(&holds, self.side, reach + (CAUTION / self.resolution).round() as usize);
+        let is_even = |index: usize| !drops(index) && !self.is_face(index);
+        let holds: Vec<bool> = (0..known.len()).map(|index| is_even(index) || is_beyond(index)).collect();
+        let clear = eroded(&holds, self.side, reach + (CAUTION / self.resolution).round() as usize);
         let is_safe = |index: usize| {
             let is_even = covered[index] && open(index) || self.trodden[index] && !self.shunned[index];
-            fenced(index) && far_from_drops[index] && is_even
+            fenced(index) && clear[index] && is_even
         };
         let safe = grid(&is_safe);
         let perhaps = grid(&|index| {
@@ -402,34 +398,6 @@ impl SightMap {
         }
         list.retain(|patch| patch.len() >= least || patch.iter().any(|&cell| stands_out(cell)));
         list
-    }
-}
-
-/// The ends of the beams of a fan, one above the other, that may lie on a face.
-#[derive(Default)]
-struct Face {
-    ends: Vec<(Point3, f64)>,
-    /// Height beyond what a slope could lead up to from the lowest of them (m).
-    excess: f64,
-}
-
-impl Face {
-    /// Takes in the next end above, with its weight. Places and weights that are found to lie on a face.
-    fn add(&mut self, end: Point3, weight: f64, climber: &Climber) -> Vec<(Point, f64)> {
-        let was_face = self.excess > climber.step;
-        if let Some((before, _)) = self.ends.last() {
-            let way = end - before;
-            self.excess += way.z - math::tan(climber.slope) * way.xy().norm();
-        }
-        if self.excess <= 0.0 {
-            (self.excess, self.ends) = (0.0, Vec::new());
-        }
-        self.ends.push((end, weight));
-        if self.excess <= climber.step {
-            return Vec::new();
-        }
-        let new = if was_face { self.ends.len() - 1 } else { 0 };
-        self.ends[new..].iter().map(|(end, weight)| (end.xy(), *weight)).collect()
     }
 }
 
@@ -525,15 +493,16 @@ mod tests {
             origin,
             direction: Vector3::new(1.0, 0.0, slope).normalize(),
             range,
+            is_on_face: false,
         };
         let known = |map: &SightMap| {
             let cell = |column| GridCell::new(column, map.cell_at(Point::origin()).unwrap().row);
             (21..39).filter(|&column| map.height(map.index_of(cell(column))).is_some()).count()
         };
         let before = known(&map);
-        map.add_fan(origin, [beam(-0.3, 0.5)].into_iter());
+        map.add_fan(origin, &[beam(-0.3, 0.5)]);
         assert_eq!(known(&map), before);
-        map.add_fan(origin, [beam(-0.3, f64::INFINITY)].into_iter());
+        map.add_fan(origin, &[beam(-0.3, f64::INFINITY)]);
         // From 0.64 m on it is more than 4 cm below the ground, over whole cells.
         assert!((5..8).contains(&(before - known(&map))), "{before} {}", known(&map));
     }

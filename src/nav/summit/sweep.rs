@@ -1,5 +1,6 @@
 use crate::geometry::{Point3, Pose3, Vector3, direction, math, units};
 use crate::io::{Attitude, LidarScan};
+use crate::nav::elevation::Climber;
 
 /// The tilts of the scans of a look around, in degrees: the nearer to level, the closer together, as ground
 /// far away shows little of itself.
@@ -31,6 +32,8 @@ pub(super) struct Beam {
     pub(super) direction: Vector3,
     /// Infinite without a return.
     pub(super) range: f64,
+    /// Whether it ends on a face that is steeper than what the robot drives on, and higher than what it climbs.
+    pub(super) is_on_face: bool,
 }
 
 impl Beam {
@@ -75,18 +78,94 @@ impl Sweep {
     }
 
     /// The beams of each azimuth, from the lowest tilt up, as seen from a robot in the map's frame.
-    pub(super) fn fans<'s>(
-        &'s self,
-        robot: &'s Pose3,
+    pub(super) fn fans(
+        &self,
+        robot: &Pose3,
         lidar: &Pose3,
-    ) -> impl Iterator<Item = impl Iterator<Item = Beam> + 's> + 's {
+        climber: &Climber,
+    ) -> impl Iterator<Item = Vec<Beam>> {
         let origin = robot.to_world(lidar.position);
         let beams = self.rings.iter().map(Vec::len).min().unwrap_or(0);
         (0..beams).map(move |index| {
-            self.rings.iter().map(move |ring| {
+            let beam = |ring: &Vec<(Vector3, f64)>| {
                 let (own, range) = ring[index];
-                Beam { origin, direction: robot.rotate(own), range }
-            })
+                Beam { origin, direction: robot.rotate(own), range, is_on_face: false }
+            };
+            let mut fan: Vec<Beam> = self.rings.iter().map(beam).collect();
+            mark_faces(&mut fan, climber);
+            fan
         })
+    }
+}
+
+/// Finds the beams of a fan that end on faces: above each other, they rise by more than a slope and a step together
+/// that the robot drives over.
+fn mark_faces(fan: &mut [Beam], climber: &Climber) {
+    // What they rise beyond a slope, from the first one of the face.
+    let (mut excess, mut first) = (0.0, 0);
+    for index in 1..fan.len() {
+        let ends = [fan[index - 1].end(), fan[index].end()];
+        let rise = match ends {
+            [Some(below), Some(end)] => {
+                let way = end - below;
+                way.z - math::tan(climber.slope) * way.xy().norm()
+            }
+            _ => f64::NEG_INFINITY,
+        };
+        excess += rise;
+        if excess <= 0.0 {
+            (excess, first) = (0.0, index);
+        } else if excess > climber.step {
+            for beam in &mut fan[first..=index] {
+                beam.is_on_face = true;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point3;
+    use crate::nav::SummitParameters;
+    use crate::world::RobotSpec;
+
+    /// What a fan from 0.15 m above the ground meets, by how high the ground is so far ahead.
+    fn fan(ground: impl Fn(f64) -> f64) -> Vec<Beam> {
+        let origin = Point3::new(0.0, 0.0, 0.15);
+        let beam = |&degrees: &f64| {
+            let (rise, run) = math::sin_cos(units::from_deg(degrees));
+            let meets = (0..5000).map(|step| 0.001 * f64::from(step));
+            let mut meets = meets.filter(|range| origin.z + range * rise <= ground(range * run));
+            let range = meets.next().unwrap_or(f64::INFINITY);
+            Beam { origin, direction: Vector3::new(run, 0.0, rise), range, is_on_face: false }
+        };
+        TILTS.iter().map(beam).collect()
+    }
+
+    /// How far ahead the beams on faces end.
+    fn faces(ground: impl Fn(f64) -> f64) -> Vec<f64> {
+        let mut fan = fan(ground);
+        mark_faces(&mut fan, &SummitParameters::of(&RobotSpec::blizzard()).unwrap().climber);
+        fan.iter().filter(|beam| beam.is_on_face).filter_map(|beam| Some(beam.end()?.x)).collect()
+    }
+
+    #[test]
+    fn sides_that_are_too_high_are_faces() {
+        for height in [0.05, 0.065, 0.3] {
+            let found = faces(|ahead| if ahead < 1.0 { 0.0 } else { height });
+            assert!(found.len() >= 2, "{height}: {found:?}");
+            assert!(found.iter().all(|ahead| (0.85..1.01).contains(ahead)), "{height}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn ground_to_drive_on_has_no_faces() {
+        assert_eq!(faces(|_| 0.0), []);
+        assert_eq!(faces(|ahead| if ahead < 1.0 { 0.0 } else { 0.015 }), []);
+        for degrees in [10.0, 20.0] {
+            let rise = math::tan(units::from_deg(degrees));
+            assert_eq!(faces(|ahead| (rise * (ahead - 0.5)).clamp(0.0, 0.4)), [], "{degrees}");
+        }
     }
 }
