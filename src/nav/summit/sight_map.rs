@@ -69,7 +69,7 @@ const NOISE: f64 = 0.01;
 /// Area of a patch that is worth a look (m²), unless it is seen to be higher by more than a step's error.
 const PATCH: f64 = 0.02;
 /// The part of what was measured of a cell that lies on a face if the cell does: ground before it counts too.
-const FACE: f64 = 0.25;
+const FACE: f64 = 0.5;
 /// Depth below what a slope could lead to from which ground is a drop (m).
 const DROP: f64 = 0.04;
 
