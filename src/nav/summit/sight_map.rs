@@ -309,6 +309,13 @@ impl SightMap {
             let least = f64::from(field_height(&field, index)) - steepest * f64::from(away[index]) - DROP;
             !known[index] && self.ceilings[index] < least
         };
+        // In turns belts slide down, and do not come up again from ground that is too steep.
+        let is_brink = |index: usize| {
+            let is_pit = |near: usize| {
+                covered[near] && !open(near) && field_height(&field, near) < field_height(&field, index)
+            };
+            self.neighbours(index).any(is_pit)
+        };
         let fenced = |index: usize| {
             parameters.holds(self.place(GridCell::new(index % self.side, index / self.side)), doubt)
         };
@@ -316,13 +323,14 @@ impl SightMap {
         let holds: Vec<bool> = (0..known.len()).map(|index| is_even(index) || is_beyond(index)).collect();
         let clear = eroded(&holds, self.side, reach + (CAUTION / self.resolution).round() as usize);
         let is_safe = |index: usize| {
-            let is_even = covered[index] && open(index) || self.trodden[index] && !self.shunned[index];
+            let is_even = covered[index] && open(index) && !is_brink(index)
+                || self.trodden[index] && !self.shunned[index];
             fenced(index) && clear[index] && is_even
         };
         let safe = grid(&is_safe);
         let perhaps = grid(&|index| {
             let is_hopeless = self.shunned[index] || self.given_up[index];
-            let may_be_even = !covered[index] || open(index);
+            let may_be_even = !covered[index] || open(index) && !is_brink(index);
             is_safe(index) || fenced(index) && holds[index] && may_be_even && !is_hopeless
         });
         let potential = (0..known.len()).map(|index| {

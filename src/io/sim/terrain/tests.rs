@@ -66,6 +66,15 @@ impl Robot {
         self.body.pose(&self.carriage)
     }
 
+    /// Whether all of its feet are above ground.
+    fn is_within(&self, ground: &HeightField) -> bool {
+        let pose = self.pose();
+        let at = |foot: &super::undercarriage::Foot| {
+            pose.to_world(Point3::from(foot.place + self.carriage.centre))
+        };
+        self.carriage.feet.iter().all(|foot| ground.height(at(foot).xy()).is_some())
+    }
+
     /// Depth of the deepest foot in the ground, along the normal.
     fn depth(&self, ground: &HeightField) -> f64 {
         let pose = self.pose();
@@ -373,6 +382,10 @@ fn let_go(ground: &HeightField, spec: &RobotSpec, stream: &mut Stream) -> Result
         robot.step(ground, PlanarTwist::STOP);
         let now = robot.body.energy(&robot.carriage);
         let (more, depth) = (now - energy, robot.depth(ground));
+        // A robot that leaves the hills falls beside them, and comes to their side from there.
+        if !robot.is_within(ground) {
+            break;
+        }
         if more > 1e-9 || depth > 0.015 {
             let speed = robot.body.velocity().norm();
             return Err(format!("{}, tick {tick}: {more} J/kg more, {depth} m deep, {speed} m/s", spec.name));
