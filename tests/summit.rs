@@ -121,8 +121,8 @@ fn a_hill_behind_a_wall_cannot_be_reached() {
     }
 }
 
-/// Ramps lead up to a level on two sides. Where they begin, their sides are no higher than what is between two
-/// beams, and too high for the robot; the ground around tells little of where it is.
+/// Ramps lead up to a level on two sides. Where they begin, their sides are no higher than what is between
+/// two beams, and too high for the robot; the ground around tells little of where it is.
 #[test]
 fn a_robot_keeps_off_the_sides_of_ramps() {
     let height = |at: Point| {

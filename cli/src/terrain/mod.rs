@@ -115,8 +115,8 @@ pub(crate) struct Ride {
     pub(crate) end: TruthInSpace,
     /// Angle (rad).
     pub(crate) max_tilt: f64,
-    /// Slip: motion of the robot that its wheels did not report (fraction of the distance by the wheels); `None` if
-    /// they hardly moved.
+    /// Slip: motion of the robot that its wheels did not report (fraction of the distance by the wheels);
+    /// `None` if they hardly moved.
     pub(crate) slip: Option<f64>,
 }
 

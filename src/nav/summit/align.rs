@@ -23,8 +23,8 @@ const OUTLIERS: [f64; 14] =
 const OUTLIER: f64 = 0.02;
 /// The fewest points that count.
 const ENOUGH: usize = 100;
-/// How far dead reckoning may be off on even ground, and upwards (m), and about the upright axis (rad), as standard
-/// deviations.
+/// How far dead reckoning may be off on even ground, and upwards (m), and about the upright axis (rad), as
+/// standard deviations.
 const ALONG: f64 = 0.05;
 const UPWARDS: f64 = 0.1;
 const ABOUT: f64 = 0.01;
@@ -34,8 +34,8 @@ const SLIPPED: [f64; 6] = [0.0, 0.25, 0.5, 0.75, 1.0, 1.25];
 const UNLIKELY: f64 = 0.05;
 
 /// Fits points around a robot to the map. `before` is where it looked last: belts may slip on the way from
-/// there. `tilt` is by how much the look may be tilted, in radians, and `doubt` by how much the robot may be elsewhere, in
-/// metres. `None` if they do not lie on the map.
+/// there. `tilt` is by how much the look may be tilted, in radians, and `doubt` by how much the robot may be
+/// elsewhere, in metres. `None` if they do not lie on the map.
 pub(super) fn align(
     map: &SightMap,
     robot: Point3,

@@ -1,5 +1,5 @@
+use super::chart::Chart;
 use super::explorer::Explorer;
-use super::sight_map::Chart;
 use crate::geometry::{Point, Vector};
 use crate::nav::grid::GridComponents;
 use crate::world::{BitGrid, GridCell};
@@ -42,8 +42,8 @@ impl Ramp {
         cells.iter().filter_map(|cells| Self::of(explorer, cells)).collect()
     }
 
-    /// The ramp of a patch of sloped ground. Beside it the map slopes as well, down to the floor; so the median
-    /// rise is that of the ramp, and cells that rise otherwise do not count.
+    /// The ramp of a patch of sloped ground. Beside it the map slopes as well, down to the floor; so the
+    /// median rise is that of the ramp, and cells that rise otherwise do not count.
     fn of(explorer: &Explorer, cells: &[GridCell]) -> Option<Self> {
         let rises: Vec<(GridCell, Vector)> =
             cells.iter().filter_map(|&cell| Some((cell, rise(explorer, cell)?))).collect();

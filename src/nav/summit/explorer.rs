@@ -1,10 +1,11 @@
 use std::ops::ControlFlow;
 
 use super::align::{Shift, align};
+use super::chart::Chart;
 use super::drive::{Drive, Step, cut};
 use super::parameters::SummitParameters;
 use super::reckoning::Reckoning;
-use super::sight_map::{Chart, MIN_UPRIGHT, SightMap};
+use super::sight_map::{MIN_UPRIGHT, SightMap};
 use super::straight::Straight;
 use super::sweep::Sweep;
 use crate::geometry::{Point, Point3, Pose, Twist, Vector, angle_difference, direction, math};
@@ -185,7 +186,7 @@ impl Explorer {
 
     /// Where the robot can drive for all that it knows.
     pub(super) fn chart(&self) -> Chart {
-        self.map.chart(&self.parameters, self.reckoning.doubt)
+        Chart::of(&self.map, &self.parameters, self.reckoning.doubt)
     }
 
     fn settle(&mut self) -> Twist {

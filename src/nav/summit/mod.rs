@@ -1,8 +1,9 @@
-//! Drives over unknown hills (book, section 7.4): the search for the highest place that a robot can reach, and
-//! the crossing of a level by two ramps.
+//! Drives over unknown hills (book, section 7.4): the search for the highest place that a robot can reach,
+//! and the crossing of a level by two ramps.
 
 mod align;
 mod axis;
+mod chart;
 mod drive;
 mod explorer;
 mod parameters;

@@ -86,8 +86,8 @@ impl SummitParameters {
         })
     }
 
-    /// Whether a robot that knows its place to within a doubt (m), and drives to within half a cell, keeps away from
-    /// the fence there.
+    /// Whether a robot that knows its place to within a doubt (m), and drives to within half a cell, keeps
+    /// away from the fence there.
     pub(super) fn holds(&self, place: Point, doubt: f64) -> bool {
         let margin = self.climber.radius + doubt.max(0.5 * self.resolution);
         let inside = |fence: Fence| Fence { area: fence.area.inflated(-margin), ..fence }.holds(place);

@@ -1,10 +1,10 @@
 use std::ops::ControlFlow;
 
 use super::axis::{Ramp, is_sloped};
+use super::chart::Chart;
 use super::drive::length;
 use super::explorer::{Explorer, SummitObservation, SummitPhase};
 use super::parameters::SummitParameters;
-use super::sight_map::Chart;
 use super::straight::Straight;
 use crate::geometry::{Point, Pose, Twist, Vector};
 use crate::io::control::{Behaviour, Decision, Senses, halts};

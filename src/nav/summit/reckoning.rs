@@ -29,13 +29,13 @@ pub(super) struct Reckoning {
 /// The share of a difference between the headings of wheels and unit that a step takes over: belts turn a
 /// robot by a third more or less than they should, while the unit's error is half a degree.
 const TRUST: f64 = 0.25;
-/// How far belts slide ahead on ground that falls ahead, as a multiple of how far they slide aside on such that falls
-/// to the side. Measured on planes of 5 to 25 degrees, as the next one.
+/// How far belts slide ahead on ground that falls ahead, as a multiple of how far they slide aside on such
+/// that falls to the side. Measured on planes of 5 to 25 degrees, as the next one.
 const AHEAD: f64 = 1.8;
 /// How far belts slide backwards in a turn to the left on ground that falls to the left, as such a multiple.
 const ACROSS: f64 = 0.46;
-/// The share of a step's turn that its smoothed value takes over: what the unit's noise adds to single steps would add
-/// up, as robots slide downhill in turns to either side.
+/// The share of a step's turn that its smoothed value takes over: what the unit's noise adds to single steps
+/// would add up, as robots slide downhill in turns to either side.
 const SMOOTH: f64 = 0.15;
 /// Turn by the wheels that the robot does not make, up to which that is noise (rad).
 const NOISE: f64 = 0.1;
@@ -84,8 +84,8 @@ impl Reckoning {
         self.pose = Pose::new(place.x, place.y, normalize_angle(self.pose.heading + turned));
     }
 
-    /// How far belts that turn by `told` slide ahead and to the left, on ground that falls by so much ahead and to
-    /// the left per metre.
+    /// How far belts that turn by `told` slide ahead and to the left, on ground that falls by so much ahead
+    /// and to the left per metre.
     fn slid(&self, falls_ahead: f64, falls_left: f64, told: f64, slide: f64, half_track: f64) -> Vector {
         let [wheels, robot] = self.turning.map(f64::abs);
         let free = (AHEAD * slide * falls_ahead.abs()).min(half_track) * wheels;

@@ -1,9 +1,9 @@
 use std::ops::ControlFlow;
 
+use super::chart::Chart;
 use super::drive::{ARRIVED, length};
 use super::explorer::{Explorer, SummitObservation, SummitPhase, climbing_costs};
 use super::parameters::SummitParameters;
-use super::sight_map::Chart;
 use crate::geometry::{Point, Pose, Twist};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
 use crate::io::{Inertial, Lidar, Odometry, Result};
@@ -159,7 +159,7 @@ impl SummitSearch {
             let top = self.top(&chart, start);
             let level = self.explorer.height(top);
             self.highest = level;
-            let higher = self.explorer.map.higher(&chart, start, level + self.explorer.parameters.tolerance);
+            let higher = chart.higher(&self.explorer.map, start, level + self.explorer.parameters.tolerance);
             self.unknown = higher.iter().map(Vec::len).sum();
             // The view is better from above.
             let (above, place) = (level - self.explorer.reckoning.elevation, self.explorer.map.place(top));

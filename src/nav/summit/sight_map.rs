@@ -1,17 +1,16 @@
-use super::parameters::{CAUTION, SummitParameters};
+use super::parameters::SummitParameters;
 use super::sweep::Beam;
-use crate::geometry::{Aabb, Point, Point3, Vector, math};
-use crate::nav::elevation::{Climber, ElevationMap};
-use crate::nav::grid::GridComponents;
-use crate::world::{BitGrid, GridCell, HeightField};
+use crate::geometry::{Point, Point3, Vector};
+use crate::nav::elevation::Climber;
+use crate::world::GridCell;
 
 /// What has been seen of the ground: the elevation of cells that beams met, and of all cells the most that
 /// it can be, as beams passed over them.
 #[derive(Debug, Clone)]
 pub(super) struct SightMap {
-    side: usize,
-    resolution: f64,
-    extent: f64,
+    pub(super) side: usize,
+    pub(super) resolution: f64,
+    pub(super) extent: f64,
     /// What the robot can drive over, as the map shows it: ground that is just gentle enough may seem
     /// steeper than it is.
     pub(super) climber: Climber,
@@ -19,16 +18,16 @@ pub(super) struct SightMap {
     gap: f64,
     /// The weight of what was measured, and its mean.
     seen: Vec<(f64, f64)>,
-    ceilings: Vec<f64>,
+    pub(super) ceilings: Vec<f64>,
     /// The weight of what was measured on faces that are steeper and higher than the robot climbs.
     faces: Vec<f64>,
     /// Cells on which the robot has found that it cannot stand.
-    shunned: Vec<bool>,
+    pub(super) shunned: Vec<bool>,
     /// Cells on which the robot has stood, and those beside them: it can go back the way that it came,
     /// however steep the ground seems to be.
-    trodden: Vec<bool>,
+    pub(super) trodden: Vec<bool>,
     /// Cells that the robot did not see well enough from beside them: it does not go there to look again.
-    given_up: Vec<bool>,
+    pub(super) given_up: Vec<bool>,
 }
 
 /// Cosine of the largest tilt of a robot that stands: 60 degrees.
@@ -42,36 +41,14 @@ const REACH: f64 = 9.5;
 /// The weight from which a cell is known well enough to compare with: what is between counts, as a single
 /// look shows little else of ground farther away, which tells most about where the robot is.
 const KNOWN: f64 = 0.04;
-
-/// The map as the robot plans on it.
-#[derive(Debug)]
-pub(super) struct Chart {
-    pub(super) elevation: ElevationMap,
-    /// Where the robot can drive for all that it knows.
-    pub(super) safe: BitGrid,
-    /// Where it could drive at best.
-    pub(super) perhaps: BitGrid,
-    /// The elevation of each cell, or the most that it can be where the robot can drive.
-    pub(super) potential: Vec<f64>,
-}
-
-/// Elevations of all cells, which of them are known, and how many cells the others are away from such.
-struct Filled {
-    heights: Vec<f32>,
-    known: Vec<bool>,
-    away: Vec<u16>,
-}
-
 /// Largest error of a slope of the map (rad).
 const MEASURED: f64 = 0.06;
 /// Largest error of a step of the map (m).
-const NOISE: f64 = 0.01;
-/// Area of a patch that is worth a look (m²), unless it is seen to be higher by more than a step's error.
-const PATCH: f64 = 0.02;
-/// The part of what was measured of a cell that lies on a face if the cell does: ground before it counts too.
+pub(super) const NOISE: f64 = 0.01;
+/// The part of what was measured of a cell that lies on a face, from which the cell does.
 const FACE: f64 = 0.5;
 /// Depth below what a slope could lead to from which ground is a drop (m).
-const DROP: f64 = 0.04;
+pub(super) const DROP: f64 = 0.04;
 
 impl SightMap {
     pub(super) fn new(parameters: &SummitParameters, gap: f64) -> Self {
@@ -107,6 +84,14 @@ impl SightMap {
 
     fn index(&self, place: Point) -> Option<usize> {
         self.cell_at(place).map(|cell| self.index_of(cell))
+    }
+
+    pub(super) fn cells(&self) -> usize {
+        self.seen.len()
+    }
+
+    pub(super) fn cell(&self, index: usize) -> GridCell {
+        GridCell::new(index % self.side, index / self.side)
     }
 
     pub(super) fn index_of(&self, cell: GridCell) -> usize {
@@ -180,7 +165,7 @@ impl SightMap {
     }
 
     /// Whether a good part of what was measured of a cell lies on a face.
-    fn is_face(&self, index: usize) -> bool {
+    pub(super) fn is_face(&self, index: usize) -> bool {
         self.faces[index] > FACE * self.seen[index].0
     }
 
@@ -269,170 +254,21 @@ impl SightMap {
     }
 
     fn around(&self, place: Point, radius: f64) -> Vec<usize> {
-        let is_near = |index: &usize| {
-            let cell = GridCell::new(index % self.side, index / self.side);
-            (self.place(cell) - place).norm() <= radius
-        };
+        let is_near = |index: &usize| (self.place(self.cell(*index)) - place).norm() <= radius;
         (0..self.seen.len()).filter(is_near).collect()
     }
 
-    /// Where a robot can drive, and where it perhaps can. It does not know its place better than a distance
-    /// (m).
-    pub(super) fn chart(&self, parameters: &SummitParameters, doubt: f64) -> Chart {
-        let climber = &self.climber;
-        let Filled { heights, known, away } = self.filled();
-        let corner = Point::new(self.extent, self.extent);
-        let area = Aabb::new(-corner, corner);
-        let field = HeightField::new(self.side, self.side, area, heights).expect("a map of finite heights");
-        let lowest = parameters.lowest.unwrap_or(f64::NEG_INFINITY);
-        let elevation = ElevationMap::new(&field, climber).and_then(|map| map.above(lowest));
-        let elevation = elevation.expect("parameters that have been checked");
-        let reach = (climber.radius / self.resolution).round() as usize;
-        // The fence has a margin of its own, whatever is beyond it.
-        let is_beyond = |index: usize| {
-            let place = self.place(GridCell::new(index % self.side, index / self.side));
-            parameters.fence.is_some_and(|fence| !fence.holds(place))
-        };
-        let covered: Vec<bool> = (0..known.len()).map(|index| known[index] || is_beyond(index)).collect();
-        let covered = eroded(&covered, self.side, reach + 1);
-        let grid = |is_free: &dyn Fn(usize) -> bool| {
-            let side = self.side;
-            BitGrid::from_fn(side, side, |x, y| is_free(y * side + x)).expect("a map's cells")
-        };
-        let open = |index: usize| {
-            let cell = GridCell::new(index % self.side, index / self.side);
-            elevation.open().is_free(cell) && !self.shunned[index]
-        };
-        // What lies lower than a slope could lead to that the robot can drive.
-        let steepest = math::tan(climber.slope) * self.resolution;
-        let drops = |index: usize| {
-            let least = f64::from(field_height(&field, index)) - steepest * f64::from(away[index]) - DROP;
-            !known[index] && self.ceilings[index] < least
-        };
-        // In turns belts slide down, and do not come up again from ground that is too steep.
-        let is_brink = |index: usize| {
-            let is_pit = |near: usize| {
-                covered[near] && !open(near) && field_height(&field, near) < field_height(&field, index)
-            };
-            self.neighbours(index).any(is_pit)
-        };
-        let fenced = |index: usize| {
-            parameters.holds(self.place(GridCell::new(index % self.side, index / self.side)), doubt)
-        };
-        let is_even = |index: usize| !drops(index) && !self.is_face(index);
-        let holds: Vec<bool> = (0..known.len()).map(|index| is_even(index) || is_beyond(index)).collect();
-        let clear = eroded(&holds, self.side, reach + (CAUTION / self.resolution).round() as usize);
-        let is_safe = |index: usize| {
-            let is_even = covered[index] && open(index) && !is_brink(index)
-                || self.trodden[index] && !self.shunned[index];
-            fenced(index) && clear[index] && is_even
-        };
-        let safe = grid(&is_safe);
-        let perhaps = grid(&|index| {
-            let is_hopeless = self.shunned[index] || self.given_up[index];
-            let may_be_even = !covered[index] || open(index) && !is_brink(index);
-            is_safe(index) || fenced(index) && holds[index] && may_be_even && !is_hopeless
-        });
-        let potential = (0..known.len()).map(|index| {
-            let slope = f64::from(field_height(&field, index)) + steepest * f64::from(away[index]) + DROP;
-            self.height(index).unwrap_or_else(|| self.ceilings[index].min(slope))
-        });
-        Chart { elevation, safe, perhaps, potential: potential.collect() }
-    }
-
-    /// Elevations of all cells, and which of them have been seen or lie in small gaps between such. Where
-    /// nothing is known, the ground goes on as it is at the nearest known place.
-    fn filled(&self) -> Filled {
-        let mut known: Vec<bool> = self.seen.iter().map(|(weight, _)| *weight > 0.0).collect();
-        let mut heights: Vec<f32> = self.seen.iter().map(|(_, height)| *height as f32).collect();
-        let mut filled = known.clone();
-        let mut edge: Vec<usize> = (0..filled.len()).filter(|&index| filled[index]).collect();
-        let mut away = vec![0; filled.len()];
-        for round in 1.. {
-            let mut next: Vec<usize> = edge
-                .iter()
-                .flat_map(|&index| self.neighbours(index))
-                .filter(|&index| !filled[index])
-                .collect();
-            next.sort_unstable();
-            next.dedup();
-            if next.is_empty() {
-                break;
-            }
-            let values: Vec<(usize, f32, usize)> = next
-                .iter()
-                .map(|&index| {
-                    let around: Vec<usize> = self.neighbours(index).filter(|&near| filled[near]).collect();
-                    let sum: f32 = around.iter().map(|&near| heights[near]).sum();
-                    (index, sum / around.len() as f32, around.len())
-                })
-                .collect();
-            for &(index, height, around) in &values {
-                (heights[index], filled[index], away[index]) = (height, true, round);
-                // A gap of a cell or two is no gap.
-                known[index] |= round <= 2 && around >= 5;
-            }
-            edge = next;
-        }
-        Filled { heights, known, away }
-    }
-
-    fn neighbours(&self, index: usize) -> impl Iterator<Item = usize> + use<> {
+    pub(super) fn neighbours(&self, index: usize) -> impl Iterator<Item = usize> + use<> {
         let (side, column, row) = (self.side, index % self.side, index / self.side);
         let rows = row.saturating_sub(1)..(row + 2).min(side);
         rows.flat_map(move |y| (column.saturating_sub(1)..(column + 2).min(side)).map(move |x| y * side + x))
             .filter(move |&near| near != index)
     }
-
-    /// The cells that may be higher than a level and may be reached from a cell, in patches that are worth
-    /// a look.
-    pub(super) fn higher(&self, chart: &Chart, from: GridCell, level: f64) -> Vec<Vec<GridCell>> {
-        let perhaps = GridComponents::new(&chart.perhaps);
-        let safe = GridComponents::new(&chart.safe);
-        let is_higher = |index: usize| {
-            let cell = GridCell::new(index % self.side, index / self.side);
-            chart.potential[index] > level && perhaps.connected(from, cell) && !safe.connected(from, cell)
-        };
-        let side = self.side;
-        let cells = BitGrid::from_fn(side, side, |x, y| is_higher(y * side + x)).expect("a map's cells");
-        let patches = GridComponents::new(&cells);
-        let least = (PATCH / (self.resolution * self.resolution)) as usize;
-        let stands_out = |cell: GridCell| self.smoothed(cell).is_some_and(|height| height > level + NOISE);
-        let mut list = vec![Vec::new(); patches.count()];
-        for cell in cells.free_cells() {
-            if let Some(patch) = patches.region(cell) {
-                list[patch].push(cell);
-            }
-        }
-        list.retain(|patch| patch.len() >= least || patch.iter().any(|&cell| stands_out(cell)));
-        list
-    }
-}
-
-fn field_height(field: &HeightField, index: usize) -> f32 {
-    field.sample(index % field.columns(), index / field.columns()) as f32
-}
-
-/// Which cells have only flagged ones within a reach along both axes.
-fn eroded(flags: &[bool], side: usize, reach: usize) -> Vec<bool> {
-    let along = |flags: &[bool], stride: usize, other: usize| {
-        let mut kept = vec![false; flags.len()];
-        for line in 0..side {
-            let mut run = 0;
-            for at in 0..side {
-                run = if flags[line * other + at * stride] { run + 1 } else { 0 };
-                if run > 2 * reach {
-                    kept[line * other + (at - reach) * stride] = true;
-                }
-            }
-        }
-        kept
-    };
-    along(&along(flags, 1, side), side, 1)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::chart::Chart;
     use super::*;
     use crate::geometry::Vector3;
     use crate::world::RobotSpec;
@@ -451,15 +287,15 @@ mod tests {
             }
         };
         see(&mut map, -18, 8);
-        let chart = map.chart(&parameters, 0.0);
+        let chart = Chart::of(&map, &parameters, 0.0);
         assert!(chart.perhaps.is_free(cell) && !chart.safe.is_free(cell));
         map.give_up(place, 0.15);
-        assert!(!map.chart(&parameters, 0.0).perhaps.is_free(cell));
+        assert!(!Chart::of(&map, &parameters, 0.0).perhaps.is_free(cell));
         see(&mut map, 8, 19);
-        let chart = map.chart(&parameters, 0.0);
+        let chart = Chart::of(&map, &parameters, 0.0);
         assert!(chart.perhaps.is_free(cell) && chart.safe.is_free(cell));
         map.shun(place, 0.15);
-        assert!(!map.chart(&parameters, 0.0).safe.is_free(cell));
+        assert!(!Chart::of(&map, &parameters, 0.0).safe.is_free(cell));
     }
 
     /// Sees ground of an elevation all around the start.
@@ -479,8 +315,9 @@ mod tests {
             SummitParameters { extent: 1.0, ..SummitParameters::of(&RobotSpec::blizzard()).unwrap() };
         let mut map = ground(&parameters, |x| 0.7 * x);
         let (way, aside) = (Point::new(0.1, 0.0), Point::new(0.1, 0.3));
-        let is_safe =
-            |map: &SightMap, at: Point| map.chart(&parameters, 0.0).safe.is_free(map.cell_at(at).unwrap());
+        let is_safe = |map: &SightMap, at: Point| {
+            Chart::of(map, &parameters, 0.0).safe.is_free(map.cell_at(at).unwrap())
+        };
         assert!(!is_safe(&map, way));
         map.tread(way);
         assert!(is_safe(&map, way) && !is_safe(&map, aside));

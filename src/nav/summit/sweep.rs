@@ -32,7 +32,8 @@ pub(super) struct Beam {
     pub(super) direction: Vector3,
     /// Infinite without a return.
     pub(super) range: f64,
-    /// Whether it ends on a face that is steeper than what the robot drives on, and higher than what it climbs.
+    /// Whether it ends on a face that is steeper than what the robot drives on, and higher than what it
+    /// climbs.
     pub(super) is_on_face: bool,
 }
 
@@ -98,8 +99,8 @@ impl Sweep {
     }
 }
 
-/// Finds the beams of a fan that end on faces: above each other, they rise by more than a slope and a step together
-/// that the robot drives over.
+/// Finds the beams of a fan that end on faces: above each other, they rise by more than a slope and a step
+/// together that the robot drives over.
 fn mark_faces(fan: &mut [Beam], climber: &Climber) {
     // What they rise beyond a slope, from the last one before the face.
     let (mut excess, mut before) = (0.0, 0);

@@ -345,8 +345,8 @@ fn apart(ends: &[Pose3; 3]) -> (f64, f64) {
     })
 }
 
-/// Halving the tick moves the end of a drive of 10 m by at most 1 mm and 0.1 degrees, also on belts, which skid
-/// all the way.
+/// Halving the tick moves the end of a drive of 10 m by at most 1 mm and 0.1 degrees, also on belts, which
+/// skid all the way.
 #[test]
 fn the_tick_matters_little() {
     for seed in 3..6 {
