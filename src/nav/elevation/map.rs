@@ -140,12 +140,18 @@ impl ElevationMap {
         let area = self.field.area().inflated(0.5 * pitch);
         let radius = self.footing.radius;
         let clearance = Clearance::over(world, area, pitch, radius)?;
-        let is_clear = |column: usize, row: usize| {
-            let place = self.place(Point::new(column as f64, row as f64));
+        let is_clear = |cell: GridCell| {
+            let place = self.place(Point::new(cell.column as f64, cell.row as f64));
             clearance.at_point(place).is_none_or(|distance| distance >= radius)
         };
-        let clear = BitGrid::from_fn(self.footing.columns, self.footing.rows, is_clear);
-        self.footing.clear = Some(clear.expect("as many cells as the map has"));
+        let mut clear = self.open.clone();
+        for row in 0..clear.height() {
+            for column in 0..clear.width() {
+                let cell = GridCell::new(column, row);
+                clear.set_free(cell, is_clear(cell));
+            }
+        }
+        self.footing.clear = Some(clear);
         self.close(Footing::is_obstructed);
         Ok(self)
     }
