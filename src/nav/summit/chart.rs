@@ -27,15 +27,14 @@ impl Chart {
         let ground = Ground::of(map, parameters);
         let clear = ground.clear();
         let is_fenced = |index: usize| parameters.holds(map.place(map.cell(index)), doubt);
-        let is_firm = |index: usize| ground.is_open(index) && !ground.is_brink(index);
         let is_safe = |index: usize| {
             let is_trodden = map.trodden[index] && !map.shunned[index];
-            is_fenced(index) && clear[index] && (is_trodden || ground.covered[index] && is_firm(index))
+            is_fenced(index) && clear[index] && (is_trodden || ground.covered[index] && ground.is_open(index))
         };
         let is_perhaps_safe = |index: usize| {
             let is_hopeless = map.shunned[index] || map.given_up[index];
-            let may_be_firm = !ground.covered[index] || is_firm(index);
-            is_safe(index) || is_fenced(index) && ground.holds(index) && may_be_firm && !is_hopeless
+            let may_be_open = !ground.covered[index] || ground.is_open(index);
+            is_safe(index) || is_fenced(index) && ground.holds(index) && may_be_open && !is_hopeless
         };
         let grid = |is_free: &dyn Fn(usize) -> bool| {
             BitGrid::from_fn(map.side, map.side, |x, y| is_free(y * map.side + x)).expect("a map's cells")
@@ -121,14 +120,6 @@ impl<'m> Ground<'m> {
 
     fn is_open(&self, index: usize) -> bool {
         self.elevation.open().is_free(self.map.cell(index)) && !self.map.shunned[index]
-    }
-
-    /// Whether lower ground beside a cell is too steep: in turns belts slide down, and do not come up again
-    /// from there.
-    fn is_brink(&self, index: usize) -> bool {
-        let is_pit =
-            |near: usize| self.covered[near] && !self.is_open(near) && self.height(near) < self.height(index);
-        self.map.neighbours(index).any(is_pit)
     }
 
     /// Whether a cell lies lower than a slope could lead to that the robot can drive.
