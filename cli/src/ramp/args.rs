@@ -22,8 +22,8 @@ JSON fields:
   looks                       how often it has looked around
   time_limit_s, picture
   runs, passed, falls, median_edge_distance_mm, wrong_seeds   with --campaign only
-Outcomes: crossed, not_crossed, no_way_up, no_way_down, stuck, tipped, fell, drowned, timed_out, failed; with --campaign:
-passed, wrong."
+Outcomes: crossed, not_crossed, no_way_up, no_way_down, stuck, tipped, fell, drowned, collided, timed_out, failed; with
+--campaign: passed, wrong."
 )]
 pub(crate) struct Args {
     #[command(flatten)]

@@ -9,7 +9,7 @@ use roverlab::world::generate::{ReliefKind, ReliefOptions, relief};
 use super::edges::Edges;
 use crate::common::{Failure, Outcome};
 use crate::driving::{Conditions, Run};
-use crate::terrain::{Hike, Ride, word};
+use crate::terrain::{Hike, Ride, require_attitude, word};
 
 /// A crossing as the robot takes it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,6 +44,7 @@ pub(crate) fn cross(
     let limit = conditions.time_limit;
     let parameters = RampCrossing::parameters(hike.spec())
         .ok_or_else(|| Failure::input("found a robot without a lidar; expected one with a lidar"))?;
+    require_attitude(hike.spec())?;
     let fence = Some(Fence { area: hike.ground.area(), start: hike.start() });
     let extent = hike.ground.area().size().max() + 0.1;
     let resolution = parameters.resolution.max(extent / 500.0);

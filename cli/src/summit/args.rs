@@ -58,7 +58,7 @@ JSON fields:
   time_limit_s, picture
   runs, reached, mishaps, median_path_ratio, ways, wrong_seeds   with --campaign only
 Reached: at most 100 mm from the highest reachable place, or 2 % of the relief below it.
-Outcomes: reached, local_maximum, stuck, tipped, fell, drowned, timed_out, failed; with --campaign: passed, wrong."
+Outcomes: reached, local_maximum, stuck, tipped, fell, drowned, collided, timed_out, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
     /// Method of climbing.

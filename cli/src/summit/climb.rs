@@ -9,7 +9,7 @@ use super::Args;
 use super::args::Method;
 use crate::common::{Failure, Outcome};
 use crate::driving::{Conditions, Run};
-use crate::terrain::{Hike, Ride, shore, unfit, word};
+use crate::terrain::{Hike, Ride, require_attitude, shore, unfit, word};
 
 /// How a climb ended, as the robot takes it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,6 +90,7 @@ pub(crate) fn climb(
     if method == Method::Search {
         let parameters = SummitParameters::of(spec)
             .ok_or_else(|| Failure::input("found a robot without a lidar; expected one with a lidar"))?;
+        require_attitude(spec)?;
         let lowest = shore(&hike.scene.world).map(|shore| shore - hike.start_height());
         let side = hike.ground.area().size().max();
         let parameters = SummitParameters {
@@ -148,6 +149,7 @@ pub(crate) fn outcome(ascended: &Ascended, ride: Option<&Ride>, summit: &Summit)
     match (ride.end.mishap, ascended.arrival) {
         (Some(mishap), _) if mishap != Mishap::Stuck => Outcome::failure(word(mishap)),
         (_, Arrival::Top) if summit.is_reached(&ride.end) => Outcome::verdict("reached"),
+        (Some(_), _) => Outcome::failure("stuck"),
         (_, Arrival::Top) => Outcome::verdict("local_maximum"),
         (_, Arrival::Stuck) => Outcome::failure("stuck"),
         (_, Arrival::TimedOut) => Outcome::failure("timed_out"),

@@ -81,6 +81,17 @@ impl Hike {
     }
 }
 
+/// Refuses a robot that does not know how it is turned.
+pub(crate) fn require_attitude(spec: &RobotSpec) -> Result<(), Failure> {
+    let has_attitude = spec.inertial.attitude.is_some();
+    let name = &spec.name;
+    has_attitude.then_some(()).ok_or_else(|| {
+        Failure::input(format!(
+            "found `{name}`, without an inertial unit; expected a robot with a line `inertial`"
+        ))
+    })
+}
+
 /// Elevation above the water that robots keep (m).
 const SHORE: f64 = 0.02;
 

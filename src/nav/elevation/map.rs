@@ -136,7 +136,7 @@ impl ElevationMap {
         if world.walls.is_empty() && world.objects.is_empty() && world.map.is_none() {
             return Ok(self);
         }
-        let pitch = self.field.pitch().min();
+        let pitch = self.field.pitch().max();
         let area = self.field.area().inflated(0.5 * pitch);
         let radius = self.footing.radius;
         let clearance = Clearance::over(world, area, pitch, radius)?;
