@@ -1,7 +1,7 @@
 use std::collections::BTreeMap;
 
 use super::centre_line::CentreLine;
-use super::cone::Cone;
+use super::cone::{Cone, ConeColour};
 use super::corridor::{Corridor, CrossSection};
 use super::error::LineError;
 use super::pair::CentreLineParameters;
@@ -33,7 +33,8 @@ impl CentreLine {
     ///
     /// Where cones are missing, a search could also find a loop around a part of the track. Therefore the
     /// loop must pass nearly all coloured cones, blue ones on its left and yellow ones on its right, and must
-    /// not cross itself. If colours alone lead to no such loop, missing cones are bridged as in a race.
+    /// not cross itself; where most cones have no colour, it must pass nearly all of these too. If colours
+    /// alone lead to no such loop, missing cones are bridged as in a race.
     ///
     /// # Errors
     ///
@@ -67,24 +68,35 @@ fn check(corridor: &Corridor, cones: &[Cone]) -> Result<(), LineError> {
         return Err(LineError::Open { length: corridor.length().round() });
     }
     let near = Near::new(corridor.stations());
-    let coloured = cones.iter().filter(|cone| cone.colour.side() != 0);
-    let (mut all, mut passed, mut right) = (0, 0, 0);
-    for cone in coloured {
+    let (mut all, mut passed, mut right, mut wrong) = (0, 0, 0, 0);
+    for cone in counted(cones) {
         all += 1;
         let Some((station, offset)) = near.nearest(cone.position) else { continue };
         let width = if offset > 0.0 { station.left } else { station.right };
         if offset.abs() <= width + BESIDE {
             passed += 1;
-            right += usize::from(offset * f64::from(cone.colour.side()) > 0.0);
+            let agreement = offset * f64::from(cone.colour.side());
+            right += usize::from(agreement > 0.0);
+            wrong += u32::from(agreement < 0.0);
         }
     }
     if f64::from(passed) < PASSED * f64::from(all) {
         return Err(LineError::Passes { passed, all });
     }
-    if (right as f64) < ON_THEIR_SIDE * f64::from(passed) {
-        return Err(LineError::WrongSide { right, all: passed });
+    let all = right as u32 + wrong;
+    if (right as f64) < ON_THEIR_SIDE * f64::from(all) {
+        return Err(LineError::WrongSide { right, all });
     }
     check_shape(corridor)
+}
+
+/// The cones that a loop must pass: those with a side. Where they are fewer than those of unknown colour, the
+/// latter are the track, not false cones beside it, and count as well.
+fn counted(cones: &[Cone]) -> impl Iterator<Item = &Cone> {
+    let has_side = |cone: &&Cone| cone.colour.side() != 0;
+    let is_unknown = |cone: &&Cone| cone.colour == ConeColour::Unknown;
+    let all = cones.iter().filter(has_side).count() < cones.iter().filter(is_unknown).count();
+    cones.iter().filter(move |cone| has_side(cone) || all && is_unknown(cone))
 }
 
 /// Rejects a loop that turns back or crosses itself.
@@ -241,7 +253,7 @@ fn cross_each_other(one: &Segment, other: &Segment) -> bool {
 mod tests {
     use super::*;
     use crate::geometry::{Vector, direction};
-    use crate::race::{ConeColour, GeneratedTrack, TrackOptions, generate, parse_eufs, write_eufs};
+    use crate::race::{GeneratedTrack, TrackOptions, generate, parse_eufs, write_eufs};
     use crate::random::Stream;
     use std::f64::consts::TAU;
 
@@ -346,6 +358,26 @@ mod tests {
         let wrong = errors.iter().filter(|error| error.abs() > 0.03).count();
         println!("{} read, {wrong} wrong", errors.len());
         assert!(errors.len() > 20 && wrong == 0, "{errors:?}");
+    }
+
+    /// Cones without a colour count where most are such, but not where a few are beside a track.
+    #[test]
+    fn a_loop_of_colourless_cones_passes_nearly_all() {
+        let circle = |radius: f64| {
+            (0..18).map(move |k| Point::origin() + direction(TAU * f64::from(k) / 18.0) * radius)
+        };
+        let ring = Corridor::closed(&circle(10.0).map(|at| (at, 1.5, 1.5)).collect::<Vec<_>>()).unwrap();
+        let edges = |left: ConeColour, right: ConeColour| {
+            let of = |radius, colour| circle(radius).map(move |at| Cone::new(at, colour));
+            of(8.5, left).chain(of(11.5, right)).collect::<Vec<_>>()
+        };
+        let elsewhere: Vec<Cone> = circle(30.0).map(Cone::unknown).collect();
+        let colourless = edges(ConeColour::Unknown, ConeColour::Unknown);
+        assert_eq!(check(&ring, &colourless), Ok(()));
+        let all = [&colourless[..], &elsewhere].concat();
+        assert_eq!(check(&ring, &all), Err(LineError::Passes { passed: 36, all: 54 }));
+        let coloured = [&edges(ConeColour::Blue, ConeColour::Yellow)[..], &elsewhere].concat();
+        assert_eq!(check(&ring, &coloured), Ok(()));
     }
 
     mod campaigns {
