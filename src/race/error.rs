@@ -56,6 +56,9 @@ pub enum LineError {
         /// Number of cones passed.
         all: u32,
     },
+    /// The car starts against the direction of the loop.
+    #[error("a start that heads against the loop; expected blue cones on the car's left")]
+    Against,
     /// The loop turns back on itself.
     #[error("a loop that turns back at ({x}, {y}) m; expected one that a car can drive")]
     TurnsBack {

@@ -6,7 +6,7 @@ use super::corridor::{Corridor, CrossSection};
 use super::error::LineError;
 use super::pair::CentreLineParameters;
 use crate::ParameterError;
-use crate::geometry::{Point, Pose, Segment, cross, math};
+use crate::geometry::{Point, Pose, Segment, cross, direction, math};
 
 /// Metres beside a corridor within which a cone is one of its edge, and from its middle at which a lap may
 /// have been driven.
@@ -44,6 +44,7 @@ impl CentreLine {
             let mut line =
                 Self::from_cones(cones, start, &CentreLineParameters { colour, ..Default::default() })?;
             check(&line.corridor, cones)?;
+            check_start(&line.corridor, start)?;
             line.corridor = centred(&line.corridor)?;
             // Centring moves stations by as much as the edges are apart, which false edges may be anywhere.
             check_shape(&line.corridor)?;
@@ -58,7 +59,11 @@ impl CentreLine {
             Ok(line)
         };
         let strict: Result<Self, LineError> = by_colour(f64::INFINITY);
-        strict.or_else(|error| by_colour(CentreLineParameters::default().colour).map_err(|_| error))
+        strict.or_else(|error| {
+            let bridged = by_colour(CentreLineParameters::default().colour);
+            // With a start against the colours there is no way by them, so the other search says why.
+            bridged.map_err(|other| if other == LineError::Against { other } else { error })
+        })
     }
 }
 
@@ -88,6 +93,15 @@ fn check(corridor: &Corridor, cones: &[Cone]) -> Result<(), LineError> {
         return Err(LineError::WrongSide { right, all });
     }
     check_shape(corridor)
+}
+
+/// Rejects a loop that leads against the car's heading: its colours are those of the other direction.
+fn check_start(corridor: &Corridor, start: Pose) -> Result<(), LineError> {
+    let near = Near::new(corridor.stations());
+    // The normal is to the left, so this is the part of the heading along the loop.
+    let is_against = |station: &CrossSection| cross(direction(start.heading), station.normal) < 0.0;
+    let against = near.nearest(start.position()).is_some_and(|(station, _)| is_against(station));
+    if against { Err(LineError::Against) } else { Ok(()) }
 }
 
 /// The cones that a loop must pass: those with a side. Where they are fewer than those of unknown colour, the
@@ -252,10 +266,10 @@ fn cross_each_other(one: &Segment, other: &Segment) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Vector, direction};
+    use crate::geometry::Vector;
     use crate::race::{GeneratedTrack, TrackOptions, generate, parse_eufs, write_eufs};
     use crate::random::Stream;
-    use std::f64::consts::TAU;
+    use std::f64::consts::{PI, TAU};
 
     /// Reads a track from a file from which rows are removed and to which others are added. Returns the
     /// length found and the true one.
@@ -378,6 +392,16 @@ mod tests {
         assert_eq!(check(&ring, &all), Err(LineError::Passes { passed: 36, all: 54 }));
         let coloured = [&edges(ConeColour::Blue, ConeColour::Yellow)[..], &elsewhere].concat();
         assert_eq!(check(&ring, &coloured), Ok(()));
+    }
+
+    #[test]
+    fn a_start_against_the_colours_is_refused() {
+        for seed in 0..5 {
+            let track = generate(seed, &TrackOptions::drawn(seed)).unwrap().track;
+            let start = track.start_pose().unwrap();
+            let turned = Pose::new(start.x, start.y, start.heading + PI);
+            assert_eq!(CentreLine::round_track(&track.cones, turned), Err(LineError::Against), "{seed}");
+        }
     }
 
     mod campaigns {
