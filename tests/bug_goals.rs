@@ -130,6 +130,30 @@ fn a_passage_beside_the_end_of_a_lap_is_entered() {
     }
 }
 
+/// A cell with a gap that is only just wide enough (m between the ends of its walls), beside the place where it
+/// is met: behind it, and before it.
+#[test]
+fn a_gap_beside_the_start_of_a_lap_is_entered() {
+    let point = |x: f64, y: f64| Point::new(x / 1000.0, y / 1000.0);
+    let (corner, next) = (point(1677.31, 926.80), point(2073.20, 1677.31));
+    let along = (next - corner).normalize();
+    let middle = point(1818.1, 1193.695);
+    for (gap, start, goal) in [
+        (0.170_63, Pose::new(2.149_06, 0.690_39, 168.4_f64.to_radians()), point(1559.126, 1510.702)),
+        (0.175, Pose::new(2.061_825, 0.766_765, 35.866_f64.to_radians()), point(1588.661, 1506.675)),
+        (0.162_8, Pose::new(2.054_743, 0.727_88, -113.777_f64.to_radians()), point(1605.01, 1511.395)),
+    ] {
+        let mut world = World::walled(3.0, 3.0);
+        let ends = [middle - along * (0.5 * gap), middle + along * (0.5 * gap)];
+        let ring = [next, point(1322.69, 2073.20), point(926.80, 1322.69), corner];
+        world.walls.extend(ring.windows(2).map(|two| Wall::new(two[0], two[1])));
+        world.walls.extend([Wall::new(corner, ends[0]), Wall::new(ends[1], next)]);
+        for kind in BugKind::ALL {
+            assert_eq!(end(kind, &world, start, goal), BugOutcome::Reached, "{kind}, {gap}");
+        }
+    }
+}
+
 /// A ring of walls, one of whose gaps leaves few millimetres on either side. TangentBug sees a place behind
 /// it for which it leaves the wall, but cannot steer so exactly; following the wall, it gets in.
 #[test]

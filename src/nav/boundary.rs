@@ -51,6 +51,11 @@ impl BoundaryFollower {
         self.side = self.side.other();
     }
 
+    /// The point that bounded the last step, in the frame of the robot's poses.
+    pub(super) fn anchor(&self) -> Point {
+        self.anchor
+    }
+
     /// The heading to take, relative to the robot's; `None` when no step is free. Adds an anchor that is
     /// briefly out of sight to the surroundings.
     pub(super) fn heading(&mut self, pose: &Pose, surroundings: &mut Surroundings) -> Option<f64> {

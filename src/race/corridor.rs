@@ -206,7 +206,8 @@ impl Corridor {
     ///
     /// # Errors
     ///
-    /// If `step` is not positive, or so short that there would be more than a million stations.
+    /// If `step` is not positive, or so short that there would be more than a million stations, or the loop
+    /// turns back on itself.
     pub fn resampled(&self, step: f64) -> Result<Self, LineError> {
         require_positive("step", step)?;
         let expected = "at least a millionth of the corridor's length";
@@ -237,14 +238,30 @@ impl Corridor {
                 (position, a.left + (b.left - a.left) * share, a.right + (b.right - a.right) * share)
             })
             .collect();
-        Self::closed(&points)
+        // The spline's points are equally far apart: only where it turns back do neighbours coincide.
+        Self::closed(&points).map_err(|error| match error {
+            LineError::Degenerate { index } => {
+                let at = points[index].0;
+                LineError::TurnsBack { x: at.x.round(), y: at.y.round() }
+            }
+            other => other,
+        })
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::race::{TrackOptions, generate};
     use proptest::prelude::*;
+
+    /// Its stations are not those of the corridor, so an error names the place.
+    #[test]
+    fn where_a_resampled_loop_turns_back_is_said() {
+        let line: Vec<_> = (0..100).map(|k| (Point::new(2.0 * f64::from(k), 0.0), 5.0, 5.0)).collect();
+        let error = Corridor::closed(&line).unwrap().resampled(1.0).unwrap_err();
+        assert!(matches!(error, LineError::TurnsBack { y: 0.0, .. }), "{error}");
+    }
 
     proptest! {
         #![proptest_config(crate::testing::cases(20))]

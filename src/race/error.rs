@@ -39,11 +39,11 @@ pub enum LineError {
         length: f64,
     },
     /// The loop leaves out cones: it is a loop of a part of the track.
-    #[error("a loop that passes {passed} of {all} coloured cones; expected one that passes nearly all")]
+    #[error("a loop that passes {passed} of {all} cones; expected one that passes nearly all")]
     Passes {
         /// Number of cones at its edges.
         passed: u32,
-        /// Number of coloured cones.
+        /// Number of coloured cones, and of those without a colour if they are more.
         all: u32,
     },
     /// Cones of the loop are on the wrong side.
@@ -56,6 +56,9 @@ pub enum LineError {
         /// Number of cones passed.
         all: u32,
     },
+    /// The car starts against the direction of the loop.
+    #[error("a start that heads against the loop; expected blue cones on the car's left")]
+    Against,
     /// The loop turns back on itself.
     #[error("a loop that turns back at ({x}, {y}) m; expected one that a car can drive")]
     TurnsBack {

@@ -1,12 +1,12 @@
 use std::collections::BTreeMap;
 
 use super::centre_line::CentreLine;
-use super::cone::Cone;
+use super::cone::{Cone, ConeColour};
 use super::corridor::{Corridor, CrossSection};
 use super::error::LineError;
 use super::pair::CentreLineParameters;
 use crate::ParameterError;
-use crate::geometry::{Point, Pose, Segment, cross, math};
+use crate::geometry::{Point, Pose, Segment, Vector, cross, direction, math};
 
 /// Metres beside a corridor within which a cone is one of its edge, and from its middle at which a lap may
 /// have been driven.
@@ -33,7 +33,8 @@ impl CentreLine {
     ///
     /// Where cones are missing, a search could also find a loop around a part of the track. Therefore the
     /// loop must pass nearly all coloured cones, blue ones on its left and yellow ones on its right, and must
-    /// not cross itself. If colours alone lead to no such loop, missing cones are bridged as in a race.
+    /// not cross itself; where most cones have no colour, it must pass nearly all of these too. If colours
+    /// alone lead to no such loop, missing cones are bridged as in a race. Between cones, its edges are arcs.
     ///
     /// # Errors
     ///
@@ -43,7 +44,10 @@ impl CentreLine {
             let mut line =
                 Self::from_cones(cones, start, &CentreLineParameters { colour, ..Default::default() })?;
             check(&line.corridor, cones)?;
+            check_start(&line.corridor, start)?;
             line.corridor = centred(&line.corridor)?;
+            check_length(&line)?;
+            line.corridor = along_arcs(&line)?;
             // Centring moves stations by as much as the edges are apart, which false edges may be anywhere.
             check_shape(&line.corridor)?;
             if let Some(at) = folded(&line.corridor) {
@@ -53,11 +57,14 @@ impl CentreLine {
                 check_bends(edge)?;
             }
             check_edges(&line)?;
-            check_length(&line)?;
             Ok(line)
         };
         let strict: Result<Self, LineError> = by_colour(f64::INFINITY);
-        strict.or_else(|error| by_colour(CentreLineParameters::default().colour).map_err(|_| error))
+        strict.or_else(|error| {
+            let bridged = by_colour(CentreLineParameters::default().colour);
+            // With a start against the colours there is no way by them, so the other search says why.
+            bridged.map_err(|other| if other == LineError::Against { other } else { error })
+        })
     }
 }
 
@@ -67,24 +74,44 @@ fn check(corridor: &Corridor, cones: &[Cone]) -> Result<(), LineError> {
         return Err(LineError::Open { length: corridor.length().round() });
     }
     let near = Near::new(corridor.stations());
-    let coloured = cones.iter().filter(|cone| cone.colour.side() != 0);
-    let (mut all, mut passed, mut right) = (0, 0, 0);
-    for cone in coloured {
+    let (mut all, mut passed, mut right, mut wrong) = (0, 0, 0, 0);
+    for cone in counted(cones) {
         all += 1;
         let Some((station, offset)) = near.nearest(cone.position) else { continue };
         let width = if offset > 0.0 { station.left } else { station.right };
         if offset.abs() <= width + BESIDE {
             passed += 1;
-            right += usize::from(offset * f64::from(cone.colour.side()) > 0.0);
+            let agreement = offset * f64::from(cone.colour.side());
+            right += usize::from(agreement > 0.0);
+            wrong += u32::from(agreement < 0.0);
         }
     }
     if f64::from(passed) < PASSED * f64::from(all) {
         return Err(LineError::Passes { passed, all });
     }
-    if (right as f64) < ON_THEIR_SIDE * f64::from(passed) {
-        return Err(LineError::WrongSide { right, all: passed });
+    let all = right as u32 + wrong;
+    if (right as f64) < ON_THEIR_SIDE * f64::from(all) {
+        return Err(LineError::WrongSide { right, all });
     }
     check_shape(corridor)
+}
+
+/// Rejects a loop that leads against the car's heading: its colours are those of the other direction.
+fn check_start(corridor: &Corridor, start: Pose) -> Result<(), LineError> {
+    let near = Near::new(corridor.stations());
+    // The normal is to the left, so this is the part of the heading along the loop.
+    let is_against = |station: &CrossSection| cross(direction(start.heading), station.normal) < 0.0;
+    let against = near.nearest(start.position()).is_some_and(|(station, _)| is_against(station));
+    if against { Err(LineError::Against) } else { Ok(()) }
+}
+
+/// The cones that a loop must pass: those with a side. Where they are fewer than those of unknown colour, the
+/// latter are the track, not false cones beside it, and count as well.
+fn counted(cones: &[Cone]) -> impl Iterator<Item = &Cone> {
+    let has_side = |cone: &&Cone| cone.colour.side() != 0;
+    let is_unknown = |cone: &&Cone| cone.colour == ConeColour::Unknown;
+    let all = cones.iter().filter(has_side).count() < cones.iter().filter(is_unknown).count();
+    cones.iter().filter(move |cone| has_side(cone) || all && is_unknown(cone))
 }
 
 /// Rejects a loop that turns back or crosses itself.
@@ -124,11 +151,74 @@ fn around(edge: &[Point]) -> impl Iterator<Item = Segment> + '_ {
 
 /// Puts the stations of a loop, which smoothing draws inwards in bends, midway between its edges.
 fn centred(corridor: &Corridor) -> Result<Corridor, LineError> {
+    between(corridor, |station| [station.left, station.right])
+}
+
+/// The same between arcs from cone to cone: where cones are sparse, chords cut the bends by several percent.
+fn along_arcs(line: &CentreLine) -> Result<Corridor, LineError> {
+    let (mut left, mut right) = (Arcs::new(&line.left), Arcs::new(&line.right));
+    between(&line.corridor, |station| {
+        let to_left = station.left + left.bulge(station.aside(station.left));
+        [to_left, station.right - right.bulge(station.aside(-station.right))]
+    })
+}
+
+/// Puts stations midway between edges at some distances to the left and to the right.
+fn between(
+    corridor: &Corridor,
+    mut edges: impl FnMut(&CrossSection) -> [f64; 2],
+) -> Result<Corridor, LineError> {
     let middle = |station: &CrossSection| {
-        let half = 0.5 * (station.left + station.right);
-        (station.aside(0.5 * (station.left - station.right)), half, half)
+        let [left, right] = edges(station);
+        let half = 0.5 * (left + right);
+        (station.aside(0.5 * (left - right)), half, half)
     };
     Corridor::closed(&corridor.stations().iter().map(middle).collect::<Vec<_>>())
+}
+
+/// A closed edge as arcs from cone to cone.
+struct Arcs<'a> {
+    edge: &'a [Point],
+    /// The arc that was found last.
+    at: Option<usize>,
+}
+
+/// Number of arcs to either side of the last one among which the next one is.
+const NEXT: usize = 8;
+
+impl<'a> Arcs<'a> {
+    fn new(edge: &'a [Point]) -> Self {
+        Self { edge, at: None }
+    }
+
+    fn leg(&self, k: usize) -> Vector {
+        let n = self.edge.len();
+        self.edge[(k + 1) % n] - self.edge[k % n]
+    }
+
+    /// Half the angle of an arc, which turns by half of the turns at its ends (rad).
+    fn half_angle(&self, k: usize) -> f64 {
+        let turn = |before: Vector, after: Vector| math::atan2(cross(before, after), before.dot(&after));
+        let (before, here, after) = (self.leg(k + self.edge.len() - 1), self.leg(k), self.leg(k + 1));
+        0.25 * (turn(before, here) + turn(here, after))
+    }
+
+    /// How far the arc beside a point of a chord is to the left of it (m), as a parabola. Points are asked for
+    /// in driving order.
+    fn bulge(&mut self, point: Point) -> f64 {
+        let n = self.edge.len();
+        let chord = |k: &usize| Segment::new(self.edge[k % n], self.edge[(k + 1) % n]);
+        let near = self.at.map_or(0..n, |at| at + n - NEXT.min(n)..at + n + NEXT);
+        let away = |k: &usize| chord(k).distance_to(point);
+        let Some(k) = near.min_by(|a, b| away(a).total_cmp(&away(b))) else { return 0.0 };
+        self.at = Some(k % n);
+        let half = self.half_angle(k);
+        let (leg, from) = (self.leg(k), point - self.edge[k % n]);
+        let share = (from.dot(&leg) / leg.norm_squared().max(1e-18)).clamp(0.0, 1.0);
+        // Twice the chord times the tangent of half of that angle is four times the sagitta.
+        let highest = 2.0 * leg.norm() * math::sin(half) / (1.0 + math::cos(half));
+        -highest * share * (1.0 - share)
+    }
 }
 
 /// Rejects an edge with a gap in a bend, where the course of the track is unknown.
@@ -240,10 +330,9 @@ fn cross_each_other(one: &Segment, other: &Segment) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Vector, direction};
-    use crate::race::{ConeColour, GeneratedTrack, TrackOptions, generate, parse_eufs, write_eufs};
+    use crate::race::{GeneratedTrack, TrackOptions, generate, parse_eufs, write_eufs};
     use crate::random::Stream;
-    use std::f64::consts::TAU;
+    use std::f64::consts::{PI, TAU};
 
     /// Reads a track from a file from which rows are removed and to which others are added. Returns the
     /// length found and the true one.
@@ -346,6 +435,67 @@ mod tests {
         let wrong = errors.iter().filter(|error| error.abs() > 0.03).count();
         println!("{} read, {wrong} wrong", errors.len());
         assert!(errors.len() > 20 && wrong == 0, "{errors:?}");
+    }
+
+    /// The length found of two straights of 16 m and two bends, relative to the true one. Cones of an edge are
+    /// `spacing` metres apart.
+    fn stadium(radius: f64, spacing: f64) -> Result<f64, LineError> {
+        let mut cones = Vec::new();
+        for (radius, colour) in [(radius - 1.75, ConeColour::Blue), (radius + 1.75, ConeColour::Yellow)] {
+            let half = 16.0 + PI * radius;
+            let count = (half / spacing).round();
+            for k in 0..2 * count as usize {
+                let way = (k as f64 * half / count) % half;
+                let place = if way < 16.0 {
+                    Point::new(way - 8.0, -radius)
+                } else {
+                    Point::new(8.0, 0.0) + direction((way - 16.0) / radius - 0.5 * PI) * radius
+                };
+                let side = if (k as f64) < count { 1.0 } else { -1.0 };
+                cones.push(Cone::new(place * side, colour));
+            }
+        }
+        let line = CentreLine::round_track(&cones, Pose::new(0.0, -radius, 0.0))?;
+        Ok(line.corridor.length() / (32.0 + TAU * radius))
+    }
+
+    /// Chords between few cones of a tight bend cut up to 4 % off.
+    #[test]
+    fn loops_do_not_cut_bends_of_few_cones() {
+        for (radius, spacing) in [(5.0, 5.0), (5.0, 3.0), (9.0, 5.0)] {
+            let length = stadium(radius, spacing).unwrap();
+            assert!((length - 1.0).abs() < 0.015, "{radius} m: {length}");
+        }
+    }
+
+    /// Cones without a colour count where most are such, but not where a few are beside a track.
+    #[test]
+    fn a_loop_of_colourless_cones_passes_nearly_all() {
+        let circle = |radius: f64| {
+            (0..18).map(move |k| Point::origin() + direction(TAU * f64::from(k) / 18.0) * radius)
+        };
+        let ring = Corridor::closed(&circle(10.0).map(|at| (at, 1.5, 1.5)).collect::<Vec<_>>()).unwrap();
+        let edges = |left: ConeColour, right: ConeColour| {
+            let of = |radius, colour| circle(radius).map(move |at| Cone::new(at, colour));
+            of(8.5, left).chain(of(11.5, right)).collect::<Vec<_>>()
+        };
+        let elsewhere: Vec<Cone> = circle(30.0).map(Cone::unknown).collect();
+        let colourless = edges(ConeColour::Unknown, ConeColour::Unknown);
+        assert_eq!(check(&ring, &colourless), Ok(()));
+        let all = [&colourless[..], &elsewhere].concat();
+        assert_eq!(check(&ring, &all), Err(LineError::Passes { passed: 36, all: 54 }));
+        let coloured = [&edges(ConeColour::Blue, ConeColour::Yellow)[..], &elsewhere].concat();
+        assert_eq!(check(&ring, &coloured), Ok(()));
+    }
+
+    #[test]
+    fn a_start_against_the_colours_is_refused() {
+        for seed in 0..5 {
+            let track = generate(seed, &TrackOptions::drawn(seed)).unwrap().track;
+            let start = track.start_pose().unwrap();
+            let turned = Pose::new(start.x, start.y, start.heading + PI);
+            assert_eq!(CentreLine::round_track(&track.cones, turned), Err(LineError::Against), "{seed}");
+        }
     }
 
     mod campaigns {

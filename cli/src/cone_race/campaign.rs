@@ -140,11 +140,13 @@ fn trial_for_places(args: &Args, spoils: Spoils, rival: Rival, seed: u64) -> Res
     let mut fleet = Fleet::new(&rival.scene(&course), settings.options()).map_err(Failure::input)?;
     let race = rival::race(&course, &settings, rival, &mut fleet)?;
     let super::race::Outcome { verdict, other, touched, .. } = &race.outcome;
+    let finished = race.outcome.is_finished();
     Ok(ForPlaces {
         passed: race.is_passed(rival),
         touched: *touched,
-        won: race.places[0] == 1,
-        finished: race.outcome.is_finished(),
+        // The leader at the time limit has won nothing.
+        won: finished && race.places[0] == 1,
+        finished,
         cones_hit: verdict.cones_hit,
         off_course: verdict.off_course,
         rival_cones_hit: other.as_ref().map_or(0, |other| other.cones_hit),

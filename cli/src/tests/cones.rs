@@ -213,6 +213,14 @@ fn two_racers_of_different_kinds_race_for_places() {
     }
 }
 
+/// The racer starts ahead of a recorded rival, and is still there after a second.
+#[test]
+fn a_race_for_places_is_won_at_its_end_alone() {
+    let (_, report, err) =
+        race(&["--rival", "recorded", "--campaign", "1", "--laps", "1", "--time-limit", "1"]);
+    assert!(report["won"] == 0 && report["finished"] == 0 && report["races"] == 1, "{report} {err}");
+}
+
 #[test]
 fn the_same_seed_gives_the_same_race() {
     let options = ["--track", "../tests/data/cones/oval.csv", "--laps", "2", "--seed", "4"];

@@ -98,13 +98,24 @@ pub(super) fn declarations(bytes: &[u8]) -> Vec<Framed<'_>> {
         let at = bytes.len().checked_sub(FRAME + FOOTER + MAGIC.len())?;
         let footer = record_at(bytes, at).filter(|record| record.opcode == op::FOOTER)?;
         let Ok(Record::Footer(parsed)) = footer.parse() else { return None };
-        let start =
-            usize::try_from(parsed.summary_start).ok().filter(|start| (MAGIC.len()..at).contains(start))?;
-        check_end(bytes, start, &footer).ok()?;
+        let is_intact =
+            |start: &usize| (MAGIC.len()..at).contains(start) && check_end(bytes, *start, &footer).is_ok();
+        let start = usize::try_from(parsed.summary_start).ok().filter(is_intact);
+        let start = start.or_else(|| moved_summary(bytes, &footer, parsed.summary_crc))?;
         let found = records(&bytes[..at], start).flatten();
         Some(found.filter(|record| matches!(record.opcode, op::SCHEMA | op::CHANNEL)).collect())
     };
     in_summary().unwrap_or_default()
+}
+
+/// Start of an intact summary that bytes added or lost before it have moved: it follows the end of the data.
+fn moved_summary(bytes: &[u8], footer: &Framed<'_>, checksum: u32) -> Option<usize> {
+    let candidates = (MAGIC.len()..footer.start).rev().filter_map(|at| record_at(bytes, at));
+    let mut ends = candidates.filter(|record| record.opcode == op::DATA_END && record.body.len() == CRC);
+    let start = ends.next()?.end();
+    let summary = bytes.get(start..footer.end() - CRC)?;
+    // Zero means that no checksum was made.
+    (checksum != 0 && checksum == crc32fast::hash(summary)).then_some(start)
 }
 
 /// The records of a whole file up to the end of its data. Fails if any byte of the file is corrupted.

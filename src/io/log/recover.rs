@@ -28,6 +28,9 @@ pub struct Recovery {
 
 /// Recovers every complete and intact chunk of a truncated or damaged recording.
 ///
+/// Channels are declared in the first chunk and in the summary at the end. Where both are lost, so are the
+/// messages of all chunks.
+///
 /// An undamaged file is returned unchanged, byte for byte. Time is proportional to the file's size. Fails for
 /// several recordings in one file and for other kinds of files.
 ///

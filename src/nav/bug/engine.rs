@@ -203,7 +203,8 @@ impl Decider<'_> {
         let body = &mut *self.body;
         let following = self.following.as_mut()?;
         let heading = following.boundary.heading(&body.pose, &mut body.surroundings);
-        let lap = following.progress.update(body.pose, heading, body.parameters.robot_radius);
+        let (anchor, radius) = (following.boundary.anchor(), body.parameters.robot_radius);
+        let lap = following.progress.update(body.pose, heading, anchor, radius);
         following.in_line = heading.is_some_and(|heading| heading.abs() < IN_LINE);
         Some((heading, lap))
     }

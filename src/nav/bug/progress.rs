@@ -6,8 +6,10 @@ use crate::geometry::{Point, Pose, angle_difference, normalize_angle};
 /// Detects when the robot has gone all round a boundary.
 #[derive(Debug, Clone)]
 pub(super) struct LoopProgress {
-    begin: Option<Pose>,
+    begin: Option<Begin>,
     last: Pose,
+    /// The point of the wall that was followed at the previous step.
+    anchor: Option<Point>,
     /// Distance travelled since the boundary was met, and since the loop began (m).
     approach: f64,
     travelled: f64,
@@ -23,6 +25,14 @@ pub(super) struct LoopProgress {
     away: bool,
     returns: u32,
     rule: LapRule,
+}
+
+/// Where a loop began.
+#[derive(Debug, Clone, Copy)]
+struct Begin {
+    pose: Pose,
+    /// The point of the wall that was followed there.
+    anchor: Point,
 }
 
 /// Criterion for having gone round a boundary.
@@ -54,6 +64,10 @@ struct Spin {
 /// Turn on the spot towards the wall above which a robot turns around (rad): it would drive around the end of
 /// a wall.
 const TURNING_ROUND: f64 = 2.2;
+/// Distance within which places are the same (robot radii): less than any gap that the robot fits through.
+const NEAR: f64 = 1.5;
+/// Distance travelled along a boundary after which the loop has begun in any case (robot radii).
+const START: f64 = 6.0;
 /// Number of returns to the same place after which a loop is closed, however the robot has turned on it.
 const CERTAIN_RETURNS: u32 = 2;
 /// Number of steps without a free heading after which the robot is boxed in.
@@ -65,6 +79,7 @@ impl LoopProgress {
         Self {
             begin: None,
             last: pose,
+            anchor: None,
             approach: 0.0,
             travelled: 0.0,
             turned: 0.0,
@@ -78,11 +93,13 @@ impl LoopProgress {
         }
     }
 
-    /// Updates the loop with the robot's pose and heading. Returns whether it is closed.
-    pub(super) fn update(&mut self, pose: Pose, heading: Option<f64>, radius: f64) -> Lap {
+    /// Updates the loop with the robot's pose, the heading along the boundary, and the point of the wall that
+    /// bounds it. Returns whether it is closed.
+    pub(super) fn update(&mut self, pose: Pose, heading: Option<f64>, anchor: Point, radius: f64) -> Lap {
         let moved = pose.distance_to(self.last.position());
         let turned = angle_difference(pose.heading, self.last.heading);
         self.last = pose;
+        let jump = self.anchor.replace(anchor).map_or(0.0, |before| (anchor - before).norm());
         let Some(heading) = heading else {
             self.boxed_in += 1;
             return if self.boxed_in > BOXED_IN_STEPS { Lap::BoxedIn } else { Lap::Open };
@@ -92,31 +109,46 @@ impl LoopProgress {
             self.approach += moved;
             // The loop begins once the robot drives in line with the boundary.
             let in_line = heading.abs() < 0.3 && self.approach > 0.5 * radius;
-            if in_line || self.approach > 6.0 * radius {
-                self.begin = Some(pose);
+            if in_line || self.approach > START * radius {
+                self.begin = Some(Begin { pose, anchor });
             }
             return Lap::Open;
         };
         self.travelled += moved;
         self.turned += self.turn_of_boundary(pose, turned, radius);
-        let near = pose.distance_to(begin.position()) < 1.5 * radius;
-        let same_way = normalize_angle(pose.heading - begin.heading).abs() < 1.2;
+        if jump > NEAR * radius && self.approach + self.travelled < START * radius {
+            self.begin_behind_gap(Begin { pose, anchor });
+            return Lap::Open;
+        }
+        let from_begin = pose.distance_to(begin.pose.position());
+        let near = from_begin < NEAR * radius;
+        let same_way = normalize_angle(pose.heading - begin.pose.heading).abs() < 1.2;
         let been_away = self.travelled > 6.0 * radius || self.turned.abs() > 1.1 * TAU;
-        self.away |= pose.distance_to(begin.position()) > 4.0 * radius;
+        self.away |= from_begin > 4.0 * radius;
         if self.away && near && same_way {
             self.away = false;
             self.returns += 1;
         }
+        // Before a gap the robot may be near the start of a loop that began behind it: the walls are two.
+        let same_wall = (anchor - begin.anchor).norm() < NEAR * radius || self.returns >= CERTAIN_RETURNS;
         // Once round any closed curve the heading turns by one full turn; back and forth, by none.
         let all_round = self.turned.abs() > 0.6 * TAU || self.returns >= CERTAIN_RETURNS;
         if self.turned.abs() > self.rule.lost_turns * TAU {
             // It went round without finding the start, so the start's pose was wrong. The loop begins anew
             // here.
-            *self = Self { begin: Some(pose), ..Self::new(pose, self.side, self.rule) };
+            *self = Self { begin: Some(Begin { pose, anchor }), ..Self::new(pose, self.side, self.rule) };
             return Lap::Open;
         }
-        let there = near && same_way && been_away && all_round;
-        if self.is_over(there, &pose, &begin) { Lap::Closed(self.travelled) } else { Lap::Open }
+        let there = near && same_wall && same_way && been_away && all_round;
+        if self.is_over(there, &pose, &begin.pose) { Lap::Closed(self.travelled) } else { Lap::Open }
+    }
+
+    /// Begins the loop anew behind a gap at its start. A robot that meets the wall askew may pass over a gap
+    /// which, when it comes back along the wall, it fits through.
+    fn begin_behind_gap(&mut self, begin: Begin) {
+        self.begin = Some(begin);
+        self.approach += self.travelled;
+        (self.travelled, self.turned) = (0.0, 0.0);
     }
 
     /// Rotation of the boundary as the robot turns. In a dead end the boundary turns away from the wall by
@@ -164,7 +196,7 @@ mod tests {
         let rule = LapRule { lost_turns: 1.6 };
         let mut progress = LoopProgress::new(at(0.0), WallSide::Right, rule);
         let steps = (0..5000).map(|step| f64::from(step) * 0.01);
-        let mut laps = steps.map(|t| (t, progress.update(at(t), Some(0.0), 0.06)));
+        let mut laps = steps.map(|t| (t, progress.update(at(t), Some(0.0), at(t).position(), 0.06)));
         let closed = laps.find(|(_, lap)| matches!(lap, Lap::Closed(_)));
         closed.expect("the loop is closed in the end").0 / TAU
     }
@@ -175,6 +207,28 @@ mod tests {
         assert!((0.9..1.1).contains(&round), "{round}");
     }
 
+    /// Follows a circle repeatedly; the point of the wall that is followed is some distance ahead (m). Returns
+    /// the number of rounds until the loop is closed.
+    fn rounds_beside(wall: impl Fn(f64) -> f64) -> f64 {
+        let rule = LapRule { lost_turns: 3.0 };
+        let at = |t: f64| Pose::new(math::cos(t), math::sin(t), t + 0.5 * PI);
+        let anchor = |t: f64| at(t).to_world(Point::new(wall(t), -0.1));
+        let mut progress = LoopProgress::new(at(0.0), WallSide::Right, rule);
+        let steps = (0..5000).map(|step| f64::from(step) * 0.01);
+        let mut laps = steps.map(|t| (t, progress.update(at(t), Some(0.0), anchor(t), 0.06)));
+        laps.find(|(_, lap)| matches!(lap, Lap::Closed(_))).expect("the loop is closed in the end").0 / TAU
+    }
+
+    /// Before a gap, the robot is near a start behind it, but at another wall; and a gap at the start itself may
+    /// have been passed over.
+    #[test]
+    fn a_loop_ends_at_the_wall_at_which_it_began() {
+        let at_another = rounds_beside(|t| if (5.0..6.5).contains(&t) { -0.25 } else { 0.0 });
+        assert!(at_another > 1.5, "{at_another}");
+        let behind_gap = rounds_beside(|t| if t < 0.1 { 0.0 } else { 0.16 });
+        assert!((1.01..1.1).contains(&behind_gap), "{behind_gap}");
+    }
+
     /// Into a blind alley and back: this covers all of its boundary.
     #[test]
     fn a_dead_end_is_left_whichever_way_the_robot_turns_round() {
@@ -182,7 +236,7 @@ mod tests {
         {
             let rule = LapRule { lost_turns: 1.6 };
             let mut progress = LoopProgress::new(Pose::default(), side, rule);
-            let mut lap = |pose: Pose| progress.update(pose, Some(0.0), 0.06) != Lap::Open;
+            let mut lap = |pose: Pose| progress.update(pose, Some(0.0), pose.position(), 0.06) != Lap::Open;
             let step = |i: u32| 0.01 * f64::from(i);
             let straight = |from: f64, heading: f64| {
                 (0..=100).map(move |i| Pose::new(from + step(i) * math::cos(heading), 0.0, heading))

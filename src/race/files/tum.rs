@@ -9,6 +9,9 @@ use crate::world::formats::{FormatError, Location, shown};
 /// Maximum distance from the centre line to an edge (m). No track is wider, and lining a wider one with cones
 /// would take long.
 const WIDEST: f64 = 100.0;
+/// Longest step to the next point, relative to the median: the course of a circuit over more is unknown. Those
+/// of the database are at most 1.1.
+const LONGEST_STEP: f64 = 10.0;
 /// Header line of the tracks of the TUM racetrack database.
 const HEADER: &str = "# x_m,y_m,w_tr_right_m,w_tr_left_m";
 
@@ -28,7 +31,7 @@ const HEADER: &str = "# x_m,y_m,w_tr_right_m,w_tr_left_m";
 ///
 /// # Errors
 ///
-/// If the text is not such a circuit.
+/// If the text is not such a circuit, or rows of it are missing: a step is many times the usual one.
 pub fn parse_tum(text: &str, file: &str) -> Result<Corridor, FormatError> {
     let numbers = table::<4>(text, file, HEADER)?;
     for (values, at) in &numbers {
@@ -41,8 +44,23 @@ pub fn parse_tum(text: &str, file: &str) -> Result<Corridor, FormatError> {
     }
     let rows: Vec<_> =
         numbers.iter().map(|([x, y, right, left], _)| (Point::new(*x, *y), *left, *right)).collect();
-    Corridor::closed(&rows).map_err(|error: LineError| {
+    let corridor = Corridor::closed(&rows).map_err(|error: LineError| {
         FormatError::new(file, Location::START, error.to_string(), "a closed centre line")
+    })?;
+    check_steps(&numbers, file)?;
+    Ok(corridor)
+}
+
+/// Rejects a circuit with a gap, which a chord would close.
+fn check_steps(rows: &[([f64; 4], Location)], file: &str) -> Result<(), FormatError> {
+    let n = rows.len();
+    let place = |k: usize| Point::new(rows[k % n].0[0], rows[k % n].0[1]);
+    let steps: Vec<f64> = (0..n).map(|k| (place(k + 1) - place(k)).norm()).collect();
+    let usual = *steps.clone().select_nth_unstable_by(n / 2, f64::total_cmp).1;
+    steps.iter().position(|step| *step > LONGEST_STEP * usual).map_or(Ok(()), |k| {
+        let found = format!("a step of {:.1} m to the next point", steps[k]);
+        let expected = format!("at most {LONGEST_STEP} times the usual step of {usual:.1} m");
+        Err(FormatError::new(file, rows[k].1, found, expected))
     })
 }
 
@@ -56,7 +74,7 @@ pub fn parse_line(text: &str, file: &str) -> Result<Vec<Point>, FormatError> {
     Ok(rows.iter().map(|([x, y], _)| Point::new(*x, *y)).collect())
 }
 
-/// Writes a circuit that [`parse_tum`] reads.
+/// Writes a circuit that [`parse_tum`] reads, if its stations are about evenly spaced.
 pub fn write_tum(corridor: &Corridor) -> String {
     let mut text = format!("{HEADER}\n");
     for station in corridor.stations() {

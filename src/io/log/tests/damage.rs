@@ -123,6 +123,23 @@ fn lose_parts(thorough: bool) {
     }
 }
 
+/// The channels are declared in the first chunk and in the summary, which the byte moves.
+#[test]
+fn a_byte_added_to_the_first_chunk_costs_that_chunk() {
+    let writer = LogWriter::new(Vec::new(), &Header::new("tour", [""; 0])).unwrap();
+    let simulation = Simulation::new(&scene(), SimOptions::with_noise(1.0, 7)).unwrap();
+    tour(&mut writer.recorder(simulation.robot(0).unwrap(), 0), 1.3).unwrap();
+    let mut bytes = writer.finish().unwrap();
+    let whole = recover(&bytes).unwrap().chunks;
+    let chunk = super::reader::records(&bytes, mcap::MAGIC.len())
+        .flatten()
+        .find(|record| record.opcode == mcap::records::op::CHUNK)
+        .unwrap();
+    bytes.insert(chunk.start + chunk.body.len() / 2, 0);
+    let saved = recover(&bytes).unwrap();
+    assert!(whole >= 2 && saved.chunks == whole - 1, "{} of {whole}", saved.chunks);
+}
+
 #[test]
 fn a_flipped_bit_costs_one_part_at_most() {
     lose_parts(false);
