@@ -149,9 +149,8 @@ pub(crate) fn outcome(ascended: &Ascended, ride: Option<&Ride>, summit: &Summit)
     match (ride.end.mishap, ascended.arrival) {
         (Some(mishap), _) if mishap != Mishap::Stuck => Outcome::failure(word(mishap)),
         (_, Arrival::Top) if summit.is_reached(&ride.end) => Outcome::verdict("reached"),
-        (Some(_), _) => Outcome::failure("stuck"),
+        (Some(_), _) | (_, Arrival::Stuck) => Outcome::failure("stuck"),
         (_, Arrival::Top) => Outcome::verdict("local_maximum"),
-        (_, Arrival::Stuck) => Outcome::failure("stuck"),
         (_, Arrival::TimedOut) => Outcome::failure("timed_out"),
     }
 }
