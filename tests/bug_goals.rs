@@ -130,8 +130,8 @@ fn a_passage_beside_the_end_of_a_lap_is_entered() {
     }
 }
 
-/// A cell with a gap that is only just wide enough (m between the ends of its walls), beside the place where it
-/// is met: behind it, and before it.
+/// A cell with a gap that is only just wide enough (m between the ends of its walls), beside the place where
+/// it is met: behind it, and before it.
 #[test]
 fn a_gap_beside_the_start_of_a_lap_is_entered() {
     let point = |x: f64, y: f64| Point::new(x / 1000.0, y / 1000.0);

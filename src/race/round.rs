@@ -203,8 +203,8 @@ impl<'a> Arcs<'a> {
         0.25 * (turn(before, here) + turn(here, after))
     }
 
-    /// How far the arc beside a point of a chord is to the left of it (m), as a parabola. Points are asked for
-    /// in driving order.
+    /// How far the arc beside a point of a chord is to the left of it (m), as a parabola. Points come in
+    /// driving order.
     fn bulge(&mut self, point: Point) -> f64 {
         let n = self.edge.len();
         let chord = |k: &usize| Segment::new(self.edge[k % n], self.edge[(k + 1) % n]);
@@ -437,8 +437,8 @@ mod tests {
         assert!(errors.len() > 20 && wrong == 0, "{errors:?}");
     }
 
-    /// The length found of two straights of 16 m and two bends, relative to the true one. Cones of an edge are
-    /// `spacing` metres apart.
+    /// The length found of two straights of 16 m and two bends, relative to the true one. Cones of an edge
+    /// are `spacing` metres apart.
     fn stadium(radius: f64, spacing: f64) -> Result<f64, LineError> {
         let mut cones = Vec::new();
         for (radius, colour) in [(radius - 1.75, ConeColour::Blue), (radius + 1.75, ConeColour::Yellow)] {

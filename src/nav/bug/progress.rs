@@ -207,8 +207,8 @@ mod tests {
         assert!((0.9..1.1).contains(&round), "{round}");
     }
 
-    /// Follows a circle repeatedly; the point of the wall that is followed is some distance ahead (m). Returns
-    /// the number of rounds until the loop is closed.
+    /// Follows a circle repeatedly; the point of the wall that is followed is some distance ahead (m).
+    /// Returns the number of rounds until the loop is closed.
     fn rounds_beside(wall: impl Fn(f64) -> f64) -> f64 {
         let rule = LapRule { lost_turns: 3.0 };
         let at = |t: f64| Pose::new(math::cos(t), math::sin(t), t + 0.5 * PI);
@@ -219,8 +219,8 @@ mod tests {
         laps.find(|(_, lap)| matches!(lap, Lap::Closed(_))).expect("the loop is closed in the end").0 / TAU
     }
 
-    /// Before a gap, the robot is near a start behind it, but at another wall; and a gap at the start itself may
-    /// have been passed over.
+    /// Before a gap, the robot is near a start behind it, but at another wall; and a gap at the start itself
+    /// may have been passed over.
     #[test]
     fn a_loop_ends_at_the_wall_at_which_it_began() {
         let at_another = rounds_beside(|t| if (5.0..6.5).contains(&t) { -0.25 } else { 0.0 });

@@ -9,8 +9,8 @@ use crate::world::formats::{FormatError, Location, shown};
 /// Maximum distance from the centre line to an edge (m). No track is wider, and lining a wider one with cones
 /// would take long.
 const WIDEST: f64 = 100.0;
-/// Longest step to the next point, relative to the median: the course of a circuit over more is unknown. Those
-/// of the database are at most 1.1.
+/// Longest step to the next point, relative to the median: the course of a circuit over more is unknown.
+/// Those of the database are at most 1.1.
 const LONGEST_STEP: f64 = 10.0;
 /// Header line of the tracks of the TUM racetrack database.
 const HEADER: &str = "# x_m,y_m,w_tr_right_m,w_tr_left_m";
