@@ -23,10 +23,11 @@ const OUTLIERS: [f64; 14] =
 const OUTLIER: f64 = 0.02;
 /// The fewest points that count.
 const ENOUGH: usize = 100;
-/// How far dead reckoning may be off on even ground, and upwards (m), and about the upright axis (rad), as
-/// standard deviations.
+/// How far dead reckoning is off at least, as a standard deviation (m): a cell of the map.
 const ALONG: f64 = 0.05;
+/// How far it may be off upwards (m).
 const UPWARDS: f64 = 0.1;
+/// How far it may be off about the upright axis (rad): the unit's error.
 const ABOUT: f64 = 0.01;
 /// Shares of its way since the last look by which a robot may have slipped back, the likeliest first.
 const SLIPPED: [f64; 6] = [0.0, 0.25, 0.5, 0.75, 1.0, 1.25];

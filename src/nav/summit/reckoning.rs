@@ -141,14 +141,14 @@ mod tests {
         let (rate, period) = (0.8, parameters.period);
         for pitch in [0.15, -0.15] {
             let mut reckoning = Reckoning::default();
-            for step in 0..61 {
+            for step in 0..161 {
                 let odometry = Pose::new(0.0, 0.0, rate * period * f64::from(step));
                 let attitude = Attitude { roll: 0.0, pitch, yaw: 0.0 };
                 reckoning.update(odometry, attitude, parameters.slide, half);
             }
             assert!(reckoning.is_locked());
-            // Of its 3 s, it takes a quarter to notice, and then errs by its noise.
-            let way = half * rate * 3.0 * pitch.signum();
+            // Of its 8 s, it takes two to notice, and then errs by its noise.
+            let way = half * rate * 8.0 * pitch.signum();
             let found = reckoning.pose.x;
             assert!(found / way > 0.6 && found / way < 1.1, "{found} {way}");
             assert!(reckoning.elevation < 0.0 && reckoning.pose.heading.abs() < 0.2);
