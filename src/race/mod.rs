@@ -14,6 +14,7 @@
 //! - [`minimum_curvature`]: the racing line within a [`Corridor`]; [`SpeedProfile`]: the speeds along it,
 //!   within the [`GripLimit`].
 
+mod arcs;
 mod banded;
 mod beam_search;
 mod box_qp;

@@ -174,7 +174,8 @@ fn broken_files_are_told_where() {
         ),
         (
             format!("{tum}0,0,1,1\n1,0,1,1\n2,0,1,1\n2,1,1,1\n1,1,1,1\n0,20,1,1\n"),
-            "t:6:1: found a step of 19.0 m to the next point; expected at most 10 times the usual step of 1.0 m",
+            "t:6:1: found a step of 19.0 m to the next point; \
+             expected at most 10 times the usual step of 1.0 m",
         ),
         (
             "cones_left:\n- - 1.0\n  - here\n".into(),

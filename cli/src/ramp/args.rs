@@ -17,13 +17,13 @@ JSON fields:
   height_mm                   true elevation at the end
   level_mm                    highest true elevation
   max_tilt_deg                the most that the robot was tilted
-  slip_percent                motion that the wheels did not report, relative to theirs, or null if these hardly moved
+  slip_percent                motion that the wheels did not report, as a share of theirs, or null
   friction                    coefficient of friction
   looks                       how often it has looked around
   time_limit_s, picture
   runs, passed, falls, median_edge_distance_mm, wrong_seeds   with --campaign only
-Outcomes: crossed, not_crossed, no_way_up, no_way_down, stuck, tipped, fell, drowned, collided, timed_out, failed; with
---campaign: passed, wrong."
+Outcomes: crossed, not_crossed, no_way_up, no_way_down, stuck, tipped, fell, drowned, collided, timed_out,
+failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
     #[command(flatten)]

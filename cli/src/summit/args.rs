@@ -50,15 +50,16 @@ JSON fields:
   highest_reachable_mm        elevation of the highest place reachable within the slope limit
   distance_mm                 true horizontal distance from that place
   max_tilt_deg                maximum tilt of the robot
-  slip_percent                motion that the wheels did not report, relative to theirs, or null if these hardly moved
+  slip_percent                motion that the wheels did not report, as a share of theirs, or null
   planned_length_mm           length of the path planned on the true map, or null
   slope_limit_deg             maximum slope that the robot drives on
   looks                       number of looks around
-  unknown_m2                  area that may be higher and reachable, as far as the robot knows, or null without a map
+  unknown_m2                  area that may be higher and reachable for all the robot knows, or null
   time_limit_s, picture
   runs, reached, mishaps, median_path_ratio, ways, wrong_seeds   with --campaign only
 Reached: at most 100 mm from the highest reachable place, or 2 % of the relief below it.
-Outcomes: reached, local_maximum, stuck, tipped, fell, drowned, collided, timed_out, failed; with --campaign: passed, wrong."
+Outcomes: reached, local_maximum, stuck, tipped, fell, drowned, collided, timed_out, failed; with
+--campaign: passed, wrong."
 )]
 pub(crate) struct Args {
     /// Method of climbing.

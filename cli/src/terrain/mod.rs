@@ -116,7 +116,8 @@ pub(crate) fn elevation_map(
 pub(crate) fn unfit(start: Point) -> Failure {
     let [x, y] = [start.x, start.y].map(|metres| rounded(1000.0 * metres));
     Failure::input(format!(
-        "found a start at {x}, {y} mm: too steep, in water, or too near to a wall or the border; expected gentle ground"
+        "found a start at {x}, {y} mm: too steep, in water, or too near to a wall or the border; \
+         expected gentle ground"
     ))
 }
 
