@@ -1,3 +1,4 @@
+use std::io::Write;
 use std::sync::Arc;
 
 use roverlab::geometry::{Point, Point3, units};
@@ -28,6 +29,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let map = elevation_map(&world, &ground, &args.climber())?;
     let top = map.highest_reachable(start).ok_or_else(|| unfit(start))?;
     let goal = args.goal.unwrap_or(top.xy());
+    check_inside(&ground, goal)?;
     let objective = args.cost.objective(&args.robot);
     let mut planner = match args.planner {
         Planner::Dijkstra => ElevationPlanner::dijkstra(&map, objective),
@@ -63,7 +65,12 @@ fn hills(args: &Args) -> Result<(World, Point), Failure> {
         let made = relief(&mut Stream::new(args.plain.seed), &options).map_err(refused)?;
         return Ok((made.world, args.start.unwrap_or(made.start).position()));
     };
-    let scene = formats::load_scene(file).map_err(Failure::input)?.value;
+    let parsed = formats::load_scene(file).map_err(Failure::input)?;
+    for warning in &parsed.warnings {
+        // Without standard error nobody can be informed.
+        let _ = writeln!(std::io::stderr(), "{warning}");
+    }
+    let scene = parsed.value;
     let own = scene.robots.first().map(|robot| robot.pose).or(scene.world.start);
     let start = args.start.or(own).ok_or_else(|| {
         Failure::input(format!(
@@ -72,6 +79,23 @@ fn hills(args: &Args) -> Result<(World, Point), Failure> {
         ))
     })?;
     Ok((scene.world, start.position()))
+}
+
+fn check_inside(ground: &HeightField, goal: Point) -> Result<(), Failure> {
+    let area = ground.area();
+    if area.contains(goal) {
+        return Ok(());
+    }
+    let [low, high] = [area.min, area.max].map(|corner| corner.coords.map(units::to_mm));
+    Err(Failure::input(format!(
+        "--goal: found {:.0},{:.0}, outside of the hills; expected {:.0} to {:.0} and {:.0} to {:.0} mm",
+        units::to_mm(goal.x),
+        units::to_mm(goal.y),
+        low.x,
+        high.x,
+        low.y,
+        high.y
+    )))
 }
 
 pub(super) fn surface(world: &World) -> Option<Arc<HeightField>> {

@@ -1,5 +1,6 @@
 use nalgebra::{SMatrix, SVector};
 
+use super::relief::{Plane, Relief};
 use super::sight_map::SightMap;
 use crate::geometry::{Point3, Vector, Vector3};
 
@@ -11,7 +12,8 @@ pub(super) struct Shift {
     pub(super) up: f64,
     pub(super) turn: f64,
     pub(super) tilt: Vector,
-    /// Standard deviation of the place along the axis of which the ground tells least (m).
+    /// Standard deviation of the place along the axis of which the ground tells least (m). It is no less than
+    /// that with which the robot knew its place when it saw that ground.
     pub(super) doubt: f64,
 }
 
@@ -45,11 +47,12 @@ pub(super) fn align(
     tilt: f64,
     doubt: f64,
 ) -> Option<Shift> {
+    let relief = Relief::of(map);
     let along = ALONG.max(doubt);
     let prior = [along, along, UPWARDS, ABOUT, tilt, tilt];
     let fits = SLIPPED.iter().filter_map(|slipped| {
-        let shift = fit(map, robot, points, &prior, (before - robot) * *slipped)?;
-        Some((lies(map, robot, points, &shift) - UNLIKELY * slipped, shift))
+        let shift = fit(&relief, robot, points, &prior, (before - robot) * *slipped)?;
+        Some((lies(&relief, robot, points, &shift) - UNLIKELY * slipped, shift))
     });
     let mut fits = fits.peekable();
     if fits.peek().is_none() {
@@ -61,42 +64,20 @@ pub(super) fn align(
 
 /// The least squares of the heights, with little weight for outliers, from a first guess on. `None` if too
 /// few of the points are within the map.
-fn fit(map: &SightMap, robot: Point3, points: &[Point3], prior: &[f64; 6], guess: Vector3) -> Option<Shift> {
-    let guess = SVector::<f64, 6>::from([guess.x, guess.y, guess.z, 0.0, 0.0, 0.0]);
-    let mut fit = guess;
-    let mut doubt = f64::INFINITY;
+fn fit(
+    relief: &Relief<'_>,
+    robot: Point3,
+    points: &[Point3],
+    prior: &[f64; 6],
+    guess: Vector3,
+) -> Option<Shift> {
+    let guess = Six::from([guess.x, guess.y, guess.z, 0.0, 0.0, 0.0]);
+    let (mut fit, mut doubt) = (guess, f64::INFINITY);
     for outlier in OUTLIERS {
-        let mut normal = SMatrix::<f64, 6, 6>::zeros();
-        let mut right = SVector::<f64, 6>::zeros();
-        let mut count = 0;
-        for point in points {
-            let arm = point - robot;
-            let moved = arm.xy() + Vector::new(-arm.y, arm.x) * fit[3];
-            let at = robot.xy() + moved + Vector::new(fit[0], fit[1]);
-            let Some((height, rise)) = map.surface(at) else { continue };
-            let z = point.z + fit[2] + fit[4] * arm.x + fit[5] * arm.y;
-            let error = height - z;
-            let turn = rise.dot(&Vector::new(-arm.y, arm.x));
-            // By how much the error falls for each part of the shift.
-            let row = SVector::<f64, 6>::from([-rise.x, -rise.y, 1.0, -turn, arm.x, arm.y]);
-            let weight = 1.0 / (outlier * outlier + error * error);
-            normal += row * row.transpose() * weight;
-            right += row * (error * weight);
-            count += 1;
-        }
-        if count < ENOUGH {
-            return None;
-        }
-        for (index, expected) in prior.iter().enumerate() {
-            // Neighbouring points err together.
-            let weight = PRIOR / (expected * expected);
-            normal[(index, index)] += weight;
-            right[index] -= (fit[index] - guess[index]) * weight;
-        }
-        let Some(factors) = normal.cholesky() else { break };
-        fit += factors.solve(&right);
-        let covariance = factors.inverse() * PRIOR;
-        doubt = covariance.fixed_view::<2, 2>(0, 0).symmetric_eigenvalues().max().sqrt();
+        let equations = Equations::of(relief, robot, points, &fit, outlier)?.expecting(prior, fit - guess);
+        let Some(factors) = equations.normal.cholesky() else { break };
+        fit += factors.solve(&equations.right);
+        doubt = equations.doubt().map_or(prior[0], |doubt| doubt.min(prior[0]));
     }
     Some(Shift {
         place: Vector::new(fit[0], fit[1]),
@@ -107,18 +88,89 @@ fn fit(map: &SightMap, robot: Point3, points: &[Point3], prior: &[f64; 6], guess
     })
 }
 
+/// The parts of a [`Shift`] in their order.
+type Six = SVector<f64, 6>;
+
+/// Weighted least squares of how much heights are off.
+#[derive(Default)]
+struct Equations {
+    normal: SMatrix<f64, 6, 6>,
+    right: Six,
+    /// The part of the normal matrix that is due to the map's noise.
+    noise: SMatrix<f64, 6, 6>,
+    /// Sum of the weights, and of those times the squared doubt of the ground.
+    weight: f64,
+    doubt: f64,
+}
+
+impl Equations {
+    /// Those of points after a shift; `None` if too few of them are within the map. A point counts half at
+    /// so many metres from the map.
+    fn of(relief: &Relief<'_>, robot: Point3, points: &[Point3], shift: &Six, outlier: f64) -> Option<Self> {
+        let mut equations = Self::default();
+        let mut count = 0;
+        for point in points {
+            let arm = point - robot;
+            let moved = arm.xy() + Vector::new(-arm.y, arm.x) * shift[3];
+            let at = robot.xy() + moved + Vector::new(shift[0], shift[1]);
+            let Some(ground) = relief.at(at) else { continue };
+            let z = point.z + shift[2] + shift[4] * arm.x + shift[5] * arm.y;
+            equations.add(arm, &ground, ground.height(at) - z, outlier);
+            count += 1;
+        }
+        (count >= ENOUGH).then_some(equations)
+    }
+
+    fn add(&mut self, arm: Vector3, ground: &Plane, error: f64, outlier: f64) {
+        let Plane { rise, noise, doubt, .. } = *ground;
+        let turn = rise.dot(&Vector::new(-arm.y, arm.x));
+        // By how much the error falls for each part of the shift.
+        let row = Six::from([-rise.x, -rise.y, 1.0, -turn, arm.x, arm.y]);
+        let weight = 1.0 / (outlier * outlier + error * error);
+        self.normal += row * row.transpose() * weight;
+        self.right += row * (error * weight);
+        for part in [[1.0, 0.0, -arm.y], [0.0, 1.0, arm.x]] {
+            let row = Six::from([part[0], part[1], 0.0, part[2], 0.0, 0.0]);
+            self.noise += row * row.transpose() * (weight * noise);
+        }
+        self.weight += weight;
+        self.doubt += weight * doubt * doubt;
+    }
+
+    /// Adds how large the parts of the shift are expected to be, as standard deviations, beside how large
+    /// they are.
+    fn expecting(mut self, prior: &[f64; 6], shift: Six) -> Self {
+        for (index, expected) in prior.iter().enumerate() {
+            // Neighbouring points err together.
+            let weight = PRIOR / (expected * expected);
+            self.normal[(index, index)] += weight;
+            self.right[index] -= shift[index] * weight;
+        }
+        self
+    }
+
+    /// Standard deviation of the place along the axis of which the ground tells least (m). The map's noise
+    /// looks like slopes by which the robot could tell its place: `None` if there are no more than that.
+    fn doubt(&self) -> Option<f64> {
+        let covariance = (self.normal - self.noise).cholesky()?.inverse() * PRIOR;
+        let variance = covariance.fixed_view::<2, 2>(0, 0).symmetric_eigenvalues().max();
+        Some((variance + self.doubt / self.weight).sqrt())
+    }
+}
+
 /// The share of the ground within the map that lies on it.
-fn lies(map: &SightMap, robot: Point3, points: &[Point3], shift: &Shift) -> f64 {
+fn lies(relief: &Relief<'_>, robot: Point3, points: &[Point3], shift: &Shift) -> f64 {
     let (mut on, mut all) = (0.0, 0.0);
     for point in points {
         let arm = point - robot;
         let moved = arm.xy() + Vector::new(-arm.y, arm.x) * shift.turn;
-        let Some((height, _)) = map.surface(robot.xy() + moved + shift.place) else { continue };
+        let at = robot.xy() + moved + shift.place;
+        let Some(ground) = relief.at(at) else { continue };
         let z = point.z + shift.up + shift.tilt.dot(&arm.xy());
         // Points are the farther apart the farther they are away.
         let share = arm.xy().norm();
         all += share;
-        if (height - z).abs() < 2.0 * OUTLIER {
+        if (ground.height(at) - z).abs() < 2.0 * OUTLIER {
             on += share;
         }
     }
@@ -129,3 +181,59 @@ fn lies(map: &SightMap, robot: Point3, points: &[Point3], shift: &Shift) -> f64 
 const MOST: f64 = 0.7;
 /// The number of neighbouring points that say no more than one of them.
 const PRIOR: f64 = 20.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::math;
+    use crate::nav::SummitParameters;
+    use crate::random::Stream;
+    use crate::world::RobotSpec;
+
+    /// How well a robot knows its place after a look at ground that it has mapped with some noise, where it
+    /// knew its place to within `mapped`, and now to within 0.3 m.
+    fn doubt(ground: impl Fn(f64, f64) -> f64, mapped: f64) -> f64 {
+        let parameters =
+            SummitParameters { extent: 1.5, ..SummitParameters::of(&RobotSpec::blizzard()).unwrap() };
+        let mut map = SightMap::new(&parameters, 0.35);
+        let mut stream = Stream::new(1);
+        let mut points = Vec::new();
+        for look in 0..2 {
+            for _ in 0..20_000 {
+                let [x, y] = [0, 1].map(|_| stream.between(-1.2, 1.2));
+                let seen = Point3::new(x, y, ground(x, y) + stream.between(-0.02, 0.02));
+                if look == 0 {
+                    map.stand(seen, mapped);
+                } else {
+                    points.push(seen);
+                }
+            }
+        }
+        let robot = Point3::new(0.0, 0.0, ground(0.0, 0.0));
+        align(&map, robot, robot, &points, 0.01, 0.3).unwrap().doubt
+    }
+
+    /// Noise of a map is nothing to tell a place by.
+    #[test]
+    fn a_plane_does_not_tell_the_place() {
+        for slope in [0.0, 0.15, 0.3] {
+            let doubt = doubt(|x, _| slope * x, 0.0);
+            assert!(doubt > 0.2, "{slope}: {doubt}");
+        }
+    }
+
+    #[test]
+    fn hills_tell_the_place() {
+        let hills = |x: f64, y: f64| 0.1 * math::sin(3.0 * x) * math::cos(2.0 * y);
+        let found = doubt(hills, 0.0);
+        assert!(found < 0.03, "{found}");
+    }
+
+    /// A place is known no better than that from which the ground was mapped.
+    #[test]
+    fn doubt_of_the_ground_stays() {
+        let hills = |x: f64, y: f64| 0.1 * math::sin(3.0 * x) * math::cos(2.0 * y);
+        let found = doubt(hills, 0.2);
+        assert!((0.2..0.22).contains(&found), "{found}");
+    }
+}

@@ -2,7 +2,7 @@ use super::parameters::{CAUTION, SummitParameters};
 use super::sight_map::{DROP, NOISE, SightMap};
 use crate::geometry::{Aabb, Point, math};
 use crate::nav::elevation::ElevationMap;
-use crate::nav::grid::GridComponents;
+use crate::nav::grid::{DistanceField, GridComponents};
 use crate::world::{BitGrid, GridCell, HeightField};
 
 /// A sight map as the robot plans on it.
@@ -194,20 +194,9 @@ impl Filled {
     }
 }
 
-/// Which cells have only flagged ones within a reach along both axes.
+/// Which cells have only flagged ones, and no edge of the map, within a reach of cells.
 fn eroded(flags: &[bool], side: usize, reach: usize) -> Vec<bool> {
-    let along = |flags: &[bool], stride: usize, other: usize| {
-        let mut kept = vec![false; flags.len()];
-        for line in 0..side {
-            let mut run = 0;
-            for at in 0..side {
-                run = if flags[line * other + at * stride] { run + 1 } else { 0 };
-                if run > 2 * reach {
-                    kept[line * other + (at - reach) * stride] = true;
-                }
-            }
-        }
-        kept
-    };
-    along(&along(flags, 1, side), side, 1)
+    let grid = BitGrid::from_fn(side, side, |x, y| flags[y * side + x]).expect("a map's cells");
+    let field = DistanceField::new(&grid);
+    (0..flags.len()).map(|index| field.at(GridCell::new(index % side, index / side)) > reach as f64).collect()
 }

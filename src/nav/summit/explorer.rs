@@ -283,10 +283,11 @@ impl Explorer {
 
     fn take_in(&mut self, sweep: &Sweep) {
         let robot = self.reckoning.in_space(sweep.attitude());
-        self.map.stand(robot.position);
+        let doubt = self.reckoning.doubt;
+        self.map.stand(robot.position, doubt);
         let climber = self.map.climber;
         for fan in sweep.fans(&robot, &self.parameters.lidar, &climber) {
-            self.map.add_fan(robot.position, &fan);
+            self.map.add_fan(robot.position, &fan, doubt);
         }
         self.looked_from = robot.position;
         self.uphill = -robot.up().xy() / robot.up().z.max(MIN_UPRIGHT);

@@ -9,6 +9,7 @@ mod explorer;
 mod parameters;
 mod ramp;
 mod reckoning;
+mod relief;
 mod search;
 mod sight_map;
 mod straight;

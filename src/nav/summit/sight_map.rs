@@ -16,8 +16,7 @@ pub(super) struct SightMap {
     pub(super) climber: Climber,
     /// Two beams above each other that meet the ground less than this many metres apart show what is between.
     gap: f64,
-    /// The weight of what was measured, and its mean.
-    seen: Vec<(f64, f64)>,
+    seen: Vec<Seen>,
     pub(super) ceilings: Vec<f64>,
     /// The weight of what was measured on faces that are steeper and higher than the robot climbs.
     faces: Vec<f64>,
@@ -28,6 +27,20 @@ pub(super) struct SightMap {
     pub(super) trodden: Vec<bool>,
     /// Cells that the robot did not see well enough from beside them: it does not go there to look again.
     pub(super) given_up: Vec<bool>,
+}
+
+/// What was measured of a cell.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    weight: f64,
+    /// The mean of it.
+    at: Point3,
+    /// How well the robot knew its place when it measured, in the mean (m).
+    doubt: f64,
+}
+
+impl Seen {
+    const NOTHING: Self = Self { weight: 0.0, at: Point3::new(0.0, 0.0, 0.0), doubt: 0.0 };
 }
 
 /// Cosine of the largest tilt of a robot that stands: 60 degrees.
@@ -61,7 +74,7 @@ impl SightMap {
             extent,
             climber,
             gap,
-            seen: vec![(0.0, 0.0); side * side],
+            seen: vec![Seen::NOTHING; side * side],
             ceilings: vec![f64::INFINITY; side * side],
             faces: vec![0.0; side * side],
             shunned: vec![false; side * side],
@@ -100,8 +113,8 @@ impl SightMap {
 
     /// The elevation of a cell, if it has been seen.
     pub(super) fn height(&self, index: usize) -> Option<f64> {
-        let (weight, height) = self.seen[index];
-        (weight > 0.0).then_some(height)
+        let Seen { weight, at, .. } = self.seen[index];
+        (weight > 0.0).then_some(at.z)
     }
 
     /// The mean elevation of a cell and of those around it that have been seen, if it has: the highest of
@@ -113,22 +126,15 @@ impl SightMap {
         Some(sum / count)
     }
 
-    /// Elevation and gradient at a place all around which the ground has been seen, and is no face.
-    pub(super) fn surface(&self, place: Point) -> Option<(f64, Vector)> {
-        let cell = self.cell_at(place)?;
-        let inside = |at: usize| at > 0 && at + 1 < self.side;
-        if !inside(cell.column) || !inside(cell.row) {
-            return None;
-        }
-        let index = self.index_of(cell);
-        let known =
-            |index: usize| (self.seen[index].0 >= KNOWN && !self.is_face(index)).then(|| self.seen[index].1);
-        let (middle, width) = (known(index)?, 2.0 * self.resolution);
-        let rise = Vector::new(
-            (known(index + 1)? - known(index - 1)?) / width,
-            (known(index + self.side)? - known(index - self.side)?) / width,
-        );
-        Some((middle + rise.dot(&(place - self.place(cell))), rise))
+    /// What was measured of a cell that is known well enough to compare with, in the mean.
+    pub(super) fn known(&self, index: usize) -> Option<Point3> {
+        let Seen { weight, at, .. } = self.seen[index];
+        (weight >= KNOWN && !self.is_face(index)).then_some(at)
+    }
+
+    /// How well the robot knew its place when it measured a cell (m).
+    pub(super) fn doubt(&self, index: usize) -> f64 {
+        self.seen[index].doubt
     }
 
     /// Forgets all that was seen.
@@ -136,13 +142,14 @@ impl SightMap {
         for flags in [&mut self.shunned, &mut self.trodden, &mut self.given_up] {
             flags.fill(false);
         }
-        self.seen.fill((0.0, 0.0));
+        self.seen.fill(Seen::NOTHING);
         self.ceilings.fill(f64::INFINITY);
         self.faces.fill(0.0);
     }
 
-    /// Takes in the beams of one azimuth, from the lowest tilt up, from a robot that stands at a place.
-    pub(super) fn add_fan(&mut self, place: Point3, fan: &[Beam]) {
+    /// Takes in the beams of one azimuth, from the lowest tilt up, from a robot that stands at a place which
+    /// it knows to within a doubt (m).
+    pub(super) fn add_fan(&mut self, place: Point3, fan: &[Beam], doubt: f64) {
         let mut before = Some(place);
         for beam in fan {
             let end = beam.end();
@@ -150,9 +157,9 @@ impl SightMap {
             if let Some(end) = end {
                 let away = (end - beam.origin).norm();
                 let weight = 1.0 / (1.0 + (away / FAR) * (away / FAR));
-                self.measure(end.xy(), end.z, weight);
+                self.measure(end, weight, doubt);
                 if let Some(before) = before {
-                    self.bridge(before, end);
+                    self.bridge(before, beam, doubt);
                 }
                 if beam.is_on_face
                     && let Some(index) = self.index(end.xy())
@@ -166,20 +173,23 @@ impl SightMap {
 
     /// Whether a good part of what was measured of a cell lies on a face.
     pub(super) fn is_face(&self, index: usize) -> bool {
-        self.faces[index] > FACE * self.seen[index].0
+        self.faces[index] > FACE * self.seen[index].weight
     }
 
-    fn measure(&mut self, place: Point, height: f64, weight: f64) {
-        if let Some(index) = self.index(place) {
-            let (known, mean) = self.seen[index];
-            let sum = known + weight;
-            self.seen[index] = (sum, mean + (height - mean) * weight / sum);
+    fn measure(&mut self, at: Point3, weight: f64, doubt: f64) {
+        if let Some(index) = self.index(at.xy()) {
+            let seen = &mut self.seen[index];
+            seen.weight += weight;
+            let share = weight / seen.weight;
+            seen.at += (at - seen.at) * share;
+            seen.doubt += (doubt - seen.doubt) * share;
         }
     }
 
-    /// What lies between two ends is as high as the line between them, as long as nothing better is known.
-    fn bridge(&mut self, from: Point3, to: Point3) {
-        let way = to - from;
+    /// What lies between an end and that of the next beam is as high as the line between them, as long as
+    /// nothing better is known, or it is a face.
+    fn bridge(&mut self, from: Point3, beam: &Beam, doubt: f64) {
+        let way = beam.origin + beam.direction * beam.range - from;
         let run = way.xy().norm();
         if run > self.gap {
             return;
@@ -187,8 +197,11 @@ impl SightMap {
         let parts = (run / self.resolution).ceil();
         for part in 1..parts as usize {
             let at = from + way * (part as f64 / parts);
-            if self.index(at.xy()).is_some_and(|index| self.seen[index].0 < BETWEEN) {
-                self.measure(at.xy(), at.z, BETWEEN);
+            let Some(index) = self.index(at.xy()) else { continue };
+            if beam.is_past_drop {
+                self.faces[index] += BETWEEN;
+            } else if self.seen[index].weight < BETWEEN {
+                self.measure(at, BETWEEN, doubt);
             }
         }
     }
@@ -210,15 +223,15 @@ impl SightMap {
             // edge of a level, a beam comes from above it and leaves the cell below it.
             let highest = beam.origin.z + slope * away + slope.abs() * self.resolution;
             if self.height(index).is_some_and(|ground| ground - DROP > highest) {
-                self.seen[index] = (0.0, 0.0);
+                self.seen[index] = Seen::NOTHING;
                 self.faces[index] = 0.0;
             }
         }
     }
 
-    /// The ground under a robot that stands.
-    pub(super) fn stand(&mut self, place: Point3) {
-        self.measure(place.xy(), place.z, 1.0);
+    /// The ground under a robot that stands at a place which it knows to within a doubt (m).
+    pub(super) fn stand(&mut self, place: Point3, doubt: f64) {
+        self.measure(place, 1.0, doubt);
     }
 
     /// Notes that the robot is at a place.
@@ -283,7 +296,7 @@ mod tests {
         let cell = map.cell_at(place).unwrap();
         let see = |map: &mut SightMap, low: i32, high: i32| {
             for (x, y) in (low..high).flat_map(|x| (-18..=18).map(move |y| (x, y))) {
-                map.stand(Point3::new(0.05 * f64::from(x), 0.05 * f64::from(y), 0.0));
+                map.stand(Point3::new(0.05 * f64::from(x), 0.05 * f64::from(y), 0.0), 0.0);
             }
         };
         see(&mut map, -18, 8);
@@ -303,7 +316,7 @@ mod tests {
         let mut map = SightMap::new(parameters, 0.35);
         for (x, y) in (-18..=18).flat_map(|x| (-18..=18).map(move |y| (x, y))) {
             let at = [x, y].map(|cell| 0.05 * f64::from(cell));
-            map.stand(Point3::new(at[0], at[1], height(at[0])));
+            map.stand(Point3::new(at[0], at[1], height(at[0])), 0.0);
         }
         map
     }
@@ -339,15 +352,16 @@ mod tests {
             direction: Vector3::new(1.0, 0.0, slope).normalize(),
             range,
             is_on_face: false,
+            is_past_drop: false,
         };
         let known = |map: &SightMap| {
             let cell = |column| GridCell::new(column, map.cell_at(Point::origin()).unwrap().row);
             (21..39).filter(|&column| map.height(map.index_of(cell(column))).is_some()).count()
         };
         let before = known(&map);
-        map.add_fan(origin, &[beam(-0.3, 0.5)]);
+        map.add_fan(origin, &[beam(-0.3, 0.5)], 0.0);
         assert_eq!(known(&map), before);
-        map.add_fan(origin, &[beam(-0.3, f64::INFINITY)]);
+        map.add_fan(origin, &[beam(-0.3, f64::INFINITY)], 0.0);
         // From 0.64 m on it is more than 4 cm below the ground, over whole cells.
         assert!((5..8).contains(&(before - known(&map))), "{before} {}", known(&map));
     }

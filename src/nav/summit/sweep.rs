@@ -1,3 +1,4 @@
+use super::sight_map::DROP;
 use crate::geometry::{Point3, Pose3, Vector3, direction, math, units};
 use crate::io::{Attitude, LidarScan};
 use crate::nav::elevation::Climber;
@@ -35,6 +36,8 @@ pub(super) struct Beam {
     /// Whether it ends on a face that is steeper than what the robot drives on, and higher than what it
     /// climbs.
     pub(super) is_on_face: bool,
+    /// Whether there is a drop between the end of the beam below it and its own.
+    pub(super) is_past_drop: bool,
 }
 
 impl Beam {
@@ -90,10 +93,11 @@ impl Sweep {
         (0..beams).map(move |index| {
             let beam = |ring: &Vec<(Vector3, f64)>| {
                 let (own, range) = ring[index];
-                Beam { origin, direction: robot.rotate(own), range, is_on_face: false }
+                Beam { origin, direction: robot.rotate(own), range, is_on_face: false, is_past_drop: false }
             };
             let mut fan: Vec<Beam> = self.rings.iter().map(beam).collect();
             mark_faces(&mut fan, climber);
+            mark_drops(&mut fan, climber);
             fan
         })
     }
@@ -124,6 +128,22 @@ fn mark_faces(fan: &mut [Beam], climber: &Climber) {
     }
 }
 
+/// Finds the beams of a fan that end beyond a drop: neither as the ground falls before it nor as it falls behind
+/// it does it lead from one to the other.
+fn mark_drops(fan: &mut [Beam], climber: &Climber) {
+    let steepest = math::tan(climber.slope);
+    for index in 2..fan.len().saturating_sub(1) {
+        let ends = [index - 2, index - 1, index, index + 1].map(|beam| fan[beam].end());
+        let [Some(first), Some(above), Some(below), Some(last)] = ends else { continue };
+        let falls = |from: Point3, to: Point3| {
+            let way = to - from;
+            (-way.z / way.xy().norm().max(f64::MIN_POSITIVE)).clamp(0.0, steepest)
+        };
+        let leads = falls(first, above).max(falls(below, last)) * (below - above).xy().norm();
+        fan[index].is_past_drop = above.z - below.z > leads + DROP;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -139,7 +159,13 @@ mod tests {
             let meets = (0..5000).map(|step| 0.001 * f64::from(step));
             let mut meets = meets.filter(|range| origin.z + range * rise <= ground(range * run));
             let range = meets.next().unwrap_or(f64::INFINITY);
-            Beam { origin, direction: Vector3::new(run, 0.0, rise), range, is_on_face: false }
+            Beam {
+                origin,
+                direction: Vector3::new(run, 0.0, rise),
+                range,
+                is_on_face: false,
+                is_past_drop: false,
+            }
         };
         TILTS.iter().map(beam).collect()
     }
@@ -157,6 +183,33 @@ mod tests {
             let found = faces(|ahead| if ahead < 1.0 { 0.0 } else { height });
             assert!(!found.is_empty(), "{height}: {found:?}");
             assert!(found.iter().all(|ahead| (0.99..1.01).contains(ahead)), "{height}: {found:?}");
+        }
+    }
+
+    /// Where beams of a fan end beyond drops.
+    fn drops(ground: impl Fn(f64) -> f64) -> Vec<f64> {
+        let mut fan = fan(ground);
+        mark_drops(&mut fan, &SummitParameters::of(&RobotSpec::blizzard()).unwrap().climber);
+        let past = fan.iter().filter(|beam| beam.is_past_drop);
+        past.filter_map(|beam| Some(beam.end()?.x)).collect()
+    }
+
+    #[test]
+    fn what_no_slope_leads_to_is_a_drop() {
+        for height in [0.06, 0.09, 0.2] {
+            let found = drops(|ahead| if ahead < 0.4 { 0.0 } else { -height });
+            assert!(found.len() == 1 && (0.4..1.2).contains(&found[0]), "{height}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn ground_to_drive_down_has_no_drops() {
+        assert!(drops(|ahead| if ahead < 0.4 { 0.0 } else { -0.03 }).is_empty());
+        for degrees in [5.0, 10.0, 20.0] {
+            let rise = math::tan(units::from_deg(degrees));
+            assert!(drops(|ahead| -rise * (ahead - 0.4).max(0.0)).is_empty(), "{degrees}");
+            assert!(drops(|ahead| -rise * ahead).is_empty(), "{degrees}");
+            assert!(drops(|ahead| rise * ahead).is_empty(), "{degrees}");
         }
     }
 

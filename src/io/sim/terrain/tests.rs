@@ -379,6 +379,8 @@ fn let_go(ground: &HeightField, spec: &RobotSpec, stream: &mut Stream) -> Result
     let mut robot = Robot { carriage, body };
     let mut energy = robot.body.energy(&robot.carriage);
     for tick in 0..200 {
+        // An impact is noticed at the end of its tick.
+        let way = robot.body.velocity().norm() * TICK;
         robot.step(ground, PlanarTwist::STOP);
         let now = robot.body.energy(&robot.carriage);
         let (more, depth) = (now - energy, robot.depth(ground));
@@ -386,7 +388,7 @@ fn let_go(ground: &HeightField, spec: &RobotSpec, stream: &mut Stream) -> Result
         if !robot.is_within(ground) {
             break;
         }
-        if more > 1e-9 || depth > 0.015 {
+        if more > 1e-9 || depth > way.max(0.015) {
             let speed = robot.body.velocity().norm();
             return Err(format!("{}, tick {tick}: {more} J/kg more, {depth} m deep, {speed} m/s", spec.name));
         }
