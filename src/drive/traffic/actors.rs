@@ -10,6 +10,9 @@ const WALK: f64 = 0.3;
 const HESITATION: f64 = 0.5;
 /// Distance of a car's front behind a box at which that begins to drive (m).
 const NOTICE: f64 = 1.0;
+/// Distance of a car's front before an oncoming box at which that begins to drive (m): the car sees it move
+/// before it is so near to an obstacle that it would pass.
+pub(super) const MEETS: f64 = 3.4;
 /// Speed below which a car stands (m/s).
 pub(super) const STANDS: f64 = 0.02;
 /// Longest distance between a car that stands and the crosswalk or crossing for which it does (m).
@@ -50,7 +53,7 @@ struct Actor {
 enum Phase {
     /// At its first place; since when a car stands before it (s).
     Rests(Option<f64>),
-    /// In a direction: 1 to the left or ahead, -1 to the right.
+    /// In a direction: 1 to the left or ahead, -1 to the right or back.
     Moves(f64),
     /// Off the road, or on the other side of it.
     Done,
@@ -117,7 +120,7 @@ impl TrafficActors {
         match item.motion {
             BoxMotion::Across => (actor.left + course.lane_middle()).abs() > course.edge() + 0.5 * PERSON[1],
             BoxMotion::Crossing(_) => actor.left - 0.5 * item.size[0] > course.edge(),
-            BoxMotion::Static | BoxMotion::Along(_) => false,
+            BoxMotion::Static | BoxMotion::Along(_) | BoxMotion::Oncoming(_) => false,
         }
     }
 
@@ -150,14 +153,15 @@ impl Actor {
 
     /// Whether it has driven off the road.
     fn is_gone(&self, item: &RoadBox) -> bool {
-        self.phase == Phase::Done && matches!(item.motion, BoxMotion::Along(_))
+        self.phase == Phase::Done && matches!(item.motion, BoxMotion::Along(_) | BoxMotion::Oncoming(_))
     }
 
     fn advance(&mut self, step: &Step) {
         let edge = step.course.edge();
         match step.item.motion {
             BoxMotion::Static => {}
-            BoxMotion::Along(far) => self.drive(step, far),
+            BoxMotion::Along(far) => self.drive(step, (NOTICE, 1.0), far),
+            BoxMotion::Oncoming(far) => self.drive(step, (MEETS, -1.0), far),
             BoxMotion::Across => {
                 let middle = step.course.lane_middle();
                 let across = -(self.left + middle).signum();
@@ -170,16 +174,16 @@ impl Actor {
         }
     }
 
-    /// Along its lane, until it leaves the road.
-    fn drive(&mut self, step: &Step, far: f64) {
+    /// Along its lane in a direction, from when a car is within a distance (m), until it leaves the road.
+    fn drive(&mut self, step: &Step, (reach, way): (f64, f64), far: f64) {
         match self.phase {
-            Phase::Rests(_) if (0.0..NOTICE).contains(&step.ahead) => self.phase = Phase::Moves(1.0),
+            Phase::Rests(_) if (0.0..reach).contains(&step.ahead) => self.phase = Phase::Moves(way),
             Phase::Done if step.ahead.abs() > 2.0 * FAR => *self = Self::new(step.item),
             _ => {}
         }
-        if self.phase == Phase::Moves(1.0) {
-            self.along += SPEED * step.seconds;
-            if self.along > step.item.along + far {
+        if let Phase::Moves(way) = self.phase {
+            self.along += way * SPEED * step.seconds;
+            if way * (self.along - step.item.along) > far {
                 self.phase = Phase::Done;
             }
         }

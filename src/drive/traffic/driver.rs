@@ -1,11 +1,15 @@
+mod passing;
+#[cfg(test)]
+mod tests;
+
 use std::ops::ControlFlow;
 
-use super::obstacles::{MOVES, Obstacle, SAME, ZEBRA, is_at, is_in_crossing, is_in_zebra, obstacles};
+use super::obstacles::{Obstacle, SAME, ZEBRA, is_at, is_in_crossing, is_in_zebra, obstacles};
 use super::parameters::TrafficParameters;
 use super::shift::Shift;
 use crate::ParameterError;
 use crate::drive::lane_keeping::{Guide, LaneKeeper, LaneObservation, LaneOutcome};
-use crate::geometry::{Twist, math};
+use crate::geometry::Twist;
 use crate::io::control::{Behaviour, Decision, Senses};
 use crate::io::{self, Camera, Odometry};
 use crate::vision::lane_markings::{RoadCamera, RoadModel};
@@ -34,8 +38,8 @@ pub enum TrafficState {
 /// | state | enters when | does | leaves when |
 /// |---|---|---|---|
 /// | `Follow` | at first | keeps the lane's centre | a line, an occupied crosswalk or an obstacle is near |
-/// | `Behind` | an obstacle is in the own lane, and the centre line is solid or the other lane is not free | stays `following` behind it | it may pass: `Pass`; the obstacle is gone: `Follow` |
-/// | `Pass` | an obstacle is in the own lane | shifts into the other lane | the obstacle is behind the rear axle: `Return` |
+/// | `Behind` | an obstacle is in the own lane, and the centre line is solid or the other lane is not free | stays `following` behind it, and farther if a box comes in the other lane | it may pass: `Pass`; the obstacle is gone: `Follow` |
+/// | `Pass` | an obstacle is in the own lane | shifts into the other lane | the obstacle is behind the rear axle: `Return`; a box comes before the car is near: `Behind` |
 /// | `Return` | it is passed | shifts back | the shift is over: `Follow` |
 /// | `Stop` | a stop line, a give-way line or a crosswalk with a pedestrian is ahead | brakes to stand `gap` before it | the car stands: `Wait`; the crosswalk is free: as before |
 /// | `Wait` | the car stands at the line | stands | the time of `halts` is over, and nobody is on the crosswalk or crossing: as before |
@@ -46,8 +50,9 @@ pub enum TrafficState {
 ///
 /// # Limits
 ///
-/// The start box, signs, turns at crossings and oncoming traffic are not handled. Give-way lines of which
-/// less than a third is left are not seen. `roverlab traffic --campaign` counts what goes wrong.
+/// The start box, signs and turns at crossings are not handled. Oncoming traffic is seen from 4 m on, and on
+/// straights; what appears when the car is already within 0.5 m of what it passes is not given way. Give-way
+/// lines of which less than a third is left are not seen. `roverlab traffic --campaign` counts what goes wrong.
 ///
 /// ```
 /// use roverlab::drive::traffic::{TrafficDriver, TrafficParameters, TrafficState};
@@ -106,10 +111,6 @@ enum Halt {
     },
 }
 
-/// Distance from the car's front at which it begins to pass an obstacle (m).
-const NOTICE: f64 = 0.95;
-/// Free length of the other lane beyond an obstacle that it takes to return (m).
-const FREE_LANE: f64 = 1.0;
 /// Length of a crosswalk with the part behind it that pedestrians hide (m).
 const CROSSWALK: f64 = 0.75;
 /// Length of a crossing between its line and the far edge (m).
@@ -122,8 +123,6 @@ const LINE: f64 = 0.04;
 const STANDS: f64 = 0.02;
 /// Speed at which the car rolls to a line (m/s).
 const ROLLS: f64 = 0.05;
-/// Longest time for which an obstacle beside the car is not seen (s).
-const MEMORY: f64 = 3.0;
 /// Time for which the road has to be free (s).
 const FREE: f64 = 0.7;
 /// Number of a speed limit of 1 m/s, by the rules.
@@ -134,10 +133,6 @@ const WITHIN: f64 = 0.93;
 const SLOWED: f64 = 0.10;
 /// Distance behind a speed zone at which the car speeds up (m).
 const ENDED: f64 = 0.15;
-/// Time in which a car that is too near falls back (s).
-const FALL_BACK: f64 = 0.5;
-/// Distance before an obstacle at which a car stands that passes it but is not yet aside (m).
-const SAFE: f64 = 0.06;
 
 impl TrafficDriver {
     /// Creates a driver for a camera and a road. Fails for parameters out of range.
@@ -219,7 +214,7 @@ impl TrafficDriver {
         let (crossing, mut obstacles): (Vec<_>, Vec<_>) =
             obstacles.into_iter().partition(|it| is_in_crossing(&elements, it.ahead));
         self.remember(time, &mut obstacles);
-        self.change_lanes(&obstacles);
+        self.change_lanes(speed, &obstacles);
         obstacles.extend(crossing);
         most.min(self.free_speed(&obstacles))
     }
@@ -317,97 +312,6 @@ impl TrafficDriver {
                 && self.released.iter().all(|done| (done - place).abs() > SAME)
         };
         elements.iter().filter(has_to_stop).map(|element| self.driven + element.ahead).find(is_open)
-    }
-
-    /// Keeps the obstacle that the car passes until it is behind, although it leaves the view before or is
-    /// not recognised beside the car.
-    fn remember(&mut self, time: f64, obstacles: &mut Vec<Obstacle>) {
-        if self.lateral != Lateral::Pass {
-            // The next one to be passed.
-            let reach = self.reach();
-            let next = obstacles.iter().find(|it| it.is_in_way(reach) && it.ahead + it.length > 0.0);
-            self.passed = next.map(|it| (*it, time, self.driven));
-            return;
-        }
-        let Some((last, seen, driven)) = self.passed else { return };
-        let speed = if last.speed > MOVES { last.speed } else { 0.0 };
-        let ahead = last.ahead + speed * (time - seen) - (self.driven - driven);
-        if let Some(it) = obstacles.iter().find(|it| (it.ahead - ahead).abs() < SAME) {
-            self.passed = Some((*it, time, self.driven));
-        } else if time - seen < MEMORY {
-            obstacles.push(Obstacle { ahead, ..last });
-        }
-    }
-
-    /// Distance to the left and right of the lane's centre within which obstacles are in the way (m).
-    fn reach(&self) -> f64 {
-        self.parameters.body[1] + self.parameters.clearance
-    }
-
-    /// Begins and ends passing.
-    fn change_lanes(&mut self, obstacles: &[Obstacle]) {
-        let reach = self.reach();
-        let is_near =
-            |it: &&Obstacle| it.is_in_way(reach) && it.ahead + it.length > 0.0 && self.gap(it.ahead) < NOTICE;
-        let beside = obstacles.iter().filter(is_near).map(|it| it.left + reach).reduce(f64::max);
-        match beside {
-            Some(beside) if self.shift.to() < beside - 0.03 => {
-                let may_pass = self.lateral == Lateral::Pass || self.finder.may_pass();
-                if may_pass && self.is_free(beside, obstacles) {
-                    self.shift = Shift::new(self.shift.at(self.driven)[0], beside + 0.02, self.driven);
-                    self.lateral = Lateral::Pass;
-                } else if self.lateral == Lateral::Own {
-                    self.lateral = Lateral::Behind;
-                }
-            }
-            None if self.lateral == Lateral::Pass => {
-                self.shift = Shift::new(self.shift.to(), 0.0, self.driven);
-                self.lateral = Lateral::Return;
-            }
-            None if self.lateral == Lateral::Behind || self.shift.is_over(self.driven) => {
-                self.lateral = Lateral::Own;
-            }
-            _ => {}
-        }
-    }
-
-    /// Whether no other obstacle is on a path at a distance beside the lane's centre (m).
-    fn is_free(&self, beside: f64, obstacles: &[Obstacle]) -> bool {
-        let half = self.parameters.body[1];
-        obstacles.iter().all(|it| {
-            let is_in_way = it.right < beside + half && it.left > beside - half;
-            let is_near = it.ahead + it.length > 0.0 && self.gap(it.ahead) < NOTICE + FREE_LANE;
-            !(is_in_way && is_near)
-        })
-    }
-
-    /// Maximum speed beside obstacles, and towards those in the way.
-    fn free_speed(&self, obstacles: &[Obstacle]) -> f64 {
-        let p = &self.parameters;
-        let moving = obstacles.iter().any(|it| it.speed > MOVES && it.ahead > -1.0);
-        let mut most = match self.lateral {
-            Lateral::Pass | Lateral::Return => p.passing[usize::from(moving)],
-            Lateral::Own | Lateral::Behind => p.lane.speed,
-        };
-        let Some(lane) = self.keeper.lane() else { return most };
-        // The front is further aside than the origin while the car turns.
-        let front = self.side * (lane.offset + p.body[0] * math::sin(lane.heading));
-        let stays = match self.lateral {
-            Lateral::Own => !self.finder.may_pass(),
-            Lateral::Behind => true,
-            Lateral::Pass | Lateral::Return => false,
-        };
-        let apart = if stays { p.following } else { SAFE };
-        for it in obstacles {
-            let is_in_way = front - p.body[1] < it.left + 0.01 && front + p.body[1] > it.right - 0.01;
-            if is_in_way && self.gap(it.ahead) > -0.02 {
-                let free = self.gap(it.ahead) - apart;
-                // Too near behind what moves, the car falls back.
-                let approach = if free > 0.0 { self.stoppable(free, 0.0) } else { free / FALL_BACK };
-                most = most.min((approach + it.speed.max(0.0)).max(0.0));
-            }
-        }
-        most
     }
 }
 

@@ -1,6 +1,6 @@
 //! What a car does at one element in one lap.
 
-use super::actors::{STANDS, TrafficActors, between};
+use super::actors::{MEETS, STANDS, TrafficActors, between};
 use super::scene::{BoxMotion, RoadBox, TrafficScene, ZEBRA};
 use super::score::EvasionElement;
 
@@ -18,7 +18,7 @@ pub(super) struct Encounter {
     /// Width of a barred area (m).
     width: f64,
     /// Whether the solid line was crossed, whether the car came too near to the box ahead, and whether a
-    /// wheel was in the barred area.
+    /// wheel was in the barred area, or in the way of an oncoming box.
     has_crossed: bool,
     is_near: bool,
     has_entered: bool,
@@ -73,6 +73,10 @@ const SHORT_HALT: f64 = 1.0;
 const BACK: f64 = 2.0;
 /// Least distance behind a box in a no-passing zone, by the rules (m).
 const FOLLOWING: f64 = 0.3;
+/// Distance of an oncoming box behind what blocks the own lane within which cars give way, by the rules (m).
+const YIELD: f64 = 1.0;
+/// Distance of an oncoming box behind a car's front at which both have passed each other (m).
+const APART: f64 = 1.0;
 /// Distance ahead of a car at which an obstacle counts as met (m).
 const MET: f64 = 1.0;
 /// Distance from an element beyond which its encounter is over (m).
@@ -98,11 +102,12 @@ impl Encounter {
     }
 
     /// Whether cars leave their lane for it.
-    pub(super) fn is_obstacle(&self) -> bool {
+    pub(super) fn is_obstacle(&self, scene: &TrafficScene) -> bool {
+        let is_in_lane = |index: usize| scene.boxes[index].is_in_lane(&scene.course);
         matches!(
             self.element,
             EvasionElement::StaticObstacle | EvasionElement::DynamicObstacle | EvasionElement::BarredArea
-        )
+        ) && self.index.is_none_or(is_in_lane)
     }
 
     /// Where it is now along the line, and its end (m); `None` off the road.
@@ -116,6 +121,7 @@ impl Encounter {
         let verdict = match self.element {
             EvasionElement::StaticObstacle | EvasionElement::DynamicObstacle => self.judge_obstacle(now),
             EvasionElement::NoPassing => self.judge_zone(now),
+            EvasionElement::OncomingObstacle => self.judge_oncoming(now),
             EvasionElement::BarredArea => self.judge_area(now),
             _ => self.judge_line(now),
         };
@@ -172,6 +178,25 @@ impl Encounter {
             self.is_near |= gap.is_some_and(|gap| (0.0..FOLLOWING).contains(&gap));
         }
         (ahead + self.length < 0.0).then_some((!self.is_near, self.has_crossed || self.is_touched))
+    }
+
+    /// A box in the other lane: no wheel may be there while the box is beside what blocks the own lane or
+    /// within 1 m behind it. Where nothing does, only touching it counts.
+    fn judge_oncoming(&mut self, now: &Moment<'_>) -> Verdict {
+        let ahead = self.approach(now, self.along);
+        let Progress::Before(is_met) = self.progress else { return None };
+        let verdict = |it: &Self| Some((!it.has_entered, it.is_touched));
+        let Some(along) = self.index.and_then(|index| now.actors.along(index)) else {
+            return if is_met { verdict(self) } else { None };
+        };
+        let course = &now.scene.course;
+        let gap = between(course, now.front, along);
+        self.progress = Progress::Before(is_met || gap < MET);
+        let is_near = gap > 0.0 && between(course, self.along + self.length, along) < YIELD;
+        let is_owed = self.length > 0.0 && ahead < MET && is_near;
+        let half = 0.5 * course.edge();
+        self.has_entered |= is_owed && now.wheels.iter().any(|(_, out)| -out > half);
+        if gap < -APART { verdict(self) } else { None }
     }
 
     fn judge_area(&mut self, now: &Moment<'_>) -> Verdict {
@@ -255,6 +280,10 @@ fn of_box(scene: &TrafficScene, index: usize, it: &RoadBox) -> Option<Encounter>
         (BoxMotion::Static, _) => {
             Some(Encounter::new(EvasionElement::StaticObstacle, Some(index), it.along, it.size[0]))
         }
+        (BoxMotion::Oncoming(_), _) => {
+            let (at, long) = blocked(scene, it.along).unwrap_or((it.along, 0.0));
+            Some(Encounter::new(EvasionElement::OncomingObstacle, Some(index), at, long))
+        }
         (BoxMotion::Along(_), None) => {
             Some(Encounter::new(EvasionElement::DynamicObstacle, Some(index), it.along, it.size[0]))
         }
@@ -271,4 +300,14 @@ fn of_box(scene: &TrafficScene, index: usize, it: &RoadBox) -> Option<Encounter>
             })
         }
     }
+}
+
+/// What blocks the own lane before an oncoming box that begins at a place along the line (m): where it
+/// begins, and its length (m).
+fn blocked(scene: &TrafficScene, from: f64) -> Option<(f64, f64)> {
+    let blocks = |it: &&RoadBox| it.motion == BoxMotion::Static && it.is_in_lane(&scene.course);
+    let boxes = scene.boxes.iter().filter(blocks).map(|it| (it.along, it.size[0]));
+    let areas = scene.barred_areas().into_iter().map(|(at, long, _)| (at, long));
+    let before = boxes.chain(areas).filter(|(at, _)| (0.0..MEETS).contains(&(from - at)));
+    before.max_by(|a, b| a.0.total_cmp(&b.0))
 }

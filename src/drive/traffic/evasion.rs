@@ -15,6 +15,7 @@ use crate::world::{DriveSpec, Footprint, RobotSpec};
 /// | element | right | fault |
 /// |---|---|---|
 /// | obstacle | passed, back in the lane within 2 m | touched |
+/// | oncoming obstacle | no wheel in its lane while it is within 1 m of what blocks the own one | touched |
 /// | obstacle in a no-passing zone | at least 300 mm behind it | touched; two wheels over the solid line |
 /// | barred area | no wheel in it | |
 /// | stop line | stood at most 150 mm before it for 3 s | did not stand |
@@ -181,7 +182,7 @@ impl ObstacleEvasion {
         });
         let is_outside = wheels.iter().filter(|(_, out)| out.abs() > half).count() >= 2;
         let is_over_centre = wheels.iter().filter(|(_, out)| -out > half).count() >= 2;
-        let is_beside = self.encounters.iter().filter(|it| it.is_obstacle()).any(|it| {
+        let is_beside = self.encounters.iter().filter(|it| it.is_obstacle(&self.scene)).any(|it| {
             it.place(actors).is_some_and(|(from, to)| {
                 between(course, from, self.lane.along) > -BESIDE
                     && between(course, to, self.lane.along) < BESIDE

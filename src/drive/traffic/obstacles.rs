@@ -8,6 +8,8 @@ pub(super) struct Obstacle {
     pub(super) left: f64,
     pub(super) length: f64,
     pub(super) speed: f64,
+    /// Whether it is a barred area.
+    pub(super) is_paint: bool,
 }
 
 impl Obstacle {
@@ -33,6 +35,9 @@ pub(super) const SAME: f64 = 0.35;
 /// Speed from which an obstacle moves; boxes drive at 0.6 m/s by the rules (m/s).
 pub(super) const MOVES: f64 = 0.3;
 
+/// Speed of what comes towards the car; boxes drive at 0.6 m/s by the rules (m/s).
+const COMES: f64 = -0.25;
+
 /// Obstacles on the road that are no pedestrians, and barred areas. The other lane is on the left (side 1) or
 /// on the right (-1).
 pub(super) fn obstacles(elements: &[RoadElement], side: f64) -> Vec<Obstacle> {
@@ -54,9 +59,15 @@ pub(super) fn obstacles(elements: &[RoadElement], side: f64) -> Vec<Obstacle> {
             _ => None,
         }?;
         let (right, left) = if side > 0.0 { (right, left) } else { (-left, -right) };
-        Some(Obstacle { ahead, right, left, length, speed })
+        let is_paint = matches!(element.kind, RoadElementKind::Barred { .. });
+        Some(Obstacle { ahead, right, left, length, speed, is_paint })
     });
     obstacles.collect()
+}
+
+/// Whether one of some boxes in the other lane comes and is not yet behind the car's front (m).
+pub(super) fn comes(mut boxes: impl Iterator<Item = RoadElement>, front: f64) -> bool {
+    boxes.any(|it| it.speed < COMES && it.ahead + LONGEST > front)
 }
 
 /// Whether an element is a box on a crosswalk or beside it.

@@ -3,7 +3,8 @@ use std::sync::Arc;
 use crate::geometry::{Point, Pose};
 use crate::random::Stream;
 use crate::world::road::{
-    Appearance, Centre, CourseError, RightOfWay, RoadCourse, RoadMark, RoadMarkKind, RoadSide, Traffic,
+    Alignment, Appearance, Centre, CourseError, Crossing, RightOfWay, RoadCourse, RoadMark, RoadMarkKind,
+    RoadSide, Traffic,
 };
 use crate::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Shape};
 
@@ -30,6 +31,9 @@ pub enum BoxMotion {
     /// Along its lane over a distance (m) at 0.6 m/s, once a car is 1 m behind it. Then it is off the road
     /// until the next lap.
     Along(f64),
+    /// In the other lane towards the car over a distance (m) at 0.6 m/s, once the car is 3.4 m before it.
+    /// Then it is off the road until the next lap.
+    Oncoming(f64),
     /// Across a crosswalk at 0.3 m/s, once a car stands before it: a pedestrian.
     Across,
     /// Over a crossing from the right at 0.6 m/s, once a car stands before it. The angle is that from this
@@ -63,8 +67,20 @@ const ZONE_LENGTH: f64 = 1.5;
 const NUMBER: f64 = 36.0;
 /// How far a line that strikes a number out begins before it (m).
 const STRIKE: f64 = 0.05;
-/// Number of standing boxes on a course.
+/// Number of standing boxes in the own lane of a course.
 const BOXES: usize = 4;
+/// Distance from the beginning of what blocks the own lane to an oncoming box at first (m): the car is 2.0 to
+/// 2.4 m before it when the box begins to drive.
+const MEETING: [f64; 2] = [1.0, 1.4];
+/// Length of the longest box (m).
+const LONGEST: f64 = 0.4;
+/// Straight road before what blocks the own lane, on which cars see an oncoming box (m).
+const SIGHT: f64 = 0.9;
+/// Distance before what blocks the own lane at which an oncoming box leaves the road (m): a car waits there.
+const BEHIND_CAR: f64 = 2.6;
+/// Distance from a standing box in the own lane to one in the other lane behind it (m): cars return between
+/// them.
+const BETWEEN: [f64; 2] = [2.0, 2.2];
 
 /// A course with boxes and pedestrians for Obstacle Evasion.
 ///
@@ -87,18 +103,21 @@ pub struct TrafficScene {
 impl TrafficScene {
     /// Puts boxes at random on a course at the scale of the rules: pedestrians at every other crosswalk,
     /// traffic at every other crossing where this road gives way, a slow box in a no-passing zone, a barred
-    /// area on a straight, a slow box where passing is allowed, and up to four boxes that stand. Zones beside
-    /// what is passed become dashed, and patches where pedestrians wait are removed.
+    /// area on a straight, a slow box where passing is allowed, and up to four boxes that stand. In the other
+    /// lane, a box stands behind one of these, and boxes come towards the car there and at the barred area,
+    /// if these find a straight with enough room; other marks may be removed there. Zones beside what is
+    /// passed become dashed, and patches where pedestrians wait are removed.
     pub fn drawn(course: RoadCourse, seed: u64) -> Self {
         let taken = course.marks.iter().filter_map(|mark| extent(&course, mark)).collect();
         let random = Stream::new(seed).child("traffic", 0);
         let mut drawing = Drawing { course, random, taken, passed: Vec::new(), boxes: Vec::new() };
         drawing.end_speed_zones();
+        let met = drawing.meeting(LONGEST, true);
         drawing.pedestrians();
         drawing.crossing_traffic();
         drawing.leader();
         drawing.barred_area();
-        drawing.passable();
+        drawing.passable(met);
         drawing.allow_passing();
         let Drawing { mut course, mut boxes, .. } = drawing;
         course.marks.sort_by(|a, b| a.at.total_cmp(&b.at));
@@ -154,6 +173,11 @@ impl TrafficScene {
 }
 
 impl RoadBox {
+    /// Whether its middle is in the own lane of a course.
+    pub(super) fn is_in_lane(&self, course: &RoadCourse) -> bool {
+        self.left.abs() < 0.5 * course.edge()
+    }
+
     /// Pose at a position along a course's line and to the left, as in its fields.
     pub(super) fn pose_at(&self, course: &RoadCourse, along: f64, left: f64) -> Pose {
         let BoxMotion::Crossing(angle) = self.motion else {
@@ -251,28 +275,79 @@ impl Drawing {
     /// A barred area on a straight.
     fn barred_area(&mut self) {
         let (long, wide) = (self.random.between(0.8, 1.6), self.random.between(0.15, 0.25));
-        let line = self.course.line.clone();
-        let is_straight = |at: f64| {
-            let step = |i: i32| line.at(at + APART[0] + 0.1 * long * f64::from(i)).curvature == 0.0;
-            (0..=10).all(step)
-        };
-        let Some(at) = self.take(APART[0] + long + APART[1], is_straight) else { return };
+        let at = self.meeting(long, false).or_else(|| {
+            let line = self.course.line.clone();
+            let is_straight = |at: f64| is_straight(&line, at + APART[0], at + APART[0] + long);
+            self.take(APART[0] + long + APART[1], is_straight)
+        });
+        let Some(at) = at else { return };
         let side = if self.course.traffic == Traffic::Left { RoadSide::Left } else { RoadSide::Right };
         self.course.marks.push(RoadMark { at: at + APART[0], kind: RoadMarkKind::Barred(side, long, wide) });
     }
 
     /// Boxes that may be passed: one that moves, and some that stand.
-    fn passable(&mut self) {
+    fn passable(&mut self, mut met: Option<f64>) {
         if let Some(at) = self.take(STRETCH, |_| true) {
             let motion = BoxMotion::Along(STRETCH - APART[0] - APART[1]);
             let size = self.size();
             self.boxes.push(RoadBox { along: at + APART[0], left: 0.0, size, motion });
         }
-        for _ in 0..BOXES {
-            let Some(at) = self.take(APART[0] + APART[1], |_| true) else { break };
+        for count in 0..BOXES {
+            let at = met.take().or_else(|| self.take(APART[0] + APART[1], |_| true));
+            let Some(along) = at.map(|at| at + APART[0]) else { break };
             let (size, left) = (self.size(), self.random.between(-0.03, 0.03));
-            self.boxes.push(RoadBox { along: at + APART[0], left, size, motion: BoxMotion::Static });
+            self.boxes.push(RoadBox { along, left, size, motion: BoxMotion::Static });
+            let other = along + self.random.between(BETWEEN[0], BETWEEN[1]);
+            // On a bend, cars return later.
+            if count == 1 && is_straight(&self.course.line, along - SIGHT, other + LONGEST) {
+                self.oppose(other, BoxMotion::Static);
+            }
         }
+    }
+
+    /// Occupies an interval for what blocks the own lane over a length (m), on a straight on which cars see
+    /// a box that comes from behind it, and puts that box there; may clear the interval of marks. Returns
+    /// where it begins (m).
+    fn meeting(&mut self, long: f64, clears: bool) -> Option<f64> {
+        let behind = self.random.between(MEETING[0], MEETING[1]);
+        let line = self.course.line.clone();
+        let is_seen = |at: f64| is_straight(&line, at + APART[0] - SIGHT, at + APART[0] + behind.max(long));
+        let length = APART[0] + long + APART[1];
+        let at = self.take(length, is_seen);
+        let at = at.or_else(|| if clears { self.take_cleared(length, is_seen) } else { None })?;
+        self.oppose(at + APART[0] + behind, BoxMotion::Oncoming(behind + BEHIND_CAR));
+        Some(at)
+    }
+
+    /// The same as [`take`](Self::take), with side roads, roads that give way, crosswalks and gaps in
+    /// lines removed from the interval.
+    fn take_cleared(&mut self, long: f64, is_suitable: impl Fn(f64) -> bool) -> Option<f64> {
+        let is_loose = |mark: &RoadMark| match mark.kind {
+            RoadMarkKind::SideRoad(..) | RoadMarkKind::Gap(..) | RoadMarkKind::Zebra => true,
+            RoadMarkKind::Crossing(Crossing { arms, right_of_way, .. }) => {
+                right_of_way == RightOfWay::Priority && arms.iter().any(|arm| *arm > 0.0)
+            }
+            _ => false,
+        };
+        let marks = std::mem::take(&mut self.course.marks);
+        let (mut loose, fixed): (Vec<_>, Vec<_>) = marks.into_iter().partition(is_loose);
+        self.course.marks = fixed;
+        let parts: Vec<_> = loose.iter().filter_map(|mark| extent(&self.course, mark)).collect();
+        self.taken.retain(|part| !parts.contains(part));
+        let at = self.take(long, is_suitable);
+        if let Some(at) = at {
+            let is_apart = |&(from, to): &(f64, f64)| to < at || from > at + long;
+            loose.retain(|mark| extent(&self.course, mark).is_none_or(|part| is_apart(&part)));
+        }
+        self.taken.extend(loose.iter().filter_map(|mark| extent(&self.course, mark)));
+        self.course.marks.extend(loose);
+        at
+    }
+
+    /// Puts a box in the other lane.
+    fn oppose(&mut self, along: f64, motion: BoxMotion) {
+        let (size, left) = (self.size(), -2.0 * self.course.lane_middle());
+        self.boxes.push(RoadBox { along, left, size, motion });
     }
 
     /// Makes the centre line dashed where cars leave their lane.
@@ -315,6 +390,11 @@ impl Drawing {
         let is_apart = |&(a, b): &(f64, f64)| turns.iter().all(|turn| to < a + turn || from > b + turn);
         from > 1.0 && to < length - 0.5 && self.taken.iter().all(is_apart)
     }
+}
+
+/// Whether a line is straight between two places (m).
+fn is_straight(line: &Alignment, from: f64, to: f64) -> bool {
+    (0..=20).all(|i| line.at(from + 0.05 * f64::from(i) * (to - from)).curvature == 0.0)
 }
 
 fn zebras(course: &RoadCourse) -> impl Iterator<Item = f64> {

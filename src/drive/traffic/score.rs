@@ -7,6 +7,9 @@ pub enum EvasionElement {
     DynamicObstacle,
     /// The same in a no-passing zone: 5 points for staying behind it.
     NoPassing,
+    /// A box that comes towards the car in the other lane: 5 points for giving way where the own lane is
+    /// blocked.
+    OncomingObstacle,
     /// A barred area in the own lane: 10 points for not entering it.
     BarredArea,
     /// A stop line, straight on: 5 points.
@@ -23,10 +26,11 @@ pub enum EvasionElement {
 
 impl EvasionElement {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::StaticObstacle,
         Self::DynamicObstacle,
         Self::NoPassing,
+        Self::OncomingObstacle,
         Self::BarredArea,
         Self::StopLine,
         Self::GiveWayLine,
@@ -40,7 +44,7 @@ impl EvasionElement {
         match self {
             Self::StaticObstacle | Self::CrossTraffic => (10.0, 10.0),
             Self::DynamicObstacle | Self::Crosswalk => (15.0, 10.0),
-            Self::NoPassing => (5.0, 10.0),
+            Self::NoPassing | Self::OncomingObstacle => (5.0, 10.0),
             Self::StopLine => (5.0, 5.0),
             Self::GiveWayLine => (5.0, 0.0),
             Self::EmptyCrosswalk | Self::BarredArea => (10.0, 0.0),
@@ -53,6 +57,7 @@ impl EvasionElement {
             Self::StaticObstacle => "static obstacle",
             Self::DynamicObstacle => "dynamic obstacle",
             Self::NoPassing => "no-passing zone",
+            Self::OncomingObstacle => "oncoming obstacle",
             Self::BarredArea => "barred area",
             Self::StopLine => "stop line",
             Self::GiveWayLine => "give-way line",

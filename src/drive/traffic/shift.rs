@@ -9,15 +9,24 @@ pub(super) struct Shift {
 }
 
 /// Largest curvature that it adds to the lane's (1/m): a car at a scale of 1:10 turns with 2.0, bends take
-/// 0.8.
-const CURVATURE: f64 = 1.3;
+/// 0.8. From a standstill, it is larger: there the car follows it without delay.
+const CURVATURE: [f64; 2] = [1.3, 1.7];
 /// Largest second derivative of the polynomial from 0 to 1.
 const STEEPEST: f64 = 5.774;
 
 impl Shift {
     /// From one distance to another (m to the left), from a place along the road on (m).
     pub(super) fn new(from: f64, to: f64, begin: f64) -> Self {
-        let length = (STEEPEST * (to - from).abs() / CURVATURE).sqrt().max(0.1);
+        Self::within(CURVATURE[0], from, to, begin)
+    }
+
+    /// The same from a standstill.
+    pub(super) fn from_rest(from: f64, to: f64, begin: f64) -> Self {
+        Self::within(CURVATURE[1], from, to, begin)
+    }
+
+    fn within(curvature: f64, from: f64, to: f64, begin: f64) -> Self {
+        let length = (STEEPEST * (to - from).abs() / curvature).sqrt().max(0.1);
         Self { from, to, begin, length }
     }
 
@@ -57,7 +66,7 @@ mod tests {
                 (shift.at(along - 1e-4), shift.at(along), shift.at(along + 1e-4));
             assert!(((after - before) / 2e-4 - slope).abs() < 1e-6);
             assert!(((after + before - 2.0 * here) / 1e-8 - bend).abs() < 1e-2);
-            assert!(bend.abs() < CURVATURE + 1e-3);
+            assert!(bend.abs() < CURVATURE[0] + 1e-3);
         }
         assert_eq!(shift.at(0.5), [0.0, 0.0, 0.0]);
         assert!(shift.is_over(9.0) && (shift.at(9.0)[0] - 0.4).abs() < 1e-12);

@@ -123,6 +123,25 @@ fn obstacles_are_passed_touched_or_followed() {
 }
 
 #[test]
+fn oncoming_boxes_go_first_where_the_own_lane_is_blocked() {
+    let boxes = [(8.0, 0.0, BoxMotion::Static), (10.0, 0.42, BoxMotion::Oncoming(5.0))];
+    let near = |along: f64| if along < 7.2 { 0.5 * beside(6.5, 7.2)(along) } else { beside(7.2, 9.0)(along) };
+    for (left, halt, expected) in [
+        (&beside(7.0, 9.0) as &dyn Fn(f64) -> f64, Some((6.9, 6.0)), RIGHT),
+        (&near, Some((7.0, 6.0)), NEUTRAL),
+        (&beside(7.0, 9.0), None, NEGATIVE),
+    ] {
+        let score = drive(&scene("straight 20000\n", &boxes), &Plan { left, halt, speed: 1.0 });
+        assert_eq!(row(&score, EvasionElement::OncomingObstacle), expected, "{score:?}");
+        assert_eq!(score.collisions, expected[3], "{score:?}");
+    }
+    // Nothing is in the own lane.
+    let score =
+        drive(&scene("straight 20000\n", &[boxes[1]]), &Plan { left: &|_| 0.0, halt: None, speed: 1.0 });
+    assert_eq!(row(&score, EvasionElement::OncomingObstacle), RIGHT, "{score:?}");
+}
+
+#[test]
 fn barred_areas_are_not_entered() {
     let marks = "straight 8000\nbarred right 1200 200\nstraight 12000\n";
     for (aside, expected) in [(0.15, RIGHT), (0.02, NEUTRAL)] {
@@ -161,7 +180,7 @@ fn speed_zones_begin_and_end_at_their_numbers() {
 #[test]
 fn drawn_scenes_follow_the_rules() {
     let options = RoadCourseOptions { crossings: 0.9, zebras: 0.8, ..RoadCourseOptions::default() };
-    let mut seen = [0; 4];
+    let mut seen = [0; 5];
     for seed in 0..200 {
         let course = generate(seed, &options).unwrap();
         let scene = TrafficScene::drawn(course, seed);
@@ -173,6 +192,7 @@ fn drawn_scenes_follow_the_rules() {
                 BoxMotion::Along(_) => 1,
                 BoxMotion::Across => 2,
                 BoxMotion::Crossing(_) => 3,
+                BoxMotion::Oncoming(_) => 4,
             };
             seen[kind] += 1;
             let is_in_zone = zones.iter().any(|(from, to)| (*from..*to).contains(&item.along));

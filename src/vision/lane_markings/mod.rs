@@ -13,6 +13,7 @@ mod model;
 #[cfg(test)]
 mod tests;
 
+pub(in crate::vision) use camera::Projection;
 pub use camera::RoadCamera;
 pub use filter::{MarkingFilter, MarkingPoint};
 pub(in crate::vision) use finder::RoadAhead;

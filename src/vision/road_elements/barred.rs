@@ -72,13 +72,18 @@ pub(super) fn barred(view: &RoadView, road: &RoadAhead, found: &mut Vec<Detectio
     let counts =
         |side: f64| -> Vec<Count> { (0..ROWS).map(|row| Count::of(view, row, strip(side))).collect() };
     let (own, other) = (counts(side), counts(-side));
+    // Boxes there are bright as well, and no crosswalk.
+    let has_box = found.iter().any(|it| {
+        matches!(it.kind, RoadElementKind::Obstacle { right, left }
+        if side * (0.5 * (right + left) + road.middle) < 0.0)
+    });
     let is_barred = |row: usize| {
         let from = row.saturating_sub(WINDOW / 2);
         let window = from..(from + WINDOW).min(ROWS);
         let (own, other) = (Count::sum(&own[window.clone()]), Count::sum(&other[window]));
         Count::share(own.bright, own.all) > STRIPED
             && Count::share(own.dark, own.all) > BETWEEN
-            && Count::share(other.bright, other.all) < OTHER
+            && (has_box || Count::share(other.bright, other.all) < OTHER)
     };
     let mut row = 0;
     while row < ROWS {

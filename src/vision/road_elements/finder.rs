@@ -1,4 +1,5 @@
 use super::across::Tones;
+use super::distant::OtherLane;
 use super::element::{Detection, RoadElement, RoadElementKind};
 use super::number::Numbers;
 use super::view::RoadView;
@@ -68,6 +69,7 @@ pub struct RoadElementFinder {
     edge: f64,
     found: Vec<Detection>,
     tracks: Vec<Track>,
+    other_lane: OtherLane,
     /// Evidence that the centre line is dashed on the own side.
     dashed: f64,
 }
@@ -112,6 +114,7 @@ impl RoadElementFinder {
             edge: 0.0,
             found: Vec::new(),
             tracks: Vec::new(),
+            other_lane: OtherLane::default(),
             dashed: 0.0,
         })
     }
@@ -131,6 +134,12 @@ impl RoadElementFinder {
             };
             RoadElement { kind, ahead: track.ahead * size, speed: track.speed * size }
         })
+    }
+
+    /// Boxes in the other lane up to 4 m ahead, as [`RoadElementKind::Obstacle`]; their speed is negative if
+    /// they come towards the car.
+    pub fn in_other_lane(&self) -> impl Iterator<Item = RoadElement> {
+        self.other_lane.elements(self.size, self.middle)
     }
 
     /// Whether the last image shows a box between two distances ahead of the robot's origin (m), on the road
@@ -160,6 +169,7 @@ impl RoadElementFinder {
     /// Discards everything.
     pub fn forget(&mut self) {
         self.tracks.clear();
+        self.other_lane.forget();
         self.dashed = 0.0;
     }
 
@@ -170,8 +180,10 @@ impl RoadElementFinder {
             track.ahead += track.speed * seconds - metres;
             track.is_seen = false;
         }
+        self.other_lane.advance(metres, seconds);
         if !lane.lost {
             self.detect(image, lane);
+            self.other_lane.see(&self.view, image, &lane.road_ahead(), lane.pitch);
             for detection in std::mem::take(&mut self.found) {
                 self.associate(&detection, seconds);
             }

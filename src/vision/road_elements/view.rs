@@ -2,7 +2,7 @@ use std::ops::Range;
 
 use crate::geometry::{Point, Vector};
 use crate::vision::GrayView;
-use crate::vision::lane_markings::{RoadAhead, RoadCamera};
+use crate::vision::lane_markings::{Projection, RoadAhead, RoadCamera};
 
 /// Size of a cell of the straightened picture (m).
 pub(super) const CELL: f64 = 0.01;
@@ -76,8 +76,7 @@ impl RoadView {
 
     /// Straightens an image.
     pub(super) fn straighten(&mut self, image: GrayView<'_>, road: &RoadAhead, pitch: f64) {
-        let size = (image.width() as u32, image.height() as u32);
-        let projection = self.camera.projection(pitch, size);
+        let projection = self.projection(image, pitch);
         let (centre, aside) = road.at(self.camera.ahead);
         self.left = -centre.coords.dot(&aside);
         self.seen.fill(ROWS..ROWS);
@@ -181,6 +180,16 @@ impl RoadView {
     fn contrast(&self, bright: f32, beside: f32) -> f64 {
         let full = (self.paint.max(self.floor + LEAST) - beside).max(LEAST);
         f64::from(((bright - beside) / full).clamp(0.0, 1.0))
+    }
+
+    /// The projection to an image at a pitch.
+    pub(super) fn projection(&self, image: GrayView<'_>, pitch: f64) -> Projection {
+        self.camera.projection(pitch, (image.width() as u32, image.height() as u32))
+    }
+
+    /// Brightness of a pixel between floor and paint, 0 to 1.
+    pub(super) fn level(&self, gray: f32) -> f64 {
+        self.contrast(gray, self.floor)
     }
 
     /// Brightness of a cell between floor and paint, 0 to 1.

@@ -1,0 +1,68 @@
+//! The driver by its camera, before the referee.
+
+use super::*;
+use crate::drive::traffic::{
+    BoxMotion, CarFront, EvasionElement, EvasionRow, ObstacleEvasion, RoadBox, TrafficActors, TrafficScene,
+};
+use crate::io::control::{run, until};
+use crate::io::sim::{SimOptions, Simulation};
+use crate::world::RobotSpec;
+use crate::world::formats::course;
+use crate::world::road::Appearance;
+
+/// Drives on an oval with boxes for some seconds. Returns the states in their order, and the referee.
+fn drive(boxes: &[(f64, f64, BoxMotion)], seconds: f64) -> (Vec<TrafficState>, ObstacleEvasion) {
+    let text = "course 1\nlane 400\nstraight 10000\narc 1500 180\nstraight 10000\narc 1500 180\n";
+    let course = course::parse(text, "oval").unwrap();
+    let boxes = boxes.iter().map(|&(along, left, motion)| RoadBox { along, left, size: [0.2; 3], motion });
+    let scene = TrafficScene { course, boxes: boxes.collect() };
+    let spec = RobotSpec::road_car();
+    let world = scene.scene(&Appearance { pixel: 0.004, ..Appearance::default() }, spec.clone()).unwrap();
+    let simulation = Simulation::new(&world, SimOptions::with_noise(1.0, 1)).unwrap();
+    let (mut car, truth) = (simulation.robot(0).unwrap(), simulation.truth());
+    let camera = spec.camera.as_ref().unwrap().into();
+    let mut driver = TrafficDriver::new(camera, RoadModel::default(), TrafficParameters::default()).unwrap();
+    let mut actors = TrafficActors::new(scene.clone());
+    let mut referee = ObstacleEvasion::new(scene, &spec, 1);
+    let (mut states, mut before) = (Vec::new(), (0.0, truth.pose(0).unwrap()));
+    run(&mut car, &mut driver, seconds, |_, driver, _| {
+        let (time, pose) = (truth.time(), truth.pose(0)?);
+        let speed = pose.distance_to(before.1.position()) / (time - before.0).max(1e-3);
+        before = (time, pose);
+        if states.last() != Some(&driver.state()) {
+            states.push(driver.state());
+        }
+        for (index, pose) in actors.advance(time, CarFront { along: referee.front(), speed }) {
+            truth.move_object(0, index, pose)?;
+        }
+        Ok::<_, io::Error>(until(referee.see(time, &pose, speed, &actors)))
+    })
+    .unwrap();
+    (states, referee)
+}
+
+fn row(referee: &ObstacleEvasion, element: EvasionElement) -> EvasionRow {
+    let index = EvasionElement::ALL.iter().position(|it| *it == element).unwrap();
+    referee.score().rows[index]
+}
+
+#[test]
+fn a_car_waits_for_what_comes_before_it_passes() {
+    use TrafficState::{Behind, Follow, Pass, Return};
+    let boxes = [(5.0, 0.0, BoxMotion::Static), (6.4, 0.42, BoxMotion::Oncoming(4.0))];
+    let (states, referee) = drive(&boxes, 15.0);
+    assert_eq!(states, [Follow, Behind, Pass, Return, Follow]);
+    assert_eq!(row(&referee, EvasionElement::OncomingObstacle).right, 1, "{:?}", referee.score());
+    assert_eq!(row(&referee, EvasionElement::StaticObstacle).right, 1, "{:?}", referee.score());
+    assert_eq!(referee.score().collisions, 0);
+}
+
+#[test]
+fn a_car_passes_although_a_box_stands_in_the_other_lane() {
+    use TrafficState::{Follow, Pass, Return};
+    let boxes = [(4.0, 0.0, BoxMotion::Static), (6.1, 0.42, BoxMotion::Static)];
+    let (states, referee) = drive(&boxes, 9.0);
+    assert_eq!(states, [Follow, Pass, Return, Follow]);
+    assert_eq!(row(&referee, EvasionElement::StaticObstacle).right, 2, "{:?}", referee.score());
+    assert_eq!(referee.score().collisions, 0);
+}
