@@ -5,8 +5,8 @@ use roverlab::geometry::Point;
 use roverlab::nav::Reachability;
 use roverlab::race::{CentreLine, TrackFile, parse_track};
 use roverlab::scan::LocalisationMap;
-use roverlab::world::World;
 use roverlab::world::formats::{MemoryFiles, parse_scene};
+use roverlab::world::{BitGrid, World};
 
 /// Places of something that was meant to be at 1 m, in millimetres: the last is beyond all limits.
 const FAR: [&str; 4] = ["1000000", "-1000000", "1000000000", "10000000000"];
@@ -75,4 +75,15 @@ fn a_cone_far_off_does_not_change_the_track_unless_it_is_refused() {
             Some(Err(error)) => assert!(!error.to_string().is_empty()),
         }
     }
+}
+
+/// The table of sizes in the docs names the limit of maps, and they refuse what is larger.
+#[test]
+fn the_docs_have_the_limits_of_maps() {
+    let docs = include_str!("../docs/commands.md");
+    let rows = docs.lines().filter(|line| line.starts_with("| ") && line.contains("33,554,432"));
+    assert_eq!((BitGrid::MAX_CELLS, rows.count()), (33_554_432, 4));
+    assert!(docs.contains("33,554,432 of 50 mm | 288 m x 288 m"));
+    let error = LocalisationMap::new(&World::walled(289.5, 289.5)).unwrap_err().to_string();
+    assert!(error.contains("expected at most 33554432 of 0.05 m over 290.3"), "{error}");
 }

@@ -29,6 +29,9 @@ impl World {
     /// ```
     pub fn site(&self) -> Aabb {
         let Some((kept, all)) = self.kept() else { return self.bounds() };
+        if !reaches_outliers(&self.floor, &kept, &all) {
+            return kept.union(&self.floor);
+        }
         let least = |kept: f64, all: f64, floor: f64| {
             if all < kept && floor <= all + NEAR { kept } else { kept.min(floor) }
         };
@@ -62,27 +65,45 @@ impl World {
         let ends: Vec<[Point; 2]> = walls.chain(objects).filter(is_finite).collect();
         let mut points: Vec<Point> = ends.iter().flatten().copied().collect();
         let all = Aabb::around(points.iter().copied())?;
+        // A floor is a thing as well: a single wall far from it is an outlier.
+        let floor = [self.floor.min, self.floor.max];
+        let has_floor = is_finite(&floor) && self.floor.size().min() > 0.0;
+        points.extend(floor.into_iter().filter(|_| has_floor));
+        let (count, middle) = (points.len(), nalgebra::center(&self.floor.min, &self.floor.max));
         // A group along one axis may split after a cut along the other.
         loop {
             let before = points.len();
-            keep_larger(&mut points, &ends, |point| point.x);
-            keep_larger(&mut points, &ends, |point| point.y);
+            keep_larger(&mut points, &ends, middle, |point| point.x);
+            keep_larger(&mut points, &ends, middle, |point| point.y);
             if points.len() == before {
                 break;
             }
         }
-        (points.len() < 2 * ends.len()).then(|| Aabb::around(points))?.map(|kept| (kept, all))
+        (points.len() < count).then(|| Aabb::around(points))?.map(|kept| (kept, all))
     }
 }
 
-/// Splits points at the widest gap along an axis that separates them, and keeps the larger part.
-fn keep_larger(points: &mut Vec<Point>, ends: &[[Point; 2]], along: impl Fn(&Point) -> f64) {
+/// Whether a floor extends as far as what is farther than a gap from what is kept.
+fn reaches_outliers(floor: &Aabb, kept: &Aabb, all: &Aabb) -> bool {
+    [0, 1].into_iter().any(|axis| {
+        let low = kept.min[axis] - all.min[axis] > GAP && floor.min[axis] <= all.min[axis] + NEAR;
+        low || (all.max[axis] - kept.max[axis] > GAP && floor.max[axis] >= all.max[axis] - NEAR)
+    })
+}
+
+/// Splits points at the widest gap along an axis that separates them, and keeps the larger part; of equal
+/// ones that of the floor's middle.
+fn keep_larger(points: &mut Vec<Point>, ends: &[[Point; 2]], middle: Point, along: impl Fn(&Point) -> f64) {
     points.sort_by(|a, b| along(a).total_cmp(&along(b)));
     let places: Vec<f64> = points.iter().map(&along).collect();
     let gap = |at: &usize| places[*at] - places[at - 1];
     // Each gap is far wider than all that lies within it, so only few are compared with all walls.
+    let kept_at = |at: usize| {
+        let is_low = along(&middle) < 0.5 * (places[at] + places[at - 1]);
+        kept(places.len(), at, is_low)
+    };
     let is_wide = |at: &usize| {
-        let kept = kept(places.len(), *at);
+        let kept = kept_at(*at);
         gap(at) > GAP.max(GAP_IN_SIZES * (places[kept.end - 1] - places[kept.start]))
     };
     let separates = |at: &usize| {
@@ -92,15 +113,15 @@ fn keep_larger(points: &mut Vec<Point>, ends: &[[Point; 2]], along: impl Fn(&Poi
     };
     let cuts = (1..places.len()).filter(is_wide).filter(separates);
     if let Some(at) = cuts.max_by(|a, b| gap(a).total_cmp(&gap(b))) {
-        let kept = kept(places.len(), at);
+        let kept = kept_at(at);
         points.truncate(kept.end);
         points.drain(..kept.start);
     }
 }
 
-/// The larger part of a list that is cut before an index.
-fn kept(count: usize, at: usize) -> Range<usize> {
-    if 2 * at >= count { 0..at } else { at..count }
+/// The larger part of a list that is cut before an index; of equal ones the first, if that is preferred.
+fn kept(count: usize, at: usize, is_first_preferred: bool) -> Range<usize> {
+    if 2 * at > count || (2 * at == count && is_first_preferred) { 0..at } else { at..count }
 }
 
 #[cfg(test)]
@@ -138,6 +159,22 @@ mod tests {
             world.walls.push(Wall::new(Point::new(1000.0, 1000.0), Point::new(end, end)));
             world.floor = world.bounds();
             assert_eq!((world.site(), world.strays()), (World::walled(3.0, 2.0).site(), 1), "{end}");
+        }
+    }
+
+    /// The floor that a file states counts, also where it is larger than what stands on it.
+    #[test]
+    fn a_stated_floor_is_the_site_whatever_is_far_off() {
+        let on_it = [None, Some((1.5, 0.0)), Some((1.5, 1.2))];
+        for place in [(1e3, 0.0), (-1e6, 0.0), (0.0, 1e6), (1e6, -1e6), (500.0, 1.9)] {
+            for near in on_it {
+                let mut world = World::empty(3.0, 2.0);
+                for (x, y) in near.into_iter().chain([place]) {
+                    world.walls.push(Wall::new(Point::new(x, y), Point::new(x, y + 0.5)));
+                }
+                let site = World::empty(3.0, 2.0).floor;
+                assert_eq!((world.site(), world.strays()), (site, 1), "{near:?} {place:?}");
+            }
         }
     }
 

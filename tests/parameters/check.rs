@@ -3,6 +3,7 @@ use std::error::Error;
 use roverlab::geometry::Pose;
 use roverlab::io::control::{Command, Senses, run};
 use roverlab::io::sim::{SimOptions, SimRobot, Simulation};
+use roverlab::kinematics::OdometryErrors;
 use roverlab::world::{RobotSpec, Scene, World};
 
 /// What every field is given.
@@ -86,6 +87,10 @@ slots! {
     usize, 1, |field, slot, value| *field = value as usize;
     u32, 1, |field, slot, value| *field = value as u32;
     u16, 1, |field, slot, value| *field = value as u16;
+    OdometryErrors, 4, |field, slot, value| {
+        let OdometryErrors { wheel_scale, wheel_mismatch, track, slip } = field;
+        *[wheel_scale, wheel_mismatch, track, slip][slot] = value;
+    };
     Option<f64>, 1, |field, slot, value| *field = Some(value);
     [f64; 2], 2, |field, slot, value| field[slot] = value;
     (f64, f64), 2, |field, slot, value| *(if slot == 0 { &mut field.0 } else { &mut field.1 }) = value;

@@ -86,7 +86,7 @@ fn scans() {
     }
     check!(LocaliserParameters = LocaliserParameters::default(),
         |p| Localiser::new(LocalisationMap::new(&World::walled(2.0, 1.0))?, p)?,
-        { NotNegative: range_error; Positive: radius, view, odometry_error;
+        { NotNegative: range_error, odometry; Positive: radius, view, track;
           Bounded: least_probability; });
     check!(LogOddsMapParameters = LogOddsMapParameters::default(), |p| LogOddsMap::new(10, 10, 0.1, Pose::default(), p)?,
         { Bounded: hit, miss, most; });

@@ -7,7 +7,7 @@ pub fn scene_json(scene: &Scene) -> Value {
     let world = &scene.world;
     let mut json = json!({
         "floor": corners(&world.floor),
-        "bounds": corners(&world.bounds()),
+        "bounds": corners(&world.site()),
         "walls": world.walls.iter().map(wall).collect::<Vec<_>>(),
         "objects": world.objects.iter().map(object).collect::<Vec<_>>(),
         "markers": world.markers.iter().map(|marker| json!({

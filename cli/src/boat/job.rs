@@ -36,7 +36,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     }
     let scene = afloat((common, &args.waters), &raft(), || scene)?;
     let course = args.course.as_ref().map_or(course, |given| given.0.clone());
-    let floor = scene.world.bounds();
+    let floor = scene.world.site();
     if let Some(&outside) = course.iter().find(|&&point| !floor.contains(point)) {
         let [x, y] = point_in_mm(outside);
         return Err(Failure::input(format!(

@@ -85,9 +85,11 @@ impl CommonArgs {
         Ok(bytes)
     }
 
-    /// The scene in an option's file, as found by [`read`](Self::read), with its companion files.
-    pub(crate) fn load_scene(&self, option: &str, path: &Path) -> Result<Parsed<Scene>, FormatError> {
-        self.load(option, path, formats::parse_scene)
+    /// The scene in an option's file, as found by [`read`](Self::read), with its companion files; records its
+    /// warnings.
+    pub(crate) fn load_scene(&self, option: &str, path: &Path) -> Result<Scene, FormatError> {
+        let parsed = self.load(option, path, formats::parse_scene)?;
+        Ok(self.origin.scene(path, parsed))
     }
 
     /// The robot in the file of an option, with its 3D model where that is found, or the built-in robot of

@@ -1,11 +1,14 @@
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use roverlab::io::log::{Attachment, Log};
+use roverlab::world::Scene;
+use roverlab::world::formats::Parsed;
 
 use super::supervision::Stops;
+use super::trip::within;
 
 /// Identity of a run: its program and relevant options, and the recording that it replays.
 ///
@@ -69,6 +72,23 @@ impl Origin {
     /// Records a warning about the input.
     pub(crate) fn warn(&self, warning: String) {
         self.warnings.lock().unwrap_or_else(PoisonError::into_inner).push(warning);
+    }
+
+    /// A scene that was read from a file; records the warnings of the file, and one of things so far from
+    /// everything else that maps and pictures omit them.
+    pub(crate) fn scene(&self, file: &Path, parsed: Parsed<Scene>) -> Scene {
+        parsed.warnings.iter().for_each(|warning| self.warn(warning.to_string()));
+        let scene = parsed.value;
+        let strays = scene.world.strays();
+        if strays > 0 {
+            self.warn(format!(
+                "{}: walls and objects that reach far out of the rest, which is {}: {strays}; maps and \
+                 pictures leave them out",
+                file.display(),
+                within(&scene.world.site())
+            ));
+        }
+        scene
     }
 
     /// Prints the warnings about the input, once.

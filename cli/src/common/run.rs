@@ -77,6 +77,7 @@ pub(crate) fn run_plain<A: clap::Parser + AsRef<PlainArgs> + Heeds>(
     run_parsed(args, out, err, |args: &A| {
         let stopwatch = Stopwatch::start();
         let mut report = work(args).or_else(Failure::into_report)?;
+        args.as_ref().origin.tell_warnings();
         report.timing.insert(0, ("wall_time_s", rounded(stopwatch.seconds())));
         let PlainArgs { seed, json, timing, .. } = *args.as_ref();
         Ok(report.printed(Header { command, seed, noise: None, timing }, json))

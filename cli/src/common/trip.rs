@@ -115,23 +115,9 @@ impl CommonArgs {
 
     /// The scene of the options, or the command's own, without what options say about its robot.
     pub(crate) fn scene_or(&self, own: impl FnOnce() -> Scene) -> Result<Scene, Failure> {
-        let scene = match &self.world {
-            Some(file) => self.parsed(self.load_scene("world", file))?,
-            None => own(),
-        };
-        self.warn_of_strays(&scene);
-        Ok(scene)
-    }
-
-    /// Warns of things so far from everything else that maps and pictures omit them.
-    fn warn_of_strays(&self, scene: &Scene) {
-        let strays = scene.world.strays();
-        if strays > 0 {
-            self.warn(format_args!(
-                "{}: walls and objects that reach far out of the rest, which is {}: {strays}; maps and pictures leave them out",
-                self.world_name(),
-                within(&scene.world.site())
-            ));
+        match &self.world {
+            Some(file) => self.load_scene("world", file).map_err(Failure::input),
+            None => Ok(own()),
         }
     }
 
@@ -260,7 +246,7 @@ fn in_mm(point: Point) -> String {
     format!("{x}, {y}")
 }
 
-fn within(bounds: &Aabb) -> String {
+pub(super) fn within(bounds: &Aabb) -> String {
     format!("from {} to {} mm", in_mm(bounds.min), in_mm(bounds.max))
 }
 

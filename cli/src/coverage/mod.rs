@@ -15,11 +15,11 @@ use roverlab::drive::{
 };
 use roverlab::geometry::{Point, Pose, units};
 use roverlab::io::control::{self, SensedBy};
-use roverlab::io::sim::{NoiseModel, SimOptions, Simulation};
+use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::{self, Clock, Drive, Lidar, LidarScan, Odometry};
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::random::Stream;
-use roverlab::scan::{LocalisationMap, Localiser, LocaliserParameters};
+use roverlab::scan::{LocalisationMap, Localiser};
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Wall, World};
 
 use crate::common::{CommonArgs, Failure, OF_ONE_RUN, OF_PARTS, Outcome, PartArgs, Report, rounded};
@@ -125,13 +125,8 @@ pub(crate) fn cover(
     let tour = TourParameters::default();
     let limit = 60.0 + 3.0 * plan.length() / tour.speed + 4.0 * plan.points().len() as f64;
     let conditions = conditions(limit.ceil())?;
-    let localisation = LocaliserParameters {
-        range_error: NoiseModel::real().scaled(conditions.noise).range,
-        radius,
-        ..LocaliserParameters::default()
-    };
     let mut localiser = LocalisationMap::new(&world)
-        .and_then(|map| Localiser::new(map, localisation))
+        .and_then(|map| Localiser::new(map, conditions.localiser(&scene.robots[0].spec)))
         .map_err(Failure::input)?;
     localiser.start_at(start);
     let mut tour = Tour::new(plan.points(), tour).map_err(Failure::input)?;

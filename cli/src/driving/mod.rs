@@ -11,6 +11,7 @@ use roverlab::io::sim::{NoiseModel, RobotTruth, SimOptions};
 use roverlab::io::{self, Drive, Key, TruthInSpace};
 use roverlab::kinematics::OdometryErrors;
 use roverlab::picture::{Mark, Picture, Style};
+use roverlab::scan::LocaliserParameters;
 use roverlab::world::{Colour, DriveSpec, Object, ObjectKind, RobotSpec, Scene, Shape, World};
 
 use crate::common::{CommonArgs, Driven, Failure, Outcome, Pacer, Report, Stage};
@@ -95,6 +96,27 @@ impl Conditions {
         let NoiseModel { wheel_scale, wheel_mismatch, track, slip, .. } =
             NoiseModel::real().scaled(self.noise);
         OdometryErrors { wheel_scale, wheel_mismatch, track, slip }
+    }
+
+    /// Parameters of a localiser that knows how wrong the robot's lidar and its odometry are. The usual ones are
+    /// enough for noise of up to 1.
+    pub(crate) fn localiser(&self, spec: &RobotSpec) -> LocaliserParameters {
+        let parameters = LocaliserParameters {
+            range_error: NoiseModel::real().scaled(self.noise).range,
+            radius: spec.footprint.bounding_radius(),
+            ..LocaliserParameters::default()
+        };
+        let track = track(spec);
+        if self.noise <= 1.0 || !track.is_finite() {
+            return parameters;
+        }
+        let (known, least) = (self.odometry_errors(), parameters.odometry);
+        let odometry = OdometryErrors {
+            wheel_scale: known.wheel_scale.max(least.wheel_scale),
+            wheel_mismatch: known.wheel_mismatch.max(least.wheel_mismatch),
+            ..known
+        };
+        LocaliserParameters { odometry, track, ..parameters }
     }
 
     /// Lets a program drive the first robot of a scene. `watch` is called with the time at each of its steps.

@@ -151,11 +151,7 @@ fn scene(args: &Args) -> Result<(Scene, Vec<Point>), Failure> {
     let Some(file) = &common.world else {
         return Ok(hall((mode, args.pattern), followers, usize::from(args.obstacles), common.seed));
     };
-    let parsed = common.load_scene("world", file).map_err(Failure::input)?;
-    for warning in &parsed.warnings {
-        common.warn(warning);
-    }
-    let mut scene = parsed.value;
+    let mut scene = common.load_scene("world", file).map_err(Failure::input)?;
     if scene.robots.len() < 2 {
         let leader = StandIn { spec: RobotSpec::labbot().into(), ..StandIn::default() };
         scene = common.placed_in(scene, &leader)?;

@@ -34,8 +34,8 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         check_writable("--html", file)?;
     }
     let rubric = Rubric::read(&args.rubric)?;
-    let places =
-        rubric.worlds.iter().map(|task| Place::load(&rubric, task)).collect::<Result<Vec<_>, _>>()?;
+    let places = rubric.worlds.iter().map(|task| Place::load(&rubric, task, &args.plain.origin));
+    let places = places.collect::<Result<Vec<_>, _>>()?;
     let programs = args.programs.iter().map(|text| Program::parse(text)).collect::<Result<Vec<_>, _>>()?;
     let files = programs.iter().filter_map(|program| match &program.kind {
         Kind::Robios { source, .. } => Some(source.clone()),

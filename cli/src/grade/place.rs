@@ -8,7 +8,7 @@ use roverlab::world::formats;
 use roverlab::world::{BitGrid, GridCell, RobotPlacement, RobotSpec, Scene};
 
 use super::rubric::{Rubric, Task};
-use crate::common::Failure;
+use crate::common::{Failure, Origin};
 
 /// A world of a rubric, with what has to be done in it.
 #[derive(Debug, Clone)]
@@ -21,9 +21,9 @@ pub(super) struct Place {
 
 impl Place {
     /// Loads a world. Fails for a place that the robot cannot come to.
-    pub(super) fn load(rubric: &Rubric, task: &Task) -> Result<Self, Failure> {
+    pub(super) fn load(rubric: &Rubric, task: &Task, origin: &Origin) -> Result<Self, Failure> {
         let name = task.file.display();
-        let mut scene = formats::load_scene(&task.file).map_err(Failure::input)?.value;
+        let mut scene = origin.scene(&task.file, formats::load_scene(&task.file).map_err(Failure::input)?);
         let spec = Arc::new(robot(&rubric.robot)?);
         let [x, y, heading] = task.start;
         let start = Pose::from_mm_deg(x, y, heading);

@@ -178,7 +178,7 @@ pub(crate) fn rows(args: &Args) -> Result<Vec<Row>, Failure> {
     let places = match &args.common.world {
         None => worlds(),
         Some(file) => {
-            let scene = args.common.load_scene("world", file).map_err(Failure::input)?.value;
+            let scene = args.common.load_scene("world", file).map_err(Failure::input)?;
             let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             vec![Place { name, world: scene.world, symmetry: 1, share: 0 }]
         }

@@ -1,7 +1,6 @@
 use roverlab::drive::RandomDriveParameters;
 use roverlab::geometry::{angle_difference, units};
-use roverlab::io::sim::NoiseModel;
-use roverlab::scan::{Localisation, LocalisationMap, LocaliserParameters};
+use roverlab::scan::{Localisation, LocalisationMap};
 use roverlab::world::{RobotSpec, Scene};
 use serde_json::{Value, json};
 
@@ -98,11 +97,7 @@ pub(super) fn run(
     let radius = scene.robots[0].spec.footprint.bounding_radius();
     let options = Options {
         map: LocalisationMap::new(&world_with_others(scene)).map_err(Failure::input)?,
-        localiser: LocaliserParameters {
-            range_error: NoiseModel::real().scaled(conditions.noise).range,
-            radius,
-            ..LocaliserParameters::default()
-        },
+        localiser: conditions.localiser(&scene.robots[0].spec),
         random: RandomDriveParameters { radius, ..RandomDriveParameters::default() },
         seed: conditions.seed,
         patience: args.patience.min(conditions.time_limit - 2.0),

@@ -15,14 +15,16 @@ pub(crate) struct Shore {
 const TURNED: f64 = 0.707;
 
 impl Shore {
-    /// The shore at a height above the world's origin.
+    /// The shore at a height above the world's origin, without what is far from all the rest.
     pub(crate) fn of(world: &World, height: f64) -> Self {
-        let walls = || world.walls.iter().filter(|wall| wall.height >= height);
-        let mut sides: Vec<Segment> = walls().flat_map(faces).collect();
+        let site = world.site();
+        let high = world.walls.iter().filter(|wall| wall.height >= height);
+        let walls: Vec<Wall> = high.filter_map(|wall| part_in(&site, wall)).collect();
+        let mut sides: Vec<Segment> = walls.iter().flat_map(faces).collect();
         if let Some(ground) = ground(world) {
             sides.extend(contour(ground, height));
         }
-        Self { sides, thickest: walls().map(|wall| wall.thickness).fold(0.0, f64::max) }
+        Self { sides, thickest: walls.iter().map(|wall| wall.thickness).fold(0.0, f64::max) }
     }
 
     /// The box within the walls around it; `None` if there is no side.
@@ -65,6 +67,14 @@ impl Shore {
     fn nearest(&self, point: Point) -> Option<&Segment> {
         self.sides.iter().min_by(|a, b| a.distance_to(point).total_cmp(&b.distance_to(point)))
     }
+}
+
+/// The part of a wall in a box; `None` if it misses the box.
+fn part_in(area: &Aabb, wall: &Wall) -> Option<Wall> {
+    let Segment { a, b } = wall.line;
+    let [begin, end] = area.span(&wall.line)?;
+    let line = Segment::new(a + (b - a) * begin, b - (b - a) * (1.0 - end));
+    Some(Wall { line, ..*wall })
 }
 
 /// Both faces of a wall.
@@ -124,6 +134,20 @@ mod tests {
             let site = Site::of(&world, 0.5);
             assert_eq!(site.by_walls, height > 1.0);
             assert!(!site.by_walls || (site.area.size() - Vector::new(7.6, 5.6)).norm() < 1e-9, "{site:?}");
+        }
+    }
+
+    /// A pool's sides are where they were, whatever is far from all the rest.
+    #[test]
+    fn the_shore_leaves_out_what_is_far_off() {
+        let world = World { water_level: Some(1.0), ..World::walled(6.0, 5.0) };
+        let site = Site::of(&world, 0.5);
+        for (from, to) in [((1e3, 0.0), (1e3, 1.0)), ((-1e6, 1.0), (-1e6, 2.0)), ((6.0, 5.0), (1e6, 5.0))] {
+            let mut strayed = world.clone();
+            strayed.walls.push(Wall::new(Point::new(from.0, from.1), Point::new(to.0, to.1)));
+            let found = Site::of(&strayed, 0.5);
+            assert!(found.by_walls && (found.area.size() - site.area.size()).norm() < 1e-9, "{found:?}");
+            assert!(Shore::of(&strayed, 0.5).length() <= Shore::of(&world, 0.5).length() + 1e-9);
         }
     }
 

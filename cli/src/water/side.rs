@@ -23,7 +23,7 @@ const ABOVE: f64 = 0.25;
 
 impl Side {
     pub(crate) fn of<T>(scene: &Scene, run: &Run<T>) -> Self {
-        let size = scene.world.bounds().size();
+        let size = scene.world.site().size();
         let (mut come, mut last) = (0.0, None);
         let places = run.in_space.iter().map(|space| space.pose.position);
         let way = places.map(|place| {

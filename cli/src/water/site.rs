@@ -20,7 +20,7 @@ impl Site {
         let level = world.water_level.unwrap_or_default();
         let shore = Shore::of(world, level - depth);
         let Some(area) = shore.bounds() else {
-            return Self { area: world.bounds(), by_walls: false };
+            return Self { area: world.site(), by_walls: false };
         };
         let inset = |point: Point| {
             let (low, high) = (point - area.min, area.max - point);

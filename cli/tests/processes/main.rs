@@ -41,3 +41,27 @@ fn a_missing_model_is_warned_of() {
     let (status, text) = said(roverlab(&["a_to_b", "--robot", bare.to_str().unwrap()]).current_dir(folder));
     assert!(status == 0 && text.contains("bare.robi:3:") && text.contains("nowhere.obj"), "{text}");
 }
+
+/// Every way in which a world is read warns of a wall far from all the rest.
+#[test]
+fn a_stray_wall_is_warned_of_by_whatever_reads_the_world() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let room = "0 0 3000 0\n3000 0 3000 2000\n3000 2000 0 2000\n0 2000 0 0\n1000000 0 1000000 1000\n";
+    std::fs::write(folder.join("stray.wld"), format!("{room}position 600 500 20\n")).unwrap();
+    // A slope that rises to the right.
+    let row: String = (0..61).map(|height| format!("{height} ")).collect();
+    let grid = "ncols 61\nnrows 41\nxllcorner 0\nyllcorner 0\ncellsize 50\n".to_owned();
+    std::fs::write(folder.join("stray.asc"), grid + &format!("{row}\n").repeat(41)).unwrap();
+    let hills = format!("terrain 3000 2000 100 stray.asc\n{room}position 600 500 20\n");
+    std::fs::write(folder.join("stray_hills.wld"), hills).unwrap();
+    let campaign = ["localise", "--campaign", "--starts", "1", "--patience", "1", "--world", "stray.wld"];
+    for words in [
+        &["random-drive", "--time-limit", "1", "--world", "stray.wld"][..],
+        &["follow-me", "--time-limit", "1", "--world", "stray.wld"],
+        &["terrain-plan", "--world", "stray_hills.wld", "--goal", "2000,1000"],
+        &campaign,
+    ] {
+        let (_, text) = said(roverlab(words).current_dir(folder));
+        assert!(text.contains("reach far out of the rest") && text.contains(": 1;"), "{words:?}: {text}");
+    }
+}

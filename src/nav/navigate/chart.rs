@@ -32,6 +32,8 @@ struct Level {
 pub(super) const LEVELS: usize = 3;
 /// Maximum number of cells.
 const MAX_CELLS: f64 = 4e6;
+/// Ratio of the sizes of cells in which the robot's own rooms are looked for.
+const COARSER: f64 = 4.0;
 /// Maximum distance between a detection and the known obstacle that it is attributed to (m).
 pub(super) const MAX_STRAY: f64 = 0.2;
 /// Number of detections after which a cell counts as occupied.
@@ -60,23 +62,57 @@ fn resolution_of(bounds: &Aabb, finest: f64) -> f64 {
     finest.max((size.x * size.y / MAX_CELLS).sqrt())
 }
 
-/// Bounding box of all places that a robot may reach from a start, as far as coarse cells can tell.
+/// Bounding box of all places that a robot may reach from a start, as far as cells can tell. Cells for the
+/// whole of a large world have no room for a robot; so rooms of its own are looked for first, around it.
 fn within_reach(
     world: &World,
     start: Point,
     parameters: &NavigatorParameters,
-    resolution: f64,
+    finest: f64,
 ) -> std::result::Result<Aabb, ParameterError> {
-    // The robot may start closer to something than it plans to be.
-    let least = parameters.radius() - inexact(resolution);
-    let far = limit(parameters, resolution);
-    let clearance = Clearance::new(world, resolution, far)?;
+    let whole = world.site();
+    let coarsest = resolution_of(&whole, finest);
+    let mut resolution = finest;
+    let tells_rooms = |resolution: f64| inexact(resolution) < parameters.radius();
+    while COARSER * resolution <= coarsest && tells_rooms(resolution) && whole.contains(start) {
+        let far = limit(parameters, resolution);
+        let window = window(&whole.inflated(far), start, resolution);
+        let places = reached(&Clearance::over(world, window, resolution, far)?, start, parameters);
+        let places = places.map(|places| places.inflated(far + resolution));
+        if let Some(places) = places.filter(|places| is_within(places, &window, &whole)) {
+            return Ok(places);
+        }
+        resolution *= COARSER;
+    }
+    let far = limit(parameters, coarsest);
+    let places = reached(&Clearance::new(world, coarsest, far)?, start, parameters);
+    Ok(places.map_or(whole, |places| places.inflated(far + coarsest)))
+}
+
+/// The part of a box around a point that has as many cells as a chart may have.
+fn window(whole: &Aabb, around: Point, resolution: f64) -> Aabb {
+    let half = 0.5 * MAX_CELLS.sqrt() * resolution;
+    let window = Aabb::new(around, around).inflated(half);
+    Aabb { min: window.min.sup(&whole.min), max: window.max.inf(&whole.max) }
+}
+
+/// Whether a box ends inside a window, or where the whole ends.
+fn is_within(places: &Aabb, window: &Aabb, whole: &Aabb) -> bool {
+    [0, 1].into_iter().all(|axis| {
+        let low = window.min[axis] <= whole.min[axis] || places.min[axis] > window.min[axis];
+        low && (window.max[axis] >= whole.max[axis] || places.max[axis] < window.max[axis])
+    })
+}
+
+/// Bounding box of the centres of all cells that a robot may reach from a start; `None` if it is in none.
+fn reached(clearance: &Clearance, start: Point, parameters: &NavigatorParameters) -> Option<Aabb> {
     let raster = clearance.raster();
+    // The robot may start closer to something than it plans to be.
+    let least = parameters.radius() - inexact(raster.resolution());
     let regions = raster.regions(|cell| clearance.at(cell) > least);
-    let own = raster.cell_at(start).and_then(|cell| regions[cell]);
-    let cells = (0..raster.cells()).filter(|&cell| own.is_some() && regions[cell] == own);
-    let places = Aabb::around(cells.map(|cell| raster.centre(cell)));
-    Ok(places.map_or_else(|| world.site(), |places| places.inflated(far + resolution)))
+    let own = raster.cell_at(start).and_then(|cell| regions[cell])?;
+    let cells = (0..raster.cells()).filter(|&cell| regions[cell] == Some(own));
+    Aabb::around(cells.map(|cell| raster.centre(cell)))
 }
 
 fn refused(error: &ParameterError) -> Error {
@@ -96,7 +132,7 @@ impl Chart {
         let resolution = resolution_of(&whole, finest);
         let clearance = if resolution > finest {
             // A world may be large because of what lies far from the robot's own rooms.
-            let part = within_reach(world, start, parameters, resolution).map_err(|error| refused(&error))?;
+            let part = within_reach(world, start, parameters, finest).map_err(|error| refused(&error))?;
             let resolution = resolution_of(&part, finest);
             Clearance::over(world, part, resolution, limit(parameters, resolution))
         } else {

@@ -155,6 +155,9 @@ impl Navigator {
             widened_at: start.position(),
         };
         let is_open = this.chart.is_open(start.position());
+        if !is_open && this.chart.is_coarse() {
+            return Err(this.too_coarse());
+        }
         if !is_open || !(this.plan(LEVELS) || this.plan_finer(world)?) {
             this.end(NavigatorOutcome::Unreachable);
         }

@@ -1,7 +1,7 @@
 use std::ops::ControlFlow;
 
 use super::*;
-use crate::geometry::{Point, Pose, Vector, direction};
+use crate::geometry::{Aabb, Point, Pose, Vector, direction};
 use crate::io::control::{Behaviour, LidarObservation};
 use crate::world::{Wall, World};
 
@@ -98,6 +98,25 @@ fn a_way_is_found_whatever_lies_far_off() {
         let mut navigator = Navigator::new(&world, start, goal, NavigatorParameters::default()).unwrap();
         assert_eq!(navigator.phase(), NavigatorPhase::Looking, "{far}");
         assert!((clearance_of(&mut navigator) - 0.012).abs() < 1e-9);
+    }
+}
+
+/// Also a floor of 1000 km, over which cells are larger than the rooms.
+#[test]
+fn a_way_is_found_on_any_floor() {
+    let (start, goal) = (Pose::new(0.3, 0.3, 0.0), Point::new(1.7, 0.7));
+    for (x, y) in [(1e3, 1e3), (1e6, 2.0)] {
+        let mut world = rooms(0.165);
+        world.floor = Aabb::new(Point::origin(), Point::new(x, y));
+        let mut navigator = Navigator::new(&world, start, goal, NavigatorParameters::default()).unwrap();
+        assert_eq!(navigator.phase(), NavigatorPhase::Looking, "{x} {y}");
+        assert!((clearance_of(&mut navigator) - 0.012).abs() < 1e-9);
+        // Without walls around the robot, nothing is known about cells of such a size.
+        world.walls = vec![Wall::new(Point::new(0.5, 0.0), Point::new(0.5, 1.0))];
+        match Navigator::new(&world, start, goal, NavigatorParameters::default()) {
+            Ok(navigator) => assert_eq!(navigator.phase(), NavigatorPhase::Looking, "{x} {y}"),
+            Err(error) => assert!(error.to_string().contains("may close a way"), "{error}"),
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use super::LocaliserParameters;
 use super::map::LocalisationMap;
 use crate::geometry::{Pose, Vector, angle_difference, direction, math, normalize_angle};
 use crate::io::LidarScan;
-use crate::scan::filter::{GRAZING, RANGE_ERROR};
+use crate::scan::filter::GRAZING;
 use crate::world::space::Scanner;
 
 /// A possible pose of the robot.
@@ -42,8 +42,16 @@ struct Evidence {
 const BEAMS_AS_ONE: f64 = 4.0;
 /// Fraction of beams that may measure anything.
 const OUTLIERS: f64 = 0.1;
+/// Difference from the expected range beyond which a beam is an outlier, at first (m): poses are that far
+/// off.
+const FIRST_GATE: f64 = 0.25;
+/// The same at last, in standard deviations of a range. Far out, since a narrow gate about a wrong pose
+/// selects the beams that agree with it.
+const GATE: f64 = 6.0;
 /// Exponent of the likelihood; a pose error affects all beams.
 const TEMPER: f64 = 0.1;
+/// Minimum standard deviation of a motion (m, rad), for rounding.
+const LEAST_MOTION_ERROR: f64 = 1e-5;
 /// Difference below which two hypotheses are the same (m, rad).
 const SAME: (f64, f64) = (0.06, 0.06);
 
@@ -78,14 +86,16 @@ impl Hypothesis {
         let mut carried = Matrix3::identity();
         carried[(0, 2)] = -dy;
         carried[(1, 2)] = dx;
-        let distance = math::hypot(motion.x, motion.y);
-        let along = parameters.odometry_error.0 * distance + 1e-5;
-        let turn = parameters.odometry_error.1 * motion.heading.abs() + 0.02 * distance + 1e-5;
+        let errors = MotionErrors::of(motion, parameters);
         self.covariance = carried * self.covariance * carried.transpose();
         // Wheel size errors are the same at each step, so unobserved errors add up linearly.
-        for (axis, error) in [along, along, turn].into_iter().enumerate() {
+        for (axis, error) in errors.constant.into_iter().enumerate() {
             let before = self.covariance[(axis, axis)].max(0.0).sqrt();
             self.covariance[(axis, axis)] += error * (2.0 * before + error);
+        }
+        // Slip differs from step to step, so its variances add up.
+        for (axis, variance) in errors.slip.into_iter().enumerate() {
+            self.covariance[(axis, axis)] += variance;
         }
     }
 
@@ -102,7 +112,8 @@ impl Hypothesis {
         let Some(known) = self.covariance.try_inverse() else { return f64::NEG_INFINITY };
         let mut information = known;
         // Outliers are excluded step by step.
-        let mut gate = 0.25;
+        let narrowest = GATE * parameters.lidar_error();
+        let mut gate = narrowest.max(FIRST_GATE);
         for _ in 0..steps {
             let found = evidence(map, scan, bench, &self.pose, parameters, gate);
             information = known + found.information;
@@ -118,7 +129,7 @@ impl Hypothesis {
                 self.pose.y + step.y.clamp(-0.1, 0.1),
                 normalize_angle(self.pose.heading + step.z.clamp(-0.1, 0.1)),
             );
-            gate = (0.6 * gate).max(0.06);
+            gate = (0.6 * gate).max(narrowest);
         }
         if let Some(covariance) = information.try_inverse() {
             self.covariance = covariance;
@@ -126,6 +137,32 @@ impl Hypothesis {
         let found = evidence(map, scan, bench, &self.pose, parameters, gate);
         self.explained = found.explained;
         found.log_likelihood
+    }
+}
+
+/// Errors of a motion by odometry, of x, y and heading.
+#[derive(Debug, Clone, Copy)]
+struct MotionErrors {
+    /// Standard deviations of errors that are the same at each step (m, rad).
+    constant: [f64; 3],
+    /// Variances by slip (m², rad²).
+    slip: [f64; 3],
+}
+
+impl MotionErrors {
+    /// Errors of a motion in the robot's own frame.
+    fn of(motion: &Pose, parameters: &LocaliserParameters) -> Self {
+        let (errors, track) = (&parameters.odometry, parameters.track);
+        let (distance, turned) = (math::hypot(motion.x, motion.y), motion.heading.abs());
+        let along = errors.wheel_scale * distance + LEAST_MOTION_ERROR;
+        let turn = math::hypot(errors.wheel_scale, errors.track) * turned
+            + errors.wheel_mismatch / track * distance
+            + LEAST_MOTION_ERROR;
+        // Distance that both wheels roll together, on an arc or on the spot.
+        let rolled = 2.0 * distance.max(0.5 * track * turned);
+        let variance = errors.slip * errors.slip * rolled;
+        let (moved, rotated) = (0.25 * variance, variance / (track * track));
+        Self { constant: [along, along, turn], slip: [moved, moved, rotated] }
     }
 }
 
@@ -141,7 +178,7 @@ fn evidence(
     let lidar = pose.compose(&scan.mount);
     map.expect(&mut bench.scanner, &lidar, &mut bench.expected);
     let expected = &bench.expected;
-    let sigma = parameters.range_error.max(RANGE_ERROR);
+    let sigma = parameters.lidar_error();
     let blurred = 2.0 * sigma;
     let mut found = Evidence {
         information: Matrix3::zeros(),

@@ -6,7 +6,6 @@ use super::surfaces::{STEP, Surfaces};
 use crate::geometry::{Aabb, Point, Pose, Vector, math, normalize_angle};
 use crate::io::LidarScan;
 use crate::kinematics::OUTLIER;
-use crate::scan::filter::RANGE_ERROR;
 
 /// Search for all poses at which a scan's points lie on surfaces.
 ///
@@ -67,7 +66,7 @@ pub(super) fn search(
         return None;
     }
     let misses = ((1.0 - share) * points.len() as f64) as usize;
-    let noise = OUTLIER * parameters.range_error.max(RANGE_ERROR);
+    let noise = OUTLIER * parameters.lidar_error();
     let levels = levels(&points, noise);
     let mut search = Search { surfaces: map.surfaces(), points, levels, misses, found: Vec::new() };
     search.blocks(&map.bounds()).then_some(search.found)
