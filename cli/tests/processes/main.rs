@@ -49,7 +49,7 @@ fn a_stray_wall_is_warned_of_by_whatever_reads_the_world() {
     let room = "0 0 3000 0\n3000 0 3000 2000\n3000 2000 0 2000\n0 2000 0 0\n1000000 0 1000000 1000\n";
     std::fs::write(folder.join("stray.wld"), format!("{room}position 600 500 20\n")).unwrap();
     // A slope that rises to the right.
-    let row: String = (0..61).map(|height| format!("{height} ")).collect();
+    let row = (0..61).map(|height| height.to_string()).collect::<Vec<_>>().join(" ");
     let grid = "ncols 61\nnrows 41\nxllcorner 0\nyllcorner 0\ncellsize 50\n".to_owned();
     std::fs::write(folder.join("stray.asc"), grid + &format!("{row}\n").repeat(41)).unwrap();
     let hills = format!("terrain 3000 2000 100 stray.asc\n{room}position 600 500 20\n");
