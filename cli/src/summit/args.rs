@@ -57,7 +57,7 @@ JSON fields:
   unknown_m2                  area that may be higher and reachable for all the robot knows, or null
   time_limit_s, picture
   runs, reached, mishaps, median_path_ratio, ways, wrong_seeds   with --campaign only
-Reached: at most 100 mm from the highest reachable place, or 2 % of the relief below it.
+Reached: at most 100 mm from the highest reachable place, or 2 % of the relief and 1 mm below it.
 Outcomes: reached, local_maximum, stuck, tipped, fell, drowned, collided, timed_out, failed; with
 --campaign: passed, wrong."
 )]

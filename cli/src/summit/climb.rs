@@ -43,7 +43,7 @@ const NEAR: f64 = 0.1;
 const BELOW: f64 = 0.02;
 /// Looks after which a search has a map.
 const FIRST_MAP: u32 = 2;
-/// Difference in elevation that counts as none (m).
+/// Difference in elevation that counts as none (m): belts yield by as much under a robot.
 const LEVEL: f64 = 1e-3;
 
 impl Summit {

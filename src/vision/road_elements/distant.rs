@@ -36,6 +36,8 @@ const STARTS: f64 = 0.3;
 const PRESENT: u32 = 4;
 /// Error of its speed from which that is known (m/s): boxes that stand and those that come differ by 0.6 m/s.
 const KNOWN: f64 = 0.25;
+/// Least step along the road from place to place (m), that of a pixel at the nearest one.
+const NEXT: f64 = 0.004;
 /// Longest time for which a box is kept that something hides (s).
 const MEMORY: f64 = 1.5;
 /// Distance behind the robot's origin at which a box is forgotten (m).
@@ -169,7 +171,7 @@ fn find(
 ) {
     let mut ahead = view.from() + RANGE.0;
     while ahead < view.from() + RANGE.1 {
-        let Some(slice) = Slice::new(projection, road, ahead) else { return };
+        let Some(slice) = Slice::new(projection, road, ahead, image.width()) else { return };
         if let Some(sides) = slice.front(view, image) {
             let error = PIXEL * slice.depth;
             let sigma = (BLUR * BLUR + error * error).sqrt();
@@ -192,7 +194,9 @@ struct Slice {
 }
 
 impl Slice {
-    fn new(projection: &Projection, road: &RoadAhead, ahead: f64) -> Option<Self> {
+    /// `None` where the road is out of sight, or turns back beside the camera: there its lane is wider than
+    /// the image.
+    fn new(projection: &Projection, road: &RoadAhead, ahead: f64, width: usize) -> Option<Self> {
         let side = -road.middle.signum();
         let lefts = [side * MARGIN.0, side * (road.edge - MARGIN.1)];
         let (centre, aside) = road.at(ahead);
@@ -200,8 +204,10 @@ impl Slice {
         let ends = [project(centre + aside * lefts[0])?, project(centre + aside * lefts[1])?];
         let (next, _) = road.at(ahead + 0.05);
         let depth = 0.05 / (project(centre)?.1 - project(next)?.1).abs().max(1e-3);
-        let scale = (ends[1].0 - ends[0].0).abs() / (lefts[1] - lefts[0]).abs();
-        (scale > 1.0).then_some(Self { ends, lefts, scale, depth: depth.min(1.0) })
+        let across = (ends[1].0 - ends[0].0).abs();
+        let scale = across / (lefts[1] - lefts[0]).abs();
+        let is_seen = scale > 1.0 && across <= width as f64;
+        is_seen.then_some(Self { ends, lefts, scale, depth: depth.clamp(NEXT, 1.0) })
     }
 
     /// Sides of the widest box whose foot is here, to the left of the road's centre line (m).

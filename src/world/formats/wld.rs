@@ -102,23 +102,37 @@ struct Reader<'f> {
     width: Option<f64>,
     height: Option<f64>,
     frames: Vec<Frame>,
+    /// Which lines of [`ONCE`] have been read.
+    seen: [bool; ONCE.len()],
     notes: Notes<'f>,
 }
+
+/// Lines of which only the last one counts.
+const ONCE: [&str; 4] = ["floor_texture", "position", "terrain", "water_level"];
 
 impl<'f> Reader<'f> {
     fn new(file: &'f str) -> Self {
         let (world, notes) = (World::empty(0.0, 0.0), Notes::new(file));
         let places = Places { texture: Location::START, terrain: Location::START };
-        Self { world, places, width: None, height: None, frames: Vec::new(), notes }
+        Self {
+            world,
+            places,
+            width: None,
+            height: None,
+            frames: Vec::new(),
+            seen: [false; ONCE.len()],
+            notes,
+        }
     }
 
     fn line(&mut self, line: &Line<'_>) -> Result<(), FormatError> {
-        let keyword = line.words[0].text;
-        if number::looks_like_number(keyword) {
+        let keyword = line.words[0].text.to_ascii_lowercase();
+        if number::looks_like_number(&keyword) {
             return self.wall(line);
         }
         let mut args = Args::after_keyword(line);
-        match keyword.to_ascii_lowercase().as_str() {
+        self.warn_of_a_second(line, &keyword);
+        match keyword.as_str() {
             "floor" => self.floor(args.size("the floor's width")?, args.size("the floor's height")?),
             "width" => self.width = Some(args.size("the floor's width")?),
             "height" => self.height = Some(args.size("the floor's height")?),
@@ -129,23 +143,27 @@ impl<'f> Reader<'f> {
                 self.places.texture = line.location(1);
             }
             "push" => self.push(line, &mut args)?,
-            "pop" => {
-                self.frames.pop();
-            }
+            "pop" => drop(self.frames.pop()),
             "position" => self.world.start = Some(pose(&mut args)?),
             "terrain" => self.terrain(line, &mut args)?,
-            "water_level" => {
-                self.world.water_level = Some(args.length("the water level")?);
-            }
+            "water_level" => self.world.water_level = Some(args.length("the water level")?),
             keyword if water::line(keyword, line, &mut args, &mut self.world.water)? => {}
             _ => {
-                let message = format!("unknown keyword {}; the line is skipped", lexer::shown(keyword));
-                self.notes.warn(line.location(0), message);
+                let unknown = lexer::shown(line.words[0].text);
+                self.notes.warn(line.location(0), format!("unknown keyword {unknown}; the line is skipped"));
                 return Ok(());
             }
         }
         args.finish(&mut self.notes);
         Ok(())
+    }
+
+    fn warn_of_a_second(&mut self, line: &Line<'_>, keyword: &str) {
+        let Some(index) = ONCE.iter().position(|once| *once == keyword) else { return };
+        if std::mem::replace(&mut self.seen[index], true) {
+            let message = format!("a second `{keyword}`; the one before does not count");
+            self.notes.warn(line.location(0), message);
+        }
     }
 
     fn floor(&mut self, width: f64, height: f64) {
@@ -327,6 +345,12 @@ mod tests {
 
     fn near(point: Point, x: f64, y: f64) -> bool {
         (point - Point::new(x, y)).norm() < 1e-12
+    }
+
+    #[test]
+    fn a_second_line_of_its_kind_is_warned_of() {
+        let parsed = parse("floor 1000 1000\nposition 1 2 3\nposition 4 5 6", "test.wld").unwrap();
+        assert!(parsed.warnings[0].to_string().starts_with("test.wld:3:1: a second `position`"));
     }
 
     #[test]
