@@ -1,5 +1,6 @@
 use super::parameters::{CAUTION, SummitParameters};
-use super::sight_map::{DROP, NOISE, SightMap};
+use super::sight_map::{NOISE, SightMap};
+use super::sweep::DROP;
 use crate::geometry::{Aabb, Point, math};
 use crate::nav::elevation::ElevationMap;
 use crate::nav::grid::{DistanceField, GridComponents};

@@ -1,5 +1,5 @@
 use super::parameters::SummitParameters;
-use super::sweep::Beam;
+use super::sweep::{Beam, DROP};
 use crate::geometry::{Point, Point3, Vector};
 use crate::nav::elevation::Climber;
 use crate::world::GridCell;
@@ -60,8 +60,6 @@ const MEASURED: f64 = 0.06;
 pub(super) const NOISE: f64 = 0.01;
 /// The part of what was measured of a cell that lies on a face, from which the cell does.
 const FACE: f64 = 0.5;
-/// Depth below what a slope could lead to from which ground is a drop (m).
-pub(super) const DROP: f64 = 0.04;
 
 impl SightMap {
     pub(super) fn new(parameters: &SummitParameters, gap: f64) -> Self {

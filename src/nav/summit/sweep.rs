@@ -1,4 +1,3 @@
-use super::sight_map::DROP;
 use crate::geometry::{Point3, Pose3, Vector3, direction, math, units};
 use crate::io::{Attitude, LidarScan};
 use crate::nav::elevation::Climber;
@@ -16,6 +15,9 @@ const NEARBY: [f64; 40] = [
     -21.0, -20.0, -19.0, -18.0, -17.0, -16.0, -15.0, -14.0, -13.0, -12.0, -11.0, -10.0, -9.0, -8.0, -7.0,
     -6.0, -5.0, -4.0, -3.0, -2.0, -1.0, 0.0, 3.0, 8.0, 15.0,
 ];
+
+/// Depth below what a slope could lead to from which ground is a drop (m).
+pub(super) const DROP: f64 = 0.04;
 
 /// Scans at many tilts from one place, with the attitude in the meantime.
 #[derive(Debug, Clone)]
