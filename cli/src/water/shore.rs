@@ -140,11 +140,15 @@ mod tests {
     /// A pool's sides are where they were, whatever is far from all the rest.
     #[test]
     fn the_shore_leaves_out_what_is_far_off() {
-        let world = World { water_level: Some(1.0), ..World::walled(6.0, 5.0) };
+        let mut world = World { water_level: Some(1.0), ..World::walled(6.0, 5.0) };
+        for wall in &mut world.walls {
+            wall.height = 1.0;
+        }
         let site = Site::of(&world, 0.5);
         for (from, to) in [((1e3, 0.0), (1e3, 1.0)), ((-1e6, 1.0), (-1e6, 2.0)), ((6.0, 5.0), (1e6, 5.0))] {
             let mut strayed = world.clone();
-            strayed.walls.push(Wall::new(Point::new(from.0, from.1), Point::new(to.0, to.1)));
+            let stray = Wall::new(Point::new(from.0, from.1), Point::new(to.0, to.1));
+            strayed.walls.push(Wall { height: 1.0, ..stray });
             let found = Site::of(&strayed, 0.5);
             assert!(found.by_walls && (found.area.size() - site.area.size()).norm() < 1e-9, "{found:?}");
             assert!(Shore::of(&strayed, 0.5).length() <= Shore::of(&world, 0.5).length() + 1e-9);
