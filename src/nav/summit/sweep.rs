@@ -130,8 +130,8 @@ fn mark_faces(fan: &mut [Beam], climber: &Climber) {
     }
 }
 
-/// Finds the beams of a fan that end beyond a drop: neither as the ground falls before it nor as it falls behind
-/// it does it lead from one to the other.
+/// Finds the beams of a fan that end beyond a drop: lower than if the ground fell all the way there as it
+/// does before the drop, or as it does behind it.
 fn mark_drops(fan: &mut [Beam], climber: &Climber) {
     let steepest = math::tan(climber.slope);
     for index in 2..fan.len().saturating_sub(1) {
