@@ -98,8 +98,8 @@ impl Conditions {
         OdometryErrors { wheel_scale, wheel_mismatch, track, slip }
     }
 
-    /// Parameters of a localiser that knows how wrong the robot's lidar and its odometry are. The usual ones are
-    /// enough for noise of up to 1.
+    /// Parameters of a localiser that knows how wrong the robot's lidar and its odometry are. The usual ones
+    /// are enough for noise of up to 1.
     pub(crate) fn localiser(&self, spec: &RobotSpec) -> LocaliserParameters {
         let parameters = LocaliserParameters {
             range_error: NoiseModel::real().scaled(self.noise).range,

@@ -20,9 +20,10 @@ use setting::Setting;
 The course is drawn by a seed, or read from a file (docs/courses.md); --seed puts boxes and pedestrians on it, and draws noise.
 The car sees the road by a camera of 320 x 240 pixels, 30 times a second, and knows its odometry.
 
-The referee is that of Obstacle Evasion (CAuDri-Challenge 2025) for obstacles that stand, move or come in the other lane, no-passing
-zones, barred areas, stop and give-way lines, traffic from the right, crosswalks, and speed zones. Five minutes, or --time-limit.
-There are no signs or turns, and `parking` is a command of its own.
+The referee is that of Obstacle Evasion (CAuDri-Challenge 2025) for obstacles that stand, move or come in
+the other lane, no-passing zones, barred areas, stop and give-way lines, traffic from the right, crosswalks,
+and speed zones. Five minutes, or --time-limit. There are no signs or turns, and `parking` is a command of
+its own.
 
 With --campaign, many courses, each with worn paint, patches of light, and a light of 50 to 150 %.
 

@@ -52,7 +52,8 @@ pub enum TrafficState {
 ///
 /// The start box, signs and turns at crossings are not handled. Oncoming traffic is seen from 4 m on, and on
 /// straights; what appears when the car is already within 0.5 m of what it passes is not given way. Give-way
-/// lines of which less than a third is left are not seen. `roverlab traffic --campaign` counts what goes wrong.
+/// lines of which less than a third is left are not seen. `roverlab traffic --campaign` counts what goes
+/// wrong.
 ///
 /// ```
 /// use roverlab::drive::traffic::{TrafficDriver, TrafficParameters, TrafficState};

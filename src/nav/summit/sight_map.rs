@@ -187,7 +187,8 @@ impl SightMap {
     /// What lies between an end and that of the next beam is as high as the line between them, as long as
     /// nothing better is known, or it is a face.
     fn bridge(&mut self, from: Point3, beam: &Beam, doubt: f64) {
-        let way = beam.origin + beam.direction * beam.range - from;
+        let Some(end) = beam.end() else { return };
+        let way = end - from;
         let run = way.xy().norm();
         if run > self.gap {
             return;
