@@ -33,6 +33,11 @@ fn scene() -> Scene {
 /// Calls of every kind.
 fn tour(robot: &mut (impl RobotIo + ?Sized), seconds: f64) -> Result<()> {
     robot.print("hello, \"world\"\n")?;
+    blind_tour(robot, seconds)
+}
+
+/// The same without the display, whose picture would be nearly all of the file.
+fn blind_tour(robot: &mut (impl RobotIo + ?Sized), seconds: f64) -> Result<()> {
     robot.set_speed(Twist::new(0.2, 0.4))?;
     let mut scan = LidarScan::default();
     while robot.now()? < seconds {
@@ -51,12 +56,16 @@ fn tour(robot: &mut (impl RobotIo + ?Sized), seconds: f64) -> Result<()> {
 }
 
 fn recorded(seconds: f64) -> Vec<u8> {
+    recorded_by(|robot| tour(robot, seconds))
+}
+
+fn recorded_by(run: impl FnOnce(&mut dyn RobotIo) -> Result<()>) -> Vec<u8> {
     let simulation = Simulation::new(&scene(), SimOptions::with_noise(1.0, 7)).unwrap();
     let writer = LogWriter::new(Vec::new(), &header()).unwrap();
     writer.show(&scene());
     let mut robot = writer.recorder(simulation.robot(0).unwrap(), 0);
     let mut truth = writer.truth(simulation.truth(), 0);
-    tour(&mut robot, seconds).unwrap();
+    run(&mut robot).unwrap();
     drop(robot);
     truth.robot(0).unwrap();
     writer.finish().unwrap()

@@ -7,6 +7,11 @@ use proptest::prelude::*;
 
 use super::*;
 
+/// A recording of a few kilobytes.
+fn small(seconds: f64) -> Vec<u8> {
+    recorded_by(|robot| blind_tour(robot, seconds))
+}
+
 /// A file with several of this project's metadata records.
 fn with_metadata(records: &[&[(&str, &str)]]) -> Vec<u8> {
     let mut file = mcap::Writer::new(io::Cursor::new(Vec::new())).unwrap();
@@ -33,7 +38,7 @@ fn several_runs_and_newer_schemas_are_named() {
     assert!(matches!(named(&[&ours, &ours]), LogError::SeveralRuns { runs: 2 }));
     assert!(matches!(named(&[&[("version", "1")]]), LogError::Damaged { .. }));
     assert!(matches!(named(&[&[("schema", "1")]]), LogError::Damaged { .. }));
-    let run = recorded(0.1);
+    let run = small(0.1);
     for first in [&run[..], &run[..run.len() / 2]] {
         let two = [first, &run].concat();
         assert!(matches!(Log::read(two.clone()), Err(LogError::SeveralRuns { runs: 2 })));
@@ -47,7 +52,7 @@ fn several_runs_and_newer_schemas_are_named() {
 
 /// Cuts a file at many lengths, or at all of them.
 fn cut_off(thorough: bool) {
-    let bytes = recorded(1.3);
+    let bytes = small(1.3);
     // Ends of the chunk records.
     let records = super::reader::records(&bytes, mcap::MAGIC.len()).map_while(|record| record);
     let ends: Vec<usize> = records
@@ -89,7 +94,7 @@ fn lose_parts(thorough: bool) {
     let header = Header { attachments: attachments.to_vec(), ..header() };
     let writer = LogWriter::new(Vec::new(), &header).unwrap();
     let simulation = Simulation::new(&scene(), SimOptions::with_noise(1.0, 7)).unwrap();
-    tour(&mut writer.recorder(simulation.robot(0).unwrap(), 0), 1.3).unwrap();
+    blind_tour(&mut writer.recorder(simulation.robot(0).unwrap(), 0), 1.3).unwrap();
     let bytes = writer.finish().unwrap();
 
     let parts = |recovery: &Recovery| {
@@ -128,7 +133,7 @@ fn lose_parts(thorough: bool) {
 fn a_byte_added_to_the_first_chunk_costs_that_chunk() {
     let writer = LogWriter::new(Vec::new(), &Header::new("tour", [""; 0])).unwrap();
     let simulation = Simulation::new(&scene(), SimOptions::with_noise(1.0, 7)).unwrap();
-    tour(&mut writer.recorder(simulation.robot(0).unwrap(), 0), 1.3).unwrap();
+    blind_tour(&mut writer.recorder(simulation.robot(0).unwrap(), 0), 1.3).unwrap();
     let mut bytes = writer.finish().unwrap();
     let whole = recover(&bytes).unwrap().chunks;
     let chunk = super::reader::records(&bytes, mcap::MAGIC.len())
@@ -147,7 +152,7 @@ fn a_flipped_bit_costs_one_part_at_most() {
 
 /// Flips some bits of a file, or every bit, a single one each time.
 fn flip_bits(thorough: bool) {
-    let bytes = recorded(0.2);
+    let bytes = small(0.2);
     let log = Log::read(bytes.clone()).unwrap();
     let mut found_out = 0;
     let bits = (0..8 * bytes.len()).filter(|bit| bit % 401 == 0 || thorough);
@@ -175,23 +180,23 @@ fn every_flipped_bit_is_found_out_or_harmless() {
     flip_bits(false);
 }
 
-/// Every bit and every length, in minutes: `(ulimit -v 500000; cargo test --release --all-features --lib
+/// Every bit and every length, within half a gigabyte: `(ulimit -v 500000; cargo test --all-features --lib
 /// damage::campaigns -- --ignored --test-threads 1)`, once the tests are built.
 mod campaigns {
     #[test]
-    #[ignore = "a campaign of minutes, by the command above"]
+    #[ignore = "a campaign of half a minute, by the command above"]
     fn every_length_gives_back_all_complete_chunks() {
         super::cut_off(true);
     }
 
     #[test]
-    #[ignore = "a campaign of minutes, by the command above"]
+    #[ignore = "a campaign of half a minute, by the command above"]
     fn every_bit_costs_one_part_at_most() {
         super::lose_parts(true);
     }
 
     #[test]
-    #[ignore = "a campaign of minutes, by the command above"]
+    #[ignore = "a campaign of half a minute, by the command above"]
     fn every_bit_is_found_out_or_harmless() {
         super::flip_bits(true);
     }
@@ -200,7 +205,7 @@ mod campaigns {
 /// The first length in a file, that of the profile's name, once said 2 GiB to be asked for.
 #[test]
 fn a_length_beyond_its_record_is_damage() {
-    let mut bytes = recorded(0.2);
+    let mut bytes = small(0.2);
     bytes[20] ^= 0x80;
     let first = super::reader::record_at(&bytes, mcap::MAGIC.len()).unwrap();
     assert!(first.parse().unwrap_err().to_string().contains("at byte 8 is too short"));
@@ -261,7 +266,7 @@ proptest! {
 
     #[test]
     fn no_bytes_break_the_reader(mut tail: Vec<u8>, at in 0..4000_usize, length in 0..4000_usize) {
-        let bytes = recorded(0.1);
+        let bytes = small(0.1);
         let (start, end) = (at.min(bytes.len()), (at + length).min(bytes.len()));
         let mut broken = bytes[..start].to_vec();
         broken.append(&mut tail);
