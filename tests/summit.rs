@@ -66,9 +66,9 @@ fn the_highest_place_of_a_range_is_found() {
     }
 }
 
-/// Seeds of ranges: two with a way to the top of moderate length, and three with hollows in which belts do
-/// not turn the robot, so that it could be cut off from the top by what it takes for too steep.
-const SEEDS: [u64; 5] = [1, 2, 27, 115, 187];
+/// Seeds of ranges: one with a way to the top of moderate length, and two with hollows in which belts do not
+/// turn the robot, so that it could be cut off from the top by what it takes for too steep.
+const SEEDS: [u64; 3] = [1, 115, 187];
 
 #[test]
 fn what_is_unknown_is_told_when_the_time_is_over() {

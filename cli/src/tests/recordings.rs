@@ -99,7 +99,7 @@ fn assert_checks(name: &str, options: &[&str]) {
     let logs = [1, 2].map(|n| file(&format!("check-{name}{words}-{n}.mcap")));
     for log in &logs {
         // The length of an evolution is given by its generations.
-        let limit = if ["genetic", "starman"].contains(&name) { &[][..] } else { &["--time-limit", "6"] };
+        let limit = if ["genetic", "starman"].contains(&name) { &[][..] } else { &["--time-limit", "4"] };
         let (_, _, err) = run(name, &[options, limit, &["--record", text(log)]].concat());
         assert!(log.is_file(), "{name}: {err}");
     }
@@ -114,12 +114,11 @@ fn assert_checks(name: &str, options: &[&str]) {
 
 #[test]
 fn every_program_checks() {
-    for command in COMMANDS.iter().filter(|command| command.drives()) {
+    for (number, command) in COMMANDS.iter().filter(|command| command.drives()).enumerate() {
         // Starman's world has no noise.
         let option = if command.name == "starman" { "--seed" } else { "--noise" };
-        for value in ["0", "1", "2"] {
-            assert_checks(command.name, &[short(command.name), &[option, value]].concat());
-        }
+        let value = ["0", "1", "2"][number % 3];
+        assert_checks(command.name, &[short(command.name), &[option, value]].concat());
     }
 }
 
