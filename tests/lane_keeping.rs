@@ -11,6 +11,7 @@ use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::{Camera, Clock, Resolution};
 use roverlab::random::Stream;
 use roverlab::vision::lane_markings::{RoadCamera, RoadModel};
+use roverlab::world::formats::course;
 use roverlab::world::road::{Appearance, RoadCourse, RoadCourseOptions, generate};
 use roverlab::world::{RobotSpec, Scene};
 
@@ -34,6 +35,8 @@ struct Errors {
     offset: f64,
     heading: f64,
     within: [usize; 3],
+    /// Largest error of the offset 1.2 m ahead (m).
+    far: f64,
 }
 
 impl Errors {
@@ -41,11 +44,15 @@ impl Errors {
         (squares / self.frames as f64).sqrt()
     }
 
+    /// Looks at a generated course.
+    fn look(&mut self, seed: u64, pixel: f64, most: usize) {
+        self.look_at(&generate(seed, &RoadCourseOptions::default()).unwrap(), seed, pixel, most);
+    }
+
     /// Carries a car along a course, aside of the lane's middle and askew, and compares what it sees in the
     /// next metre.
-    fn look(&mut self, seed: u64, pixel: f64, most: usize) {
-        let course = generate(seed, &RoadCourseOptions::default()).unwrap();
-        let simulation = simulation(&course, seed, pixel);
+    fn look_at(&mut self, course: &RoadCourse, seed: u64, pixel: f64, most: usize) {
+        let simulation = simulation(course, seed, pixel);
         let (mut car, truth) = (simulation.robot(0).unwrap(), simulation.truth());
         car.set_resolution(Resolution::Qvga).unwrap();
         let mut keeper =
@@ -83,6 +90,8 @@ impl Errors {
                 self.offset += 0.2 * there.offset * there.offset;
                 self.heading += 0.2 * there.heading * there.heading;
             }
+            let far = course.locate(&pose.compose(&lane.place(1.2)), Some(along + 1.2));
+            self.far = self.far.max(far.offset.abs());
         }
     }
 
@@ -100,6 +109,21 @@ fn the_lane_is_where_it_is_seen() {
     let mut errors = Errors::default();
     (1..4).for_each(|seed| errors.look(seed, 0.004, 120));
     errors.check();
+}
+
+#[test]
+fn strokes_of_numbers_in_a_bend_are_no_lines_of_the_road() {
+    for turn in [60, -60] {
+        let bend = format!("arc 1430 {turn}\nspeed-end 60\narc 1430 {turn}\nspeed 34\narc 1430 {turn}\n");
+        let half = format!("straight 1400\nspeed 50\nstraight 1000\nspeed-end 34\n{bend}");
+        let course = course::parse(&format!("course 1\nlane 400\n{half}{half}"), "oval").unwrap();
+        for seed in 1..=2 {
+            let mut errors = Errors::default();
+            errors.look_at(&course, seed, 0.004, 110);
+            // The next line is 0.42 m aside.
+            assert!(errors.far < 0.1, "{turn} {seed}: {} m at 1.2 m", errors.far);
+        }
+    }
 }
 
 /// Drives for some seconds, or until the car has to be taken over.

@@ -58,6 +58,13 @@ const ROUGH: f64 = 0.010;
 const TOGETHER: f64 = 8.0;
 /// Distance between the lines of a pair (m).
 const PAIR: f64 = 0.02;
+/// Number of knots that are kept where the road ahead is followed: so far, lines are seen whatever the bend.
+const KEPT: usize = 3;
+/// Passes in which the road ahead is followed: distance from a line within which points count, and distance
+/// along the road up to which they do (m). From one to the next, the tightest road leaves its tangent by less
+/// than half the distance between two lines.
+const FOLLOWED: [(f64, f64); 7] =
+    [(0.05, 1.0), (0.05, 1.2), (0.05, 1.4), (0.05, 1.6), (0.05, 1.9), (0.03, 2.3), (0.03, f64::INFINITY)];
 
 impl Road {
     /// The estimate before the road is seen, from the car's offset and heading.
@@ -155,17 +162,42 @@ impl Road {
     /// Fits the state to points; weights exclude points of no line of the road. `wide` is the initial
     /// distance within which points count (m). Returns the weight of the points within 1.5 m.
     pub(super) fn see(&mut self, points: &[MarkingPoint], camera: &RoadCamera, wide: f64) -> f64 {
+        let passes = [wide, 0.6 * wide, 0.03, 0.03].map(|limit| (limit, f64::INFINITY));
+        self.fit(points, camera, &passes)
+    }
+
+    /// The same road with its curvatures ahead unknown, fitted to points from near to far, and the weight of
+    /// the points within 1.5 m. The lines of a road are parallel, and all look alike: where a bend is farther
+    /// off than expected by the distance between two of them, each is taken for the next one. A fit by all
+    /// points at once stays there, and one from near to far does not get there.
+    pub(super) fn followed(&self, points: &[MarkingPoint], camera: &RoadCamera) -> (Self, f64) {
+        let mut road = self.clone();
+        for index in BENDS + KEPT..BENDS + KNOTS {
+            road.state[index] = self.state[BENDS + KEPT - 1];
+            road.covariance.row_mut(index).fill(0.0);
+            road.covariance.column_mut(index).fill(0.0);
+            road.covariance[(index, index)] = UNSEEN.0 * UNSEEN.0;
+        }
+        let support = road.fit(points, camera, &FOLLOWED);
+        (road, support)
+    }
+
+    /// Fits in passes: distance from a line within which points count, and distance along the road up to
+    /// which they do (m).
+    fn fit(&mut self, points: &[MarkingPoint], camera: &RoadCamera, passes: &[(f64, f64)]) -> f64 {
         let Some(prior) = self.covariance.cholesky().map(|root| root.inverse()) else { return 0.0 };
         let before = self.state;
         let mut support = 0.0;
         let mut information = prior;
-        for limit in [wide, 0.6 * wide, 0.03, 0.03] {
+        for &(limit, reach) in passes {
             let curve = Curve::new(&self.bends());
             information = prior;
             let mut pull = prior * (before - self.state);
             support = 0.0;
             for point in points {
-                let Some(seen) = self.measure(&curve, point, camera) else { continue };
+                let Some(seen) = self.measure(&curve, point, camera).filter(|seen| seen.along < reach) else {
+                    continue;
+                };
                 let off = seen.residual / (limit + 2.0 * seen.sigma);
                 let fits = 1.0 / (1.0 + off * off);
                 let weight = fits * fits / (TOGETHER * seen.sigma * seen.sigma);
