@@ -1,5 +1,6 @@
 //! What is found on roads by camera beside what is true: a truth table per kind of element.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use image::RgbImage;
@@ -11,6 +12,7 @@ use roverlab::random::Stream;
 use roverlab::vision::lane_markings::{RoadCamera, RoadModel};
 use roverlab::vision::road_elements::{RoadElement, RoadElementFinder, RoadElementKind};
 use roverlab::vision::{GrayView, GrayViewMut, GrayWeights, RgbView, gray_into};
+use roverlab::world::formats::course;
 use roverlab::world::road::{
     Appearance, Crossing, RightOfWay, RoadCourse, RoadCourseOptions, RoadMark, RoadMarkKind, RoadSide,
     generate,
@@ -80,8 +82,13 @@ impl Setting {
         let blocks = blocks(&course, &truths, &mut Stream::new(seed).child("blocks", 0));
         truths.extend(blocks.iter().map(|block| (OBSTACLE, block.along)));
         add_numbers(&mut course, &mut truths, seed);
+        Self { blocks, truths, ..Self::of(course) }
+    }
+
+    /// A course as it is.
+    fn of(course: RoadCourse) -> Self {
         let camera = RobotSpec::road_car().camera.as_ref().unwrap().into();
-        Self { course, blocks, truths, camera }
+        Self { truths: truths(&course), blocks: Vec::new(), course, camera }
     }
 
     /// The car at the start in a light of 50 to 150 %, with worn paint and patches of light.
@@ -222,9 +229,13 @@ struct Table {
 }
 
 impl Table {
-    /// Carries a car along a course and compares what it finds.
+    /// Looks at a course of a seed.
     fn look(&mut self, seed: u64, pixel: f64, most: usize) {
-        let setting = Setting::drawn(seed);
+        self.look_at(&Setting::drawn(seed), seed, pixel, 0..most);
+    }
+
+    /// Carries a car along a course and compares what it finds.
+    fn look_at(&mut self, setting: &Setting, seed: u64, pixel: f64, frames: Range<usize>) {
         let simulation = setting.simulation(seed, pixel);
         let (mut car, truth) = (simulation.robot(0).unwrap(), simulation.truth());
         car.set_resolution(Resolution::Qvga).unwrap();
@@ -235,8 +246,8 @@ impl Table {
         let (mut image, mut gray) = (RgbImage::default(), vec![0; 320 * 240]);
         let mut odometry = Pose::default();
         let mut before: Option<Pose> = None;
-        let count = ((setting.course.line.length() / 0.07) as usize).min(most);
-        for frame in 0..count {
+        let count = ((setting.course.line.length() / 0.07) as usize).min(frames.end);
+        for frame in frames.start..count {
             let along = 0.07 * frame as f64;
             let here = setting.course.pose(along, setting.aside(along));
             let next = setting.course.pose(along + 0.02, setting.aside(along + 0.02));
@@ -257,10 +268,10 @@ impl Table {
             let clock = std::time::Instant::now();
             finder.see(GrayView::new(&gray, 320, 240).unwrap(), &lane, metres, 0.04);
             self.time += clock.elapsed();
-            if frame >= 4 {
+            if frame >= frames.start + 4 {
                 self.frames += 1;
                 let elements: Vec<RoadElement> = finder.elements().collect();
-                self.compare(&setting, (along, &pose), &elements, seed);
+                self.compare(setting, (along, &pose), &elements, seed);
             }
         }
     }
@@ -333,6 +344,24 @@ fn elements_are_where_they_are_found() {
     for kind in (0..KINDS.len()).filter(met) {
         assert!(table.f1(kind) > 0.9, "{}: {:?}", KINDS[kind].0, table.rows[kind]);
     }
+}
+
+#[test]
+fn arms_of_crossings_are_found_at_all_legal_angles() {
+    let mut table = Table::default();
+    for angle in [70, 80, 90, 100, 110] {
+        for arm in ["left", "right"] {
+            let half = "straight 2000\narc 1500 180\n";
+            let text = format!(
+                "course 1\nlane 430\nstraight 2200\ncrossing {angle} {arm}\n{half}straight 2200\n{half}"
+            );
+            let setting = Setting::of(course::parse(&text, "oval").unwrap());
+            table.look_at(&setting, angle, 0.002, 5..30);
+        }
+    }
+    table.print();
+    assert!(table.rows[4][0] >= 80, "few frames: {:?}", table.rows[4]);
+    assert!(table.f1(4) >= 0.98, "{:?}", table.rows[4]);
 }
 
 /// What takes minutes.

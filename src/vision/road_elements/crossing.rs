@@ -12,11 +12,12 @@ const LINE: f64 = 0.02;
 /// Strip beside the road where the line of an arm is looked for: least distance from the edge line, and width
 /// (m).
 const STRIP: (f64, f64) = (0.04, 0.15);
-/// Number of angles between road and arm that are tried to each side of the right angle.
-const SLOPES: i32 = 7;
-/// Difference of their cotangents: together they reach from 70 to 110 degrees, by the rules.
+/// Number of angles between road and arm that are tried to each side of the right angle. A line that looks
+/// clearest at the last one is more slanted than the lines of arms.
+const SLOPES: i32 = 8;
+/// Difference of their cotangents: the others together reach from 70 to 110 degrees, by the rules.
 const SLOPE: f64 = 0.058;
-/// Least mean contrast of an arm's line.
+/// Least mean contrast of an arm's line, relative to what the pixels leave of a line of its width.
 const LEAVES: f64 = 0.33;
 /// Least mean contrast of an edge line.
 const EDGE: f64 = 0.35;
@@ -24,9 +25,10 @@ const EDGE: f64 = 0.35;
 const OUTER: f64 = 1.5;
 /// Length before and behind a crossing's middle without edge line (m): lanes are at least 350 mm wide.
 const OPEN: f64 = 0.30;
-/// Most of this length on which an edge line may seem to be.
-const MOST: f64 = 0.25;
-/// Least part of it in view (m).
+/// Most of this length on which an edge line may seem to be, on the half where cars leave the road and on the
+/// other one. There they stop, and a stop line that is not parallel to the road meets its edge.
+const MOST: [f64; 2] = [0.25, 0.75];
+/// Least part of the half where cars leave the road in view (m).
 const VISIBLE: f64 = 0.12;
 /// Length of edge line that has to precede (m).
 const BEFORE: f64 = 0.20;
@@ -44,7 +46,10 @@ impl Strip {
         let columns = columns(a.min(b), a.max(b));
         let mut contrast = Vec::with_capacity(ROWS * columns.len());
         for row in 0..ROWS {
-            contrast.extend(columns.clone().map(view.across(row, LINE)));
+            // A pixel that is longer than the line is wide is darker.
+            let share = (LINE / view.length(row)).min(1.0);
+            let across = view.across(row, LINE);
+            contrast.extend(columns.clone().map(|column| across(column).map(|it| it / share)));
         }
         Self { columns, contrast }
     }
@@ -81,13 +86,14 @@ pub(super) fn on_side(view: &RoadView, road: &RoadAhead, side: f64, found: &mut 
     for row in 2..ROWS - 2 {
         let (contrast, slope) = best[row];
         let is_peak = (row - 2..=row + 2).all(|other| best[other].0 <= contrast);
-        if contrast < LEAVES || !is_peak {
+        let is_slanted = slope.abs() > SLOPE * (f64::from(SLOPES) - 0.5);
+        if contrast < LEAVES || !is_peak || is_slanted {
             continue;
         }
         // Half the angle between the road and the arm: the near line meets the edge so far before the middle.
         let angle = math::atan2(1.0, slope);
         let middle = view.ahead(row) + road.edge * math::tan(0.5 * angle);
-        if is_open(view, road.edge, side, middle) && has_edge_before(view, road.edge, side, middle) {
+        if is_open(view, road, side, middle) && has_edge_before(view, road.edge, side, middle) {
             let kind = RoadElementKind::Crossing { left: side > 0.0, right: side < 0.0 };
             found.push(Detection::new(kind, middle));
             // Next come the arm's other lines.
@@ -158,9 +164,13 @@ fn is_edge(view: &RoadView, edge: f64, side: f64, row: usize) -> Option<bool> {
     Some(brightest - darkest > EDGE && moment / weight < OUTER)
 }
 
-fn is_open(view: &RoadView, edge: f64, side: f64, middle: f64) -> bool {
-    let (present, seen) = edge_line(view, edge, side, (middle - OPEN, middle + OPEN));
-    seen as f64 * CELL >= VISIBLE && present <= MOST
+/// Whether there is no edge line beside a crossing's middle.
+fn is_open(view: &RoadView, road: &RoadAhead, side: f64, middle: f64) -> bool {
+    let halves = [(middle - OPEN, middle), (middle, middle + OPEN)];
+    let [near, far] = halves.map(|half| edge_line(view, road.edge, side, half));
+    // Traffic that keeps to the right leaves the road to the right before the middle.
+    let [leaves, stops] = if side == road.middle.signum() { [near, far] } else { [far, near] };
+    leaves.1 as f64 * CELL >= VISIBLE && leaves.0 <= MOST[0] && stops.0 <= MOST[1]
 }
 
 /// Whether there is an edge line before a crossing. Without it, a line that leaves the road may be the arm's

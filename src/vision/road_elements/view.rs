@@ -166,6 +166,11 @@ impl RoadView {
         self.blur[row]
     }
 
+    /// Length of ground along the road that a pixel covers at a row (m).
+    pub(super) fn length(&self, row: usize) -> f64 {
+        self.depth[row]
+    }
+
     /// Cells that a pixel covers along the road at a row.
     pub(super) fn depth(&self, row: usize) -> f64 {
         self.depth[row] / CELL
