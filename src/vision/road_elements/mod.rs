@@ -27,10 +27,11 @@
 //! In the other lane, boxes are seen up to 4 m ahead on straights. On bends, the road is known no farther
 //! than its lines are seen, and boxes are missed beyond.
 //!
-//! Limits: on three generated courses (1,008 frames), on which the filters were tuned, start lines, zebra
-//! crossings and crossings had an F1 score of 1.0, and obstacles 0.94. On other courses crossings were
-//! missed, or found where there were none. Stop and give-way lines and parking areas were in none of these
-//! frames.
+//! Limits: in 11,132 frames of 35 generated courses, all stop, give-way and start lines, crosswalks and
+//! crossings were found and nothing else was taken for one. Obstacles had an F1 score of 0.975, and numbers
+//! 0.97 and more. On 60 other courses (18,186 frames), crossings had 0.93, as one was found in a bend behind
+//! a gap of a metre in two lines, and lines and crosswalks 0.94 at least. A patch where the outer line of a
+//! parking area would be is taken for one.
 
 mod across;
 mod barred;
