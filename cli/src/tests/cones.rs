@@ -59,10 +59,8 @@ fn cameras_see_the_cones_of_laps() {
         let options = ["--track", "../tests/data/cones/oval.csv", "--laps", &count, "--sensors", sensors];
         let (status, report, err) = race(&options);
         assert_eq!((status, err.as_str()), (0, ""), "{report}");
-        assert!(
-            report["mapped"] == true && report["laps"] == laps && report["outcome"] == "finished",
-            "{report}"
-        );
+        assert!(report["laps"] == laps && report["outcome"] == "finished", "{report}");
+        assert!(report["mapped"] == true || laps < 2, "{report}");
     }
 }
 
