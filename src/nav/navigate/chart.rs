@@ -62,6 +62,13 @@ fn resolution_of(bounds: &Aabb, finest: f64) -> f64 {
     finest.max((size.x * size.y / MAX_CELLS).sqrt())
 }
 
+/// Where a robot may be that starts somewhere: the world's site, or all of the world if that is elsewhere, as
+/// more walls are there than around the robot.
+fn whole_around(world: &World, start: Point) -> Aabb {
+    let (site, bounds) = (world.site(), world.bounds());
+    if !site.contains(start) && bounds.contains(start) { bounds } else { site }
+}
+
 /// Bounding box of all places that a robot may reach from a start, as far as cells can tell. Cells for the
 /// whole of a large world have no room for a robot; so rooms of its own are looked for first, around it.
 fn within_reach(
@@ -70,7 +77,7 @@ fn within_reach(
     parameters: &NavigatorParameters,
     finest: f64,
 ) -> std::result::Result<Aabb, ParameterError> {
-    let whole = world.site();
+    let whole = whole_around(world, start);
     let coarsest = resolution_of(&whole, finest);
     let mut resolution = finest;
     let tells_rooms = |resolution: f64| inexact(resolution) < parameters.radius();
@@ -85,7 +92,8 @@ fn within_reach(
         resolution *= COARSER;
     }
     let far = limit(parameters, coarsest);
-    let places = reached(&Clearance::new(world, coarsest, far)?, start, parameters);
+    let margin = far + 2.0 * coarsest;
+    let places = reached(&Clearance::over(world, whole.inflated(margin), coarsest, far)?, start, parameters);
     Ok(places.map_or(whole, |places| places.inflated(far + coarsest)))
 }
 
@@ -128,9 +136,9 @@ impl Chart {
         parameters: &NavigatorParameters,
         finest: f64,
     ) -> Result<Self> {
-        let whole = world.site();
+        let whole = whole_around(world, start);
         let resolution = resolution_of(&whole, finest);
-        let clearance = if resolution > finest {
+        let clearance = if resolution > finest || whole != world.site() {
             // A world may be large because of what lies far from the robot's own rooms.
             let part = within_reach(world, start, parameters, finest).map_err(|error| refused(&error))?;
             let resolution = resolution_of(&part, finest);

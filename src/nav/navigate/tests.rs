@@ -101,6 +101,22 @@ fn a_way_is_found_whatever_lies_far_off() {
     }
 }
 
+/// Or where most walls are: a room with more of them, 150 m away, is the world's site.
+#[test]
+fn a_way_is_found_in_the_room_with_fewer_walls() {
+    let mut world = rooms(0.165);
+    let there = World::walled(3.0, 3.0).walls.into_iter().cycle().take(4 * world.walls.len());
+    world.walls.extend(there.map(|wall| {
+        let [a, b] = [wall.line.a, wall.line.b].map(|end| end + Vector::new(150.0, 0.0));
+        Wall::new(a, b)
+    }));
+    let (start, goal) = (Pose::new(0.3, 0.3, 0.0), Point::new(1.7, 0.7));
+    assert!(!world.site().contains(start.position()), "{:?}", world.site());
+    let mut navigator = Navigator::new(&world, start, goal, NavigatorParameters::default()).unwrap();
+    assert_eq!(navigator.phase(), NavigatorPhase::Looking);
+    assert!((clearance_of(&mut navigator) - 0.012).abs() < 1e-9);
+}
+
 /// Also a floor of 1000 km, over which cells are larger than the rooms.
 #[test]
 fn a_way_is_found_on_any_floor() {
