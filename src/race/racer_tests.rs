@@ -152,7 +152,7 @@ fn false_cones_are_borne() {
 
 #[test]
 fn missing_and_false_cones_are_borne() {
-    let dirty = dirty(100..106, [0.1, 0.1]);
+    let dirty = dirty(100..110, [0.1, 0.1]);
     assert!(dirty.len() <= 1, "{dirty:?}");
 }
 
