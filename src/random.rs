@@ -98,8 +98,13 @@ impl Stream {
     /// assert!(samples.iter().all(|&sample| sample == one_by_one.normal()));
     /// ```
     pub fn fill_normal(&mut self, samples: &mut [f64]) {
-        samples.fill_with(|| self.inner_uniform());
-        samples.chunks_mut(64).for_each(inverse_normals);
+        for part in samples.chunks_mut(TOGETHER * LANES) {
+            let mut blocks = [[0.5; LANES]; TOGETHER];
+            let count = part.len();
+            blocks.as_flattened_mut()[..count].fill_with(|| self.inner_uniform());
+            inverse_normals(&mut blocks[..count.div_ceil(LANES)]);
+            part.copy_from_slice(&blocks.as_flattened()[..count]);
+        }
     }
 
     /// Uniform between 0 and 1; the half step keeps it off both, where the normal quantile is infinite.
@@ -139,8 +144,13 @@ fn inverse_normal(p: f64) -> f64 {
     if is_central(q) { inverse_normal_centre(q) } else { inverse_normal_tail(p, q) }
 }
 
-/// Replaces at most 64 probabilities by their quantiles: first as if all of them were central, which is quick
-/// for several at once.
+/// Number of probabilities that a register of a processor holds, at most.
+const LANES: usize = 8;
+/// Maximum number of probabilities whose quantiles are computed together (registers).
+const TOGETHER: usize = 8;
+
+/// Replaces probabilities by their quantiles: first as if all of them were central, then those that are not,
+/// as if none were in the outermost tails. Several at once are quick.
 #[cfg_attr(
     feature = "io",
     multiversion::multiversion(targets(
@@ -148,17 +158,24 @@ fn inverse_normal(p: f64) -> f64 {
         "x86_64+avx2+bmi1+bmi2"
     ))
 )]
-fn inverse_normals(probabilities: &mut [f64]) {
-    let (mut tails, mut count) = ([(0, 0.0); 64], 0);
-    for (i, p) in probabilities.iter_mut().enumerate() {
-        tails[count] = (i, *p);
+fn inverse_normals(probabilities: &mut [[f64; LANES]]) {
+    let (mut places, mut tails, mut count) = ([0; TOGETHER * LANES], [[0.25; LANES]; TOGETHER], 0);
+    for (i, p) in probabilities.as_flattened().iter().enumerate() {
+        (places[count], tails.as_flattened_mut()[count]) = (i, *p);
         count += usize::from(!is_central(*p - 0.5));
     }
-    for p in &mut *probabilities {
+    for p in probabilities.as_flattened_mut() {
         *p = inverse_normal_centre(*p - 0.5);
     }
-    for &(i, p) in &tails[..count] {
-        probabilities[i] = inverse_normal_tail(p, p - 0.5);
+    let quantiles = probabilities.as_flattened_mut();
+    for (places, tails) in places[..count].chunks(LANES).zip(tails) {
+        let mut shoulders = [0.0; LANES];
+        for (z, p) in shoulders.iter_mut().zip(tails) {
+            *z = inverse_normal_shoulder(p);
+        }
+        for ((&i, p), z) in places.iter().zip(tails).zip(shoulders) {
+            quantiles[i] = if z.abs() > OUTERMOST { inverse_normal_tail(p, p - 0.5) } else { z };
+        }
     }
 }
 
@@ -179,6 +196,54 @@ fn inverse_normal_tail(p: f64, q: f64) -> f64 {
     let r = (-math::ln(if q < 0.0 { p } else { 1.0 - p })).sqrt();
     let value = if r <= 5.0 { ratio(&SHOULDER, r - 1.6) } else { ratio(&TAIL, r - 5.0) };
     if q < 0.0 { -value } else { value }
+}
+
+/// Quantile above which one of a shoulder may belong to the tail beyond it: that begins where the probability
+/// is exp(-25), at 6.65.
+const OUTERMOST: f64 = 6.6;
+
+/// Quantile of a probability that is neither central nor in the outermost tails, with the same bits as
+/// [`inverse_normal_tail`].
+#[inline(always)]
+#[allow(clippy::inline_always, reason = "part of a loop compiled for several processors")]
+fn inverse_normal_shoulder(p: f64) -> f64 {
+    let q = p - 0.5;
+    let r = (-ln_of_normal(if q < 0.0 { p } else { 1.0 - p })).sqrt();
+    let value = ratio(&SHOULDER, r - 1.6);
+    if q < 0.0 { -value } else { value }
+}
+
+/// Natural logarithm of a positive normal number other than 1 and infinity, with the same bits as `math::ln`,
+/// in operations that a loop does for several numbers at once: the number is split into a power of 2 and a
+/// factor around 1 whose logarithm is a polynomial (FreeBSD's `e_log.c`).
+#[inline(always)]
+#[allow(clippy::inline_always, reason = "part of a loop compiled for several processors")]
+fn ln_of_normal(x: f64) -> f64 {
+    /// The logarithm of 2 in two parts, the first of which has trailing zeros.
+    const LN_2: [f64; 2] = [6.931_471_803_691_238e-1, 1.908_214_929_270_587_7e-10];
+    /// The coefficients of even and of odd powers.
+    const EVEN: [f64; 3] = [3.999_999_999_940_942e-1, 2.222_219_843_214_978_4e-1, 1.531_383_769_920_937_3e-1];
+    const ODD: [f64; 4] = [
+        6.666_666_666_666_735e-1,
+        2.857_142_874_366_239e-1,
+        1.818_357_216_161_805e-1,
+        1.479_819_860_511_658_6e-1,
+    ];
+    /// The upper halves of the bits of 1 and of the root of 1/2.
+    const ONE: u64 = 0x3ff0_0000;
+    const HALF_ROOT: u64 = 0x3fe6_a09e;
+    let bits = x.to_bits();
+    let upper = (bits >> 32) + (ONE - HALF_ROOT);
+    let power = ((upper >> 20) as i64 - 0x3ff) as f64;
+    let factor = f64::from_bits((((upper & 0xf_ffff) + HALF_ROOT) << 32) | (bits & 0xffff_ffff));
+    let f = factor - 1.0;
+    let half_square = 0.5 * f * f;
+    let s = f / (2.0 + f);
+    let z = s * s;
+    let w = z * z;
+    let even = w * (EVEN[0] + w * (EVEN[1] + w * EVEN[2]));
+    let odd = z * (ODD[0] + w * (ODD[1] + w * (ODD[2] + w * ODD[3])));
+    s * (half_square + (odd + even)) + power * LN_2[1] - half_square + f + power * LN_2[0]
 }
 
 /// Numerator and denominator coefficients of a rational function, constant term first.
@@ -264,6 +329,23 @@ const TAIL: Rational = [
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn several_quantiles_have_the_bits_of_single_ones() {
+        let mut stream = Stream::new(1);
+        for _ in 0..20_000 {
+            // Small probabilities of all magnitudes, and those near 1.
+            let mut blocks = [[0.0; LANES]; TOGETHER];
+            for (i, p) in blocks.as_flattened_mut().iter_mut().enumerate() {
+                let uniform = stream.inner_uniform();
+                *p = if i % 3 == 0 { math::exp(-36.0 * uniform) } else { uniform };
+                assert_eq!(ln_of_normal(*p).to_bits(), math::ln(*p).to_bits(), "{p}");
+            }
+            let expected = blocks.map(|block| block.map(|p| inverse_normal(p).to_bits()));
+            inverse_normals(&mut blocks);
+            assert_eq!(blocks.map(|block| block.map(f64::to_bits)), expected);
+        }
+    }
 
     #[test]
     fn quantiles_match_tables() {

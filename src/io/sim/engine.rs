@@ -12,6 +12,7 @@ use super::inertial_unit::InertialUnit;
 use super::lockstep::{Ticking, no_robot};
 use super::machine::Machine;
 use super::movable::{Movable, movables};
+use super::noise::{make_noisy, noisy};
 use super::options::ticks_in;
 use super::terrain::Hills;
 use super::watch::{Onlooking, Watcher};
@@ -447,9 +448,7 @@ impl Engine {
             let (ground, pose) = (self.hills.as_deref().map(Hills::ground), robot.compose(&device.frame));
             self.space.scan_over(ground, &device.scanner, &pose, Some(body.solid), &mut scan.ranges);
         }
-        for range in scan.ranges.iter_mut().filter(|range| range.is_finite()) {
-            *range = noisy(*range, sigma, device.max_range, &mut device.noise);
-        }
+        make_noisy(&mut scan.ranges, sigma, device.max_range, &mut device.noise);
         if let Some(watcher) = &mut self.watcher {
             watcher.scan(index, scan);
         }
@@ -511,14 +510,4 @@ fn check_placement(placement: &RobotPlacement) -> Result<()> {
     }
     let found = format!("{}, {} m above the floor", pose_in_words(&placement.pose), placement.elevation);
     Err(Error::invalid_input("robot pose", found, "finite numbers"))
-}
-
-/// A reading with noise; a missing return stays one.
-#[inline]
-fn noisy(range: f64, sigma: f64, max_range: f64, stream: &mut Stream) -> f64 {
-    if sigma == 0.0 || range.is_infinite() {
-        return range;
-    }
-    let reading = (range + sigma * stream.normal()).max(0.0);
-    if reading > max_range { f64::INFINITY } else { reading }
 }

@@ -1,5 +1,6 @@
 use crate::ParameterError;
 use crate::parameter::require;
+use crate::random::Stream;
 
 /// Errors of a simulated robot as standard deviations.
 ///
@@ -144,4 +145,35 @@ impl NoiseModel {
         }
         Ok(())
     }
+}
+
+/// A reading with noise; a missing return stays one.
+#[inline]
+pub(super) fn noisy(range: f64, sigma: f64, max_range: f64, stream: &mut Stream) -> f64 {
+    if sigma == 0.0 || range.is_infinite() {
+        return range;
+    }
+    with_noise(range, sigma * stream.normal(), max_range)
+}
+
+/// The same for all readings of a scan.
+pub(super) fn make_noisy(ranges: &mut [f64], sigma: f64, max_range: f64, stream: &mut Stream) {
+    if sigma == 0.0 {
+        return;
+    }
+    let mut samples = [0.0; 64];
+    for part in ranges.chunks_mut(samples.len()) {
+        let count = part.iter().filter(|range| range.is_finite()).count();
+        stream.fill_normal(&mut samples[..count]);
+        let returns = part.iter_mut().filter(|range| range.is_finite());
+        for (range, sample) in returns.zip(&samples) {
+            *range = with_noise(*range, sigma * sample, max_range);
+        }
+    }
+}
+
+#[inline]
+fn with_noise(range: f64, error: f64, max_range: f64) -> f64 {
+    let reading = (range + error).max(0.0);
+    if reading > max_range { f64::INFINITY } else { reading }
 }
