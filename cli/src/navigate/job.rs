@@ -67,6 +67,7 @@ pub(super) fn verdict(outcome: NavigatorOutcome) -> &'static str {
     match outcome {
         NavigatorOutcome::Reached => "goal reached",
         NavigatorOutcome::Unreachable => "the goal cannot be reached",
+        NavigatorOutcome::NoRoom => "no room at the goal",
         NavigatorOutcome::Stuck => "the robot makes no progress",
         NavigatorOutcome::TimedOut | NavigatorOutcome::Stopped => "the time is over",
     }
@@ -80,6 +81,7 @@ fn report(course: &Course, run: &Run<Arrival>, limit: f64) -> Report {
     run.report(|arrival| match arrival.outcome {
         NavigatorOutcome::Reached => Outcome::verdict("reached"),
         NavigatorOutcome::Unreachable => Outcome::verdict("unreachable"),
+        NavigatorOutcome::NoRoom => Outcome::verdict("no_room"),
         NavigatorOutcome::Stuck => Outcome::failure("stuck"),
         NavigatorOutcome::TimedOut | NavigatorOutcome::Stopped => Outcome::failure("timed_out"),
     })

@@ -17,8 +17,9 @@ pub(super) struct Chart {
     /// Number of times an unknown obstacle was seen in each cell.
     evidence: Vec<u8>,
     marks: Vec<GridCell>,
-    /// Whether the cells are larger than wished.
+    /// Whether the cells are larger than wished, and whether places that the robot may reach lie beyond them.
     is_coarse: bool,
+    is_part: bool,
 }
 
 /// A clearance, and the distance it requires at the centre of a cell.
@@ -32,8 +33,8 @@ struct Level {
 pub(super) const LEVELS: usize = 3;
 /// Maximum number of cells.
 const MAX_CELLS: f64 = 4e6;
-/// Ratio of the sizes of cells in which the robot's own rooms are looked for.
-const COARSER: f64 = 4.0;
+/// Ratio of the sizes of cells in which the robot's own rooms, or a way in a large world, are looked for.
+pub(super) const COARSER: f64 = 4.0;
 /// Maximum distance between a detection and the known obstacle that it is attributed to (m).
 pub(super) const MAX_STRAY: f64 = 0.2;
 /// Number of detections after which a cell counts as occupied.
@@ -54,6 +55,11 @@ fn inexact(resolution: f64) -> f64 {
 fn limit(parameters: &NavigatorParameters, resolution: f64) -> f64 {
     let room = parameters.radius() + clearance_at(parameters, 0) + inexact(resolution);
     room.max(MAX_STRAY) + resolution
+}
+
+/// Whether cells are small enough to tell where the robot has room.
+fn tells_rooms(parameters: &NavigatorParameters, resolution: f64) -> bool {
+    inexact(resolution) < parameters.radius()
 }
 
 /// Cell size for a box: the finest one with which the box has few enough cells (m).
@@ -80,8 +86,7 @@ fn within_reach(
     let whole = whole_around(world, start);
     let coarsest = resolution_of(&whole, finest);
     let mut resolution = finest;
-    let tells_rooms = |resolution: f64| inexact(resolution) < parameters.radius();
-    while COARSER * resolution <= coarsest && tells_rooms(resolution) && whole.contains(start) {
+    while COARSER * resolution <= coarsest && tells_rooms(parameters, resolution) && whole.contains(start) {
         let far = limit(parameters, resolution);
         let window = window(&whole.inflated(far), start, resolution);
         let places = reached(&Clearance::over(world, window, resolution, far)?, start, parameters);
@@ -123,7 +128,7 @@ fn reached(clearance: &Clearance, start: Point, parameters: &NavigatorParameters
     Aabb::around(cells.map(|cell| raster.centre(cell)))
 }
 
-fn refused(error: &ParameterError) -> Error {
+pub(super) fn refused(error: &ParameterError) -> Error {
     Error::new(ErrorKind::InvalidInput, format!("the world cannot be planned in: {error}"))
 }
 
@@ -146,7 +151,28 @@ impl Chart {
         } else {
             Clearance::new(world, resolution, limit(parameters, resolution))
         };
-        let clearance = clearance.map_err(|error| refused(&error))?;
+        Ok(Self::of(clearance.map_err(|error| refused(&error))?, parameters, false))
+    }
+
+    /// The chart of as much of the world around start and goal as cells of `resolution` metres cover. `None`
+    /// if they do not cover both.
+    pub(super) fn between(
+        world: &World,
+        [start, goal]: [Point; 2],
+        parameters: &NavigatorParameters,
+        resolution: f64,
+    ) -> Result<Option<Self>> {
+        let far = limit(parameters, resolution);
+        let window =
+            window(&whole_around(world, start).inflated(far), start + 0.5 * (goal - start), resolution);
+        if !(window.contains(start) && window.contains(goal)) {
+            return Ok(None);
+        }
+        let clearance = Clearance::over(world, window, resolution, far).map_err(|error| refused(&error))?;
+        Ok(Some(Self::of(clearance, parameters, true)))
+    }
+
+    fn of(clearance: Clearance, parameters: &NavigatorParameters, is_part: bool) -> Self {
         let resolution = clearance.raster().resolution();
         let levels = std::array::from_fn(|level| {
             let clearance = clearance_at(parameters, level);
@@ -154,7 +180,7 @@ impl Chart {
         });
         let evidence = vec![0; clearance.raster().cells()];
         let is_coarse = resolution > parameters.resolution;
-        Ok(Self { clearance, levels, evidence, marks: Vec::new(), is_coarse })
+        Self { clearance, levels, evidence, marks: Vec::new(), is_coarse, is_part }
     }
 
     /// Whether the cells may close a way that exists between two points, to within a distance of the second
@@ -162,9 +188,7 @@ impl Chart {
     pub(super) fn may_hide_a_way(&self, robot: Point, goal: Point, tolerance: f64) -> bool {
         let raster = self.clearance.raster();
         let inexact = inexact(self.resolution());
-        // Cells in which the robot may have room somewhere.
-        let room = self.levels[LEVELS - 1].room - 2.0 * inexact;
-        let regions = raster.regions(|cell| self.clearance.at(cell) > room);
+        let regions = raster.regions(|cell| self.may_have_room(cell));
         let own = raster.cell_at(robot).and_then(|cell| regions[cell]);
         let is_near = |cell: usize| (raster.centre(cell) - goal).norm() <= tolerance + inexact;
         own.is_some() && (0..raster.cells()).any(|cell| regions[cell] == own && is_near(cell))
@@ -173,6 +197,16 @@ impl Chart {
     /// Whether the cells are larger than wished.
     pub(super) fn is_coarse(&self) -> bool {
         self.is_coarse
+    }
+
+    /// Whether places that the robot may reach lie beyond it.
+    pub(super) fn is_part(&self) -> bool {
+        self.is_part
+    }
+
+    /// Whether the cells are larger than wished, and too large to tell where the robot has room.
+    pub(super) fn is_blind(&self, parameters: &NavigatorParameters) -> bool {
+        self.is_coarse && !tells_rooms(parameters, self.resolution())
     }
 
     /// Cell size (m).
@@ -215,10 +249,21 @@ impl Chart {
         grid
     }
 
-    /// Whether the robot has room at a point of the known world, with the least clearance.
-    pub(super) fn has_room(&self, point: Point, radius: f64) -> bool {
-        let least = self.levels[LEVELS - 1].clearance;
-        self.clearance.at_point(point).is_some_and(|distance| distance >= radius + least)
+    /// Whether a robot at a point has room beside all seen obstacles, as far as cells can tell.
+    pub(super) fn is_clear_of_seen(&self, point: Point, parameters: &NavigatorParameters) -> bool {
+        let room = parameters.room() - inexact(self.resolution());
+        self.seen().all(|obstacle| (obstacle - point).norm() >= room)
+    }
+
+    /// Whether the known world may leave a robot in a cell room, with the least clearance.
+    pub(super) fn may_have_room(&self, cell: usize) -> bool {
+        self.clearance.at(cell) >= self.levels[LEVELS - 1].room - 2.0 * inexact(self.resolution())
+    }
+
+    /// Regions of free cells with ways between them, by the index of the cell.
+    pub(super) fn regions(&self, grid: &BitGrid) -> Vec<Option<u32>> {
+        let columns = self.clearance.raster().columns();
+        self.clearance.raster().regions(|cell| grid.is_free(GridCell::new(cell % columns, cell / columns)))
     }
 
     /// Whether a point is in the known world's free space.
@@ -280,7 +325,8 @@ impl Chart {
         self.marks.iter().map(|&cell| self.centre(cell))
     }
 
-    fn index(&self, cell: GridCell) -> usize {
+    /// Index of a cell in what is told of all cells.
+    pub(super) fn index(&self, cell: GridCell) -> usize {
         cell.row * self.clearance.raster().columns() + cell.column
     }
 }

@@ -1,6 +1,7 @@
 //! Navigation to a goal in a known world that may have changed.
 
 mod chart;
+mod destination;
 mod locator;
 mod navigator;
 mod parameters;

@@ -1,6 +1,7 @@
 use std::ops::ControlFlow;
 
-use super::chart::{Chart, LEVELS};
+use super::chart::{COARSER, Chart, LEVELS, refused};
+use super::destination::Destination;
 use super::locator::Locator;
 use super::parameters::NavigatorParameters;
 use super::report::{NavigatorEvent, NavigatorOutcome, NavigatorPhase};
@@ -32,11 +33,15 @@ use crate::world::{GridCell, World};
 ///
 /// # Outcomes
 ///
-/// [`Unreachable`](NavigatorOutcome::Unreachable) is reported at once if the known world has no way to within
-/// the goal's tolerance. Cells that may close one are halved twice first; a passage with less room to
+/// [`NoRoom`](NavigatorOutcome::NoRoom) is reported at once if the goal is in no obstacle, but so near to one
+/// that the robot has no room within its tolerance; [`Unreachable`](NavigatorOutcome::Unreachable) if the
+/// known world has no way there. Cells that may close one are halved twice first; a passage with less room to
 /// spare on either side than one and a half of the resulting cells may count as closed. If seen obstacles
 /// leave none, they are forgotten and looked at anew first. A robot without progress records what is in front
 /// of it, backs off and plans anew; after several attempts it is [`Stuck`](NavigatorOutcome::Stuck).
+///
+/// In a world so large that small cells do not cover it, a way is looked for in as much of it around start
+/// and goal as they do cover, then with larger cells.
 ///
 /// ```
 /// use roverlab::geometry::{Point, Pose};
@@ -60,6 +65,7 @@ use crate::world::{GridCell, World};
 pub struct Navigator {
     parameters: NavigatorParameters,
     goal: Point,
+    destination: Destination,
     phase: NavigatorPhase,
     chart: Chart,
     route: Option<Route>,
@@ -129,6 +135,7 @@ impl Navigator {
         }
         let mut this = Self {
             chart: Chart::new(world, start.position(), &parameters, parameters.resolution)?,
+            destination: Destination::new(world, goal, &parameters).map_err(|error| refused(&error))?,
             parameters,
             goal,
             phase: NavigatorPhase::Looking,
@@ -154,14 +161,44 @@ impl Navigator {
             doubts: 0,
             widened_at: start.position(),
         };
-        let is_open = this.chart.is_open(start.position());
-        if !is_open && this.chart.is_coarse() {
-            return Err(this.too_coarse());
-        }
-        if !is_open || !(this.plan(LEVELS) || this.plan_finer(world)?) {
+        if let Some(verdict) = this.destination.verdict() {
+            this.end(verdict);
+        } else if !this.find_way(world)? {
             this.end(NavigatorOutcome::Unreachable);
         }
         Ok(this)
+    }
+
+    /// Plans the first way. `false` if there is none. Fails if the cells are too large to tell.
+    fn find_way(&mut self, world: &World) -> Result<bool> {
+        if self.chart.is_coarse() && self.plan_nearby(world)? {
+            return Ok(true);
+        }
+        if !self.chart.is_open(self.start.position()) {
+            return if self.chart.is_coarse() { Err(self.too_coarse()) } else { Ok(false) };
+        }
+        if !self.plan(LEVELS) {
+            return self.plan_finer(world);
+        }
+        if self.chart.is_blind(&self.parameters) { Err(self.too_coarse()) } else { Ok(true) }
+    }
+
+    /// Plans within as much of a large world around start and goal as smaller cells cover, the smallest ones
+    /// first. `false` if there is no way in it.
+    fn plan_nearby(&mut self, world: &World) -> Result<bool> {
+        let ends = [self.start.position(), self.goal];
+        let mut resolution = self.parameters.resolution;
+        while resolution < self.chart.resolution() {
+            if let Some(part) = Chart::between(world, ends, &self.parameters, resolution)? {
+                let whole = std::mem::replace(&mut self.chart, part);
+                if self.chart.is_open(self.start.position()) && self.plan(LEVELS) {
+                    return Ok(true);
+                }
+                self.chart = whole;
+            }
+            resolution *= COARSER;
+        }
+        Ok(false)
     }
 
     /// Plans with finer cells as long as those in use may close a way. `false` if there is none. Fails if the
@@ -297,8 +334,8 @@ impl Navigator {
     /// Plans with the largest of the first `levels` clearances that leaves a way.
     fn plan(&mut self, levels: usize) -> bool {
         let from = self.pose.position();
-        let mut routes =
-            (0..levels).filter_map(|level| Route::new(&self.chart, level, from, self.goal, &self.parameters));
+        let mut routes = (0..levels)
+            .filter_map(|level| Route::new(&self.chart, level, from, &self.destination, &self.parameters));
         let Some(route) = routes.next() else { return false };
         let clearance = self.chart.clearance(route.level);
         self.events.push(NavigatorEvent::Planned { length: route.length(), clearance });
@@ -315,7 +352,8 @@ impl Navigator {
         }
         self.route = None;
         if !self.chart.forget() || self.doubts >= MAX_DOUBTS {
-            return self.end(NavigatorOutcome::Unreachable);
+            let is_all = !self.chart.is_part();
+            return self.end(if is_all { NavigatorOutcome::Unreachable } else { NavigatorOutcome::Stuck });
         }
         self.doubts += 1;
         self.events.push(NavigatorEvent::Doubted { point: self.pose.position() });
@@ -336,8 +374,9 @@ impl Navigator {
         }
         let Some(route) = &self.route else { return Twist::STOP };
         let target = route.target(&self.chart, self.pose.position(), NEAR);
-        let clearance = self.chart.clearance(route.level);
-        self.steering(clearance).towards(self.pose.to_local(target), self.pose.distance_to(self.goal), speed)
+        let clearance = route.clearance_to(&self.chart, target);
+        let rest = self.pose.distance_to(route.place());
+        self.steering(clearance).towards(self.pose.to_local(target), rest, speed)
     }
 
     /// Updates the plan. `false` if no way is left.

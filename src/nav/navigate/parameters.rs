@@ -64,6 +64,11 @@ impl NavigatorParameters {
     pub(super) fn radius(&self) -> f64 {
         self.footprint.bounding_radius()
     }
+
+    /// Distance from its centre to the nearest obstacle with which the robot has room (m).
+    pub(super) fn room(&self) -> f64 {
+        self.radius() + self.least_clearance
+    }
 }
 
 impl Default for NavigatorParameters {

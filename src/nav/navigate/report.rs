@@ -8,7 +8,10 @@ pub enum NavigatorOutcome {
     Reached,
     /// No way leads to the goal, given the known world and the obstacles seen.
     Unreachable,
-    /// A way exists, but the robot makes no progress.
+    /// The known world leaves the robot no room at the goal or within its tolerance.
+    NoRoom,
+    /// A way exists, or may exist in a world so large that not all of it was searched, but the
+    /// robot makes no progress.
     Stuck,
     /// The time limit came first.
     TimedOut,
@@ -19,6 +22,7 @@ pub enum NavigatorOutcome {
 halts!(NavigatorOutcome {
     Reached: "the goal is reached",
     Unreachable: "no way leads to the goal",
+    NoRoom: "the robot has no room at the goal",
     Stuck: "the robot makes no progress",
 });
 

@@ -1,8 +1,9 @@
-use super::chart::Chart;
+use super::chart::{Chart, LEVELS};
+use super::destination::{Destination, REACH, nearest_free};
 use super::parameters::NavigatorParameters;
 use crate::geometry::Point;
 use crate::nav::grid::DStarLite;
-use crate::world::{BitGrid, GridCell};
+use crate::world::GridCell;
 
 /// A plan at one level of clearance, updated as obstacles are seen.
 #[derive(Debug, Clone)]
@@ -14,13 +15,10 @@ pub(super) struct Route {
     /// Centres of the path's cells, and the place to drive to.
     path: Vec<Point>,
     place: Point,
+    /// Whether that place is beside the path's cells, as it has less room than they have.
+    is_beside: bool,
     length: f64,
 }
-
-/// Maximum distance to the nearest free cell from a robot or a goal in an occupied one (m).
-const REACH: f64 = 0.12;
-/// Fraction of the goal's tolerance that is used where the robot has no room at the goal.
-const USED_TOLERANCE: f64 = 0.9;
 
 impl Route {
     /// A plan at a level; `None` if no way exists.
@@ -28,14 +26,15 @@ impl Route {
         chart: &Chart,
         level: usize,
         robot: Point,
-        goal: Point,
+        destination: &Destination,
         parameters: &NavigatorParameters,
     ) -> Option<Self> {
         let grid = chart.grid(level);
         let from = nearest_free(chart, &grid, robot)?;
-        let (to, place) = end_of_path(chart, &grid, goal, parameters)?;
+        let (to, place) = destination.in_reach_of(chart, &grid, from, parameters)?;
         let planner = DStarLite::new(&grid, from, to).ok()?;
-        let mut route = Self { level, planner, cell: from, path: Vec::new(), place, length: 0.0 };
+        let is_beside = chart.cell(place) != Some(to);
+        let mut route = Self { level, planner, cell: from, path: Vec::new(), place, is_beside, length: 0.0 };
         route.plan(chart).then_some(route)
     }
 
@@ -89,8 +88,29 @@ impl Route {
         &self.path
     }
 
+    /// The place in which the path ends.
+    pub(super) fn place(&self) -> Point {
+        self.place
+    }
+
+    /// Free space beside the outline on the way to a point of the path (m).
+    pub(super) fn clearance_to(&self, chart: &Chart, target: Point) -> f64 {
+        let is_least = self.is_beside && target == self.place;
+        chart.clearance(if is_least { LEVELS - 1 } else { self.level })
+    }
+
+    /// Whether a robot near a place beside the path's cells may leave them for it.
+    fn leads_straight(&self, chart: &Chart, robot: Point) -> bool {
+        let is_near = self.is_beside && (self.place - robot).norm() <= REACH;
+        let may_have_room = |cell| chart.may_have_room(chart.index(cell));
+        is_near && is_line_of(chart.in_cells(robot), chart.in_cells(self.place), may_have_room)
+    }
+
     /// The farthest path point within `far` metres that a straight way leads to.
     pub(super) fn target(&self, chart: &Chart, robot: Point, far: f64) -> Point {
+        if self.leads_straight(chart, robot) {
+            return self.place;
+        }
         let grid = self.planner.grid();
         let is_free = chart.cell(robot).is_some_and(|cell| grid.is_free(cell));
         // A robot too near to something returns to the path by its next few cells.
@@ -105,7 +125,8 @@ impl Route {
             }
             // Robot and goal may be in cells that are not free.
             let is_last = index + 1 == self.path.len();
-            if !is_free || is_last && index < 2 || is_line_free(grid, from, chart.in_cells(point)) {
+            let is_open = |cell| grid.is_free(cell);
+            if !is_free || is_last && index < 2 || is_line_of(from, chart.in_cells(point), is_open) {
                 best = point;
             }
         }
@@ -113,38 +134,8 @@ impl Route {
     }
 }
 
-/// The cell to plan to, and the place to drive to: the goal, or the nearest place within its tolerance where
-/// the robot has room.
-fn end_of_path(
-    chart: &Chart,
-    grid: &BitGrid,
-    goal: Point,
-    parameters: &NavigatorParameters,
-) -> Option<(GridCell, Point)> {
-    let cell = nearest_free(chart, grid, goal)?;
-    if chart.has_room(goal, parameters.radius()) {
-        return Some((cell, goal));
-    }
-    let place = chart.centre(cell);
-    ((place - goal).norm() <= USED_TOLERANCE * parameters.goal_tolerance).then_some((cell, place))
-}
-
-/// The free cell nearest to a point, if one is near.
-fn nearest_free(chart: &Chart, grid: &BitGrid, point: Point) -> Option<GridCell> {
-    let at = chart.cell(point)?;
-    if grid.is_free(at) {
-        return Some(at);
-    }
-    let reach = (REACH / chart.resolution()).ceil() as usize;
-    let (columns, rows) =
-        (at.column.saturating_sub(reach)..=at.column + reach, at.row.saturating_sub(reach)..=at.row + reach);
-    let cells = rows.flat_map(|row| columns.clone().map(move |column| GridCell::new(column, row)));
-    let away = |cell: &GridCell| (chart.centre(*cell) - point).norm_squared();
-    cells.filter(|&cell| grid.is_free(cell)).min_by(|a, b| away(a).total_cmp(&away(b)))
-}
-
-/// Whether all cells met by a line, given in units of cells, are free.
-fn is_line_free(grid: &BitGrid, a: Point, b: Point) -> bool {
+/// Whether all cells met by a line, given in units of cells, are of a kind.
+fn is_line_of(a: Point, b: Point, is_of_it: impl Fn(GridCell) -> bool) -> bool {
     let (dx, dy) = (b.x - a.x, b.y - a.y);
     // Row by row: the columns between the line's entry and its exit.
     let (low, high) = (a.y.min(b.y).floor(), a.y.max(b.y).floor());
@@ -155,7 +146,7 @@ fn is_line_free(grid: &BitGrid, a: Point, b: Point) -> bool {
         let (from, to) = (from.min(to), from.max(to));
         let mut column = (from - 1e-9).floor();
         while column <= (to + 1e-9).floor() {
-            if column < 0.0 || row < 0.0 || !grid.is_free(GridCell::new(column as usize, row as usize)) {
+            if column < 0.0 || row < 0.0 || !is_of_it(GridCell::new(column as usize, row as usize)) {
                 return false;
             }
             column += 1.0;
@@ -169,6 +160,7 @@ fn is_line_free(grid: &BitGrid, a: Point, b: Point) -> bool {
 mod tests {
     use super::*;
     use crate::random::Stream;
+    use crate::world::BitGrid;
     use proptest::prelude::*;
 
     proptest! {
@@ -187,7 +179,7 @@ mod tests {
                     GridCell::at(Point::new(point.x + x, point.y + y)).is_some_and(|cell| grid.is_free(cell))
                 })
             });
-            if is_line_free(&grid, a, b) {
+            if is_line_of(a, b, |cell| grid.is_free(cell)) {
                 prop_assert!(all(0.0));
             } else {
                 prop_assert!(!all(0.01));

@@ -36,6 +36,7 @@ portable!(
     enum NavigatorOutcome {
         Reached,
         Unreachable,
+        NoRoom,
         Stuck,
         TimedOut,
         Stopped,
