@@ -1,10 +1,10 @@
-//! The bug family's verdicts on goals beside walls, corners and curves, at every distance from touching to
-//! well clear.
+//! The verdicts of the bug family and of the navigator on goals beside walls, corners and curves, at every
+//! distance from touching to well clear.
 
 use roverlab::geometry::{Point, Pose, direction};
 use roverlab::io::control;
 use roverlab::io::sim::{SimOptions, Simulation};
-use roverlab::nav::{BugKind, BugOutcome, BugParameters};
+use roverlab::nav::{BugKind, BugOutcome, BugParameters, Navigator, NavigatorOutcome, NavigatorParameters};
 use roverlab::random::Stream;
 use roverlab::world::{RobotSpec, Scene, Wall, World};
 
@@ -86,7 +86,7 @@ fn wrong(goals: usize, noise: u32, seed: u64) -> (Vec<String>, usize) {
             let contacts = truth.robot(0).unwrap().contacts;
             let right = match outcome {
                 BugOutcome::Reached => room > 0.0 && off <= MISSED[level],
-                BugOutcome::Unreachable | BugOutcome::NoRoom => room < 0.0,
+                BugOutcome::NoRoom => room < 0.0,
                 _ => false,
             };
             runs += 1;
@@ -98,6 +98,50 @@ fn wrong(goals: usize, noise: u32, seed: u64) -> (Vec<String>, usize) {
         }
     }
     (wrong, runs)
+}
+
+/// Goals for which so little decides are left out for the navigator, in metres: it knows the walls.
+const UNDECIDED_ON_A_MAP: f64 = 0.001_5;
+/// Time in which it is at any goal of the room, in seconds: it does not hover beside one.
+const IN_TIME: f64 = 40.0;
+
+/// Drives the navigator to some goals, as `wrong` does the bugs.
+fn wrong_on_a_map(goals: usize, noise: f64, seed: u64) -> (Vec<String>, usize) {
+    let (world, mut stream) = (room(), Stream::new(seed));
+    let (mut wrong, mut runs) = (Vec::new(), 0);
+    for _ in 0..goals {
+        let goal = goal(&mut stream);
+        // Both keep 60 mm and 12 mm, and count what is within 25 mm.
+        let room = room_at(&world, goal, &BugParameters::default());
+        let start = Pose::new(0.5, stream.between(0.3, 1.9), stream.between(-3.1, 3.1));
+        if room.abs() < UNDECIDED_ON_A_MAP {
+            continue;
+        }
+        let scene = Scene::with_robot(world.clone(), RobotSpec::s4(), start);
+        let simulation = Simulation::new(&scene, SimOptions::with_noise(noise, seed)).unwrap();
+        let (truth, mut robot) = (simulation.truth(), simulation.robot(0).unwrap());
+        let mut navigator = Navigator::new(&world, start, goal, NavigatorParameters::default()).unwrap();
+        let outcome = control::run(&mut robot, &mut navigator, IN_TIME, |_, _, _| {}).unwrap();
+        let (pose, contacts) = (truth.robot(0).unwrap().pose, truth.robot(0).unwrap().contacts);
+        let right = match outcome {
+            NavigatorOutcome::Reached => room > 0.0 && pose.distance_to(goal) <= MISSED[1],
+            NavigatorOutcome::NoRoom => room < 0.0,
+            _ => false,
+        };
+        runs += 1;
+        if !right || contacts > 0 {
+            wrong.push(format!(
+                "from {start:?} to {goal}: {outcome:?}, {contacts} contacts, room {room:.4} m"
+            ));
+        }
+    }
+    (wrong, runs)
+}
+
+#[test]
+fn a_map_tells_where_the_robot_has_room() {
+    let (wrong, runs) = wrong_on_a_map(60, 1.0, 1);
+    assert!(wrong.is_empty() && runs > 50, "{} of {runs}: {wrong:#?}", wrong.len());
 }
 
 #[test]
@@ -209,6 +253,15 @@ mod campaigns {
     fn ten_thousand_goals_beside_walls() {
         let (wrong, runs) = wrong(1000, 0, 2);
         assert!(wrong.is_empty(), "{} of {runs}: {wrong:#?}", wrong.len());
+    }
+
+    #[test]
+    #[ignore = "takes minutes: cargo test --release --all-features --test bug_goals -- --ignored"]
+    fn goals_beside_walls_on_a_map() {
+        for noise in [0.0, 1.0] {
+            let (wrong, runs) = wrong_on_a_map(1000, noise, 4);
+            assert!(wrong.is_empty() && runs > 900, "{} of {runs}: {wrong:#?}", wrong.len());
+        }
     }
 
     /// With noise some verdicts may be wrong, but none that says that the goal is reached.

@@ -24,6 +24,8 @@ pub(super) struct Body {
     pub(super) events: Vec<BugEvent>,
     /// Points of the scan as measured, in the robot's frame.
     measured: Vec<Point>,
+    /// How many more looks at the goal saw no room there than saw some.
+    cramped: i32,
     slow_to_pass: bool,
     ends: WallEnds,
     look: LookRound,
@@ -100,6 +102,7 @@ impl Body {
             points: Vec::new(),
             events: Vec::new(),
             measured: Vec::new(),
+            cramped: 0,
             slow_to_pass,
             ends: WallEnds::default(),
             look: LookRound::default(),
@@ -223,24 +226,33 @@ impl Body {
         towards_it && view.free < margin && view.free < view.distance
     }
 
-    /// Whether the robot, near the goal, sees that it has no room within the goal's tolerance, measurement
-    /// errors considered.
-    pub(super) fn is_goal_seen_without_room(&self) -> bool {
-        let distances = self.parameters.follow_distances();
-        if self.goal_distance() > 2.0 * NEAR * distances.wished {
-            return false;
+    /// Looks for room at the goal; ends the run if there is certainly none.
+    pub(super) fn look_for_room(&mut self) {
+        if self.goal_distance() > 2.0 * NEAR * self.parameters.follow_distances().wished {
+            return;
         }
+        let tolerance = self.parameters.goal_tolerance;
+        self.cramped += if self.has_room_within(USED_TOLERANCE * tolerance, 0.0) { -1 } else { 1 };
         let error = POINT_ERROR + NOISE_SLACK * self.filter.noise();
-        let (least, tolerance) = (distances.least - error, self.parameters.goal_tolerance);
+        if !self.has_room_within(tolerance, error) {
+            self.end(BugOutcome::NoRoom);
+        }
+    }
+
+    /// Whether the visible points leave room for the disc within a distance of the goal, if they may be off
+    /// by an error.
+    fn has_room_within(&self, distance: f64, error: f64) -> bool {
+        let least = self.parameters.follow_distances().least - error;
         let goal = self.pose.to_local(self.goal);
-        let near: Vec<Vector> = self
-            .points
-            .iter()
-            .map(|point| point - goal)
-            .filter(|away| away.norm() < least + tolerance)
-            .collect();
+        let aways = self.points.iter().map(|point| point - goal);
+        let near: Vec<Vector> = aways.filter(|away| away.norm() < least + distance).collect();
         let has_room = |place: Vector| near.iter().all(|point| (point - place).norm() >= least);
-        !has_room(Vector::zeros()) && !around(tolerance).any(has_room)
+        has_room(Vector::zeros()) || around(distance).any(has_room)
+    }
+
+    /// Ends a run to a goal to which no way leads. If most looks saw no room at the goal, that is why.
+    pub(super) fn give_up(&mut self) {
+        self.end(if self.cramped > 0 { BugOutcome::NoRoom } else { BugOutcome::Unreachable });
     }
 
     /// The twist that turns the robot to a heading and drives it on.

@@ -72,8 +72,8 @@ impl Decider<'_> {
         self.body.learn();
         if self.body.goal_distance() <= self.body.parameters.goal_tolerance {
             self.body.end(BugOutcome::Reached);
-        } else if self.body.is_goal_seen_without_room() {
-            self.body.end(BugOutcome::NoRoom);
+        } else {
+            self.body.look_for_room();
         }
         let heading = match self.body.phase {
             BugPhase::ToGoal => self.head_for_goal(),
@@ -192,7 +192,7 @@ impl Decider<'_> {
                 Some(None)
             }
             Decision::GiveUp => {
-                self.body.end(BugOutcome::Unreachable);
+                self.body.give_up();
                 None
             }
         }
