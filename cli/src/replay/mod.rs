@@ -70,10 +70,10 @@ fn unwritable(name: impl Display, error: &dyn Display) -> Failure {
     Failure::run(format!("{name}: {error}; expected a file that can be written"))
 }
 
-/// A recording to write, which takes the place of other files only by `force`.
+/// A recording to write whole or not at all, which takes the place of other files only by `force`.
 fn created(name: impl Display, (file, force): (&Path, bool)) -> Result<LogFile, Failure> {
     let created = if force { LogFile::replace(file) } else { LogFile::create(file) };
-    created.map_err(|error| unrecordable(name, &error))
+    created.map(LogFile::whole).map_err(|error| unrecordable(name, &error))
 }
 
 fn recovered(file: &Path, out: (&Path, bool)) -> Result<Found, Failure> {

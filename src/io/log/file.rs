@@ -31,11 +31,14 @@ use crate::files::irregular;
 #[derive(Debug)]
 pub struct LogFile {
     file: BufWriter<File>,
-    /// Path at which it is written, and its final name.
-    aside: Option<(PathBuf, PathBuf)>,
+    name: PathBuf,
+    /// Path at which it is written instead until it gets its name.
+    part: Option<PathBuf>,
     /// The file that has the name until then, which tells others that somebody records.
-    _name: File,
+    _named: File,
     sync: bool,
+    /// Whether a part of it is of no use.
+    whole: bool,
 }
 
 /// Bytes that are written at a time.
@@ -55,34 +58,53 @@ impl LogFile {
 
     /// Waits at the end of each chunk until it is on the disk, where it stays if the machine stops.
     #[must_use]
-    pub fn synced(self) -> Self {
-        Self { sync: true, ..self }
+    pub fn synced(mut self) -> Self {
+        self.sync = true;
+        self
+    }
+
+    /// Removes the file if it is dropped before [`complete`](Self::complete): what has a source elsewhere is
+    /// written whole or not at all.
+    #[must_use]
+    pub fn whole(mut self) -> Self {
+        self.whole = true;
+        self
     }
 
     fn open(path: &Path, any: bool) -> io::Result<Self> {
         // The target of a link is replaced, not the link.
         let path = &fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let named = claimed(path)?;
-        if named.metadata()?.len() == 0 {
-            let file = BufWriter::with_capacity(BUFFER, named.try_clone()?);
-            return Ok(Self { file, aside: None, _name: named, sync: false });
-        }
-        let part = aside(path);
-        if !any {
+        let is_new = named.metadata()?.len() == 0;
+        if !(is_new || any) {
             is_recording(&named)?;
         }
-        let file = created(&part, any)
-            .map_err(|error| io::Error::new(error.kind(), format!("{}: {error}", part.display())))?;
+        let part = (!is_new).then(|| aside(path));
+        let file = match &part {
+            None => named.try_clone()?,
+            Some(part) => created(part, any)
+                .map_err(|error| io::Error::new(error.kind(), format!("{}: {error}", part.display())))?,
+        };
         let file = BufWriter::with_capacity(BUFFER, file);
-        Ok(Self { file, aside: Some((part, path.to_owned())), _name: named, sync: false })
+        Ok(Self { file, name: path.to_owned(), part, _named: named, sync: false, whole: false })
     }
 
     /// Ends the file, and gives it its name.
     pub fn complete(mut self) -> io::Result<()> {
         self.flush()?;
-        match &self.aside {
-            Some((part, name)) => fs::rename(part, name),
-            None => Ok(()),
+        if let Some(part) = &self.part {
+            fs::rename(part, &self.name)?;
+        }
+        self.whole = false;
+        Ok(())
+    }
+}
+
+impl Drop for LogFile {
+    fn drop(&mut self) {
+        if self.whole {
+            // Nobody is left to hear of it.
+            let _ = fs::remove_file(self.part.as_ref().unwrap_or(&self.name));
         }
     }
 }
@@ -208,6 +230,18 @@ mod tests {
         assert_eq!(LogFile::create(&path).unwrap_err().kind(), io::ErrorKind::ResourceBusy);
         new.synced().complete().unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"new");
+        assert!(!aside(&path).exists());
+        fs::remove_file(path).unwrap();
+    }
+
+    #[test]
+    fn what_is_not_whole_goes_and_an_older_file_stays() {
+        let path = path("whole");
+        drop(written(&path, mcap::MAGIC).unwrap().whole());
+        assert!(!path.exists());
+        written(&path, mcap::MAGIC).unwrap().whole().complete().unwrap();
+        drop(written(&path, b"new").unwrap().whole());
+        assert_eq!(fs::read(&path).unwrap(), mcap::MAGIC);
         assert!(!aside(&path).exists());
         fs::remove_file(path).unwrap();
     }

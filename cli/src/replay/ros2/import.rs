@@ -1,6 +1,5 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
 use std::rc::Rc;
 
@@ -84,7 +83,6 @@ pub(in crate::replay) fn import(
     let cannot = |error| {
         Failure::run(format!("--out {}: {error}; expected a file that can be written", out.display()))
     };
-    let is_new = !out.exists();
     let file = created(format_args!("--out {}", out.display()), (out, force))?;
     let writer = LogWriter::new(file, &Header::new("ros2_bag", [""; 0])).map_err(cannot)?;
     let robot = Rc::new(RefCell::new(Recorded::default()));
@@ -103,11 +101,7 @@ pub(in crate::replay) fn import(
     let Import { recorder, counts, late, .. } = import;
     drop(recorder);
     let written = writer.finish();
-    if let Err(failure) = visited {
-        // An older recording is still there, a new one is not whole.
-        let _ = if is_new { fs::remove_file(out) } else { Ok(()) };
-        return Err(in_bag(failure));
-    }
+    visited.map_err(in_bag)?;
     written.and_then(LogFile::complete).map_err(cannot)?;
     let count = |kind| counts.get(&kind).copied().unwrap_or(0);
     let [scans, poses, images, commands] = Kind::ALL.map(count);
