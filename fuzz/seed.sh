@@ -3,7 +3,7 @@
 set -eu
 cd "$(dirname "$0")"
 data=../tests/data
-for target in wld maz robi esobj sim ros_map movingai track maze recording image worker checkpoint weights; do mkdir -p "corpus/$target"; done
+for target in wld maz robi esobj sim ros_map movingai track maze recording image worker checkpoint weights wire; do mkdir -p "corpus/$target"; done
 for target in wld maz robi; do
     for file in "$data"/formats/*."$target" "$data/broken/$target"/*."$target"; do
         [ "$(wc -c < "$file")" -gt 4096 ] || cp "$file" "corpus/$target/"
@@ -20,7 +20,8 @@ cp "$data"/grids/*.map "$data"/grids/*.scen "$data"/broken/movingai_map/*.map "$
     corpus/movingai/
 cp "$data"/cones/*.csv "$data"/cones/*.yaml corpus/track/
 cp "$data"/mazes/* "$data"/broken/maz/*.maz corpus/maze/
-# The beginnings of recordings: `-max_len` leaves no more of them.
+# A whole recording with three edits, and the beginnings of others: `-max_len` leaves no more of them.
+printf '~\0\001\003\007\0\002\0\007\0\003\002\0' > corpus/recording/edits
 for log in "$data"/logs/*.mcap; do head -c 4096 "$log" > "corpus/recording/$(basename "$log")"; done
 cp "$data"/formats/*.png "$data"/formats/*.pgm corpus/image/
 printf 'ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n0 1\n2 3\n' > corpus/image/ground.asc
@@ -29,3 +30,6 @@ printf '{"version":1,"settings":"fuzz","state":{"genomes":[[1,2],[3,4]],"seed":1
 # A header of 60 bytes, and one number.
 printf '\074\0\0\0\0\0\0\0{"signs":{"dtype":"F32","shape":[1,1],"data_offsets":[0,4]}}\0\0\0\0' > corpus/weights/one
 cp ../cli/nets/steering.safetensors corpus/weights/network
+# The question for the pose, and an answer: done.
+printf '\0\0\0\0\0\0\0\0\0\004' > corpus/wire/question
+printf '\0\0\0\0\0\0\0\0\001\002\0\0\0\0\0\0\0\0\0' > corpus/wire/answer
