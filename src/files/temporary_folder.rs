@@ -190,6 +190,31 @@ mod tests {
         fs::remove_dir_all(&base).unwrap();
     }
 
+    /// Only the system's administrator may start programs as another user, so nobody else can try.
+    #[cfg(unix)]
+    #[test]
+    fn another_user_sees_nothing_of_it() {
+        use std::os::unix::process::CommandExt;
+        use std::process::Command;
+        const NOBODY: u32 = 65_534;
+        let folder = TemporaryFolder::within(std::env::temp_dir(), "roverlab-seen-").unwrap();
+        let file = folder.path().join("memory");
+        fs::write(&file, "of one user").unwrap();
+        let can = |program: &str, of: &Path| {
+            Command::new(program).arg(of).uid(NOBODY).gid(NOBODY).output().map(|done| done.status.success())
+        };
+        match can("ls", Path::new("/")) {
+            Err(error) => assert_eq!(error.kind(), io::ErrorKind::PermissionDenied),
+            Ok(begins) => {
+                assert!(begins);
+                for (program, of) in [("ls", folder.path()), ("cat", &file), ("rm", &file)] {
+                    assert!(!can(program, of).unwrap(), "{program}");
+                }
+                assert_eq!(fs::read(&file).unwrap(), b"of one user");
+            }
+        }
+    }
+
     /// Others lock their folders too, and forget some: an empty prefix is no leave to remove these.
     #[test]
     fn folders_with_other_names_are_never_removed() {
