@@ -53,39 +53,6 @@ impl World {
         walls + self.objects.iter().filter(|object| is_out(object.pose.position())).count()
     }
 
-    /// Removes other sites until the [`site`](World::site) contains a place, and returns the number of walls
-    /// and objects that are gone: what is more than 100 m away cannot matter to a robot there. Nothing is
-    /// removed if no site contains the place.
-    ///
-    /// ```
-    /// use roverlab::geometry::{Point, Vector};
-    /// use roverlab::world::{Wall, World};
-    /// let room = World::walled(3.0, 2.0);
-    /// let mut world = room.clone();
-    /// let away = Vector::new(200.0, 0.0);
-    /// for wall in World::walled(3.0, 2.0).walls.iter().cycle().take(8) {
-    ///     world.walls.push(Wall::new(wall.line.a + away, wall.line.b + away));
-    /// }
-    /// let place = Point::new(1.0, 1.0);
-    /// assert!(!world.site().contains(place));
-    /// assert_eq!((world.keep_around(place), world), (8, room));
-    /// ```
-    pub fn keep_around(&mut self, place: Point) -> usize {
-        let mut kept = self.clone();
-        while !kept.site().contains(place) {
-            let Some((site, _)) = kept.kept() else { return 0 };
-            let things = kept.walls.len() + kept.objects.len();
-            kept.walls.retain(|wall| !(site.contains(wall.line.a) || site.contains(wall.line.b)));
-            kept.objects.retain(|object| !site.contains(object.pose.position()));
-            if kept.walls.len() + kept.objects.len() == things {
-                return 0;
-            }
-        }
-        let removed = self.walls.len() + self.objects.len() - kept.walls.len() - kept.objects.len();
-        *self = kept;
-        removed
-    }
-
     /// Bounding boxes of most things in the world and of all things; `None` if they are equal.
     fn kept(&self) -> Option<(Aabb, Aabb)> {
         let walls = self.walls.iter().map(|wall| [wall.line.a, wall.line.b]);
@@ -161,31 +128,6 @@ fn kept(count: usize, at: usize, is_first_preferred: bool) -> Range<usize> {
 mod tests {
     use super::*;
     use crate::world::{Clearance, Wall};
-
-    /// Three rooms far from each other, with one, two and three layers of walls.
-    #[test]
-    fn the_site_of_a_place_is_kept() {
-        let room = |x: f64, layers: usize| {
-            let walls = World::walled(3.0, 2.0).walls;
-            let away = Vector::new(x, 0.0);
-            let moved = walls.iter().map(|wall| Wall::new(wall.line.a + away, wall.line.b + away));
-            moved.cycle().take(4 * layers).collect::<Vec<_>>()
-        };
-        let rooms = [room(0.0, 1), room(200.0, 2), room(500.0, 3)];
-        let mut all = World::walled(3.0, 2.0);
-        all.walls = rooms.concat();
-        for (x, walls) in [0.0, 200.0, 500.0].into_iter().zip(&rooms) {
-            let (mut world, place) = (all.clone(), Point::new(x + 1.0, 1.0));
-            world.keep_around(place);
-            assert!(
-                world.site().contains(place) && walls.iter().all(|wall| world.walls.contains(wall)),
-                "{x}"
-            );
-        }
-        // Nobody is there.
-        let mut world = all.clone();
-        assert_eq!((world.keep_around(Point::new(100.0, 1.0)), world), (0, all));
-    }
 
     fn stray(place: Point) -> World {
         let mut world = World::walled(3.0, 2.0);

@@ -3,7 +3,6 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use roverlab::geometry::Pose;
 use roverlab::io::log::{Attachment, Log};
 use roverlab::world::Scene;
 use roverlab::world::formats::Parsed;
@@ -75,24 +74,11 @@ impl Origin {
         self.warnings.lock().unwrap_or_else(PoisonError::into_inner).push(warning);
     }
 
-    /// A scene that was read from a file, without the places far from where the robot starts, if there is no
-    /// robot; records the warnings of the file, and one of things so far from everything else that maps and
-    /// pictures omit them.
-    pub(crate) fn scene(&self, file: &Path, parsed: Parsed<Scene>, start: Option<Pose>) -> Scene {
+    /// A scene that was read from a file; records the warnings of the file, and one of things so far from
+    /// everything else that maps and pictures omit them.
+    pub(crate) fn scene(&self, file: &Path, parsed: Parsed<Scene>) -> Scene {
         parsed.warnings.iter().for_each(|warning| self.warn(warning.to_string()));
-        let mut scene = parsed.value;
-        let start = start.or(scene.robots.first().map(|robot| robot.pose)).or(scene.world.start);
-        let site = scene.world.site();
-        let others = scene.robots.iter().skip(1).any(|robot| site.contains(robot.pose.position()));
-        if let Some(start) = start.filter(|_| !others) {
-            let removed = scene.world.keep_around(start.position());
-            if removed > 0 {
-                self.warn(format!(
-                    "{}: walls and objects in places more than 100 m from the start: {removed}; they are left out",
-                    file.display()
-                ));
-            }
-        }
+        let scene = parsed.value;
         let strays = scene.world.strays();
         if strays > 0 {
             self.warn(format!(

@@ -220,9 +220,28 @@ impl CommonArgs {
         )
     }
 
+    /// Fails if the first robot is not where maps are of the world: in a place with fewer walls than another
+    /// one that is more than 100 m away.
+    pub(crate) fn check_site(&self, scene: &Scene) -> Result<(), Failure> {
+        let (site, start) = (scene.world.site(), scene.robots[0].pose.position());
+        if site.contains(start) {
+            return Ok(());
+        }
+        Err(Failure::input(format!(
+            "{}: found a start at {} mm, apart from most walls; expected one {}, which maps show",
+            self.start_name(),
+            in_mm(start),
+            within(&site)
+        )))
+    }
+
+    /// Where the start is from, in messages.
+    fn start_name(&self) -> String {
+        if self.start.is_some() { "--start".into() } else { self.world_name() }
+    }
+
     fn check_start(&self, scene: &Scene) -> Result<(), Failure> {
-        let start = scene.robots[0].pose;
-        let from = if self.start.is_some() { "--start".into() } else { self.world_name() };
+        let (start, from) = (scene.robots[0].pose, self.start_name());
         let place = in_mm(start.position());
         if !scene.world.bounds().contains(start.position()) {
             return Err(Failure::input(format!(

@@ -64,8 +64,7 @@ fn hills(args: &Args) -> Result<(World, Point), Failure> {
         let made = relief(&mut Stream::new(args.plain.seed), &options).map_err(refused)?;
         return Ok((made.world, args.start.unwrap_or(made.start).position()));
     };
-    let parsed = formats::load_scene(file).map_err(Failure::input)?;
-    let scene = args.plain.origin.scene(file, parsed, args.start);
+    let scene = args.plain.origin.scene(file, formats::load_scene(file).map_err(Failure::input)?);
     let own = scene.robots.first().map(|robot| robot.pose).or(scene.world.start);
     let start = args.start.or(own).ok_or_else(|| {
         Failure::input(format!(

@@ -75,6 +75,8 @@ impl LogFile {
         // The target of a link is replaced, not the link.
         let path = &fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let named = claimed(path)?;
+        // A link to nothing yet has a target now.
+        let path = &fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let is_new = named.metadata()?.len() == 0;
         if !(is_new || any) {
             is_recording(&named)?;
@@ -103,7 +105,8 @@ impl LogFile {
 impl Drop for LogFile {
     fn drop(&mut self) {
         if self.whole {
-            // Nobody is left to hear of it.
+            // Nobody is left to hear of it; in a folder of others it is empty at least.
+            let _ = self.file.get_ref().set_len(0);
             let _ = fs::remove_file(self.part.as_ref().unwrap_or(&self.name));
         }
     }
@@ -243,6 +246,16 @@ mod tests {
         drop(written(&path, b"new").unwrap().whole());
         assert_eq!(fs::read(&path).unwrap(), mcap::MAGIC);
         assert!(!aside(&path).exists());
+        #[cfg(unix)]
+        {
+            let link = super::tests::path("link");
+            fs::remove_file(&path).unwrap();
+            std::os::unix::fs::symlink(&path, &link).unwrap();
+            drop(written(&link, mcap::MAGIC).unwrap().whole());
+            assert!(!path.exists() && link.is_symlink());
+            written(&link, mcap::MAGIC).unwrap().whole().complete().unwrap();
+            fs::remove_file(&link).unwrap();
+        }
         fs::remove_file(path).unwrap();
     }
 

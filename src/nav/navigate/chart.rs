@@ -260,6 +260,15 @@ impl Chart {
         self.clearance.at(cell) >= self.levels[LEVELS - 1].room - 2.0 * inexact(self.resolution())
     }
 
+    /// Whether the known world may leave a robot room all the way from a place to another one, if not less than
+    /// at the first one.
+    pub(super) fn is_straight_way(&self, from: Point, to: Point) -> bool {
+        let own = self.clearance.at_point(from).unwrap_or(0.0);
+        let room = own.min(self.levels[LEVELS - 1].room) - 2.0 * inexact(self.resolution());
+        let has_room = |cell| self.clearance.at(self.index(cell)) >= room;
+        is_line_of(self.in_cells(from), self.in_cells(to), has_room)
+    }
+
     /// Regions of free cells with ways between them, by the index of the cell.
     pub(super) fn regions(&self, grid: &BitGrid) -> Vec<Option<u32>> {
         let columns = self.clearance.raster().columns();
@@ -329,4 +338,26 @@ impl Chart {
     pub(super) fn index(&self, cell: GridCell) -> usize {
         cell.row * self.clearance.raster().columns() + cell.column
     }
+}
+
+/// Whether all cells met by a line, given in units of cells, are of a kind.
+pub(super) fn is_line_of(a: Point, b: Point, is_of_it: impl Fn(GridCell) -> bool) -> bool {
+    let (dx, dy) = (b.x - a.x, b.y - a.y);
+    // Row by row: the columns between the line's entry and its exit.
+    let (low, high) = (a.y.min(b.y).floor(), a.y.max(b.y).floor());
+    let mut row = low;
+    while row <= high {
+        let at = |y: f64| if dy == 0.0 { a.x } else { a.x + dx * ((y - a.y) / dy).clamp(0.0, 1.0) };
+        let (from, to) = if dy == 0.0 { (a.x, b.x) } else { (at(row), at(row + 1.0)) };
+        let (from, to) = (from.min(to), from.max(to));
+        let mut column = (from - 1e-9).floor();
+        while column <= (to + 1e-9).floor() {
+            if column < 0.0 || row < 0.0 || !is_of_it(GridCell::new(column as usize, row as usize)) {
+                return false;
+            }
+            column += 1.0;
+        }
+        row += 1.0;
+    }
+    true
 }

@@ -61,7 +61,7 @@ impl Destination {
     }
 }
 
-/// The free cell nearest to a point, if one is near.
+/// The free cell nearest to a point that no wall is before, if one is near.
 pub(super) fn nearest_free(chart: &Chart, grid: &BitGrid, point: Point) -> Option<GridCell> {
     let at = chart.cell(point)?;
     if grid.is_free(at) {
@@ -72,5 +72,7 @@ pub(super) fn nearest_free(chart: &Chart, grid: &BitGrid, point: Point) -> Optio
         (at.column.saturating_sub(reach)..=at.column + reach, at.row.saturating_sub(reach)..=at.row + reach);
     let cells = rows.flat_map(|row| columns.clone().map(move |column| GridCell::new(column, row)));
     let away = |cell: &GridCell| (chart.centre(*cell) - point).norm_squared();
-    cells.filter(|&cell| grid.is_free(cell)).min_by(|a, b| away(a).total_cmp(&away(b)))
+    let mut free: Vec<GridCell> = cells.filter(|&cell| grid.is_free(cell)).collect();
+    free.sort_by(|a, b| away(a).total_cmp(&away(b)));
+    free.into_iter().find(|&cell| chart.is_straight_way(point, chart.centre(cell)))
 }

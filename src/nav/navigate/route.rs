@@ -1,4 +1,4 @@
-use super::chart::{Chart, LEVELS};
+use super::chart::{Chart, LEVELS, is_line_of};
 use super::destination::{Destination, REACH, nearest_free};
 use super::parameters::NavigatorParameters;
 use crate::geometry::Point;
@@ -101,9 +101,7 @@ impl Route {
 
     /// Whether a robot near a place beside the path's cells may leave them for it.
     fn leads_straight(&self, chart: &Chart, robot: Point) -> bool {
-        let is_near = self.is_beside && (self.place - robot).norm() <= REACH;
-        let may_have_room = |cell| chart.may_have_room(chart.index(cell));
-        is_near && is_line_of(chart.in_cells(robot), chart.in_cells(self.place), may_have_room)
+        self.is_beside && (self.place - robot).norm() <= REACH && chart.is_straight_way(robot, self.place)
     }
 
     /// The farthest path point within `far` metres that a straight way leads to.
@@ -132,28 +130,6 @@ impl Route {
         }
         best
     }
-}
-
-/// Whether all cells met by a line, given in units of cells, are of a kind.
-fn is_line_of(a: Point, b: Point, is_of_it: impl Fn(GridCell) -> bool) -> bool {
-    let (dx, dy) = (b.x - a.x, b.y - a.y);
-    // Row by row: the columns between the line's entry and its exit.
-    let (low, high) = (a.y.min(b.y).floor(), a.y.max(b.y).floor());
-    let mut row = low;
-    while row <= high {
-        let at = |y: f64| if dy == 0.0 { a.x } else { a.x + dx * ((y - a.y) / dy).clamp(0.0, 1.0) };
-        let (from, to) = if dy == 0.0 { (a.x, b.x) } else { (at(row), at(row + 1.0)) };
-        let (from, to) = (from.min(to), from.max(to));
-        let mut column = (from - 1e-9).floor();
-        while column <= (to + 1e-9).floor() {
-            if column < 0.0 || row < 0.0 || !is_of_it(GridCell::new(column as usize, row as usize)) {
-                return false;
-            }
-            column += 1.0;
-        }
-        row += 1.0;
-    }
-    true
 }
 
 #[cfg(test)]
