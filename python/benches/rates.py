@@ -129,7 +129,7 @@ obstacle:
 
 
 def ir_sim() -> float:
-    import irsim  # type: ignore[import-not-found, unused-ignore]
+    import irsim  # type: ignore[import-not-found, import-untyped, unused-ignore]
 
     with tempfile.TemporaryDirectory() as folder:
         file = os.path.join(folder, "square.yaml")

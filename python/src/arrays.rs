@@ -1,5 +1,7 @@
 //! Arrays of numpy from and to values of the library.
 
+use std::fmt;
+
 use numpy::ndarray::Dimension;
 use numpy::{
     BorrowError, Element, PyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray, PyUntypedArray,
@@ -94,14 +96,47 @@ impl Natural {
     /// Default of seeds and counts.
     pub(crate) const ONE: Self = Self(Ok(1));
 
+    /// Any other default.
+    pub(crate) const fn of(number: u64) -> Self {
+        Self(Ok(number))
+    }
+
     /// The number; fails if it is negative or too large.
     pub(crate) fn named(self, name: &str) -> Outcome<u64> {
         self.0.map_err(|found| Failure::value(name, found, "a whole number from 0 to 2**64 - 1"))
     }
 
+    /// The number, if it is one.
+    pub(crate) fn number(&self) -> Option<u64> {
+        self.0.as_ref().ok().copied()
+    }
+
     /// The number as an index.
     pub(crate) fn index(self, name: &str) -> Outcome<usize> {
         self.named(name).map(|number| number as usize)
+    }
+
+    /// The number of a motor or a servo, or a shade.
+    pub(crate) fn byte(self, name: &str) -> Outcome<u8> {
+        self.number()
+            .and_then(|number| number.try_into().ok())
+            .ok_or_else(|| Failure::value(name, self, "a whole number from 0 to 255"))
+    }
+
+    /// The number of pixels along a side.
+    pub(crate) fn pixels(self, name: &str) -> Outcome<u32> {
+        self.number()
+            .and_then(|number| number.try_into().ok())
+            .ok_or_else(|| Failure::value(name, self, "a whole number from 0 to 2**32 - 1"))
+    }
+}
+
+impl fmt::Display for Natural {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.0 {
+            Ok(number) => number.fmt(f),
+            Err(found) => found.fmt(f),
+        }
     }
 }
 

@@ -1,18 +1,21 @@
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::ThreadId;
 
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::PyUntypedArrayMethods;
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use roverlab::geometry::Point;
 use roverlab::io::sim::{SimOptions, TICK};
 use roverlab::world;
 
-use crate::arrays::{self, Natural, state};
+use crate::arrays::{self, Natural};
+use crate::batch_arrays::{Arrays, view};
 use crate::errors::{Failure, Outcome};
 use crate::scene::Scene;
 use crate::simulation::{Simulation, options};
 use crate::way::{COLUMNS, CentreLine, Way};
-use crate::worlds::{Cell, Part, Rows, SPACE, Shape, sensors, step_all};
+use crate::worlds::{Cell, Part, SPACE, Shape, sensors, step_all};
 
 /// Many robots that are stepped in one call, with their state in arrays of one row per robot.
 ///
@@ -25,7 +28,8 @@ use crate::worlds::{Cell, Part, Rows, SPACE, Shape, sensors, step_all};
 /// scenes : Scene or sequence of Scene
 ///     One scene for each world. One scene alone is taken `copies` times.
 /// copies : int
-///     Number of worlds that are made of each scene.
+///     Number of worlds that are made of each scene. A batch has at most 1,000,000 robots and 2**29 numbers in
+///     its arrays.
 /// seed : int
 ///     Seed of the first world; the next ones have the numbers that follow.
 /// noise : float
@@ -49,12 +53,14 @@ use crate::worlds::{Cell, Part, Rows, SPACE, Shape, sensors, step_all};
 /// Raises
 /// ------
 /// ValueError
-///     If there is no robot, a scene has no centre line for `ahead`, or the robots differ in their numbers of
-///     beams or distance sensors.
+///     If there is no robot or there are too many, a scene has no centre line for `ahead`, or the robots
+///     differ in their numbers of beams or distance sensors.
 #[pyclass(frozen, module = "roverlab.sim")]
 #[derive(Debug)]
 pub(crate) struct Batch {
     worlds: Mutex<Vec<Cell>>,
+    /// The thread whose handlers of signals run in the midst of a step.
+    interrupted: Mutex<Option<ThreadId>>,
     scenes: Vec<Start>,
     copies: usize,
     noise: f64,
@@ -96,21 +102,6 @@ impl Start {
     }
 }
 
-/// What is known of all robots, a row for each.
-#[derive(Debug)]
-struct Arrays {
-    ranges: Py<PyArray2<f64>>,
-    distances: Py<PyArray2<f64>>,
-    poses: Py<PyArray2<f64>>,
-    speeds: Py<PyArray2<f64>>,
-    stalled: Py<PyArray1<bool>>,
-    true_poses: Py<PyArray2<f64>>,
-    contacts: Py<PyArray1<u32>>,
-    walls: Py<PyArray2<f64>>,
-    lanes: Py<PyArray2<f64>>,
-    space: Py<PyArray2<f64>>,
-}
-
 /// Which columns the arrays of a batch have.
 #[derive(Debug, Clone, Copy)]
 #[allow(clippy::struct_excessive_bools, reason = "Each is an option of the batch by itself")]
@@ -131,6 +122,11 @@ fn commands(spec: &world::RobotSpec, thrusters: bool) -> Outcome<usize> {
         _ => Err(Failure::value("robot", format!("{:?}", spec.name), "a craft, for `thrusters`")),
     }
 }
+
+/// Most robots of a batch.
+const MOST_ROBOTS: usize = 1_000_000;
+/// Most numbers in the arrays of a batch: 4 GiB.
+const MOST_NUMBERS: usize = 1 << 29;
 
 /// The shape of the arrays; fails if robots differ.
 fn shape_of(scenes: &[Start], copies: usize, wanted: Columns) -> Outcome<Shape> {
@@ -155,61 +151,37 @@ fn shape_of(scenes: &[Start], copies: usize, wanted: Columns) -> Outcome<Shape> 
             return Err(Failure::value("number of thrusters of a robot", commands(spec, true)?, &expected));
         }
     }
-    let robots = copies * scenes.iter().map(|start| start.scene.robots.len()).sum::<usize>();
+    let each = scenes.iter().map(|start| start.scene.robots.len()).sum::<usize>();
     let beams = if scan { beams(first) } else { 0 };
     let (walls, lane) = (if walls { 3 } else { 0 }, ahead.map_or(0, |points| COLUMNS + 2 * points));
     let space = if space { SPACE } else { 0 };
-    Ok(Shape { robots, beams, sensors: first.psds.len(), walls, lane, space, commands: columns })
-}
-
-impl Arrays {
-    fn new(py: Python<'_>, shape: Shape) -> Self {
-        let matrix = |columns| PyArray2::zeros(py, [shape.robots, columns], false).unbind();
-        Self {
-            ranges: matrix(shape.beams),
-            distances: matrix(shape.sensors),
-            poses: matrix(3),
-            speeds: matrix(2),
-            stalled: PyArray1::zeros(py, shape.robots, false).unbind(),
-            true_poses: matrix(3),
-            contacts: PyArray1::zeros(py, shape.robots, false).unbind(),
-            walls: matrix(shape.walls),
-            lanes: matrix(shape.lane),
-            space: matrix(shape.space),
-        }
+    let shape =
+        Shape { robots: each, beams, sensors: first.psds.len(), walls, lane, space, commands: columns };
+    let most = (MOST_ROBOTS / each).min(MOST_NUMBERS / each / shape.columns());
+    if copies > most {
+        let expected = format!("at most {most}, for {each} robots of {} numbers each", shape.columns());
+        return Err(Failure::value("copies", copies, &expected));
     }
-
-    /// Calls a function with all rows, which nothing else of the package uses meanwhile.
-    fn with_rows<T>(&self, py: Python<'_>, work: impl FnOnce(Rows<'_>) -> Outcome<T>) -> Outcome<T> {
-        macro_rules! borrowed {
-            ($($array:ident),+) => {$(
-                let mut $array = self.$array.bind(py).try_readwrite().map_err(|error| {
-                    Failure::value(stringify!($array), state(&error), "an array that nothing else uses")
-                })?;
-            )+};
-        }
-        borrowed!(ranges, distances, poses, speeds, stalled, true_poses, contacts, walls, lanes, space);
-        macro_rules! slice {
-            ($array:ident) => {
-                $array.as_slice_mut().map_err(PyErr::from)?
-            };
-        }
-        work(Rows {
-            ranges: slice!(ranges),
-            distances: slice!(distances),
-            poses: slice!(poses),
-            speeds: slice!(speeds),
-            stalled: slice!(stalled),
-            true_poses: slice!(true_poses),
-            contacts: slice!(contacts),
-            walls: slice!(walls),
-            lanes: slice!(lanes),
-            space: slice!(space),
-        })
-    }
+    Ok(Shape { robots: copies * each, ..shape })
 }
 
 impl Batch {
+    /// The worlds, once no other thread uses them; fails in a handler of a signal that has come in a step,
+    /// which would wait for itself.
+    fn lock(&self, py: Python<'_>) -> Outcome<MutexGuard<'_, Vec<Cell>>> {
+        if *self.interrupted() == Some(std::thread::current().id()) {
+            return Err(PyRuntimeError::new_err(
+                "the batch is in the midst of a step; expected no use of it by the handler of a signal",
+            )
+            .into());
+        }
+        Ok(self.worlds.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner))
+    }
+
+    fn interrupted(&self) -> MutexGuard<'_, Option<ThreadId>> {
+        self.interrupted.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// How a world begins.
     fn start(&self, world: usize) -> &Start {
         &self.scenes[world / self.copies]
@@ -221,7 +193,7 @@ impl Batch {
         let cell = &mut worlds[world];
         let shared = Arc::clone(&cell.shared);
         let mut state = shared.lock(py);
-        self.arrays.with_rows(py, |rows| {
+        self.arrays.with_rows(py, self.shape, |rows| {
             let (_, mut rows) = rows.split(before, self.shape);
             Ok(cell.read(&mut state, &mut rows, self.shape)?)
         })
@@ -272,16 +244,28 @@ impl Batch {
         let columns = Columns { scan, walls, ahead: ahead.as_ref().map(Vec::len), space, thrusters };
         let shape = shape_of(&scenes, copies, columns)?;
         let cell = |world: usize| {
+            py.check_signals()?;
             let options = options(seed.wrapping_add(world as u64), noise, false, trail_interval)?;
-            scenes[world / copies].cell(ahead.as_deref(), thrusters, options)
+            py.detach(|| scenes[world / copies].cell(ahead.as_deref(), thrusters, options))
         };
         let mut worlds = (0..copies * scenes.len()).map(cell).collect::<Outcome<Vec<_>>>()?;
         let (arrays, trail) = (Arrays::new(py, shape), trail_interval);
-        let none = Mutex::new(Vec::new());
-        let batch =
-            Self { worlds: none, scenes, copies, noise, trail, ahead, thrusters, threads, shape, arrays };
+        let (none, interrupted) = (Mutex::new(Vec::new()), Mutex::new(None));
+        let batch = Self {
+            worlds: none,
+            interrupted,
+            scenes,
+            copies,
+            noise,
+            trail,
+            ahead,
+            thrusters,
+            threads,
+            shape,
+            arrays,
+        };
         (0..worlds.len()).try_for_each(|world| batch.read_world(py, &mut worlds, world))?;
-        *batch.worlds.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner) = worlds;
+        *batch.lock(py)? = worlds;
         Ok(batch)
     }
 
@@ -310,15 +294,15 @@ impl Batch {
             ordered = commands.as_array().iter().copied().collect();
             &ordered
         };
-        check_commands(commands, columns)?;
-        let mut worlds = self.worlds.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
+        check_commands(commands, columns, self.thrusters)?;
+        let mut worlds = self.lock(py)?;
         let ticks = ticks_of(seconds)?;
         let most = (PART / self.shape.robots as u64).max(1);
         let mut done = 0;
         loop {
             let now = most.min(ticks - done);
             let part = Part { ticks: now, begins: done == 0, ends: done + now == ticks };
-            self.arrays.with_rows(py, |rows| {
+            self.arrays.with_rows(py, self.shape, |rows| {
                 let (worlds, how) = (&mut *worlds, (self.shape, self.threads));
                 Ok(py.detach(|| step_all(worlds, commands, rows, part, how))?)
             })?;
@@ -326,7 +310,10 @@ impl Batch {
             if part.ends {
                 return Ok(());
             }
-            py.check_signals()?;
+            *self.interrupted() = Some(std::thread::current().id());
+            let signals = py.check_signals();
+            *self.interrupted() = None;
+            signals?;
         }
     }
 
@@ -349,7 +336,7 @@ impl Batch {
         scene: Option<PyRef<'_, Scene>>,
     ) -> Outcome<()> {
         let seed = seed.named("seed")?;
-        let mut worlds = self.worlds.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
+        let mut worlds = self.lock(py)?;
         let (world, cell) = world_of(&mut worlds, world)?;
         let start = scene.as_ref().map_or_else(|| self.start(world).clone(), |scene| Start::of(scene));
         let ahead = self.ahead.as_deref();
@@ -381,58 +368,58 @@ impl Batch {
     ///     Index of the world.
     #[pyo3(signature = (world = Natural::ZERO), text_signature = "($self, world=0)")]
     fn simulation(&self, py: Python<'_>, world: Natural) -> Outcome<Simulation> {
-        let mut worlds = self.worlds.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
+        let mut worlds = self.lock(py)?;
         Ok(Simulation::of(Arc::clone(&world_of(&mut worlds, world)?.1.shared)))
     }
 
     /// Ranges of the lidars (m), of shape (robots, beams); inf without a return. No columns without scans.
     #[getter]
-    fn ranges(&self, py: Python<'_>) -> Py<PyArray2<f64>> {
-        self.arrays.ranges.clone_ref(py)
+    fn ranges<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        view(py, &self.arrays.ranges)
     }
 
     /// Distances that the sensors measure (m), of shape (robots, sensors), in the order of
     /// `RobotSpec.distance_sensors`.
     #[getter]
-    fn distances(&self, py: Python<'_>) -> Py<PyArray2<f64>> {
-        self.arrays.distances.clone_ref(py)
+    fn distances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        view(py, &self.arrays.distances)
     }
 
     /// Poses by odometry, of shape (robots, 3): x, y and heading (m, m, rad).
     #[getter]
-    fn poses(&self, py: Python<'_>) -> Py<PyArray2<f64>> {
-        self.arrays.poses.clone_ref(py)
+    fn poses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        view(py, &self.arrays.poses)
     }
 
     /// Velocities by the wheels, of shape (robots, 2): linear (m/s) and angular (rad/s).
     #[getter]
-    fn speeds(&self, py: Python<'_>) -> Py<PyArray2<f64>> {
-        self.arrays.speeds.clone_ref(py)
+    fn speeds<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        view(py, &self.arrays.speeds)
     }
 
     /// Whether something holds each robot, of shape (robots,).
     #[getter]
-    fn stalled(&self, py: Python<'_>) -> Py<PyArray1<bool>> {
-        self.arrays.stalled.clone_ref(py)
+    fn stalled<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        view(py, &self.arrays.stalled)
     }
 
     /// Ground truth: poses in the world, of shape (robots, 3).
     #[getter]
-    fn true_poses(&self, py: Python<'_>) -> Py<PyArray2<f64>> {
-        self.arrays.true_poses.clone_ref(py)
+    fn true_poses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        view(py, &self.arrays.true_poses)
     }
 
     /// Ground truth: number of contacts so far, of shape (robots,).
     #[getter]
-    fn contacts(&self, py: Python<'_>) -> Py<PyArray1<u32>> {
-        self.arrays.contacts.clone_ref(py)
+    fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        view(py, &self.arrays.contacts)
     }
 
     /// Ground truth: the nearest walls, of shape (robots, 3): distance from the wall's surface (m), and x and
     /// y of the unit vector towards it; inf and zeros without walls. No columns without the option `walls`.
     #[getter]
-    fn walls(&self, py: Python<'_>) -> Py<PyArray2<f64>> {
-        self.arrays.walls.clone_ref(py)
+    fn walls<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        view(py, &self.arrays.walls)
     }
 
     /// Ground truth: the robots on the centre lines of their scenes, of shape (robots, 5 + 2 points).
@@ -441,8 +428,8 @@ impl Batch {
     /// outline; then for each point ahead its distances ahead of the robot and to the left (m). No columns
     /// without the option `ahead`.
     #[getter]
-    fn lanes(&self, py: Python<'_>) -> Py<PyArray2<f64>> {
-        self.arrays.lanes.clone_ref(py)
+    fn lanes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        view(py, &self.arrays.lanes)
     }
 
     /// The robots in space, of shape (robots, 9). Measured: roll, pitch and yaw (rad), turn rates about the
@@ -450,8 +437,8 @@ impl Batch {
     /// a sensor. Ground truth: height above the world's origin (m), and 1 if the robot has tipped, fallen or
     /// drowned, otherwise 0. No columns without the option `space`.
     #[getter]
-    fn space(&self, py: Python<'_>) -> Py<PyArray2<f64>> {
-        self.arrays.space.clone_ref(py)
+    fn space<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        view(py, &self.arrays.space)
     }
 
     /// Number of worlds.
@@ -462,9 +449,9 @@ impl Batch {
 
     /// Times of the worlds since their start (s).
     #[getter]
-    fn times(&self, py: Python<'_>) -> Vec<f64> {
-        let worlds = self.worlds.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
-        worlds.iter().map(|cell| cell.shared.lock(py).world.time()).collect()
+    fn times(&self, py: Python<'_>) -> Outcome<Vec<f64>> {
+        let worlds = self.lock(py)?;
+        Ok(worlds.iter().map(|cell| cell.shared.lock(py).world.time()).collect())
     }
 
     fn __len__(&self) -> usize {
@@ -481,18 +468,20 @@ const PART: u64 = 1_000_000;
 
 /// Ticks of a step.
 fn ticks_of(seconds: f64) -> Outcome<u64> {
-    if !(seconds.is_finite() && seconds <= 1e6) {
-        return Err(Failure::value("seconds", seconds, "a finite number of at most 1000000"));
+    if !(0.0..=1e6).contains(&seconds) {
+        return Err(Failure::value("seconds", seconds, "a finite number from 0 to 1000000"));
     }
-    Ok((seconds.max(0.0) / TICK).round() as u64)
+    Ok((seconds / TICK).round() as u64)
 }
 
 /// Checks all commands before any robot is told.
-fn check_commands(commands: &[f64], columns: usize) -> Outcome<()> {
-    let wrong = commands.iter().position(|speed| speed.is_nan() || speed.abs() > 1e6);
+fn check_commands(commands: &[f64], columns: usize, thrusters: bool) -> Outcome<()> {
+    let (most, expected) =
+        if thrusters { (1.0, "-1 to 1") } else { (1e6, "a finite number of at most 1e6 either way") };
+    let wrong = commands.iter().position(|command| command.is_nan() || command.abs() > most);
     wrong.map_or(Ok(()), |at| {
         let name = format!("commands[{}, {}]", at / columns, at % columns);
-        Err(Failure::value(&name, commands[at], "a finite number of at most 1e6 either way"))
+        Err(Failure::value(&name, commands[at], expected))
     })
 }
 

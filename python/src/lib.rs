@@ -5,11 +5,12 @@
 #![allow(clippy::doc_markdown, reason = "documentation that Python shows names exceptions without backticks")]
 #![allow(clippy::needless_pass_by_value, reason = "arguments from Python arrive by value")]
 
-use pyo3::prelude::*;
+use pyo3::prelude::pymodule;
 
 mod arrays;
 mod ascent;
 mod batch;
+mod batch_arrays;
 mod behaviour;
 mod bug;
 mod cma_es;
@@ -36,10 +37,22 @@ mod worlds;
 /// Native part of the package; import `roverlab.sim`, `drive`, `nav`, `maze` or `vision` instead.
 #[pymodule]
 mod _native {
+    use numpy::{PyArray1, PyArrayMethods};
+    use pyo3::prelude::*;
+
     /// Version of the package.
     #[pymodule_export]
     #[allow(non_upper_case_globals, reason = "Python's name for it")]
     const __version__: &str = env!("CARGO_PKG_VERSION");
+
+    /// Fetches numpy's functions and the counters of borrowed arrays now: at their first use, a signal that
+    /// waits would make that fail, which is a panic.
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        drop(PyArray1::<f64>::zeros(module.py(), 0, false).try_readonly()?);
+        Ok(())
+    }
+
     #[pymodule_export]
     use crate::ascent::Ascent;
     #[pymodule_export]

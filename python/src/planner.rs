@@ -9,7 +9,7 @@ use roverlab::nav::grid::{
 };
 use roverlab::world::{BitGrid, GridCell};
 
-use crate::arrays;
+use crate::arrays::{self, Natural};
 use crate::errors::{Failure, Outcome};
 
 /// A path through a grid.
@@ -87,6 +87,8 @@ impl Map {
 
     fn of_costs(costs: &PyReadonlyArray2<'_, f64>) -> Outcome<Self> {
         let (height, width) = (costs.shape()[0], costs.shape()[1]);
+        // Views may stand for far more cells than there is memory: no copy before this.
+        drop(BitGrid::blocked(width, height)?);
         let values: Vec<f64> = costs.as_array().iter().copied().collect();
         if let Some(value) =
             values.iter().find(|value| !(1.0..=7000.0).contains(*value) && !value.is_infinite())
@@ -123,9 +125,9 @@ fn array<'py>(py: Python<'py>, grid: &BitGrid) -> Outcome<Bound<'py, PyArray2<bo
 }
 
 /// The cell of a row and a column.
-fn cell(name: &str, [row, column]: [i64; 2]) -> Outcome<GridCell> {
-    match (usize::try_from(row), usize::try_from(column)) {
-        (Ok(row), Ok(column)) => Ok(GridCell::new(column, row)),
+fn cell(name: &str, [row, column]: [Natural; 2]) -> Outcome<GridCell> {
+    match (row.number(), column.number()) {
+        (Some(row), Some(column)) => Ok(GridCell::new(column as usize, row as usize)),
         _ => Err(Failure::value(name, format!("({row}, {column})"), "a row and a column of at least 0")),
     }
 }
@@ -201,7 +203,7 @@ impl Planner {
     ///     If no path leads from the start to the goal.
     /// ValueError
     ///     If one of them is outside the grid or blocked.
-    fn plan(&self, py: Python<'_>, start: [i64; 2], goal: [i64; 2]) -> Outcome<Path> {
+    fn plan(&self, py: Python<'_>, start: [Natural; 2], goal: [Natural; 2]) -> Outcome<Path> {
         let (start, goal) = (cell("start", start)?, cell("goal", goal)?);
         let mut planner = self.search.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
         let planner = &mut *planner;
@@ -243,19 +245,19 @@ pub(crate) struct DStarLite {
 #[pymethods]
 impl DStarLite {
     #[new]
-    fn new(free: &Bound<'_, PyAny>, robot: [i64; 2], goal: [i64; 2]) -> Outcome<Self> {
+    fn new(free: &Bound<'_, PyAny>, robot: [Natural; 2], goal: [Natural; 2]) -> Outcome<Self> {
         let planner = grid::DStarLite::new(&free_cells(free)?, cell("robot", robot)?, cell("goal", goal)?)?;
         Ok(Self { planner: Mutex::new(planner) })
     }
 
     /// Sets the robot's cell: row and column.
-    fn move_to(&self, py: Python<'_>, robot: [i64; 2]) -> Outcome<()> {
+    fn move_to(&self, py: Python<'_>, robot: [Natural; 2]) -> Outcome<()> {
         let mut planner = self.planner.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
         Ok(planner.move_to(cell("robot", robot)?)?)
     }
 
     /// Makes a cell, row and column, free or blocked. Cells outside the map are ignored.
-    fn set_free(&self, py: Python<'_>, cell: [i64; 2], free: bool) -> Outcome<()> {
+    fn set_free(&self, py: Python<'_>, cell: [Natural; 2], free: bool) -> Outcome<()> {
         let mut planner = self.planner.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
         planner.set_free(self::cell("cell", cell)?, free);
         Ok(())

@@ -9,7 +9,7 @@ use roverlab::io::{
     Motors, Odometry, Resolution, Result, Servos, StallDetector,
 };
 
-use crate::arrays;
+use crate::arrays::{self, Natural};
 use crate::errors::{Failure, Outcome};
 use crate::robot_spec::sensor;
 use crate::simulation::{Shared, State};
@@ -194,7 +194,7 @@ impl Robot {
         out: Option<&Bound<'py, PyAny>>,
     ) -> Outcome<Bound<'py, PyArray1<f64>>> {
         let mut guard = self.shared.lock(py);
-        let State { world, scan } = &mut *guard;
+        let State { world, scan, .. } = &mut *guard;
         world.robot(self.index)?.scan_into(scan)?;
         arrays::filled(py, &scan.ranges, out)
     }
@@ -226,8 +226,17 @@ impl Robot {
     /// -------
     /// ndarray of uint8, shape (height, width, 3)
     ///     Red, green and blue.
-    #[pyo3(signature = (width = 320, height = 240))]
-    fn image<'py>(&self, py: Python<'py>, width: u32, height: u32) -> Outcome<Bound<'py, PyArray3<u8>>> {
+    #[pyo3(
+        signature = (width = Natural::of(320), height = Natural::of(240)),
+        text_signature = "($self, width=320, height=240)"
+    )]
+    fn image<'py>(
+        &self,
+        py: Python<'py>,
+        width: Natural,
+        height: Natural,
+    ) -> Outcome<Bound<'py, PyArray3<u8>>> {
+        let (width, height) = (width.pixels("width")?, height.pixels("height")?);
         let resolution = Resolution::of((width, height))?;
         let image = self.call(py, |robot| {
             robot.set_resolution(resolution)?;
@@ -237,17 +246,20 @@ impl Robot {
     }
 
     /// Sets a motor, from 1, to a fraction of its full speed, -1 to 1.
-    fn set_motor(&self, py: Python<'_>, motor: u8, fraction: f64) -> Outcome<()> {
+    fn set_motor(&self, py: Python<'_>, motor: Natural, fraction: f64) -> Outcome<()> {
+        let motor = motor.byte("motor")?;
         self.call(py, |robot| robot.set_motor(motor, fraction))
     }
 
     /// Sets a servo, from 1, to a position: -1 is full left or down, 1 full right or up.
-    fn set_servo(&self, py: Python<'_>, servo: u8, position: f64) -> Outcome<()> {
+    fn set_servo(&self, py: Python<'_>, servo: Natural, position: f64) -> Outcome<()> {
+        let servo = servo.byte("servo")?;
         self.call(py, |robot| robot.set_servo(servo, position))
     }
 
     /// Ticks that the encoder of a motor, from 1, has counted.
-    fn encoder(&self, py: Python<'_>, motor: u8) -> Outcome<i64> {
+    fn encoder(&self, py: Python<'_>, motor: Natural) -> Outcome<i64> {
+        let motor = motor.byte("motor")?;
         self.call(py, |robot| robot.encoder(motor))
     }
 

@@ -7,6 +7,7 @@ use roverlab::io::{LidarSettings, Psd};
 use roverlab::world;
 use roverlab::world::formats::{load_robot_tolerantly, parse_robot};
 
+use crate::arrays::Natural;
 use crate::errors::{Failure, Outcome};
 
 /// Description of a robot: drive, outline and sensors.
@@ -89,7 +90,8 @@ impl RobotSpec {
     /// max_range : float, optional
     ///     Longest distance that it reports (m); otherwise that of the present scanner.
     #[pyo3(signature = (beams, field_of_view = std::f64::consts::TAU, max_range = None))]
-    fn with_lidar(&self, beams: usize, field_of_view: f64, max_range: Option<f64>) -> Outcome<Self> {
+    fn with_lidar(&self, beams: Natural, field_of_view: f64, max_range: Option<f64>) -> Outcome<Self> {
+        let beams = beams.index("beams")?;
         LidarSettings { field_of_view, tilt: 0.0, points: beams }.validate()?;
         let mut spec = world::RobotSpec::clone(&self.spec);
         let old = spec.lidar.unwrap_or_default();

@@ -168,14 +168,15 @@ impl Scene {
         seed: Natural,
         robot_radius: f64,
         unreachable: f64,
-        obstacles: Option<(usize, usize)>,
+        obstacles: Option<(Natural, Natural)>,
     ) -> Outcome<Self> {
         let mut stream = Stream::new(seed.named("seed")?);
+        let obstacles = obstacles.unwrap_or((Natural::of(3), Natural::of(8)));
         let options = CourseOptions {
             robot_radius,
             min_corridor: 3.0 * robot_radius,
             unreachable_share: unreachable,
-            obstacles: obstacles.unwrap_or((3, 8)),
+            obstacles: (obstacles.0.index("obstacles")?, obstacles.1.index("obstacles")?),
             ..CourseOptions::default()
         };
         let course = obstacle_course(&mut stream, &options)?;

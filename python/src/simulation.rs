@@ -1,4 +1,5 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
@@ -56,19 +57,24 @@ pub(crate) struct State {
     pub(crate) world: Stepped,
     /// The last scan, whose memory the next one takes.
     pub(crate) scan: LidarScan,
+    /// When other threads of Python were last let run.
+    shared_at: Instant,
 }
 
-/// Robot ticks below which a call does not let other threads of Python run.
+/// Robot ticks below which a call lets other threads of Python run only when that is due.
 const SHORT: usize = 64;
 /// Robot ticks between two looks for Ctrl-C: some milliseconds.
 const PART: usize = 20_000;
+/// Real time after which other threads of Python are due.
+const DUE: Duration = Duration::from_millis(4);
 /// What a path to draw should be.
 const PATH: &str = "an array of float64 of shape (points, 2)";
 
 impl Shared {
     /// A world at its start.
     pub(crate) fn new(scene: Arc<world::Scene>, goal: Option<Point>, options: SimOptions) -> Outcome<Self> {
-        let state = State { world: Stepped::new(&scene, options)?, scan: LidarScan::default() };
+        let world = Stepped::new(&scene, options)?;
+        let state = State { world, scan: LidarScan::default(), shared_at: now() };
         Ok(Self { state: Mutex::new(state), scene, goal })
     }
 
@@ -77,12 +83,22 @@ impl Shared {
         self.state.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Lets time pass. Other threads of Python run meanwhile, unless it is short, and Ctrl-C ends it.
+    /// Lets time pass. Other threads of Python run meanwhile or, if it is short, every few milliseconds of many
+    /// calls. Ctrl-C ends it.
     pub(crate) fn run_for(&self, py: Python<'_>, seconds: f64) -> Outcome<()> {
+        not_negative("seconds", seconds)?;
         let robots = self.scene.robots.len().max(1);
         let ticks = (seconds / TICK).round();
         if ticks.is_nan() || ticks * robots as f64 <= SHORT as f64 || ticks > 1e8 {
-            return Ok(self.lock(py).world.run_for(seconds)?);
+            let mut state = self.lock(py);
+            state.world.run_for(seconds)?;
+            let now = now();
+            if now.duration_since(state.shared_at) > DUE {
+                state.shared_at = now;
+                drop(state);
+                py.detach(std::thread::yield_now);
+            }
+            return Ok(());
         }
         let (mut left, part) = (ticks as usize, (PART / robots).max(1));
         while left > 0 {
@@ -98,6 +114,17 @@ impl Shared {
     pub(crate) fn free_lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// Fails if a duration is negative.
+fn not_negative(name: &str, seconds: f64) -> Outcome<()> {
+    if seconds < 0.0 { Err(Failure::value(name, seconds, "at least 0")) } else { Ok(()) }
+}
+
+/// Real time, on which no result depends.
+#[allow(clippy::disallowed_methods, reason = "threads of Python take turns in real time")]
+fn now() -> Instant {
+    Instant::now()
 }
 
 /// Options of a world; `noise` multiplies the errors of the real robot.

@@ -9,6 +9,7 @@ use roverlab::vision::{
     sobel_l1_into, sobel_l2_into, threshold_into,
 };
 
+use crate::arrays::Natural;
 use crate::errors::{Failure, Outcome};
 use crate::image::{combine, filter};
 
@@ -149,14 +150,14 @@ pub(crate) fn canny<'py>(
 /// out : ndarray of uint8, shape (height, width), optional
 ///     Where to write; otherwise a new array.
 #[pyfunction]
-#[pyo3(signature = (image, size = 3, sigma = None, out = None))]
+#[pyo3(signature = (image, size = Natural::of(3), sigma = None, out = None), text_signature = "(image, size=3, sigma=None, out=None)")]
 pub(crate) fn gaussian<'py>(
     image: &Bound<'py, PyAny>,
-    size: usize,
+    size: Natural,
     sigma: Option<f64>,
     out: Option<&Bound<'py, PyAny>>,
 ) -> Made<'py> {
-    let kernel = match (size, sigma) {
+    let kernel = match (size.index("size")?, sigma) {
         (3, None) => GaussianKernel::THREE,
         (5, None) => GaussianKernel::FIVE,
         (7, None) => GaussianKernel::SEVEN,
@@ -179,9 +180,10 @@ pub(crate) fn gaussian<'py>(
 #[pyo3(signature = (image, level, out = None))]
 pub(crate) fn threshold<'py>(
     image: &Bound<'py, PyAny>,
-    level: u8,
+    level: Natural,
     out: Option<&Bound<'py, PyAny>>,
 ) -> Made<'py> {
+    let level = level.byte("level")?;
     filter::<1, 1>(image, out, |input, output| threshold_into(input, output, level))
 }
 

@@ -37,6 +37,15 @@ pub(crate) struct Shape {
     pub(crate) commands: usize,
 }
 
+impl Shape {
+    /// Numbers of a robot in the arrays: the columns, and those that every robot has.
+    pub(crate) fn columns(&self) -> usize {
+        let always = 3 + 2 + 1 + 3 + 1;
+        let parts = [self.beams, self.sensors, self.walls, self.lane, self.space, self.commands];
+        parts.into_iter().fold(always, usize::saturating_add)
+    }
+}
+
 /// Columns of robots in space.
 pub(crate) const SPACE: usize = 9;
 
@@ -126,7 +135,7 @@ impl Cell {
 
     /// Reads all sensors of the world's robots, and the truth about them.
     pub(crate) fn read(&mut self, state: &mut State, rows: &mut Rows<'_>, shape: Shape) -> Result<()> {
-        let State { world, scan } = state;
+        let State { world, scan, .. } = state;
         for index in 0..self.robots() {
             let mut robot = world.robot(index)?;
             if shape.beams > 0 {
@@ -268,7 +277,9 @@ pub(crate) fn step_all(
     let next = || shares.lock().unwrap_or_else(PoisonError::into_inner).next();
     let work = || std::iter::from_fn(next).try_for_each(|share| share.step(part, shape));
     std::thread::scope(|scope| {
-        let others: Vec<_> = (1..threads).map(|_| scope.spawn(work)).collect();
+        // Where no more threads can be started, those that run do all the work.
+        let spawn = |_| std::thread::Builder::new().spawn_scoped(scope, work).ok();
+        let others: Vec<_> = (1..threads).map_while(spawn).collect();
         let own = work();
         let ended = others.into_iter().map(|thread| match thread.join() {
             Ok(result) => result,

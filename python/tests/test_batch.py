@@ -1,5 +1,9 @@
 """Many robots in one call."""
 
+import signal
+import subprocess
+import sys
+import warnings
 from typing import Any
 
 import numpy as np
@@ -122,9 +126,99 @@ def test_wrong_arguments_are_named() -> None:
         Batch([1])  # type: ignore[list-item]
     with pytest.raises(ValueError, match="speeds is in use"):
         batch.step(batch.speeds, 0.1)
-    batch.ranges.flags.writeable = False
-    with pytest.raises(ValueError, match="ranges is read-only"):
-        batch.step(np.zeros((4, 2)), 0.1)
+    with pytest.raises(ValueError, match="seconds is -5; expected a finite number from 0"):
+        batch.step(np.zeros((4, 2)), -5.0)
+
+
+@pytest.mark.parametrize("copies", [10**6, 2**61, 2**63, 10**18, 10**30])
+def test_a_batch_of_too_many_robots_is_refused(copies: int) -> None:
+    # Twice 2**63 would wrap to none.
+    for scenes in (crowd(), [crowd(), crowd()]):
+        with pytest.raises(ValueError, match=f"copies is {copies}; expected "):
+            Batch(scenes, copies=copies)
+    with pytest.raises(ValueError, match=r"copies is 250001; expected at most 250000, for 4 robots of 16 numbers"):
+        Batch(crowd(), copies=250_001, scan=False)
+
+
+def test_commands_to_thrusters_are_checked_before_any_world_steps() -> None:
+    scene = Scene.pool(1)
+    scene.add_robot("Mako")
+    batch = Batch(scene, copies=3, space=True, thrusters=True)
+    commands = np.full((3, 4), 0.5)
+    commands[2, 1] = 1.5
+    with pytest.raises(ValueError, match=r"commands\[2, 1\] is 1.5; expected -1 to 1"):
+        batch.step(commands, 1.0)
+    assert batch.times == [0.0] * 3
+    with pytest.raises(ValueError, match=r"commands\[2, 1\] is NaN; expected -1 to 1"):
+        batch.step(np.where(commands > 1.0, np.nan, commands), 1.0)
+
+
+def test_arrays_of_a_batch_keep_their_size_and_type() -> None:
+    batch, commands = Batch(crowd()), np.zeros((4, 2))
+    with pytest.raises(ValueError, match="resize"):
+        batch.ranges.resize((1, 1))
+    with pytest.raises(ValueError, match="resize"):
+        batch.stalled.resize((1000,), refcheck=False)
+    view: Any = batch.ranges
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        view.dtype = np.float32
+    batch.step(commands, 0.1)
+    assert batch.ranges.dtype == np.float64 and batch.ranges.shape == (4, 360) and (batch.ranges > 0.0).all()
+    base: Any = batch.poses.base
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        base.dtype = np.float32
+    with pytest.raises(ValueError, match="poses is altered; expected"):
+        batch.step(commands, 0.1)
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="the system has no such timer")
+def test_a_handler_of_a_signal_is_told_that_the_batch_is_in_a_step() -> None:
+    # In a program of its own, which a deadlock cannot hold.
+    code = """
+import signal
+import numpy as np
+from roverlab.sim import Batch, Scene
+scene = Scene.walled(2.0, 2.0)
+scene.add_robot("S4", (1.0, 1.0, 0.0))
+batch, seen = Batch(scene, copies=50), []
+def handler(*_):
+    try:
+        batch.times
+    except RuntimeError as error:
+        seen.append(str(error))
+signal.signal(signal.SIGALRM, handler)
+signal.setitimer(signal.ITIMER_REAL, 0.05)
+while not seen:
+    batch.step(np.zeros((50, 2)), 1000.0)
+print(seen[0], batch.times[0] % 1000.0)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.stdout.startswith("the batch is in the midst of a step; expected no use of it"), done.stderr
+    assert done.stdout.endswith(" 0.0\n")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+def test_a_batch_takes_the_threads_that_there_can_be() -> None:
+    code = """
+import resource
+import numpy as np
+from roverlab.sim import Batch, Scene
+scene = Scene.walled(2.0, 2.0)
+scene.add_robot("S4", (1.0, 1.0, 0.0))
+one, many = (Batch(scene, copies=16, threads=threads) for threads in (1, 16))
+commands = np.full((16, 2), 0.1)
+one.step(commands, 0.5)
+with open("/proc/self/statm") as file:
+    size = int(file.read().split()[0]) * resource.getpagesize()
+# Not enough for the stack of a thread.
+resource.setrlimit(resource.RLIMIT_AS, (size + 1_000_000, size + 1_000_000))
+many.step(commands, 0.5)
+print(np.array_equal(one.true_poses, many.true_poses))
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.stdout == "True\n", done.stderr
 
 
 def test_a_world_of_a_batch_is_a_simulation() -> None:

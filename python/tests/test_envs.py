@@ -246,3 +246,29 @@ def test_wrong_arguments_are_named() -> None:
     vector.reset(seed=1)
     with pytest.raises(ValueError, match=r"actions is an array of shape \(2,\); expected shape \(2, 2\)"):
         vector.step(np.zeros(2, np.float32))
+
+
+def test_facts_of_a_step_are_kept() -> None:
+    env = gymnasium.make_vec(WALL, num_envs=2)
+    env.reset(seed=np.int64(3))
+    action = np.full((2, 2), 0.2, np.float32)
+    *_, facts = env.step(action)
+    kept = {name: value.copy() for name, value in facts.items()}
+    for _ in range(5):
+        env.step(action)
+    assert all(np.array_equal(value, kept[name]) for name, value in facts.items())
+
+
+def test_an_episode_has_to_begin() -> None:
+    for env in (gymnasium.make(WALL).unwrapped, gymnasium.make_vec(WALL, num_envs=1).unwrapped):
+        with pytest.raises(gymnasium.error.ResetNeeded, match="expected reset"):
+            env.step(env.action_space.sample())
+    with pytest.raises(ValueError, match="max_episode_steps is 0; expected at least 1"):
+        envs.RobotVectorEnvironment(envs.WallFollowing, 1, max_episode_steps=0)
+
+
+def test_seeds_of_numpy_are_seeds() -> None:
+    env = gymnasium.make_vec(WALL, num_envs=2)
+    first = env.reset(seed=3)[0]
+    assert np.array_equal(env.reset(seed=np.int64(3))[0], first)
+    assert np.array_equal(env.reset(seed=[np.int64(3), 4])[0], first)

@@ -21,6 +21,7 @@ os.environ["RAY_DISABLE_IMPORT_WARNING"] = "1"
 from roverlab import ray as rover_ray  # noqa: E402
 from roverlab._programs import find  # noqa: E402
 from roverlab.evolve import CmaEs, OneByOne  # noqa: E402
+from roverlab.ray._worker import part  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore")
 
@@ -59,6 +60,25 @@ def test_a_campaign_is_that_of_one_machine_and_goes_on(cluster: Any, tmp_path: P
     seen.clear()
     assert rover_ray.campaign(CAMPAIGN, parts=6, folder=tmp_path, progress=lambda *done: seen.append(done)) == expected
     assert seen == [(5, 6), (6, 6)]
+
+
+def test_a_folder_of_another_campaign_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "part-2-of-3.jsonl"
+    file.write_bytes(part(CAMPAIGN, 2, 3)[0])
+    other = [*CAMPAIGN[:-1], "8"]
+    with pytest.raises(ValueError, match=f"folder is {tmp_path}, whose {file.name} is .*--seed=7`; .*--seed=8`"):
+        rover_ray.campaign(other, parts=3, folder=tmp_path)
+    file.write_bytes(b"")
+    with pytest.raises(ValueError, match="is no part of a campaign; expected `distbug"):
+        rover_ray.campaign(CAMPAIGN, parts=3, folder=tmp_path)
+    assert list(tmp_path.iterdir()) == [file]
+
+
+def test_wrong_options_are_found_before_a_part_runs(tmp_path: Path) -> None:
+    for wrong in (["--csv", "table.csv"], ["--save"]):
+        with pytest.raises(RuntimeError, match=f"options: .*{wrong[0]}"):
+            rover_ray.campaign(CAMPAIGN, parts=2, folder=tmp_path, options=wrong)
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_campaign_survives_a_node(cluster: Any) -> None:
@@ -117,9 +137,9 @@ def test_an_exception_of_fitness_in_python_is_raised(cluster: Any) -> None:
 
 
 def test_wrong_campaigns_are_named(cluster: Any) -> None:
-    with pytest.raises(ValueError, match="parts is 0; expected at least 1"):
+    with pytest.raises(ValueError, match="parts is 0; expected 1 to 100000"):
         rover_ray.campaign(CAMPAIGN, parts=0)
-    with pytest.raises(RuntimeError, match="part 1 of 1: .*--wrlds"):
+    with pytest.raises(RuntimeError, match="--wrlds"):
         rover_ray.campaign(["distbug", "--campaign", "--wrlds", "3"], parts=1)
     with pytest.raises(RuntimeError, match="--populaton"):
         rover_ray.evolve(["starman", "--populaton", "3"])

@@ -1,8 +1,10 @@
 """Memory, threads, forks, and arrays that cannot be used."""
 
 import os
+import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -10,6 +12,7 @@ import numpy as np
 import pytest
 
 from roverlab import vision
+from roverlab.drive import WallFollower
 from roverlab.nav import Planner, distance_field
 from roverlab.sim import Batch, Scene, Simulation
 
@@ -136,3 +139,53 @@ def test_arrays_that_cannot_be_used_are_named(square: Scene) -> None:
         robot.scan(np.zeros(10))
     strided = np.zeros(720)[::2]
     assert robot.scan(strided) is strided and (strided > 0.0).all()
+
+
+def test_a_map_too_large_for_memory_is_refused_before_it_is_copied() -> None:
+    for value in (np.ones(1), np.ones(1, np.bool_)):
+        grid: Any = np.broadcast_to(value, (100_000, 100_000))
+        with pytest.raises(ValueError, match="100000 x 100000 cells; expected at most"):
+            Planner(grid)
+
+
+@pytest.mark.parametrize("drive", ["wait_done", "WallFollower"])
+def test_other_threads_run_while_a_robot_drives(drive: str) -> None:
+    scene = Scene.empty(1e6, 1e6) if drive == "wait_done" else Scene.room(1)
+    scene.add_robot("S4", (1.0, 1.0, 0.0) if drive == "wait_done" else None)
+    simulation, turns, over = Simulation(scene), [0], threading.Event()
+    robot = simulation.robot()
+
+    def count() -> None:
+        while not over.wait(0.002):
+            turns[0] += 1
+
+    other = threading.Thread(target=count)
+    other.start()
+    before, start = turns[0], time.perf_counter()
+    if drive == "wait_done":
+        robot.straight(3000.0, 0.2)
+        robot.wait_done()
+    else:
+        WallFollower().run(robot, 8000.0)
+    seconds, during = time.perf_counter() - start, turns[0] - before
+    over.set()
+    other.join()
+    assert seconds > 0.05 and during > 10.0 * seconds, (seconds, during)
+
+
+@pytest.mark.skipif(sys.version_info < (3, 11), reason="no `operator.call`")
+def test_ctrl_c_before_the_first_array_is_no_panic() -> None:
+    code = """
+import _thread, operator
+from roverlab.sim import Scene, Simulation
+scene = Scene.walled(2.0, 2.0)
+scene.add_robot("S4", (1.0, 1.0, 0.0))
+robot = Simulation(scene).robot()
+try:
+    # Python looks for signals between its own instructions, of which there is none between these calls.
+    list(map(operator.call, [_thread.interrupt_main, robot.scan]))
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.stdout == "interrupted\n", done.stderr

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import roverlab
+from roverlab import nav, vision
 from roverlab.drive import LaneKeeper, Racer
 from roverlab.sim import RobotSpec, Scene, Simulation
 
@@ -156,6 +157,8 @@ def test_several_robots_and_trails(square: Scene) -> None:
     assert simulation.to_svg("Two", plan).count("<path") > simulation.to_svg().count("<path") - 1
 
 
+GRAY, FREE = np.zeros((4, 4), np.uint8), np.ones((4, 4), np.bool_)
+NEGATIVE: Any = -3
 WRONG: list[tuple[type[Exception], str, Callable[[Scene, Simulation], object]]] = [
     (ValueError, "linear speed is NaN; expected", lambda _, w: w.robot().set_speed(math.nan)),
     (ValueError, "duration is .*; expected", lambda _, w: w.run(math.inf)),
@@ -182,6 +185,19 @@ WRONG: list[tuple[type[Exception], str, Callable[[Scene, Simulation], object]]] 
     (ValueError, "resolution is 0; expected", lambda s, _: s.free_cells(0.0, 0.1)),
     (ValueError, 'name is "Mars"; expected one of', lambda *_: Scene.built_in("Mars")),
     (ValueError, "lidar points is 0; expected", lambda *_: RobotSpec("S4").with_lidar(0)),
+    (ValueError, "seconds is -1; expected at least 0", lambda _, w: w.run(-1.0)),
+    (ValueError, "seconds is -1; expected at least 0", lambda _, w: w.robot().wait(-1.0)),
+    (ValueError, "width is -1; expected a whole number from 0 to", lambda _, w: w.robot().image(-1, 5)),
+    (ValueError, "height is 4294967296; expected", lambda _, w: w.robot().image(320, 2**32)),
+    (ValueError, "motor is 300; expected a whole number from 0 to 255", lambda _, w: w.robot().set_motor(300, 1.0)),
+    (ValueError, "servo is 300; expected", lambda _, w: w.robot().set_servo(300, 0.0)),
+    (ValueError, "motor is -1; expected", lambda _, w: w.robot().encoder(-1)),
+    (ValueError, "beams is -1; expected a whole number", lambda *_: RobotSpec("S4").with_lidar(-1)),
+    (ValueError, "obstacles is -1; expected", lambda *_: Scene.course(1, obstacles=(-1, 2))),
+    (ValueError, "level is 256; expected a whole number from 0 to 255", lambda *_: vision.threshold(GRAY, 256)),
+    (ValueError, "size is -3; expected a whole number", lambda *_: vision.gaussian(GRAY, NEGATIVE)),
+    (ValueError, r"start is \(0, -1\); expected a row", lambda *_: nav.Planner(FREE).plan((0, -1), (1, 1))),
+    (ValueError, r"goal is \(1, 1000000.*\); expected", lambda *_: nav.Planner(FREE).plan((0, 1), (1, 10**30))),
     (ValueError, r"path is an array of shape \(2, 3\)", lambda _, w: w.to_svg(path=np.zeros((2, 3)))),
 ]
 

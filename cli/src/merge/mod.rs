@@ -18,7 +18,7 @@ campaign have the same options, and the report of all of them is that of the cam
   roverlab merge --json one.jsonl two.jsonl
 
 Options that name input files are read again, relative to the current folder. Options for what is written besides the report,
-such as --csv FILE, come last, behind --."
+such as --save DIR of distbug, come last, behind --."
 )]
 pub(crate) struct Args {
     /// The files of all parts, in any order.

@@ -30,7 +30,7 @@ pub(super) fn check(file: &Path) -> Result<Found, Failure> {
         None => format!("same: the replay of `{program}` gives the same {} bytes", log.bytes().len()),
         Some(difference) => format!("different: the replay of `{program}`, {difference}"),
     };
-    Ok(Found { fields, text, good: difference.is_none() })
+    Ok(Found { fields, text, good: difference.is_none(), warning: None })
 }
 
 /// The recording of the program's run on the recorded inputs.

@@ -23,7 +23,7 @@ pub(super) fn export(log: &Log, csv: Option<&Path>, picture: Option<&Path>) -> R
     let fields = json!({
         "example": "replay", "command": "export", "outcome": "exported", "rows": rows, "csv": csv, "picture": picture,
     });
-    Ok(Found { fields, text, good: true })
+    Ok(Found { fields, text, good: true, warning: None })
 }
 
 /// All calls ordered by robot and time, and their number.

@@ -37,5 +37,5 @@ pub(super) fn info(log: &Log) -> Result<Found, Failure> {
     if log.lacks_attachments() {
         lines.push("  some attachments are lost".into());
     }
-    Ok(Found { fields, text: lines.join("\n"), good: true })
+    Ok(Found { fields, text: lines.join("\n"), good: true, warning: None })
 }

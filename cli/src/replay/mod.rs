@@ -25,6 +25,8 @@ struct Found {
     fields: Value,
     text: String,
     good: bool,
+    /// Sentences on what the result does not have.
+    warning: Option<String>,
 }
 
 /// The command's work.
@@ -50,7 +52,7 @@ pub(crate) fn work(args: &Args) -> Result<Printed, Failure> {
         }
     }?;
     let text = if args.json { found.fields.to_string() } else { found.text };
-    Ok(Printed { text, message: None, status: u8::from(!found.good) })
+    Ok(Printed { text, message: found.warning, status: u8::from(!found.good) })
 }
 
 fn bytes(file: &Path) -> Result<Vec<u8>, Failure> {
@@ -91,5 +93,6 @@ fn recovered(file: &Path, out: (&Path, bool)) -> Result<Found, Failure> {
         }),
         text: format!("recovered {chunks} chunks with {messages} messages; {lost} bytes are lost{without}"),
         good: true,
+        warning: None,
     })
 }

@@ -97,6 +97,7 @@ class RobotEnvironment(gymnasium.Env[Observation, Action]):
     def step(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Drives as the action says for one period."""
         task = self.task
+        begun(task)
         wanted = np.asarray(action, np.float64)[None]
         task.command(np.clip(wanted, task.slowest, task.fastest), self._commands)
         task.batch.step(self._commands, self.period)
@@ -105,6 +106,7 @@ class RobotEnvironment(gymnasium.Env[Observation, Action]):
 
     def render(self) -> str | None:
         """Picture of the world and the way so far, as the text of an SVG file."""
+        begun(self.task)
         return picture(self.simulation, self.scene) if self.render_mode == "svg" else None
 
     def _observe(self) -> Observation:
@@ -116,6 +118,12 @@ class RobotEnvironment(gymnasium.Env[Observation, Action]):
         truth = self.simulation.truth
         robot = self.task.ROBOT
         return {"pose": truth.pose(robot), "contacts": truth.contacts(robot), "time": self.simulation.time}
+
+
+def begun(task: Task) -> None:
+    """Fails before the first episode."""
+    if not hasattr(task, "batch"):
+        raise gymnasium.error.ResetNeeded("no episode has begun; expected reset() first")
 
 
 def checked(render_mode: str | None, period: float) -> float:

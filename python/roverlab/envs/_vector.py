@@ -13,7 +13,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from ..sim import Batch, Simulation
-from ._base import RobotEnvironment, batch_options, checked, next_scene, picture, speeds
+from ._base import RobotEnvironment, batch_options, begun, checked, next_scene, picture, speeds
 
 Observations = NDArray[np.float32]
 Actions = NDArray[np.float32]
@@ -61,6 +61,8 @@ class RobotVectorEnvironment(gymnasium.vector.VectorEnv[Observations, Actions, N
     ) -> None:
         if num_envs < 1:
             raise ValueError(f"num_envs is {num_envs}; expected at least 1")
+        if max_episode_steps is not None and max_episode_steps < 1:
+            raise ValueError(f"max_episode_steps is {max_episode_steps}; expected at least 1")
         self.metadata = {**environment.metadata, "autoreset_mode": AutoresetMode.NEXT_STEP}
         self.task = environment.TASK()
         self.num_envs, self.render_mode = num_envs, render_mode
@@ -95,10 +97,10 @@ class RobotVectorEnvironment(gymnasium.vector.VectorEnv[Observations, Actions, N
             ``scene``: a `Scene` to take in all worlds instead of random ones.
         """
         count = self.num_envs
-        if seed is None or isinstance(seed, int):
-            seeds: list[int | None] = [None if seed is None else seed + world for world in range(count)]
+        if seed is None or isinstance(seed, (int, np.integer)):
+            seeds: list[int | None] = [None if seed is None else int(seed) + world for world in range(count)]
         else:
-            seeds = list(seed)
+            seeds = [None if own is None else int(own) for own in seed]
         if len(seeds) != count:
             raise ValueError(f"seed has {len(seeds)} numbers; expected {count}, one for each environment")
         for world, own in enumerate(seeds):
@@ -126,6 +128,7 @@ class RobotVectorEnvironment(gymnasium.vector.VectorEnv[Observations, Actions, N
             The action of each robot.
         """
         task, steps = self.task, self._steps
+        begun(self.task)
         given = np.asarray(actions)
         if given.shape != self._actions.shape:
             raise ValueError(f"actions is an array of shape {given.shape}; expected shape {self._actions.shape}")
@@ -147,6 +150,7 @@ class RobotVectorEnvironment(gymnasium.vector.VectorEnv[Observations, Actions, N
 
     def render(self) -> tuple[str, ...] | None:
         """Pictures of the worlds, as the texts of SVG files."""
+        begun(self.task)
         if self.render_mode is None:
             return None
         return tuple(picture(self.simulation(world), scene) for world, scene in enumerate(self.task.scenes))
@@ -170,9 +174,9 @@ class RobotVectorEnvironment(gymnasium.vector.VectorEnv[Observations, Actions, N
     def _facts(self) -> dict[str, Any]:
         task, all_of_them = self.task, self._everywhere
         return {
-            "pose": task.true_poses,
+            "pose": task.true_poses.copy(),
             "_pose": all_of_them,
-            "contacts": task.contacts,
+            "contacts": task.contacts.copy(),
             "_contacts": all_of_them,
             "time": self._steps * self.period,
             "_time": all_of_them,

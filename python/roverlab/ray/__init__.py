@@ -7,12 +7,14 @@ Ray. Without a connection, Ray is started on this machine.
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 from .._programs import find
 from ._connection import connected
@@ -23,6 +25,8 @@ __all__ = ["OneByOne", "campaign", "evolve"]
 
 Progress = Callable[[int, int], None]
 """Is called with the number of pieces that are done, and of all."""
+MOST_PARTS = 100_000
+"""Number of parts that a campaign can have."""
 
 
 def campaign(
@@ -44,9 +48,10 @@ def campaign(
         Number of parts. So many that one takes 50 ms or more keep machines busy until the end.
     folder : str or os.PathLike, optional
         Where the results of the parts are kept. Parts whose files are there already are not run again, so a campaign
-        that was stopped goes on. Without it, they are kept until the report is made.
+        that was stopped goes on; they have to be of the same campaign. Without it, they are kept until the report is
+        made.
     options : sequence of str
-        Options of the campaign that affect no result, such as ``["--csv", "table.csv"]``.
+        Options of the command that affect no result, such as ``["--save", "failed"]`` of ``distbug``.
     progress : callable, optional
         Is called with the numbers of parts that are done, and of all, after each part.
 
@@ -58,12 +63,12 @@ def campaign(
     Raises
     ------
     ValueError
-        If ``parts`` is less than 1.
+        If ``parts`` is less than 1 or more than 100000, or ``folder`` has parts of another campaign.
     RuntimeError
         If a part or the report fails; the message is that of the program.
     """
-    if parts < 1:
-        raise ValueError(f"parts is {parts}; expected at least 1")
+    if not 1 <= parts <= MOST_PARTS:
+        raise ValueError(f"parts is {parts}; expected 1 to {MOST_PARTS}")
     if folder is not None:
         Path(folder).mkdir(parents=True, exist_ok=True)
         return _campaign(list(arguments), parts, Path(folder), options, progress)
@@ -72,10 +77,15 @@ def campaign(
 
 
 def _campaign(arguments: list[str], parts: int, folder: Path, options: Sequence[str], progress: Progress | None) -> str:
-    ray = connected()
+    expected = _checked(arguments, options)
     files = {number: folder / f"part-{number}-of-{parts}.jsonl" for number in range(1, parts + 1)}
     missing = [number for number, file in files.items() if not file.exists()]
+    for number, file in files.items():
+        if file.exists() and (found := _header(file)) != expected:
+            what = "no part of a campaign" if found is None else f"a part of {_shown(found, expected)}"
+            raise ValueError(f"folder is {folder}, whose {file.name} is {what}; expected {_shown(expected, found)}")
     done = parts - len(missing)
+    ray = connected()
     # A part whose machine is lost is asked again, however often.
     remote = ray.remote(part).options(max_retries=-1)
     waiting = {remote.remote(arguments, number, parts): number for number in missing}
@@ -102,6 +112,45 @@ def _campaign(arguments: list[str], parts: int, folder: Path, options: Sequence[
     if not report.stdout:
         raise RuntimeError(report.stderr.strip())
     return report.stdout
+
+
+def _checked(arguments: list[str], options: Sequence[str]) -> dict[str, Any]:
+    """What all parts of a campaign have in common. Wrong arguments and options are found before any part runs."""
+    with tempfile.TemporaryDirectory() as temporary:
+        # The last of so many parts has no run, unless the campaign is larger.
+        file = Path(temporary) / "header.jsonl"
+        result, trouble = part(arguments, MOST_PARTS, MOST_PARTS)
+        if trouble:
+            raise RuntimeError(trouble)
+        file.write_bytes(result)
+        header = _header(file)
+        if header is None:
+            raise RuntimeError(f"roverlab {' '.join(arguments)} wrote no part of a campaign")
+        if options:
+            # Right options lead to the other parts, which are missing.
+            merge = [find("roverlab"), "merge", "--json", str(file), "--", *options]
+            said = subprocess.run(merge, capture_output=True, text=True).stderr.strip()
+            if not said.startswith(str(file)):
+                raise RuntimeError(f"options: {said}")
+        return header
+
+
+def _header(file: Path) -> dict[str, Any] | None:
+    """The first line of a part's file, without the part's number."""
+    try:
+        with file.open("rb") as lines:
+            header = json.loads(lines.readline())
+        del header["part"]
+    except (ValueError, KeyError, TypeError):
+        return None
+    return dict(header)
+
+
+def _shown(header: dict[str, Any], other: dict[str, Any] | None) -> str:
+    """The command line of a header, and what else differs from another one."""
+    line = " ".join([str(header.get("command")).replace("_", "-"), *map(str, header.get("options", ()))])
+    others = [key for key in header if key not in ("command", "options") and other and header[key] != other.get(key)]
+    return ", ".join([f"`{line}`", *(f"{key} {header[key]}" for key in others)])
 
 
 def evolve(arguments: Sequence[str]) -> str:

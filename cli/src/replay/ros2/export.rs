@@ -46,6 +46,7 @@ pub(in crate::replay) fn export(log: &Log, (out, force): (&Path, bool)) -> Resul
             "topics": topics, "ros2": out,
         }),
         good: true,
+        warning: None,
     })
 }
 

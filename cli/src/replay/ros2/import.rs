@@ -79,7 +79,7 @@ pub(in crate::replay) fn import(
     let in_bag = |failure: Failure| Failure::input(format!("--ros2 {}: {failure}", bag.0.display()));
     let contents = Contents::read(bag.1).map_err(in_bag)?;
     let topics = contents.choose(wanted).map_err(in_bag)?;
-    let mount = contents.mount().map_err(in_bag)?;
+    let mount = contents.mount(&topics).map_err(in_bag)?;
     let cannot = |error| {
         Failure::run(format!("--out {}: {error}; expected a file that can be written", out.display()))
     };
@@ -121,6 +121,7 @@ pub(in crate::replay) fn import(
             "out": out,
         }),
         good: true,
+        warning: contents.warning(),
     })
 }
 
@@ -132,9 +133,10 @@ struct Contents {
     /// Types of the other topics.
     others: Vec<String>,
     fixed: FrameTree,
-    /// Frames of the first scan, and of the first odometry.
-    scanner: Option<String>,
-    base: Option<String>,
+    /// Frames of the scanners and of the robots with odometry, by topic.
+    frames: BTreeMap<String, String>,
+    /// Encodings of the topics whose images no recording has, such as depth.
+    foreign: BTreeMap<String, String>,
     /// Times of the first and the last message (ns).
     start: u64,
     end: u64,
@@ -162,19 +164,30 @@ impl Contents {
             }
             return Ok(());
         };
-        match kind {
-            Kind::Scan if self.scanner.is_none() => {
-                self.scanner = Some(message::<LaserScan>(channel, data)?.header.frame_id);
-            }
-            Kind::Odometry if self.base.is_none() => {
-                self.base = Some(message::<Odometry>(channel, data)?.child_frame_id);
-            }
-            _ => {}
-        }
         let topics = self.topics.entry(kind).or_default();
-        if !topics.contains(&channel.topic) {
-            topics.push(channel.topic.clone());
+        if topics.contains(&channel.topic) || self.foreign.contains_key(&channel.topic) {
+            return Ok(());
         }
+        let topic = channel.topic.clone();
+        match kind {
+            Kind::Scan => {
+                let frame = message::<LaserScan>(channel, data)?.header.frame_id;
+                self.frames.insert(topic.clone(), frame);
+            }
+            Kind::Odometry => {
+                let frame = message::<Odometry>(channel, data)?.child_frame_id;
+                self.frames.insert(topic.clone(), frame);
+            }
+            Kind::Image => {
+                let encoding = message::<Image>(channel, data)?.encoding;
+                if channels(&encoding).is_none() {
+                    self.foreign.insert(topic, encoding);
+                    return Ok(());
+                }
+            }
+            Kind::Command => {}
+        }
+        topics.push(topic);
         Ok(())
     }
 
@@ -186,6 +199,9 @@ impl Contents {
             let (option, usual) = kind.option_and_topic();
             let find = |name: &str| topics.iter().find(|topic| topic.as_str() == name);
             let topic = match (wanted.topic(kind), topics) {
+                (Some(name), _) if kind == Kind::Image && self.foreign.contains_key(name) => {
+                    return Err(Failure::input(format!("{name}: {}", refusal(&self.foreign[name]))));
+                }
                 (Some(name), _) => Some(find(name).ok_or_else(|| {
                     Failure::input(format!("found no topic {name} for {option}; expected {}", list(topics)))
                 })?),
@@ -208,10 +224,22 @@ impl Contents {
         )))
     }
 
-    /// Where the scanner is on the robot, if the bag says so.
-    fn mount(&self) -> Result<Option<PlanarPose>, Failure> {
-        let mount = self.scanner.as_ref().map(|frame| self.fixed.mount(frame, self.base.as_deref()));
+    /// Where the chosen scanner is on the robot, if the bag says so.
+    fn mount(&self, topics: &BTreeMap<&str, Kind>) -> Result<Option<PlanarPose>, Failure> {
+        let frame = |wanted| {
+            let (topic, _) = topics.iter().find(|(_, kind)| **kind == wanted)?;
+            self.frames.get(*topic).map(String::as_str)
+        };
+        let mount = frame(Kind::Scan).map(|scanner| self.fixed.mount(scanner, frame(Kind::Odometry)));
         Ok(mount.transpose().map_err(Failure::input)?.flatten())
+    }
+
+    /// Sentences on topics that are left out.
+    fn warning(&self) -> Option<String> {
+        let left_out =
+            |(topic, encoding): (&String, &String)| format!("{topic} is left out: {}", refusal(encoding));
+        let sentences: Vec<_> = self.foreign.iter().map(left_out).collect();
+        (!sentences.is_empty()).then(|| sentences.join("\n"))
     }
 }
 
@@ -329,18 +357,25 @@ fn scan(scan: LaserScan, mount: PlanarPose) -> Result<LidarScan, String> {
     Ok(LidarScan { angle_min, angle_increment: step.abs(), range_max: farthest, mount, ranges })
 }
 
+/// Number of channels of an encoding, and the places of red, green and blue among them.
+fn channels(encoding: &str) -> Option<(usize, [usize; 3])> {
+    match encoding {
+        "rgb8" => Some((3, [0, 1, 2])),
+        "bgr8" => Some((3, [2, 1, 0])),
+        "rgba8" => Some((4, [0, 1, 2])),
+        "bgra8" => Some((4, [2, 1, 0])),
+        "mono8" | "8UC1" => Some((1, [0; 3])),
+        _ => None,
+    }
+}
+
+fn refusal(encoding: &str) -> String {
+    format!("found the encoding {encoding:?}; expected rgb8, bgr8, rgba8, bgra8 or mono8")
+}
+
 /// An image of 8 bits per channel.
 fn image(image: &Image) -> Result<RgbImage, String> {
-    let (channels, order): (usize, [usize; 3]) = match image.encoding.as_str() {
-        "rgb8" => (3, [0, 1, 2]),
-        "bgr8" => (3, [2, 1, 0]),
-        "rgba8" => (4, [0, 1, 2]),
-        "bgra8" => (4, [2, 1, 0]),
-        "mono8" | "8UC1" => (1, [0; 3]),
-        other => {
-            return Err(format!("found the encoding {other:?}; expected rgb8, bgr8, rgba8, bgra8 or mono8"));
-        }
-    };
+    let (channels, order) = channels(&image.encoding).ok_or_else(|| refusal(&image.encoding))?;
     let (width, height, step) = (image.width as usize, image.height as usize, image.step as usize);
     let row = width.checked_mul(channels);
     let fits = row.is_some_and(|row| row <= step) && step.checked_mul(height) == Some(image.data.0.len());

@@ -139,6 +139,45 @@ fn scans_of_other_robots_become_ours() {
     assert!(log.entries(0).any(|entry| entry.method == "set_speed" && entry.time == 2.0));
 }
 
+/// A scanner that is not chosen is 0.3 m behind the robot, and another robot has odometry as well.
+#[test]
+fn the_mount_is_that_of_the_chosen_scanner() {
+    let level = [0.0, 0.0, 0.0, 1.0];
+    let bytes = bag(|bag| {
+        let mut rear = placed("base_link", "rear", level);
+        rear.transform.translation.x = -0.3;
+        let transforms = vec![rear, placed("base_link", "front", level)];
+        bag.latch(0, "/tf_static", &TfMessage { transforms }).unwrap();
+        let other = Odometry { child_frame_id: "other".into(), ..odometry(1, PlanarPose::default()) };
+        bag.write(1, "/other", &other).unwrap();
+        bag.write(2, "/rear", &scan("rear")).unwrap();
+        bag.write(3, "/scan", &scan("front")).unwrap();
+        bag.write(4, "/odom", &odometry(4, PlanarPose::default())).unwrap();
+    });
+    let mount = |name: &str, more: &[&str]| {
+        let log = imported(name, &bytes, more).unwrap();
+        let mut robot = OpenLoop::new(&log, 0).unwrap();
+        robot.seek(1.0);
+        robot.scan().unwrap().mount.x
+    };
+    assert_eq!(mount("usual", &[]), 0.1);
+    assert_eq!(mount("rear", &["--scan", "/rear"]), -0.3);
+    assert_eq!(mount("unknown", &["--odometry", "/other"]), 0.0);
+}
+
+#[test]
+fn depth_images_are_left_out() {
+    let bytes = bag(|bag| {
+        bag.write(0, "/scan", &scan("laser")).unwrap();
+        bag.write(0, "/depth", &Image { encoding: "16UC1".into(), ..Image::default() }).unwrap();
+    });
+    let [bag, out] = ["bag", "run"].map(|kind| temporary(&format!("ros2-depth-{kind}.mcap")));
+    fs::write(&bag, bytes).unwrap();
+    let (status, said, err) = said("replay", &["import", "--ros2", text(&bag), "--out", text(&out)]);
+    assert_eq!((status, said.contains("1 scans, 0 poses, 0 images")), (0, true), "{said}{err}");
+    assert!(err.starts_with("/depth is left out: found the encoding \"16UC1\"; expected rgb8"), "{err}");
+}
+
 #[test]
 fn bags_that_cannot_be_imported_are_refused() {
     let says = |name: &str, bytes: &[u8], more: &[&str]| imported(name, bytes, more).unwrap_err();
@@ -203,9 +242,9 @@ fn bags_that_cannot_be_imported_are_refused() {
                     bag.write(0, "/image", &Image { encoding: "bayer_rggb8".into(), ..Image::default() })
                         .unwrap();
                 }),
-                &[],
+                &["--camera", "/image"],
             ),
-            "found the encoding \"bayer_rggb8\"; expected rgb8",
+            "/image: found the encoding \"bayer_rggb8\"; expected rgb8",
         ),
     ];
     for (found, expected) in cases {
