@@ -7,9 +7,12 @@ use roverlab::io::control::{self, Behaviour, LidarObservation};
 use roverlab::io::sim::{NoiseModel, SimOptions, SimRobot, Simulation, Truth};
 use roverlab::io::wrappers::{Fault, Faulty};
 use roverlab::io::{Clock, Drive, ErrorKind, Lidar, LidarScan, Odometry};
-use roverlab::nav::{BugEvent, BugOutcome, BugParameters, DistBug};
+use roverlab::nav::{
+    BugEvent, BugOutcome, BugParameters, DistBug, Navigator, NavigatorOutcome, NavigatorParameters,
+    NavigatorPhase,
+};
 use roverlab::scan::{ScanFilter, ScanMatcher};
-use roverlab::world::{RobotSpec, Scene, Wall, World};
+use roverlab::world::{Footprint, RobotSpec, Scene, Wall, World};
 
 /// A room with a block in it.
 fn room() -> World {
@@ -246,10 +249,25 @@ fn a_blind_lidar_and_a_stopped_clock_end_the_run_with_an_error() {
     assert_eq!(error.to_string(), "the robot's clock stands still");
 }
 
+/// For a small robot a cell behind a thin wall may be the nearest free one.
+#[test]
+fn a_place_behind_a_wall_is_not_the_nearest_one() {
+    let footprint = Footprint::Disc { radius: 0.02 };
+    for gap in [0.06, 0.07, 0.074, 0.078] {
+        let mut world = World::walled(2.0, 1.0);
+        for x in [1.0, 1.0 + gap] {
+            world.walls.push(Wall::new(Point::new(x, 0.0), Point::new(x, 1.0)));
+        }
+        let goal = Point::new(1.0 + 0.5 * gap, 0.5);
+        let parameters = NavigatorParameters::for_footprint(footprint);
+        let navigator = Navigator::new(&world, Pose::new(0.3, 0.5, 0.0), goal, parameters).unwrap();
+        assert_eq!(navigator.phase(), NavigatorPhase::Ended(NavigatorOutcome::Unreachable), "{gap}");
+    }
+}
+
 mod campaigns {
     use super::*;
     use roverlab::geometry::direction;
-    use roverlab::nav::{Navigator, NavigatorOutcome, NavigatorParameters, NavigatorPhase};
     use roverlab::random::Stream;
 
     /// A closed cell with a corridor into it, both turned, and the goal in the cell.

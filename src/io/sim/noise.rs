@@ -161,13 +161,19 @@ pub(super) fn make_noisy(ranges: &mut [f64], sigma: f64, max_range: f64, stream:
     if sigma == 0.0 {
         return;
     }
+    let add = |(range, sample): (&mut f64, &mut f64)| {
+        *range = with_noise(*range, sigma * *sample, max_range);
+    };
     let mut samples = [0.0; 64];
     for part in ranges.chunks_mut(samples.len()) {
         let count = part.iter().filter(|range| range.is_finite()).count();
-        stream.fill_normal(&mut samples[..count]);
-        let returns = part.iter_mut().filter(|range| range.is_finite());
-        for (range, sample) in returns.zip(&samples) {
-            *range = with_noise(*range, sigma * sample, max_range);
+        let samples = &mut samples[..count];
+        stream.fill_normal(samples);
+        if count == part.len() {
+            // Without a choice, the compiler takes several at once.
+            part.iter_mut().zip(samples).for_each(add);
+        } else {
+            part.iter_mut().filter(|range| range.is_finite()).zip(samples).for_each(add);
         }
     }
 }
