@@ -65,8 +65,9 @@ pub(crate) struct State {
 const SHORT: usize = 64;
 /// Robot ticks between two looks for Ctrl-C: some milliseconds.
 const PART: usize = 20_000;
-/// Real time after which other threads of Python are due.
-const DUE: Duration = Duration::from_millis(4);
+/// Real time after which other threads of Python are due: longer than the 5 ms after which a thread that waits
+/// asks for its turn, as only one that has asked is sure to get it.
+const DUE: Duration = Duration::from_millis(6);
 /// What a path to draw should be.
 const PATH: &str = "an array of float64 of shape (points, 2)";
 
