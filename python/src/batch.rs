@@ -28,8 +28,8 @@ use crate::worlds::{Cell, Part, SPACE, Shape, sensors, step_all};
 /// scenes : Scene or sequence of Scene
 ///     One scene for each world. One scene alone is taken `copies` times.
 /// copies : int
-///     Number of worlds that are made of each scene. A batch has at most 1,000,000 robots and 2**29 numbers in
-///     its arrays.
+///     Number of worlds that are made of each scene. A batch has at most 1,000,000 robots and 2**29 numbers
+///     in its arrays.
 /// seed : int
 ///     Seed of the first world; the next ones have the numbers that follow.
 /// noise : float

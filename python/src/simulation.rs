@@ -65,8 +65,8 @@ pub(crate) struct State {
 const SHORT: usize = 64;
 /// Robot ticks between two looks for Ctrl-C: some milliseconds.
 const PART: usize = 20_000;
-/// Real time after which other threads of Python are due: longer than the 5 ms after which a thread that waits
-/// asks for its turn, as only one that has asked is sure to get it.
+/// Real time after which other threads of Python are due: longer than the 5 ms after which a thread that
+/// waits asks for its turn, as only one that has asked is sure to get it.
 const DUE: Duration = Duration::from_millis(6);
 /// What a path to draw should be.
 const PATH: &str = "an array of float64 of shape (points, 2)";
@@ -84,8 +84,8 @@ impl Shared {
         self.state.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Lets time pass. Other threads of Python run meanwhile or, if it is short, every few milliseconds of many
-    /// calls. Ctrl-C ends it.
+    /// Lets time pass. Other threads of Python run meanwhile or, if it is short, every few milliseconds of
+    /// many calls. Ctrl-C ends it.
     pub(crate) fn run_for(&self, py: Python<'_>, seconds: f64) -> Outcome<()> {
         not_negative("seconds", seconds)?;
         let robots = self.scene.robots.len().max(1);

@@ -150,7 +150,10 @@ pub(crate) fn canny<'py>(
 /// out : ndarray of uint8, shape (height, width), optional
 ///     Where to write; otherwise a new array.
 #[pyfunction]
-#[pyo3(signature = (image, size = Natural::of(3), sigma = None, out = None), text_signature = "(image, size=3, sigma=None, out=None)")]
+#[pyo3(
+    signature = (image, size = Natural::of(3), sigma = None, out = None),
+    text_signature = "(image, size=3, sigma=None, out=None)"
+)]
 pub(crate) fn gaussian<'py>(
     image: &Bound<'py, PyAny>,
     size: Natural,

@@ -35,7 +35,7 @@ pub struct LogFile {
     /// Path at which it is written instead until it gets its name.
     part: Option<PathBuf>,
     /// The file that has the name until then, which tells others that somebody records.
-    _named: File,
+    named: File,
     sync: bool,
     /// Whether a part of it is of no use.
     whole: bool,
@@ -88,7 +88,7 @@ impl LogFile {
                 .map_err(|error| io::Error::new(error.kind(), format!("{}: {error}", part.display())))?,
         };
         let file = BufWriter::with_capacity(BUFFER, file);
-        Ok(Self { file, name: path.to_owned(), part, _named: named, sync: false, whole: false })
+        Ok(Self { file, name: path.to_owned(), part, named, sync: false, whole: false })
     }
 
     /// Ends the file, and gives it its name.
@@ -104,11 +104,16 @@ impl LogFile {
 
 impl Drop for LogFile {
     fn drop(&mut self) {
-        if self.whole {
-            // Nobody is left to hear of it; in a folder of others it is empty at least.
-            let _ = self.file.get_ref().set_len(0);
-            let _ = fs::remove_file(self.part.as_ref().unwrap_or(&self.name));
+        if !self.whole {
+            return;
         }
+        // What is still buffered is not written. In a folder of others, where nothing can be removed, the file
+        // is empty at least. Nobody is left to hear of errors.
+        if let Ok(named) = self.named.try_clone() {
+            let unfinished = std::mem::replace(&mut self.file, BufWriter::new(named));
+            let _ = unfinished.into_parts().0.set_len(0);
+        }
+        let _ = fs::remove_file(self.part.as_ref().unwrap_or(&self.name));
     }
 }
 
@@ -240,8 +245,12 @@ mod tests {
     #[test]
     fn what_is_not_whole_goes_and_an_older_file_stays() {
         let path = path("whole");
-        drop(written(&path, mcap::MAGIC).unwrap().whole());
-        assert!(!path.exists());
+        // Somebody has it open still, as if it could not be removed.
+        let mut file = written(&path, mcap::MAGIC).unwrap().whole();
+        let opened = File::open(&path).unwrap();
+        file.write_all(b"buffered").unwrap();
+        drop(file);
+        assert!(!path.exists() && opened.metadata().unwrap().len() == 0);
         written(&path, mcap::MAGIC).unwrap().whole().complete().unwrap();
         drop(written(&path, b"new").unwrap().whole());
         assert_eq!(fs::read(&path).unwrap(), mcap::MAGIC);

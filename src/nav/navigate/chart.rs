@@ -260,8 +260,8 @@ impl Chart {
         self.clearance.at(cell) >= self.levels[LEVELS - 1].room - 2.0 * inexact(self.resolution())
     }
 
-    /// Whether the known world may leave a robot room all the way from a place to another one, if not less than
-    /// at the first one.
+    /// Whether the known world may leave a robot room all the way from a place to another one, if it has room
+    /// at the first one; otherwise, as much as there.
     pub(super) fn is_straight_way(&self, from: Point, to: Point) -> bool {
         let own = self.clearance.at_point(from).unwrap_or(0.0);
         let room = own.min(self.levels[LEVELS - 1].room) - 2.0 * inexact(self.resolution());

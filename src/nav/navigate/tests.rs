@@ -70,7 +70,8 @@ fn a_goal_too_near_to_a_wall_counts_within_its_tolerance() {
     }
 }
 
-/// The nearest place with room may be where the robot cannot get; another one within the tolerance is as good.
+/// The nearest place with room may be where the robot cannot get; another one within the tolerance is as
+/// good.
 #[test]
 fn of_places_on_both_sides_of_a_wall_one_is_in_reach() {
     let mut world = World::walled(2.0, 1.0);
