@@ -1,5 +1,3 @@
-use std::ops::Range;
-
 use super::{Object, World};
 use crate::geometry::{Aabb, Point, Vector};
 
@@ -17,7 +15,9 @@ impl World {
     ///
     /// Maps of a world cover this box. A gap must be more than 100 m wide, ten times as wide as the group of
     /// things, and spanned by at most one wall, because two form a corridor. A floor that extends as far as
-    /// the outliers was made for them and is cut as well. The run time is O(n log n).
+    /// the outliers was made for them and is cut as well. Of two places with such a gap between them, the site
+    /// is the one with the world's [`start`](World::start), otherwise the one with more things. The run time
+    /// is O(n log n).
     ///
     /// ```
     /// use roverlab::geometry::Point;
@@ -69,12 +69,14 @@ impl World {
         let floor = [self.floor.min, self.floor.max];
         let has_floor = is_finite(&floor) && self.floor.size().min() > 0.0;
         points.extend(floor.into_iter().filter(|_| has_floor));
+        let start = self.start.map(|start| start.position()).filter(|start| is_finite(&[*start; 2]));
+        points.extend(start);
         let (count, middle) = (points.len(), nalgebra::center(&self.floor.min, &self.floor.max));
         // A group along one axis may split after a cut along the other.
         loop {
             let before = points.len();
-            keep_larger(&mut points, &ends, middle, |point| point.x);
-            keep_larger(&mut points, &ends, middle, |point| point.y);
+            keep_place(&mut points, &ends, (start, middle), |point| point.x);
+            keep_place(&mut points, &ends, (start, middle), |point| point.y);
             if points.len() == before {
                 break;
             }
@@ -91,16 +93,26 @@ fn reaches_outliers(floor: &Aabb, kept: &Aabb, all: &Aabb) -> bool {
     })
 }
 
-/// Splits points at the widest gap along an axis that separates them, and keeps the larger part; of equal
-/// ones that of the floor's middle.
-fn keep_larger(points: &mut Vec<Point>, ends: &[[Point; 2]], middle: Point, along: impl Fn(&Point) -> f64) {
+/// Splits points at the widest gap along an axis that separates them, and keeps the part with the start.
+/// Without one it keeps the larger part; of equal ones that of the floor's middle.
+fn keep_place(
+    points: &mut Vec<Point>,
+    ends: &[[Point; 2]],
+    (start, middle): (Option<Point>, Point),
+    along: impl Fn(&Point) -> f64,
+) {
     points.sort_by(|a, b| along(a).total_cmp(&along(b)));
     let places: Vec<f64> = points.iter().map(&along).collect();
     let gap = |at: &usize| places[*at] - places[at - 1];
     // Each gap is far wider than all that lies within it, so only few are compared with all walls.
     let kept_at = |at: usize| {
-        let is_low = along(&middle) < 0.5 * (places[at] + places[at - 1]);
-        kept(places.len(), at, is_low)
+        let is_low = |point: &Point| along(point) < 0.5 * (places[at] + places[at - 1]);
+        let (low, high) = (at, places.len() - at);
+        let keeps_low = match start {
+            Some(start) => is_low(&start),
+            None => low > high || (low == high && is_low(&middle)),
+        };
+        if keeps_low { 0..at } else { at..places.len() }
     };
     let is_wide = |at: &usize| {
         let kept = kept_at(*at);
@@ -119,14 +131,10 @@ fn keep_larger(points: &mut Vec<Point>, ends: &[[Point; 2]], middle: Point, alon
     }
 }
 
-/// The larger part of a list that is cut before an index; of equal ones the first, if that is preferred.
-fn kept(count: usize, at: usize, is_first_preferred: bool) -> Range<usize> {
-    if 2 * at > count || (2 * at == count && is_first_preferred) { 0..at } else { at..count }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Pose;
     use crate::world::{Clearance, Wall};
 
     fn stray(place: Point) -> World {
@@ -188,6 +196,28 @@ mod tests {
         {
             assert_eq!((world.site(), world.strays()), (world.bounds(), 0));
         }
+    }
+
+    /// Two rooms 150 m apart that a fence connects, one with twice as many walls.
+    #[test]
+    fn of_two_places_the_site_is_the_one_with_the_start() {
+        let mut world = World::walled(3.0, 2.0);
+        let shift = Vector::new(150.0, 0.0);
+        let there = World::walled(3.0, 2.0).walls.into_iter().cycle().take(8);
+        let fence = Wall::new(Point::new(1.0, 1.0), Point::new(151.0, 1.0));
+        world
+            .walls
+            .extend(there.map(|wall| Wall::new(wall.line.a + shift, wall.line.b + shift)).chain([fence]));
+        let room = World::walled(3.0, 2.0).bounds();
+        let rooms = [room, Aabb::new(room.min + shift, room.max + shift)];
+        assert_eq!((world.site(), world.strays()), (rooms[1], 5));
+        for (start, room, strays) in [(0.5, rooms[0], 9), (150.5, rooms[1], 5), (151.5, rooms[1], 5)] {
+            world.start = Some(Pose::new(start, 0.5, 0.0));
+            assert_eq!((world.site(), world.strays()), (room, strays), "{start}");
+        }
+        // On a floor of its own, far from both.
+        world.start = Some(Pose::new(-200.0, 0.5, 0.0));
+        assert!(world.site().contains(Point::new(-200.0, 0.5)));
     }
 
     #[test]

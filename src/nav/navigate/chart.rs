@@ -1,3 +1,5 @@
+use std::collections::BTreeSet;
+
 use super::parameters::NavigatorParameters;
 use crate::ParameterError;
 use crate::geometry::{Aabb, Point};
@@ -68,28 +70,30 @@ fn resolution_of(bounds: &Aabb, finest: f64) -> f64 {
     finest.max((size.x * size.y / MAX_CELLS).sqrt())
 }
 
-/// Where a robot may be that starts somewhere: the world's site, or all of the world if that is elsewhere, as
-/// more walls are there than around the robot.
-fn whole_around(world: &World, start: Point) -> Aabb {
+/// Where a robot may be on the way from a start to a goal: the world's site, or all of the world if one of
+/// them is in another place.
+fn whole_around(world: &World, ends: [Point; 2]) -> Aabb {
     let (site, bounds) = (world.site(), world.bounds());
-    if !site.contains(start) && bounds.contains(start) { bounds } else { site }
+    let is_elsewhere = |end: &Point| !site.contains(*end) && bounds.contains(*end);
+    if ends.iter().any(is_elsewhere) { bounds } else { site }
 }
 
 /// Bounding box of all places that a robot may reach from a start, as far as cells can tell. Cells for the
 /// whole of a large world have no room for a robot; so rooms of its own are looked for first, around it.
 fn within_reach(
     world: &World,
-    start: Point,
+    [start, goal]: [Point; 2],
     parameters: &NavigatorParameters,
     finest: f64,
 ) -> std::result::Result<Aabb, ParameterError> {
-    let whole = whole_around(world, start);
+    let whole = whole_around(world, [start, goal]);
     let coarsest = resolution_of(&whole, finest);
     let mut resolution = finest;
     while COARSER * resolution <= coarsest && tells_rooms(parameters, resolution) && whole.contains(start) {
         let far = limit(parameters, resolution);
         let window = window(&whole.inflated(far), start, resolution);
-        let places = reached(&Clearance::over(world, window, resolution, far)?, start, parameters);
+        let clearance = Clearance::over(world, window, resolution, far)?;
+        let (places, _) = reached(&clearance, &[start], start, parameters);
         let places = places.map(|places| places.inflated(far + resolution));
         if let Some(places) = places.filter(|places| is_within(places, &window, &whole)) {
             return Ok(places);
@@ -98,7 +102,8 @@ fn within_reach(
     }
     let far = limit(parameters, coarsest);
     let margin = far + 2.0 * coarsest;
-    let places = reached(&Clearance::over(world, whole.inflated(margin), coarsest, far)?, start, parameters);
+    let clearance = Clearance::over(world, whole.inflated(margin), coarsest, far)?;
+    let (places, _) = reached(&clearance, &[start], start, parameters);
     Ok(places.map_or(whole, |places| places.inflated(far + coarsest)))
 }
 
@@ -117,15 +122,47 @@ fn is_within(places: &Aabb, window: &Aabb, whole: &Aabb) -> bool {
     })
 }
 
-/// Bounding box of the centres of all cells that a robot may reach from a start; `None` if it is in none.
-fn reached(clearance: &Clearance, start: Point, parameters: &NavigatorParameters) -> Option<Aabb> {
+/// Bounding box of the centres of all cells that a robot may reach from one of some places, `None` if they are
+/// in none, and whether another place is among them.
+fn reached(
+    clearance: &Clearance,
+    from: &[Point],
+    to: Point,
+    parameters: &NavigatorParameters,
+) -> (Option<Aabb>, bool) {
     let raster = clearance.raster();
     // The robot may start closer to something than it plans to be.
     let least = parameters.radius() - inexact(raster.resolution());
     let regions = raster.regions(|cell| clearance.at(cell) > least);
-    let own = raster.cell_at(start).and_then(|cell| regions[cell])?;
-    let cells = (0..raster.cells()).filter(|&cell| regions[cell] == Some(own));
-    Aabb::around(cells.map(|cell| raster.centre(cell)))
+    let region = |place: &Point| raster.cell_at(*place).and_then(|cell| regions[cell]);
+    let own: BTreeSet<u32> = from.iter().filter_map(region).collect();
+    let cells = (0..raster.cells()).filter(|&cell| regions[cell].is_some_and(|region| own.contains(&region)));
+    let is_among = region(&to).is_some_and(|region| own.contains(&region));
+    (Aabb::around(cells.map(|cell| raster.centre(cell))), is_among)
+}
+
+/// Whether walls enclose some places near each other, as far as cells can tell, without another place among
+/// what they enclose. In a large world, the same is looked for around these places alone.
+pub(super) fn are_shut_in(
+    world: &World,
+    places: &[Point],
+    from: Point,
+    parameters: &NavigatorParameters,
+) -> Result<bool> {
+    let Some(&first) = places.first() else { return Ok(false) };
+    let whole = whole_around(world, [from, first]);
+    let mut resolution = parameters.resolution;
+    while tells_rooms(parameters, resolution) && whole.contains(first) {
+        let far = limit(parameters, resolution);
+        let window = window(&whole.inflated(far), first, resolution);
+        let clearance = Clearance::over(world, window, resolution, far).map_err(|error| refused(&error))?;
+        let (enclosed, is_among) = reached(&clearance, places, from, parameters);
+        if enclosed.is_some_and(|enclosed| is_within(&enclosed.inflated(far + resolution), &window, &whole)) {
+            return Ok(!is_among);
+        }
+        resolution *= COARSER;
+    }
+    Ok(false)
 }
 
 pub(super) fn refused(error: &ParameterError) -> Error {
@@ -133,19 +170,19 @@ pub(super) fn refused(error: &ParameterError) -> Error {
 }
 
 impl Chart {
-    /// The chart of what a robot can reach from a start, in cells of `finest` metres or as small as the
-    /// maximum number of cells allows.
+    /// The chart of what a robot can reach from a start on its way to a goal, in cells of `finest` metres or as
+    /// small as the maximum number of cells allows.
     pub(super) fn new(
         world: &World,
-        start: Point,
+        ends: [Point; 2],
         parameters: &NavigatorParameters,
         finest: f64,
     ) -> Result<Self> {
-        let whole = whole_around(world, start);
+        let whole = whole_around(world, ends);
         let resolution = resolution_of(&whole, finest);
         let clearance = if resolution > finest || whole != world.site() {
             // A world may be large because of what lies far from the robot's own rooms.
-            let part = within_reach(world, start, parameters, finest).map_err(|error| refused(&error))?;
+            let part = within_reach(world, ends, parameters, finest).map_err(|error| refused(&error))?;
             let resolution = resolution_of(&part, finest);
             Clearance::over(world, part, resolution, limit(parameters, resolution))
         } else {
@@ -158,13 +195,13 @@ impl Chart {
     /// if they do not cover both.
     pub(super) fn between(
         world: &World,
-        [start, goal]: [Point; 2],
+        ends: [Point; 2],
         parameters: &NavigatorParameters,
         resolution: f64,
     ) -> Result<Option<Self>> {
         let far = limit(parameters, resolution);
-        let window =
-            window(&whole_around(world, start).inflated(far), start + 0.5 * (goal - start), resolution);
+        let ([start, goal], whole) = (ends, whole_around(world, ends));
+        let window = window(&whole.inflated(far), start + 0.5 * (goal - start), resolution);
         if !(window.contains(start) && window.contains(goal)) {
             return Ok(None);
         }

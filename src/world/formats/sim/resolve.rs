@@ -91,6 +91,8 @@ impl SimFile {
         if is_missing {
             resolver.scene.world = box_around(&resolver.scene);
         }
+        let start = resolver.scene.robots.first().map(|robot| robot.pose);
+        resolver.scene.world.start = start.or(resolver.scene.world.start);
         Ok(resolver.notes.finish(resolver.scene))
     }
 }

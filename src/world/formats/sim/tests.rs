@@ -92,7 +92,8 @@ fn robots_stand_at_the_letters_of_a_maze() {
 
 #[test]
 fn a_script_without_a_world_gets_a_box() {
-    assert_eq!(scene("S4 1 2 3").world, World::walled(2.0, 2.0));
+    let start = Some(Pose::from_mm_deg(1.0, 2.0, 3.0));
+    assert_eq!(scene("S4 1 2 3").world, World { start, ..World::walled(2.0, 2.0) });
 }
 
 #[test]
