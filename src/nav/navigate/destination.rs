@@ -38,6 +38,11 @@ impl Destination {
         Ok(Self { places, is_free })
     }
 
+    /// The places.
+    pub(super) fn places(&self) -> &[Point] {
+        &self.places
+    }
+
     /// Why no way can lead there, if the robot has room nowhere.
     pub(super) fn verdict(&self) -> Option<NavigatorOutcome> {
         let why = if self.is_free { NavigatorOutcome::NoRoom } else { NavigatorOutcome::Unreachable };

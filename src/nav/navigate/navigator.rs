@@ -1,16 +1,18 @@
+mod first_way;
+
 use std::ops::ControlFlow;
 
-use super::chart::{COARSER, Chart, LEVELS, refused};
+use super::chart::{Chart, LEVELS, refused};
 use super::destination::Destination;
 use super::locator::Locator;
 use super::parameters::NavigatorParameters;
 use super::report::{NavigatorEvent, NavigatorOutcome, NavigatorPhase};
 use super::route::Route;
 use super::steering::Steering;
-use crate::geometry::{Point, Pose, Twist, angle_difference, units};
+use crate::geometry::{Point, Pose, Twist, angle_difference};
 use crate::io::control::{Behaviour, Decision, Halt, LidarObservation, Senses};
 use crate::io::reading::{check_pose, check_scan, point_in_words, pose_in_words};
-use crate::io::{Error, ErrorKind, Lidar, Odometry, Result};
+use crate::io::{Error, Lidar, Odometry, Result};
 use crate::kinematics::OUTLIER;
 use crate::nav::surroundings::Surroundings;
 use crate::scan::ScanFilter;
@@ -116,8 +118,6 @@ const BACKING_SPEED: f64 = 0.06;
 const MAX_BLOCKED: u32 = 8;
 /// Maximum number of times that detections may be discarded.
 const MAX_DOUBTS: u32 = 2;
-/// Number of times that cells are halved before no way is said to exist.
-const HALVINGS: u32 = 2;
 /// Distance driven between two searches for a path with more clearance (m).
 const WIDENING: f64 = 0.3;
 
@@ -134,7 +134,7 @@ impl Navigator {
             return Err(Error::invalid_input("goal", point_in_words(goal), "finite numbers"));
         }
         let mut this = Self {
-            chart: Chart::new(world, start.position(), &parameters, parameters.resolution)?,
+            chart: Chart::new(world, [start.position(), goal], &parameters, parameters.resolution)?,
             destination: Destination::new(world, goal, &parameters).map_err(|error| refused(&error))?,
             parameters,
             goal,
@@ -167,68 +167,6 @@ impl Navigator {
             this.end(NavigatorOutcome::Unreachable);
         }
         Ok(this)
-    }
-
-    /// Plans the first way. `false` if there is none. Fails if the cells are too large to tell.
-    fn find_way(&mut self, world: &World) -> Result<bool> {
-        if self.chart.is_coarse() && self.plan_nearby(world)? {
-            return Ok(true);
-        }
-        if !self.chart.is_open(self.start.position()) {
-            return if self.chart.is_coarse() { Err(self.too_coarse()) } else { Ok(false) };
-        }
-        if !self.plan(LEVELS) {
-            return self.plan_finer(world);
-        }
-        if self.chart.is_blind(&self.parameters) { Err(self.too_coarse()) } else { Ok(true) }
-    }
-
-    /// Plans within as much of a large world around start and goal as smaller cells cover, the smallest ones
-    /// first. `false` if there is no way in it.
-    fn plan_nearby(&mut self, world: &World) -> Result<bool> {
-        let ends = [self.start.position(), self.goal];
-        let mut resolution = self.parameters.resolution;
-        while resolution < self.chart.resolution() {
-            if let Some(part) = Chart::between(world, ends, &self.parameters, resolution)? {
-                let whole = std::mem::replace(&mut self.chart, part);
-                if self.chart.is_open(self.start.position()) && self.plan(LEVELS) {
-                    return Ok(true);
-                }
-                self.chart = whole;
-            }
-            resolution *= COARSER;
-        }
-        Ok(false)
-    }
-
-    /// Plans with finer cells as long as those in use may close a way. `false` if there is none. Fails if the
-    /// cells are larger than wished.
-    fn plan_finer(&mut self, world: &World) -> Result<bool> {
-        let (start, tolerance) = (self.start.position(), self.parameters.goal_tolerance);
-        let mut halvings = 0..HALVINGS;
-        while self.chart.may_hide_a_way(start, self.goal, tolerance) {
-            if self.chart.is_coarse() {
-                return Err(self.too_coarse());
-            }
-            let finer = 0.5 * self.chart.resolution();
-            if halvings.next().is_none() {
-                return Ok(false);
-            }
-            self.chart = Chart::new(world, start, &self.parameters, finer)?;
-            if self.plan(LEVELS) {
-                return Ok(true);
-            }
-        }
-        Ok(false)
-    }
-
-    fn too_coarse(&self) -> Error {
-        let [cells, wished] = [self.chart.resolution(), self.parameters.resolution].map(units::to_mm);
-        let found = format!("a world so large that cells of {cells:.0} mm may close a way to the goal");
-        Error::new(
-            ErrorKind::InvalidInput,
-            format!("found {found}; expected one for cells of {wished:.0} mm"),
-        )
     }
 
     /// Current phase.

@@ -164,6 +164,24 @@ fn a_goal_too_far_off_for_the_cells_is_refused() {
     assert!(error.contains("may close a way to the goal; expected one for cells of 10 mm"), "{error}");
 }
 
+/// On a floor of 2 km, cells are 1 m.
+#[test]
+fn a_goal_shut_in_by_walls_is_unreachable_on_any_floor() {
+    let navigator = |door: f64, start: Point| {
+        let mut world = rooms(door);
+        world.walls.extend(World::walled(2.0, 1.0).walls);
+        world.floor = Aabb::new(Point::new(-10.0, -10.0), Point::new(2e3, 2e3));
+        let start = Pose::new(start.x, start.y, 0.0);
+        Navigator::new(&world, start, Point::new(1.7, 0.7), NavigatorParameters::default()).unwrap()
+    };
+    let unreachable = NavigatorPhase::Ended(NavigatorOutcome::Unreachable);
+    for outside in [Point::new(-0.5, 0.5), Point::new(1900.0, 5.0), Point::new(5.0, 1900.0)] {
+        assert_eq!(navigator(0.5, outside).phase(), unreachable, "{outside}");
+    }
+    assert_eq!(navigator(0.0, Point::new(0.3, 0.3)).phase(), unreachable);
+    assert_eq!(navigator(0.5, Point::new(0.3, 0.3)).phase(), NavigatorPhase::Looking);
+}
+
 /// Cells of 50 mm may close a door of 165 mm: nobody can say that no way exists.
 #[test]
 fn what_is_too_large_for_its_doors_is_refused() {
