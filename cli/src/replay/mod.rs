@@ -81,6 +81,12 @@ fn created(name: impl Display, (file, force): (&Path, bool)) -> Result<LogFile, 
 fn recovered(file: &Path, out: (&Path, bool)) -> Result<Found, Failure> {
     let saved =
         recover(&bytes(file)?).map_err(|error| Failure::input(format!("{}: {error}", file.display())))?;
+    if saved.messages == 0 {
+        return Err(Failure::input(format!(
+            "{}: found no message that is whole; expected a recording with at least one",
+            file.display()
+        )));
+    }
     let name = out.0.display();
     let mut sink = created(&name, out)?;
     sink.write_all(&saved.bytes).and_then(|()| sink.complete()).map_err(|error| unwritable(&name, &error))?;

@@ -16,7 +16,7 @@ use super::messages::{
     TfMessage, Time, Transform, TransformStamped, Twist, TwistWithCovariance, Vector,
 };
 use crate::common::Failure;
-use crate::replay::{Found, created};
+use crate::replay::{Found, created, unwritable};
 
 /// The fixed frame.
 const MAP: &str = "map";
@@ -27,17 +27,21 @@ const CELLS: f64 = 4e6;
 
 /// Writes a recording as a bag of ROS 2.
 pub(in crate::replay) fn export(log: &Log, (out, force): (&Path, bool)) -> Result<Found, Failure> {
-    let failed = |error: McapError| Failure::run(format!("--ros2 {}: {error}", out.display()));
+    let name = format!("--ros2 {}", out.display());
+    let failed = |error: McapError| match error {
+        McapError::Io(reason) => unwritable(&name, &reason),
+        other => unwritable(&name, &other),
+    };
     let world = log.header().attachment("scene.wld").map(|file| {
         let parsed = formats::wld::parse(&String::from_utf8_lossy(&file.data), "scene.wld");
         parsed.map(|parsed| parsed.value).map_err(Failure::run)
     });
     let map = world.transpose()?.map(|world| map(&world)).transpose()?;
-    let file = created(format_args!("--ros2 {}", out.display()), (out, force))?;
+    let file = created(&name, (out, force))?;
     let mut bag = Bag::new(file).map_err(failed)?;
     write_all(log, map.as_ref(), &mut bag).map_err(failed)?;
     let (sink, topics) = bag.finish().map_err(failed)?;
-    sink.complete().map_err(|error| failed(error.into()))?;
+    sink.complete().map_err(|error| unwritable(&name, &error))?;
     let messages: u32 = topics.values().sum();
     Ok(Found {
         text: format!("exported {messages} messages on {} topics to {}", topics.len(), out.display()),
