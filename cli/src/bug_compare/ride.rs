@@ -5,7 +5,7 @@ use roverlab::io::sim::SimOptions;
 use roverlab::io::{self, ErrorKind};
 use roverlab::nav::{BugEvent, BugKind, BugOutcome, BugParameters, Guarantee};
 
-use crate::common::{Driven, Failure, Stage, StageTruth, Trip};
+use crate::common::{Driven, Failure, Stage, StageTruth, Trip, at_goal};
 
 /// Driving conditions.
 #[derive(Debug, Clone, Copy)]
@@ -62,11 +62,9 @@ impl Ride {
     /// Whether the verdict is true: `reached` requires the robot's true position to be at the goal. Where
     /// nobody can tell whether the goal can be reached, either verdict may be.
     pub(crate) fn is_correct(&self, reachable: Option<bool>, noise: f64) -> bool {
-        // With noise, odometry errors allow a larger distance.
-        let tolerance = if noise == 0.0 { 0.050 } else { 0.250 };
         match self.ending {
             Ending::Verdict(BugOutcome::Reached) => {
-                reachable != Some(false) && self.goal_distance <= tolerance
+                reachable != Some(false) && self.goal_distance <= at_goal(noise)
             }
             Ending::Verdict(BugOutcome::Unreachable | BugOutcome::NoRoom) => reachable != Some(true),
             _ => false,

@@ -89,7 +89,7 @@ impl CommonArgs {
     /// warnings.
     pub(crate) fn load_scene(&self, option: &str, path: &Path) -> Result<Scene, FormatError> {
         let parsed = self.load(option, path, formats::parse_scene)?;
-        Ok(self.origin.scene(path, parsed))
+        Ok(self.origin.scene(path, parsed, self.start))
     }
 
     /// The robot in the file of an option, with its 3D model where that is found, or the built-in robot of

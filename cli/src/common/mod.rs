@@ -115,7 +115,7 @@ pub(crate) use stage::{Claimed, Driven, Stage, StageTruth};
 pub(crate) use supervision::DEADMAN;
 #[cfg(feature = "learn")]
 pub(crate) use training_store::TrainingStore;
-pub(crate) use trip::{StandIn, Trip};
+pub(crate) use trip::{StandIn, Trip, at_goal};
 pub(crate) use values::{
     GoalOption, parse_noise, parse_picture, parse_png, parse_point, parse_pose, parse_seconds,
 };

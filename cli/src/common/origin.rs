@@ -3,6 +3,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+use roverlab::geometry::Pose;
 use roverlab::io::log::{Attachment, Log};
 use roverlab::world::Scene;
 use roverlab::world::formats::Parsed;
@@ -74,11 +75,12 @@ impl Origin {
         self.warnings.lock().unwrap_or_else(PoisonError::into_inner).push(warning);
     }
 
-    /// A scene that was read from a file; records the warnings of the file, and one of things so far from
-    /// everything else that maps and pictures omit them.
-    pub(crate) fn scene(&self, file: &Path, parsed: Parsed<Scene>) -> Scene {
+    /// A scene that was read from a file, with a run's start if that is given. Records the warnings of the
+    /// file, and one of things so far from the start that maps and pictures omit them.
+    pub(crate) fn scene(&self, file: &Path, parsed: Parsed<Scene>, start: Option<Pose>) -> Scene {
         parsed.warnings.iter().for_each(|warning| self.warn(warning.to_string()));
-        let scene = parsed.value;
+        let mut scene = parsed.value;
+        scene.world.start = start.or(scene.world.start);
         let strays = scene.world.strays();
         if strays > 0 {
             self.warn(format!(

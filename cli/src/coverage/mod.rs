@@ -81,7 +81,6 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     }
     common.check_picture()?;
     let scene = &common.placed_without_goal("the robot goes everywhere", scene)?;
-    common.check_site(scene)?;
     check_lidar(scene)?;
     let done = cover(scene, |limit| Conditions::new(common, limit), paced(common))?;
     let Covered { plan, run, map, ratio, .. } = &done;

@@ -29,7 +29,8 @@ JSON fields:
   error                      reason, only if the robot failed
   worlds, levels             with --campaign only: number of courses; results at each noise level
   timing                     with --timing and --campaign: real_time_factor
-Outcomes: reached, unreachable, no_room (the robot is too large for the goal), timed_out, collided, failed; with --campaign: passed, wrong."
+Outcomes: reached, missed (the robot says reached, and is not within 50 mm, or 250 mm with noise), unreachable, no_room
+(the robot is too large for the goal), timed_out, collided, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
     /// Drive through many generated courses and compare the verdicts with the truth. Their noise levels are

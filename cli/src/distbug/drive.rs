@@ -6,7 +6,7 @@ use roverlab::io::{self, ErrorKind};
 use roverlab::nav::{BugEvent, BugOutcome, BugParameters, DistBug, WallSide};
 use serde_json::Value;
 
-use crate::common::{Failure, Portable, Stage, StageTruth, Trip, unexpected};
+use crate::common::{Failure, Portable, Stage, StageTruth, Trip, at_goal, unexpected};
 use crate::driving::Trail;
 
 /// Driving options.
@@ -85,6 +85,11 @@ pub(crate) struct Drive {
 }
 
 impl Drive {
+    /// Whether the robot says that it is at the goal and in truth is not, as odometry has drifted.
+    pub(crate) fn is_missed(&self, noise: f64) -> bool {
+        self.ending == Ending::Verdict(BugOutcome::Reached) && self.goal_distance > at_goal(noise)
+    }
+
     /// Points of the events accepted by `pick`.
     pub(crate) fn points(&self, pick: impl Fn(&Happening) -> Option<Point>) -> Vec<Point> {
         self.events.iter().filter_map(|event| pick(&event.happening)).collect()

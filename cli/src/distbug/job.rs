@@ -49,7 +49,7 @@ fn watched(common: &CommonArgs, trip: &Trip, options: &Options) -> Result<Drive,
         progress.show(|| format!("{time:8.1} s of at most {:.0} s", options.time_limit));
     })?;
     progress.clear();
-    common.tell(line(drive.sim_time, verdict(&drive)));
+    common.tell(line(drive.sim_time, verdict(&drive, options.noise)));
     Ok(drive)
 }
 
@@ -89,9 +89,10 @@ fn told(event: &Event, hits: &mut usize, leaves: &mut usize) -> String {
     }
 }
 
-fn verdict(drive: &Drive) -> String {
+fn verdict(drive: &Drive, noise: f64) -> String {
     let off = mm(drive.goal_distance);
     match &drive.ending {
+        _ if drive.is_missed(noise) => format!("at the goal by odometry, but {off} mm from it in truth"),
         Ending::Verdict(BugOutcome::Reached) => format!("at the goal, {off} mm from it in truth"),
         Ending::Verdict(BugOutcome::Unreachable) => {
             "all round the obstacle without a place to leave it: the goal cannot be reached".into()
@@ -108,6 +109,7 @@ fn verdict(drive: &Drive) -> String {
 
 fn report(trip: &Trip, drive: &Drive, options: &Options) -> Report {
     let (outcome, error) = match &drive.ending {
+        _ if drive.is_missed(options.noise) => (Outcome::failure("missed"), None),
         Ending::Verdict(BugOutcome::Reached) => (Outcome::verdict("reached"), None),
         Ending::Verdict(BugOutcome::Unreachable) => (Outcome::verdict("unreachable"), None),
         Ending::Verdict(BugOutcome::NoRoom) => (Outcome::verdict("no_room"), None),

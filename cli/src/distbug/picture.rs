@@ -10,7 +10,7 @@ use crate::driving::pale;
 pub(crate) fn of(trip: &Trip, drive: &Drive, options: &Options) -> Picture {
     let spec = trip.spec();
     let mut picture = Picture::new(&trip.scene.world);
-    picture.title(title(drive)).caption(caption(drive, options));
+    picture.title(title(drive, options.noise)).caption(caption(drive, options));
     picture.during(drive.sim_time..).points(drive.seen.iter().copied(), Style::lidar()).during(..);
     for other in &trip.scene.robots[1..] {
         picture.robot_with(other.pose, &other.spec.footprint, pale());
@@ -37,8 +37,9 @@ pub(crate) fn of(trip: &Trip, drive: &Drive, options: &Options) -> Picture {
     picture
 }
 
-fn title(drive: &Drive) -> String {
+fn title(drive: &Drive, noise: f64) -> String {
     let ending = match &drive.ending {
+        _ if drive.is_missed(noise) => "goal missed",
         Ending::Verdict(BugOutcome::Reached) => "goal reached",
         Ending::Verdict(BugOutcome::Unreachable) => "the goal cannot be reached",
         Ending::Verdict(BugOutcome::NoRoom) => "no room at the goal",

@@ -4,7 +4,7 @@ use roverlab::world::generate::{Course, CourseOptions, obstacle_course};
 use roverlab::world::{Colour, Marker, RobotSpec, Scene};
 
 use super::{Ending, Options, drive, sim_options};
-use crate::common::{Failure, Stage, Trip, portable};
+use crate::common::{Failure, Stage, Trip, at_goal, portable};
 
 /// One course of a campaign, driven once at every noise level.
 #[derive(Debug, Clone)]
@@ -76,9 +76,7 @@ impl Judgement {
             (Ending::Verdict(Outcome::TimedOut | Outcome::Stopped), _) => Self::TimedOut,
             (Ending::Verdict(Outcome::Unreachable | Outcome::NoRoom), true) => Self::NotUnreachable,
             (Ending::Verdict(Outcome::Reached), false) => Self::NotReached,
-            (Ending::Verdict(Outcome::Reached), true) if goal_distance > tolerance(noise) => {
-                Self::FarFromGoal
-            }
+            (Ending::Verdict(Outcome::Reached), true) if goal_distance > at_goal(noise) => Self::FarFromGoal,
             (Ending::Verdict(Outcome::Unreachable | Outcome::NoRoom), false)
             | (Ending::Verdict(Outcome::Reached), true) => Self::Correct,
         }
@@ -90,11 +88,6 @@ impl Run {
     pub(crate) fn is_clean(&self) -> bool {
         self.judgement == Judgement::Correct && self.contacts == 0
     }
-}
-
-/// Distance from the goal up to which "reached" is correct (m); larger with noise because of odometry errors.
-pub(crate) fn tolerance(noise: f64) -> f64 {
-    if noise == 0.0 { 0.050 } else { 0.250 }
 }
 
 /// Generates the course of a seed and drives an S4 through it at several noise levels.

@@ -155,10 +155,8 @@ fn scene(args: &Args) -> Result<(Scene, Vec<Point>), Failure> {
     if scene.robots.len() < 2 {
         let leader = StandIn { spec: RobotSpec::labbot().into(), ..StandIn::default() };
         scene = common.placed_in(scene, &leader)?;
-        common.check_site(&scene)?;
         add_followers(&mut scene, mode, followers, common.seed)?;
     }
-    common.check_site(&scene)?;
     let found = scene.robots.len() - 1;
     if let Some(wanted) = wanted.filter(|&wanted| wanted != found) {
         return Err(Failure::input(format!(

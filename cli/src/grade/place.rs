@@ -23,10 +23,11 @@ impl Place {
     /// Loads a world. Fails for a place that the robot cannot come to.
     pub(super) fn load(rubric: &Rubric, task: &Task, origin: &Origin) -> Result<Self, Failure> {
         let name = task.file.display();
-        let mut scene = origin.scene(&task.file, formats::load_scene(&task.file).map_err(Failure::input)?);
-        let spec = Arc::new(robot(&rubric.robot)?);
         let [x, y, heading] = task.start;
         let start = Pose::from_mm_deg(x, y, heading);
+        let file = formats::load_scene(&task.file).map_err(Failure::input)?;
+        let mut scene = origin.scene(&task.file, file, Some(start));
+        let spec = Arc::new(robot(&rubric.robot)?);
         match scene.robots.first_mut() {
             Some(first) => (first.spec, first.pose) = (spec, start),
             None => scene.robots.push(RobotPlacement::new(spec, start)),

@@ -72,7 +72,6 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
     let scene = common.placed_without_goal("the robot goes nowhere", || own_scene(common.seed))?;
-    common.check_site(&scene)?;
     check_lidar(&scene)?;
     let conditions = Conditions { reserve: 0.0, ..Conditions::new(common, args.patience + 30.0)? };
     let run = run(args, &scene, &conditions, paced(common))?;

@@ -29,7 +29,8 @@ JSON fields:
   contact_points              list of [x, y] mm, true
   time_limit_s, picture
   runs, reached, contacts, wrong_seeds   with --campaign only
-Outcomes: reached, unreachable, no_room (the robot is too large for the goal), stuck, timed_out, collided, failed; with --campaign: passed, wrong."
+Outcomes: reached, missed (the robot says reached, and is not within 100 mm), unreachable, no_room (the robot is too
+large for the goal), stuck, timed_out, collided, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
     /// Clearance beside the robot where there is room [default: 0.65 of its radius].

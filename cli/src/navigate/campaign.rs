@@ -4,6 +4,7 @@ use roverlab::nav::NavigatorOutcome;
 use super::Args;
 use super::course;
 use super::drive::{Arrival, drive};
+use super::job::AT_GOAL;
 use crate::common::{Failure, Outcome, Report, portable, rounded};
 use crate::driving::{Conditions, RESERVE};
 
@@ -27,15 +28,13 @@ portable!(struct Trial {
     seed, outcome, contacts, goal_distance, unmapped, replans, recoveries, sim_time, path_length,
 });
 
-/// True distance from the goal up to which it counts as reached (m).
-const NEAR: f64 = 0.1;
 /// Required fraction of reached goals.
 const SHARE: f64 = 0.99;
 
 impl Trial {
     /// Whether the robot is truly at the goal.
     pub(crate) fn is_reached(&self) -> bool {
-        self.outcome == Some(NavigatorOutcome::Reached) && self.goal_distance <= NEAR
+        self.outcome == Some(NavigatorOutcome::Reached) && self.goal_distance <= AT_GOAL
     }
 }
 

@@ -8,6 +8,8 @@ use super::{Args, campaign, picture};
 use crate::common::{Failure, Outcome, Report, millimetres, point_in_mm};
 use crate::driving::{Conditions, Run, paced};
 
+/// True distance from the goal up to which it counts as reached (m).
+pub(super) const AT_GOAL: f64 = 0.1;
 /// Default number of unmapped obstacles in the command's default world.
 const UNMAPPED: u32 = 3;
 
@@ -62,7 +64,7 @@ fn told(event: &NavigatorEvent) -> String {
     }
 }
 
-/// Text of an outcome.
+/// Text of an outcome, as the robot sees it.
 pub(super) fn verdict(outcome: NavigatorOutcome) -> &'static str {
     match outcome {
         NavigatorOutcome::Reached => "goal reached",
@@ -73,12 +75,19 @@ pub(super) fn verdict(outcome: NavigatorOutcome) -> &'static str {
     }
 }
 
+/// Whether the robot says that it is at the goal and in truth is not.
+pub(super) fn is_missed(course: &Course, run: &Run<Arrival>) -> bool {
+    let says_reached = run.ending.as_ref().is_ok_and(|arrival| arrival.outcome == NavigatorOutcome::Reached);
+    says_reached && run.truth.pose.distance_to(course.trip.goal) > AT_GOAL
+}
+
 fn report(course: &Course, run: &Run<Arrival>, limit: f64) -> Report {
     let arrival = run.ending.as_ref().ok();
     let planned = arrival.and_then(Arrival::planned);
     let error = arrival.map(|arrival| run.truth.pose.distance_to(arrival.believed.position()));
     let contacts: Vec<_> = run.truth.contact_places.iter().copied().map(point_in_mm).collect();
     run.report(|arrival| match arrival.outcome {
+        _ if is_missed(course, run) => Outcome::failure("missed"),
         NavigatorOutcome::Reached => Outcome::verdict("reached"),
         NavigatorOutcome::Unreachable => Outcome::verdict("unreachable"),
         NavigatorOutcome::NoRoom => Outcome::verdict("no_room"),

@@ -4,7 +4,7 @@ use roverlab::world::Colour;
 
 use super::course::Course;
 use super::drive::Arrival;
-use super::job::verdict;
+use super::job::{is_missed, verdict};
 use crate::driving::{Conditions, Run, pale};
 
 /// Picture of a run: the first plan, true and estimated path, and seen obstacles missing from the map.
@@ -12,7 +12,11 @@ pub(crate) fn of(course: &Course, run: &Run<Arrival>, conditions: &Conditions) -
     let trip = &course.trip;
     let spec = trip.spec();
     let mut picture = Picture::new(&trip.scene.world);
-    let title = run.ending.as_ref().map_or("the robot failed", |arrival| verdict(arrival.outcome));
+    let title = match &run.ending {
+        _ if is_missed(course, run) => "goal missed",
+        Ok(arrival) => verdict(arrival.outcome),
+        Err(_) => "the robot failed",
+    };
     let contacts = if run.truth.contacts == 0 { "" } else { ", with contacts" };
     picture.title(format!("Navigation: {title}{contacts}")).caption(caption(course, run, conditions));
     if let Ok(arrival) = &run.ending {

@@ -64,9 +64,9 @@ fn hills(args: &Args) -> Result<(World, Point), Failure> {
         let made = relief(&mut Stream::new(args.plain.seed), &options).map_err(refused)?;
         return Ok((made.world, args.start.unwrap_or(made.start).position()));
     };
-    let scene = args.plain.origin.scene(file, formats::load_scene(file).map_err(Failure::input)?);
-    let own = scene.robots.first().map(|robot| robot.pose).or(scene.world.start);
-    let start = args.start.or(own).ok_or_else(|| {
+    let scene = formats::load_scene(file).map_err(Failure::input)?;
+    let scene = args.plain.origin.scene(file, scene, args.start);
+    let start = scene.world.start.ok_or_else(|| {
         Failure::input(format!(
             "{}: found no start; expected --start X,Y,DEG or a robot in a .sim",
             file.display()
