@@ -160,8 +160,12 @@ impl Clearance {
     ///
     /// The run time is proportional to the number of cells plus the cells within the limit of each solid.
     pub fn new(world: &World, resolution: f64, limit: f64) -> Result<Self, ParameterError> {
-        let thickest = world.walls.iter().map(|wall| 0.5 * wall.thickness).fold(0.0, f64::max);
-        Self::over(world, world.site().inflated(limit + thickest + 2.0 * resolution), resolution, limit)
+        let (site, margin) = (world.site(), limit + 2.0 * resolution);
+        // How far walls with an end in the site reach out of it.
+        let ends_in = |wall: &&Wall| site.contains(wall.line.a) || site.contains(wall.line.b);
+        let thickest =
+            world.walls.iter().filter(ends_in).map(|wall| 0.5 * wall.thickness).fold(0.0, f64::max);
+        Self::over(world, site.inflated(margin + thickest), resolution, limit)
     }
 
     /// The same on a raster over a part of the world; solids beyond it count as well.

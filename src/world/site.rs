@@ -1,8 +1,10 @@
+use std::ops::Range;
+
 use super::{Object, World};
 use crate::geometry::{Aabb, Point, Vector};
 
 /// Width of a gap that separates the contents of a world (m).
-const GAP: f64 = 100.0;
+const GAP: f64 = 30.0;
 /// The same, relative to the extent of one side.
 const GAP_IN_SIZES: f64 = 10.0;
 /// Distance to the farthest wall within which a floor ends there (m).
@@ -13,11 +15,10 @@ impl World {
     /// are too far from most of the other things to belong to the same place. An example is a wall whose
     /// coordinates have extra digits.
     ///
-    /// Maps of a world cover this box. A gap must be more than 100 m wide, ten times as wide as the group of
+    /// Maps of a world cover this box. A gap must be more than 30 m wide, ten times as wide as the group of
     /// things, and spanned by at most one wall, because two form a corridor. A floor that extends as far as
     /// the outliers was made for them and is cut as well. Of two places with such a gap between them, the site
-    /// is the one with the world's [`start`](World::start), otherwise the one with more things. The run time
-    /// is O(n log n).
+    /// is the one with the world's [`start`](World::start), otherwise the one with more things.
     ///
     /// ```
     /// use roverlab::geometry::Point;
@@ -65,9 +66,9 @@ impl World {
         let ends: Vec<[Point; 2]> = walls.chain(objects).filter(is_finite).collect();
         let mut points: Vec<Point> = ends.iter().flatten().copied().collect();
         let all = Aabb::around(points.iter().copied())?;
-        // A floor is a thing as well: a single wall far from it is an outlier.
+        // A floor is a thing as well, unless it was made for all the others: a single wall far from it is an outlier.
         let floor = [self.floor.min, self.floor.max];
-        let has_floor = is_finite(&floor) && self.floor.size().min() > 0.0;
+        let has_floor = is_finite(&floor) && self.floor.size().min() > 0.0 && self.floor != all;
         points.extend(floor.into_iter().filter(|_| has_floor));
         let start = self.start.map(|start| start.position()).filter(|start| is_finite(&[*start; 2]));
         points.extend(start);
@@ -93,8 +94,8 @@ fn reaches_outliers(floor: &Aabb, kept: &Aabb, all: &Aabb) -> bool {
     })
 }
 
-/// Splits points at the widest gap along an axis that separates them, and keeps the part with the start.
-/// Without one it keeps the larger part; of equal ones that of the floor's middle.
+/// Keeps the points of one place along an axis: the smallest group with most of the points, or with half of
+/// them and the floor's middle. A start in none of these has a group of its own.
 fn keep_place(
     points: &mut Vec<Point>,
     ends: &[[Point; 2]],
@@ -103,31 +104,81 @@ fn keep_place(
 ) {
     points.sort_by(|a, b| along(a).total_cmp(&along(b)));
     let places: Vec<f64> = points.iter().map(&along).collect();
-    let gap = |at: &usize| places[*at] - places[at - 1];
-    // Each gap is far wider than all that lies within it, so only few are compared with all walls.
-    let kept_at = |at: usize| {
-        let is_low = |point: &Point| along(point) < 0.5 * (places[at] + places[at - 1]);
-        let (low, high) = (at, places.len() - at);
-        let keeps_low = match start {
-            Some(start) => is_low(&start),
-            None => low > high || (low == high && is_low(&middle)),
-        };
-        if keeps_low { 0..at } else { at..places.len() }
+    let line = Line { places: &places, ends: ends.iter().map(|[a, b]| (along(a), along(b))).collect() };
+    let is_main = |group: &Range<usize>| {
+        let is_half = 2 * group.len() == places.len();
+        2 * group.len() > places.len() || (is_half && line.covers(group, along(&middle)))
     };
-    let is_wide = |at: &usize| {
-        let kept = kept_at(*at);
-        gap(at) > GAP.max(GAP_IN_SIZES * (places[kept.end - 1] - places[kept.start]))
-    };
-    let separates = |at: &usize| {
-        let middle = 0.5 * (places[*at] + places[at - 1]);
-        let spans = |[a, b]: &&[Point; 2]| (along(a) < middle) != (along(b) < middle);
-        ends.iter().filter(spans).count() <= 1
-    };
-    let cuts = (1..places.len()).filter(is_wide).filter(separates);
-    if let Some(at) = cuts.max_by(|a, b| gap(a).total_cmp(&gap(b))) {
-        let kept = kept_at(at);
-        points.truncate(kept.end);
-        points.drain(..kept.start);
+    let medians = [(places.len() - 1) / 2, places.len() / 2];
+    let mut kept = medians.map(|median| line.group(median)).into_iter().find(is_main).unwrap_or_else(|| {
+        let mut group = line.group(medians[0]);
+        while !is_main(&group) {
+            group = line.grown(line.extended(group));
+        }
+        group
+    });
+    if let Some(start) = start.map(|start| along(&start))
+        && !line.covers(&kept, start)
+    {
+        kept = line.group(places.partition_point(|&place| place < start));
+    }
+    points.truncate(kept.end);
+    points.drain(..kept.start);
+}
+
+/// Coordinates of points along an axis, in order, and of the ends of walls and objects.
+struct Line<'a> {
+    places: &'a [f64],
+    ends: Vec<(f64, f64)>,
+}
+
+impl Line<'_> {
+    /// The group of a point: all that no gap separates from it.
+    fn group(&self, seed: usize) -> Range<usize> {
+        self.grown(seed..seed + 1)
+    }
+
+    /// A group with all that no gap separates from it.
+    fn grown(&self, mut group: Range<usize>) -> Range<usize> {
+        loop {
+            let width = self.places[group.end - 1] - self.places[group.start];
+            let least = GAP.max(GAP_IN_SIZES * width);
+            if group.start > 0 && !self.is_gap(group.start, least) {
+                group.start -= 1;
+            } else if group.end < self.places.len() && !self.is_gap(group.end, least) {
+                group.end += 1;
+            } else {
+                return group;
+            }
+        }
+    }
+
+    /// A group with the nearest other point.
+    fn extended(&self, group: Range<usize>) -> Range<usize> {
+        let low = group
+            .start
+            .checked_sub(1)
+            .map_or(f64::INFINITY, |below| self.places[group.start] - self.places[below]);
+        let high =
+            self.places.get(group.end).map_or(f64::INFINITY, |above| above - self.places[group.end - 1]);
+        if low < high {
+            group.start - 1..group.end
+        } else {
+            group.start..(group.end + 1).min(self.places.len())
+        }
+    }
+
+    /// Whether the gap before a point is wider than a length, and spanned by at most one wall.
+    fn is_gap(&self, at: usize, least: f64) -> bool {
+        let (low, high) = (self.places[at - 1], self.places[at]);
+        let middle = 0.5 * (low + high);
+        let spans = |&&(a, b): &&(f64, f64)| (a < middle) != (b < middle);
+        high - low > least && self.ends.iter().filter(spans).count() <= 1
+    }
+
+    /// Whether a coordinate is within a group.
+    fn covers(&self, group: &Range<usize>, place: f64) -> bool {
+        self.places[group.start] <= place && place <= self.places[group.end - 1]
     }
 }
 
@@ -192,7 +243,7 @@ mod tests {
         let mut wide = World::empty(150.0, 150.0);
         wide.walls.push(Wall::new(Point::new(75.0, 75.0), Point::new(76.0, 75.0)));
         for world in
-            [wide, World::walled(1000.0, 1000.0), stray(Point::new(90.0, 0.0)), World::empty(0.0, 0.0)]
+            [wide, World::walled(1000.0, 1000.0), stray(Point::new(29.0, 0.0)), World::empty(0.0, 0.0)]
         {
             assert_eq!((world.site(), world.strays()), (world.bounds(), 0));
         }
@@ -218,6 +269,39 @@ mod tests {
         // On a floor of its own, far from both.
         world.start = Some(Pose::new(-200.0, 0.5, 0.0));
         assert!(world.site().contains(Point::new(-200.0, 0.5)));
+    }
+
+    /// On either side, and along a wall that passes by.
+    #[test]
+    fn several_stray_walls_are_no_part_of_the_site() {
+        let room = World::walled(3.0, 2.0);
+        for strays in [[(1e6, 0.0), (-1e6, 0.0)], [(1e8, 1e8), (-1e8, -1e8)], [(40.0, 0.0), (-50.0, 40.0)]] {
+            let mut world = room.clone();
+            world.walls.extend(strays.map(|(x, y)| Wall::new(Point::new(x, y), Point::new(x, y + 1.0))));
+            world.floor = world.bounds();
+            assert_eq!((world.site(), world.strays()), (room.site(), 2), "{strays:?}");
+        }
+        let mut world = room.clone();
+        world.walls.push(Wall::new(Point::new(-1e6, -0.1), Point::new(1e6, -0.1)));
+        assert_eq!((world.site(), world.strays()), (room.site(), 1));
+        // Nor how thick they are.
+        let thick = Wall { thickness: 1e3, ..Wall::new(Point::new(2e3, 0.0), Point::new(2e3, 1.0)) };
+        let world = World { walls: room.walls.iter().copied().chain([thick]).collect(), ..room.clone() };
+        let cells = |world: &World| Clearance::new(world, 0.02, 0.3).unwrap().raster().cells();
+        assert_eq!(cells(&world), cells(&room));
+    }
+
+    /// Things far from each other, of which none is near most others.
+    #[test]
+    fn what_is_sparse_stays_together() {
+        let mut world = World::empty(0.0, 0.0);
+        world.walls = (0..50)
+            .map(|index| Point::new(150.0 * f64::from(index), 0.0))
+            .map(|place| Wall::new(place, place + Vector::new(1.0, 1.0)))
+            .collect();
+        assert_eq!((world.site(), world.strays()), (world.bounds(), 0));
+        world.start = Some(Pose::new(5.0, 5.0, 0.0));
+        assert_eq!((world.site(), world.strays()), (world.bounds(), 0));
     }
 
     #[test]

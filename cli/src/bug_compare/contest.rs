@@ -2,12 +2,12 @@ use std::panic::resume_unwind;
 use std::thread;
 
 use roverlab::ParameterError;
-use roverlab::geometry::{Point, Vector};
+use roverlab::geometry::{Aabb, Point, Vector};
 use roverlab::nav::grid::{AnyAngle, GridPlanner};
 use roverlab::nav::{BugKind, BugParameters, Reachability};
 use roverlab::random::Stream;
 use roverlab::world::generate::{Course, CourseFamily, CourseOptions, obstacle_course};
-use roverlab::world::{BitGrid, BitGridError, GridCell, RobotSpec, Scene};
+use roverlab::world::{BitGrid, BitGridError, GridCell, RobotSpec, Scene, World};
 
 use super::ride::{Conditions, Ride, parameters, ride, ride_with};
 use super::{Args, job};
@@ -37,7 +37,7 @@ const PATIENCE: f64 = 4.0;
 impl Setting {
     pub(crate) fn new(family: &str, seed: u64, trip: Trip) -> Result<Self, Failure> {
         let radius = trip.spec().footprint.bounding_radius();
-        let ways = Reachability::new(&trip.scene.world, radius, RESOLUTION).map_err(Failure::run)?;
+        let ways = Reachability::new(&known(&trip), radius, RESOLUTION).map_err(Failure::run)?;
         let shortest = shortest_way(&ways, trip.start().position(), trip.goal).map_err(Failure::run)?;
         let reachable = reachable(&trip).map_err(Failure::run)?;
         Ok(Self { family: family.to_owned(), seed, trip, shortest, reachable })
@@ -56,10 +56,16 @@ impl Setting {
     }
 }
 
+/// The world of a trip, with a floor as far as its goal.
+fn known(trip: &Trip) -> World {
+    let (world, goal) = (&trip.scene.world, trip.goal);
+    World { floor: world.floor.union(&Aabb::new(goal, goal)), ..world.clone() }
+}
+
 /// Whether a way leads to the goal; `None` if cells are too coarse to tell.
 fn reachable(trip: &Trip) -> Result<Option<bool>, ParameterError> {
     let BugParameters { robot_radius, least_clearance, goal_tolerance, .. } = parameters(trip, 0.0);
-    let world = &trip.scene.world;
+    let world = &known(trip);
     let (finest, cells) = TRUTH;
     let size = world.site().size();
     let cell = finest.max((size.x * size.y / cells).sqrt());

@@ -164,3 +164,17 @@ fn commands_with_maps_work_in_the_place_of_the_start() {
     let (_, report, err) = support::run("navigate", &["--world", world, "--goal", "150500,500"]);
     assert!(report["planned_length_mm"].as_f64().is_some_and(|length| length > 150e3), "{report} {err}");
 }
+
+/// Where nothing is to be seen, the robot relies on odometry.
+#[test]
+fn a_goal_that_odometry_misses_is_not_reached() {
+    let file = temporary("open.wld");
+    fs::write(&file, "floor 40000 5000\n0 0 40000 0\n").unwrap();
+    let world = file.to_str().unwrap();
+    let trip = ["--world", world, "--start", "1000,2500,0", "--goal", "39000,2500"];
+    let (status, report, _) = support::run("distbug", &[&trip[..], &["--noise", "0"]].concat());
+    assert_eq!((status, &report["outcome"]), (0, &"reached".into()), "{report}");
+    let (status, report, _) = support::run("distbug", &[&trip[..], &["--noise", "3"]].concat());
+    assert_eq!((status, &report["outcome"]), (1, &"missed".into()), "{report}");
+    assert!(report["goal_distance_mm"].as_f64().unwrap() > 250.0);
+}

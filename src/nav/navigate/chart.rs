@@ -70,12 +70,13 @@ fn resolution_of(bounds: &Aabb, finest: f64) -> f64 {
     finest.max((size.x * size.y / MAX_CELLS).sqrt())
 }
 
-/// Where a robot may be on the way from a start to a goal: the world's site, or all of the world if one of
-/// them is in another place.
+/// Where a robot may be on the way from a start to a goal: the world's site, or all of the world and what lies
+/// between if one of them is elsewhere.
 fn whole_around(world: &World, ends: [Point; 2]) -> Aabb {
-    let (site, bounds) = (world.site(), world.bounds());
-    let is_elsewhere = |end: &Point| !site.contains(*end) && bounds.contains(*end);
-    if ends.iter().any(is_elsewhere) { bounds } else { site }
+    let site = world.site();
+    let is_in_site = ends.iter().all(|end| site.contains(*end));
+    let both = Aabb::new(ends[0].inf(&ends[1]), ends[0].sup(&ends[1]));
+    if is_in_site { site } else { world.bounds().union(&both) }
 }
 
 /// Bounding box of all places that a robot may reach from a start, as far as cells can tell. Cells for the

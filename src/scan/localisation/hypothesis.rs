@@ -52,6 +52,10 @@ const GATE: f64 = 6.0;
 const TEMPER: f64 = 0.1;
 /// Minimum standard deviation of a motion (m, rad), for rounding.
 const LEAST_MOTION_ERROR: f64 = 1e-5;
+/// Maximum standard deviation of a known pose (m).
+pub(super) const KNOWN: f64 = 0.03;
+/// Lengths by which a pose is moved that is not known (m).
+const SLIDES: [f64; 4] = [0.08, 0.04, 0.02, 0.01];
 /// Difference below which two hypotheses are the same (m, rad).
 const SAME: (f64, f64) = (0.06, 0.06);
 
@@ -99,7 +103,12 @@ impl Hypothesis {
         }
     }
 
-    /// Matches the pose to a scan in a number of Gauss-Newton steps, near the pose by odometry.
+    /// Matches the pose to a scan in a number of Gauss-Newton steps, near the pose by odometry. Returns the
+    /// logarithm of the scan's likelihood.
+    ///
+    /// Edges of surfaces have no normal, so that these steps leave the pose where it is along a single wall. It
+    /// is then moved along the axis that is known least to where the scan is more likely: otherwise, of poses
+    /// that the world does not distinguish, those would seem more probable that a search has hit better.
     pub(super) fn match_scan(
         &mut self,
         map: &LocalisationMap,
@@ -134,7 +143,20 @@ impl Hypothesis {
         if let Some(covariance) = information.try_inverse() {
             self.covariance = covariance;
         }
-        let found = evidence(map, scan, bench, &self.pose, parameters, gate);
+        let mut found = evidence(map, scan, bench, &self.pose, parameters, gate);
+        if self.deviation() > KNOWN {
+            let axis = self.covariance.symmetric_eigen();
+            let axis = axis.eigenvectors.column(axis.eigenvalues.imax()).into_owned();
+            for step in SLIDES.into_iter().flat_map(|step| [step, -step]) {
+                let Pose { x, y, heading } = self.pose;
+                let aside = axis * step;
+                let pose = Pose::new(x + aside.x, y + aside.y, normalize_angle(heading + aside.z));
+                let other = evidence(map, scan, bench, &pose, parameters, gate);
+                if other.log_likelihood > found.log_likelihood {
+                    (self.pose, found) = (pose, other);
+                }
+            }
+        }
         self.explained = found.explained;
         found.log_likelihood
     }

@@ -1,6 +1,6 @@
 use nalgebra::Matrix3;
 
-use super::hypothesis::Bench;
+use super::hypothesis::{Bench, KNOWN};
 use super::map::scanner_of;
 use super::search::search;
 use super::{Hypothesis, LocalisationMap, LocaliserParameters};
@@ -82,6 +82,8 @@ pub struct Localiser {
     hypotheses: Vec<Hypothesis>,
     bench: Option<Bench>,
     odometry: Option<Pose>,
+    /// Distance driven (m).
+    driven: f64,
     /// Odometry at the last update of the weights.
     viewed: Option<Pose>,
     /// Odometry at the last search without a usable result.
@@ -113,8 +115,6 @@ const LOOK_AGAIN: (f64, f64) = (0.5, 0.5);
 const COUNTS: f64 = 0.02;
 /// Minimum fraction of beams as expected.
 const EXPLAINED: f64 = 0.6;
-/// Maximum standard deviation of a known pose (m).
-const KNOWN: f64 = 0.03;
 /// Number of consecutive unexplained scans after which the search starts again.
 const PATIENCE: u32 = 8;
 /// Maximum number of hypotheses; with more, the scan is too ambiguous.
@@ -134,6 +134,7 @@ impl Localiser {
             hypotheses: Vec::new(),
             bench: None,
             odometry: None,
+            driven: 0.0,
             viewed: None,
             searched: None,
             unexplained: 0,
@@ -206,13 +207,14 @@ impl Localiser {
             Some(bench) if bench.expected.len() == beams => bench,
             _ => Bench { scanner: scanner_of(scan), expected: vec![0.0; beams] },
         };
+        let motion = self.odometry.map_or(Pose::default(), |last| last.inverse().compose(&odometry));
+        self.driven += motion.position().coords.norm();
         if self.hypotheses.is_empty() {
             if self.is_worth_a_search(&odometry) {
                 self.search(scan, &mut bench);
                 (self.viewed, self.searched) = (Some(odometry), Some(odometry));
             }
         } else {
-            let motion = self.odometry.map_or(Pose::default(), |last| last.inverse().compose(&odometry));
             let other_view = self.is_other_view(&odometry);
             if other_view {
                 self.viewed = Some(odometry);
@@ -237,8 +239,9 @@ impl Localiser {
     /// Creates hypotheses for all poses that explain a scan about as well as the best one.
     fn search(&mut self, scan: &LidarScan, bench: &mut Bench) {
         self.searches += 1;
+        let bounds = self.map.within_reach(self.driven.min(scan.range_max));
         for share in SHARES {
-            let Some(poses) = search(&self.map, scan, &self.parameters, share) else { break };
+            let Some(poses) = search(&self.map, &bounds, scan, &self.parameters, share) else { break };
             self.try_poses(poses, share, scan, bench);
             self.unite();
             if self.hypotheses.len() <= MOST {

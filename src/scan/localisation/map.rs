@@ -19,6 +19,8 @@ use crate::world::{Clearance, World};
 pub struct LocalisationMap {
     space: Space,
     bounds: Aabb,
+    /// Whether a robot may leave these.
+    is_open: bool,
     clearance: Clearance,
     surfaces: Surfaces,
     /// A world with only the occupancy map, which tells on which side of surfaces it is solid.
@@ -27,6 +29,8 @@ pub struct LocalisationMap {
 
 /// Minimum and maximum cell size of the clearance map (m).
 const RESOLUTION: (f64, f64) = (0.02, 0.05);
+/// Radius of the smallest robot that may leave the map through a gap (m).
+const NARROW: f64 = 0.05;
 /// Approximate number of cells of the clearance map.
 const CELLS: f64 = 2e6;
 /// Maximum clearance that can be queried (m).
@@ -53,20 +57,31 @@ impl LocalisationMap {
         })?;
         let surfaces = Surfaces::new(&clearance);
         let blocks = World { map: world.map.clone(), ..World::empty(0.0, 0.0) };
-        Ok(Self { space, bounds: world.site(), clearance, surfaces, blocks })
+        let mut map = Self { space, bounds: world.site(), is_open: false, clearance, surfaces, blocks };
+        map.is_open = map.edge().any(|place| map.is_free(place, NARROW));
+        Ok(map)
     }
 
-    /// Whether a disc touches nothing, to within 40 mm. Radii above 0.3 m count as 0.3 m.
+    /// Places around the bounds, a cell from each other.
+    fn edge(&self) -> impl Iterator<Item = Point> + use<> {
+        let (Aabb { min, max }, step) = (self.bounds, self.clearance.raster().resolution());
+        let along = move |length: f64| (0..=(length / step) as usize).map(move |index| index as f64 * step);
+        let across = along(max.x - min.x).flat_map(move |x| [min.y, max.y].map(|y| Point::new(min.x + x, y)));
+        across.chain(along(max.y - min.y).flat_map(move |y| [min.x, max.x].map(|x| Point::new(x, min.y + y))))
+    }
+
+    /// Whether a disc touches nothing, to within 40 mm. Radii above 0.3 m count as 0.3 m. Beyond the map, there
+    /// is nothing.
     pub fn is_free(&self, place: Point, radius: f64) -> bool {
         let far = self.clearance.at_point(place);
         let least = radius.min(CLEARANCE - 1e-6)
             - std::f64::consts::FRAC_1_SQRT_2 * self.clearance.raster().resolution();
-        far.is_some_and(|distance| distance > least) && !self.blocks.is_inside_walls(place)
+        far.is_none_or(|distance| distance > least) && !self.blocks.is_inside_walls(place)
     }
 
-    /// Bounding box of the world.
-    pub(super) fn bounds(&self) -> Aabb {
-        self.bounds
+    /// Bounding box of the places where a robot may be that started in the world and has driven some way (m).
+    pub(super) fn within_reach(&self, driven: f64) -> Aabb {
+        self.bounds.inflated(if self.is_open { driven } else { 0.0 })
     }
 
     /// Distances to surfaces.

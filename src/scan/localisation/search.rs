@@ -53,10 +53,11 @@ const COMPARED: usize = 72;
 /// Maximum number of blocks that may be found.
 const MOST_BLOCKS: usize = 2000;
 
-/// One pose for each small block in which a fraction `share` of the scan's points may lie on surfaces; `None`
-/// if there are too many such blocks, because the scan is too ambiguous.
+/// One pose for each small block of some bounds in which a fraction `share` of the scan's points may lie on
+/// surfaces; `None` if there are too many such blocks, because the scan is too ambiguous.
 pub(super) fn search(
     map: &LocalisationMap,
+    bounds: &Aabb,
     scan: &LidarScan,
     parameters: &LocaliserParameters,
     share: f64,
@@ -69,7 +70,7 @@ pub(super) fn search(
     let noise = OUTLIER * parameters.lidar_error();
     let levels = levels(&points, noise);
     let mut search = Search { surfaces: map.surfaces(), points, levels, misses, found: Vec::new() };
-    search.blocks(&map.bounds()).then_some(search.found)
+    search.blocks(bounds).then_some(search.found)
 }
 
 /// Points from all directions, ordered such that neighbours are far apart and a miss shows early.
