@@ -1,3 +1,5 @@
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use super::across::Tones;
 use super::distant::OtherLane;
 use super::element::{Detection, RoadElement, RoadElementKind};
@@ -70,6 +72,8 @@ pub struct RoadElementFinder {
     found: Vec<Detection>,
     tracks: Vec<Track>,
     other_lane: OtherLane,
+    /// Angle from the direction of the road to the other road's at a crossing, positive to the left (rad).
+    angle: f64,
     /// Evidence that the centre line is dashed on the own side.
     dashed: f64,
 }
@@ -97,6 +101,8 @@ const ZEBRA: f64 = 0.40;
 const SHARE: f64 = 0.4;
 /// Share of a detection's speed in the running estimate of an obstacle's.
 const SPEED_SHARE: f64 = 0.2;
+/// Share of a crossing's angle in one image in the running estimate.
+const ANGLE_SHARE: f64 = 0.15;
 
 impl RoadElementFinder {
     /// Creates a finder. Fails for a camera or a road out of range.
@@ -115,6 +121,7 @@ impl RoadElementFinder {
             found: Vec::new(),
             tracks: Vec::new(),
             other_lane: OtherLane::default(),
+            angle: FRAC_PI_2,
             dashed: 0.0,
         })
     }
@@ -149,6 +156,12 @@ impl RoadElementFinder {
         let edge = self.edge - 0.02;
         let sides = [edge + beyond / self.size, edge];
         obstacle::is_occupied(&self.view, sides, (from / self.size, to / self.size), paint / self.size)
+    }
+
+    /// Angle from the direction of the road to that of the other one at the crossing that was seen last,
+    /// positive to the left (rad); 90 degrees before any.
+    pub fn crossing_angle(&self) -> f64 {
+        self.angle
     }
 
     /// Whether cars may cross the marking between the lanes from the own one, a little ahead.
@@ -206,8 +219,11 @@ impl RoadElementFinder {
         across::lines(view, &self.tones, &road, found);
         // Boxes hide edge lines, and their outlines look like lines that leave the road.
         if found.iter().all(|detection| !matches!(detection.kind, RoadElementKind::Obstacle { .. })) {
-            crossing::on_side(view, &road, 1.0, found);
-            crossing::on_side(view, &road, -1.0, found);
+            let left = crossing::on_side(view, &road, 1.0, found);
+            let right = crossing::on_side(view, &road, -1.0, found).map(|angle| PI - angle);
+            for angle in left.into_iter().chain(right) {
+                self.angle += ANGLE_SHARE * (angle - self.angle);
+            }
         }
         beside::parking(view, &road, found);
         barred::barred(view, &road, found);
@@ -254,6 +270,7 @@ impl RoadElementFinder {
                 | RoadElementKind::Barred { .. }
                 // A number is read where it is sharp.
                 | RoadElementKind::SpeedLimit(_)
+                | RoadElementKind::TurnArrow { .. }
                 | RoadElementKind::SpeedLimitEnd => false,
                 _ => view.sees(row, super::view::column(self.middle)),
             };
@@ -281,9 +298,9 @@ impl Track {
 
     /// Whether a detection is of another number in the same place.
     fn is_other_number(&self, detection: &Detection) -> bool {
-        use RoadElementKind::{SpeedLimit, SpeedLimitEnd};
-        let are_numbers =
-            [self.kind, detection.kind].map(|kind| matches!(kind, SpeedLimit(_) | SpeedLimitEnd));
+        use RoadElementKind::{SpeedLimit, SpeedLimitEnd, TurnArrow};
+        let are_numbers = [self.kind, detection.kind]
+            .map(|kind| matches!(kind, SpeedLimit(_) | SpeedLimitEnd | TurnArrow { .. }));
         are_numbers == [true; 2] && self.kind != detection.kind && self.off(detection) < 0.2
     }
 
