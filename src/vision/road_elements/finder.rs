@@ -95,12 +95,16 @@ const BEHIND: f64 = -1.0;
 /// Area beside a crosswalk where pedestrians wait, from its near edge (m): 450 mm by the rules, and the
 /// error.
 const WAITING: std::ops::Range<f64> = -0.10..0.52;
+/// Length of a start line by the rules' drawing, with the error of its place (m).
+const CHEQUERS: f64 = 0.08;
 /// Length of a crosswalk, by the rules (m).
 const ZEBRA: f64 = 0.40;
 /// Share of a detection's place in the running estimate.
 const SHARE: f64 = 0.4;
 /// Share of a detection's speed in the running estimate of an obstacle's.
 const SPEED_SHARE: f64 = 0.2;
+/// Speed of boxes that move, by the rules (m/s). Near the limits of the view, they seem to be faster.
+const FASTEST: f64 = 0.6;
 /// Share of a crossing's angle in one image in the running estimate.
 const ANGLE_SHARE: f64 = 0.15;
 
@@ -217,6 +221,7 @@ impl RoadElementFinder {
         obstacle::boxes(view, &road, waiting, found);
         across::zebras(view, &self.tones, &road, found);
         across::lines(view, &self.tones, &road, found);
+        drop_chequers(found);
         // Boxes hide edge lines, and their outlines look like lines that leave the road.
         if found.iter().all(|detection| !matches!(detection.kind, RoadElementKind::Obstacle { .. })) {
             let left = crossing::on_side(view, &road, 1.0, found);
@@ -226,7 +231,11 @@ impl RoadElementFinder {
             }
         }
         beside::parking(view, &road, found);
-        barred::barred(view, &road, found);
+        // A box may have come so near that its foot is out of view.
+        let boxes = self.tracks.iter().filter(|track| track.evidence >= PRESENT).map(|track| track.kind);
+        let is_box = |kind: RoadElementKind| barred::is_in_other_lane(&road, kind);
+        let has_box = boxes.chain(found.iter().map(|it| it.kind)).any(is_box);
+        barred::barred(view, &road, has_box, found);
         found.extend(self.numbers.find(view, &road));
         let near = found.iter().filter(|it| matches!(it.kind, RoadElementKind::Obstacle { .. }));
         let hidden = near.map(|it| it.ahead).fold(f64::INFINITY, f64::min);
@@ -285,6 +294,14 @@ impl RoadElementFinder {
     }
 }
 
+/// Drops boxes with their feet on the start line: chequers in a patch of light end as sharply as a box does.
+fn drop_chequers(found: &mut Vec<Detection>) {
+    let lines = found.iter().filter(|it| it.kind == RoadElementKind::StartLine);
+    let lines: Vec<f64> = lines.map(|it| it.ahead).collect();
+    let is_box = |it: &Detection| matches!(it.kind, RoadElementKind::Obstacle { .. });
+    found.retain(|it| !is_box(it) || lines.iter().all(|line| (it.ahead - line).abs() > CHEQUERS));
+}
+
 impl Track {
     /// Evidence from which it counts as present. The lines of an arm are short, and patches beside a gap in
     /// the edge line look like them.
@@ -338,7 +355,8 @@ impl Track {
                 *right += SHARE * (r - *right);
                 *left += SHARE * (l - *left);
                 self.ahead += SHARE * off;
-                self.speed += SPEED_SHARE * off / seconds.max(1e-3);
+                let speed = self.speed + SPEED_SHARE * off / seconds.max(1e-3);
+                self.speed = speed.clamp(-FASTEST, FASTEST);
             }
             (Barred { right, left, length }, Barred { right: r, left: l, length: long }) => {
                 *right += SHARE * (r - *right);
