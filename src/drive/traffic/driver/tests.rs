@@ -73,6 +73,23 @@ fn a_car_passes_although_a_box_stands_in_the_other_lane() {
 }
 
 #[test]
+fn a_car_returns_in_time_before_what_it_has_passed_while_that_drove() {
+    use TrafficState::{Follow, Pass, Return};
+    let (states, referee) = drive(OVAL, &[(3.0, 0.0, BoxMotion::Along(5.0))], 11.0);
+    assert_eq!(states, [Follow, Pass, Return, Follow]);
+    assert_eq!(row(&referee, EvasionElement::DynamicObstacle).right, 1, "{:?}", referee.score());
+}
+
+#[test]
+fn a_car_stays_out_of_an_area_behind_which_a_box_has_come() {
+    let area =
+        "straight 5000\nbarred right 1200 200\nstraight 5000\narc 1500 180\nstraight 10000\narc 1500 180\n";
+    let (_, referee) = drive(area, &[(6.3, 0.42, BoxMotion::Oncoming(4.0))], 15.0);
+    assert_eq!(row(&referee, EvasionElement::OncomingObstacle).right, 1, "{:?}", referee.score());
+    assert_eq!(row(&referee, EvasionElement::BarredArea).right, 1, "{:?}", referee.score());
+}
+
+#[test]
 fn a_car_turns_off_where_an_arrow_tells_it_to() {
     use TrafficState::{Follow, Stop, Turn, Wait};
     for (way, bend) in [("right", 270), ("left", -270)] {
