@@ -76,7 +76,7 @@ impl Numbers {
         let patches = STRETCHES.map(|stretch| Patch::cut(view, road, begin, stretch));
         let blur = view.depth(begin);
         let read = self.read(patches.iter().flatten(), blur);
-        let (kind, row) = read.or_else(|| self.read_arrow(patches.iter().flatten(), blur))?;
+        let (kind, row) = read.or_else(|| self.read_arrow(&patches.iter().flatten(), blur))?;
         // The line that strikes a number out begins before it.
         let struck = if kind == RoadElementKind::SpeedLimitEnd { STRIKE.0 } else { 0 };
         Some(Detection::new(kind, view.ahead(begin + row) - CELL * (SEARCH + struck) as f64))
@@ -100,14 +100,12 @@ impl Numbers {
         let is_clear = like > LIKE && others.all(|other| patch.lead(best, other, place) > CLEAR);
         is_clear.then_some((best.kind, place.row))
     }
-}
 
-impl Numbers {
     /// The turn arrow in one of some patches that are blurred along the road, and the row where its pattern
     /// begins.
     fn read_arrow<'a>(
         &self,
-        patches: impl Iterator<Item = &'a Patch> + Clone,
+        patches: &(impl Iterator<Item = &'a Patch> + Clone),
         blur: f64,
     ) -> Option<(RoadElementKind, usize)> {
         let [left, right] = [0, 1].map(|index| self.arrows[index].seen(blur));

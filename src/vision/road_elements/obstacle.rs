@@ -21,8 +21,10 @@ const EVEN: f64 = 0.6;
 /// Length of ground that the front of the lowest box covers (cells), as it stands in the way of the ground
 /// behind it.
 const TALL: usize = 14;
-/// Least width (m). By the rules it is 100 mm; paint is at most 60 mm wide, and blurred from afar.
-const WIDE: f64 = 0.085;
+/// Least width (m). By the rules it is 100 mm; paint is at most 60 mm wide.
+const WIDE: f64 = 0.075;
+/// The same on the road (m), where numbers stand: from afar, they are blurred.
+const WIDE_ON_ROAD: f64 = 0.085;
 /// Rows that a box covers at least (cells); lines across the road cover four.
 const DEEP: usize = 9;
 /// Largest distance along the road between the feet of a box's front (cells): it may stand askew.
@@ -53,7 +55,8 @@ pub(super) fn boxes(
         {
             let near = front.clone().filter_map(|column| feet[column]).min().unwrap_or(0);
             let is_on_road = left(front.start) < road.edge && left(front.end - 1) > -road.edge;
-            if !is_on_road && !waiting(view.ahead(near)) {
+            let is_wide = front.len() as f64 * CELL >= WIDE_ON_ROAD;
+            if !(is_on_road && is_wide || waiting(view.ahead(near))) {
                 continue;
             }
             let own = |column: usize| left(column) - road.middle;
@@ -74,7 +77,7 @@ pub(super) fn is_occupied(
     (from, to): (f64, f64),
     paint: f64,
 ) -> bool {
-    let wide = (WIDE / CELL) as usize;
+    let wide = (WIDE / CELL).ceil() as usize;
     let road = columns(-right, left);
     let long = (paint / CELL).round() as usize;
     let is_bright =
