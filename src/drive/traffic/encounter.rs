@@ -247,9 +247,8 @@ impl Encounter {
         let is_clear = self.index.is_some_and(|index| now.actors.is_clear(index));
         match self.element {
             EvasionElement::StopLine => (self.stood >= LONG_HALT, self.stood == 0.0),
-            EvasionElement::GiveWayLine => (self.stood >= SHORT_HALT, false),
             EvasionElement::Turn if self.is_stop => (self.stood >= LONG_HALT, self.stood == 0.0),
-            EvasionElement::Turn => (self.stood >= SHORT_HALT, false),
+            EvasionElement::GiveWayLine | EvasionElement::Turn => (self.stood >= SHORT_HALT, false),
             EvasionElement::EmptyCrosswalk => (self.stood == 0.0, false),
             EvasionElement::CrossTraffic => (is_clear, false),
             _ => (self.stood >= LONG_HALT && is_clear, false),
