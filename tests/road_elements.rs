@@ -21,7 +21,7 @@ use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Shape};
 
 /// Kinds that are counted, each with the distances ahead of the camera where it has to be found, and the
 /// distance within which it has to be there (m).
-const KINDS: [(&str, (f64, f64), f64); 10] = [
+const KINDS: [(&str, (f64, f64), f64); 11] = [
     ("stop line", (0.25, 0.95), 0.08),
     ("give-way line", (0.25, 0.95), 0.08),
     ("start line", (0.25, 0.95), 0.08),
@@ -32,6 +32,7 @@ const KINDS: [(&str, (f64, f64), f64); 10] = [
     ("barred area", (0.30, 0.80), 0.15),
     ("speed limit", (0.20, 0.70), 0.05),
     ("end of a limit", (0.15, 0.65), 0.05),
+    ("turn arrow", (0.20, 0.70), 0.05),
 ];
 
 /// Row of a kind in the table.
@@ -47,13 +48,15 @@ fn row(kind: RoadElementKind) -> usize {
         RoadElementKind::Barred { .. } => 7,
         RoadElementKind::SpeedLimit(_) => 8,
         RoadElementKind::SpeedLimitEnd => 9,
+        RoadElementKind::TurnArrow { .. } => 10,
         other => panic!("a kind without a row: {other:?}"),
     }
 }
 
-/// Whether one is what the other is: numbers have to be the same.
+/// Whether one is what the other is: numbers and sides of arrows have to be the same.
 fn is_same(one: RoadElementKind, other: RoadElementKind) -> bool {
-    row(one) == row(other) && (!matches!(one, RoadElementKind::SpeedLimit(_)) || one == other)
+    use RoadElementKind::{SpeedLimit, TurnArrow};
+    row(one) == row(other) && (!matches!(one, SpeedLimit(_) | TurnArrow { .. }) || one == other)
 }
 
 /// A box on the road: where its near side is, to the left of the own lane's middle (m), and its size.
@@ -157,6 +160,9 @@ fn truths(course: &RoadCourse) -> Vec<(RoadElementKind, f64)> {
             }
             RoadMarkKind::Barred(RoadSide::Right, ..) => {
                 truths.push((RoadElementKind::Barred { right: 0.0, left: 0.0, length: 0.0 }, mark.at));
+            }
+            RoadMarkKind::Arrow(side) => {
+                truths.push((RoadElementKind::TurnArrow { left: side == RoadSide::Left }, mark.at));
             }
             RoadMarkKind::Crossing(crossing) => truths.extend(of_crossing(course, mark.at, &crossing)),
             _ => {}
@@ -362,6 +368,21 @@ fn arms_of_crossings_are_found_at_all_legal_angles() {
     table.print();
     assert!(table.rows[4][0] >= 80, "few frames: {:?}", table.rows[4]);
     assert!(table.f1(4) >= 0.98, "{:?}", table.rows[4]);
+}
+
+#[test]
+fn turn_arrows_are_told_apart_and_from_numbers() {
+    let mut table = Table::default();
+    let marks = "arrow left\nstraight 1200\narrow right\nstraight 1200\n";
+    let arc = "arc 1500 60\narrow right\narc 1500 60\narrow left\narc 1500 60\n";
+    let half = format!("straight 1200\n{marks}{arc}");
+    let setting = Setting::of(course::parse(&format!("course 1\nlane 400\n{half}{half}"), "oval").unwrap());
+    (1..=2).for_each(|seed| table.look_at(&setting, seed, 0.002, 0..usize::MAX));
+    // Numbers are none.
+    (101..=102).for_each(|seed| table.look(seed, 0.004, 200));
+    table.print();
+    assert!(table.rows[10][0] >= 80, "few frames: {:?}", table.rows[10]);
+    assert!(table.f1(10) > 0.9, "{:?}", table.rows[10]);
 }
 
 /// What takes minutes.

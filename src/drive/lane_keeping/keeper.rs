@@ -112,6 +112,17 @@ impl LaneKeeper {
         self.before = None;
     }
 
+    /// Expects a straight lane where odometry says that it is, with the car at a pose relative to its centre
+    /// at the last image, on a road with its edge lines at a distance from its centre line (m).
+    pub(in crate::drive) fn expect(&mut self, pose: &Pose, edge: f64) {
+        self.finder.expect(pose.y, pose.heading, edge);
+    }
+
+    /// Odometry at the last image.
+    pub(in crate::drive) fn odometry(&self) -> Option<Pose> {
+        self.before
+    }
+
     /// Processes an image taken at an odometry pose.
     ///
     /// # Errors

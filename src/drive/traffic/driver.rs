@@ -1,6 +1,7 @@
 mod passing;
 #[cfg(test)]
 mod tests;
+mod turning;
 
 use std::ops::ControlFlow;
 
@@ -30,6 +31,8 @@ pub enum TrafficState {
     Stop,
     /// Stands before it.
     Wait,
+    /// Turns off at a crossing.
+    Turn,
 }
 
 /// Drives a car in traffic by camera and odometry: in its lane, to a halt at lines and before pedestrians,
@@ -43,6 +46,7 @@ pub enum TrafficState {
 /// | `Return` | it is passed | shifts back | the shift is over: `Follow` |
 /// | `Stop` | a stop line, a give-way line or a crosswalk with a pedestrian is ahead | brakes to stand `gap` before it | the car stands: `Wait`; the crosswalk is free: as before |
 /// | `Wait` | the car stands at the line | stands | the time of `halts` is over, and nobody is on the crosswalk or crossing: as before |
+/// | `Turn` | an arrow is before a crossing at which the car need not stop any more | an arc onto the other road by odometry, then onto its lane by camera | the lane is where odometry expects it: `Follow` |
 ///
 /// `Stop` and `Wait` add to the other states, whose path the car keeps. In each state, the speed is at most
 /// what bends and sight allow ([`LaneKeeper`]), what stops the car before a box in its way, and what the
@@ -50,7 +54,7 @@ pub enum TrafficState {
 ///
 /// # Limits
 ///
-/// The start box, signs and turns at crossings are not handled. Oncoming traffic is seen from 4 m on, and on
+/// The start box and signs are not handled. Oncoming traffic is seen from 4 m on, and on
 /// straights; what appears when the car is already within 0.5 m of what it passes is not given way. Give-way
 /// lines of which less than a third is left are not seen. `roverlab traffic --campaign` counts what goes
 /// wrong.
@@ -86,6 +90,7 @@ pub struct TrafficDriver {
     occupied: f64,
     /// The obstacle that it passes, and time (s) and distance driven (m) when that was last seen.
     passed: Option<(Obstacle, f64, f64)>,
+    turn: Option<turning::Turn>,
     /// Maximum speed that others allow, and that of the speed zone (m/s).
     limit: f64,
     zone: f64,
@@ -157,6 +162,7 @@ impl TrafficDriver {
             released: Vec::new(),
             occupied: 0.0,
             passed: None,
+            turn: None,
             limit: f64::INFINITY,
             zone: f64::INFINITY,
         })
@@ -169,6 +175,9 @@ impl TrafficDriver {
 
     /// The state.
     pub fn state(&self) -> TrafficState {
+        if self.turn.is_some() {
+            return TrafficState::Turn;
+        }
         match (self.halt, self.lateral) {
             (Some(Halt::Stand { .. }), _) => TrafficState::Wait,
             (Some(Halt::Approach { .. }), _) => TrafficState::Stop,
@@ -329,15 +338,20 @@ impl Behaviour for TrafficDriver {
         seen.check()?;
         let seconds = self.time.map_or(0.0, |before| time - before);
         self.time = Some(time);
+        self.expect_lane();
         let lane = self.keeper.see(&seen.image, seen.odometry).map_err(io::Error::caused_by)?.clone();
         let metres = self.keeper.driven();
         self.driven += lane.progress(metres);
+        if let Some(command) = self.follow_turn(seen, &lane) {
+            return Ok(ControlFlow::Continue(command));
+        }
         let gray = self.keeper.gray(seen.image.width()).map_err(io::Error::caused_by)?;
         self.finder.see(gray, &lane, metres, seconds);
         if lane.lost {
             return Ok(ControlFlow::Continue(Twist::STOP));
         }
         let speed = self.decide(time, seen.speed).min(self.limit);
+        self.begin_turn(&seen.odometry);
         let delayed = self.driven + self.parameters.lane.delay * seen.speed.max(0.0);
         let path = self.shift.at(delayed).map(|value| self.side * value);
         Ok(ControlFlow::Continue(self.keeper.steer_by(&lane, seen.speed, &Guide { path, speed })))

@@ -3,6 +3,7 @@
 use super::actors::{MEETS, STANDS, TrafficActors, between};
 use super::scene::{BoxMotion, RoadBox, TrafficScene, ZEBRA};
 use super::score::EvasionElement;
+use super::turn::RoadTurn;
 
 /// An element of the course, and what the car has done there in this lap.
 #[derive(Debug, Clone)]
@@ -15,8 +16,10 @@ pub(super) struct Encounter {
     along: f64,
     length: f64,
     pub(super) is_touched: bool,
-    /// Width of a barred area (m).
+    /// Width of a barred area, and length of the road that a turn skips (m).
     width: f64,
+    /// Whether cars have to stand for 3 s.
+    is_stop: bool,
     /// Whether the solid line was crossed, whether the car came too near to the box ahead, and whether a
     /// wheel was in the barred area, or in the way of an oncoming box.
     has_crossed: bool,
@@ -77,6 +80,10 @@ const FOLLOWING: f64 = 0.3;
 const YIELD: f64 = 1.0;
 /// Distance of an oncoming box behind a car's front at which both have passed each other (m).
 const APART: f64 = 1.0;
+/// Largest distance of a turn's line before the middle of its crossing (m).
+const BEFORE_TURN: f64 = 0.9;
+/// Distance behind that line within which a car has turned off (m).
+const BEHIND_TURN: f64 = 2.0;
 /// Distance ahead of a car at which an obstacle counts as met (m).
 const MET: f64 = 1.0;
 /// Distance from an element beyond which its encounter is over (m).
@@ -91,6 +98,7 @@ impl Encounter {
             length,
             is_touched: false,
             width: 0.0,
+            is_stop: false,
             has_crossed: false,
             is_near: false,
             has_entered: false,
@@ -135,8 +143,8 @@ impl Encounter {
     fn approach(&mut self, now: &Moment<'_>, along: f64) -> f64 {
         let ahead = between(&now.scene.course, now.front, along);
         if ahead > AWAY || ahead < -AWAY - self.length {
-            let width = self.width;
-            *self = Self { width, ..Self::new(self.element, self.index, self.along, self.length) };
+            let (width, is_stop) = (self.width, self.is_stop);
+            *self = Self { width, is_stop, ..Self::new(self.element, self.index, self.along, self.length) };
         } else if self.progress == Progress::Away && ahead > 0.0 {
             self.progress = Progress::Before(false);
         }
@@ -214,6 +222,9 @@ impl Encounter {
     fn judge_line(&mut self, now: &Moment<'_>) -> Verdict {
         if let Progress::Behind(from) = self.progress {
             let (is_right, is_fault) = self.verdict;
+            // A turn skips a part of the line.
+            let has_turned = now.driven - from >= 0.5 * self.width;
+            let is_right = is_right && (self.element != EvasionElement::Turn || has_turned);
             return (now.driven - from >= self.length).then_some((is_right, is_fault || self.is_touched));
         }
         let ahead = self.approach(now, self.along);
@@ -236,7 +247,8 @@ impl Encounter {
         let is_clear = self.index.is_some_and(|index| now.actors.is_clear(index));
         match self.element {
             EvasionElement::StopLine => (self.stood >= LONG_HALT, self.stood == 0.0),
-            EvasionElement::GiveWayLine => (self.stood >= SHORT_HALT, false),
+            EvasionElement::Turn if self.is_stop => (self.stood >= LONG_HALT, self.stood == 0.0),
+            EvasionElement::GiveWayLine | EvasionElement::Turn => (self.stood >= SHORT_HALT, false),
             EvasionElement::EmptyCrosswalk => (self.stood == 0.0, false),
             EvasionElement::CrossTraffic => (is_clear, false),
             _ => (self.stood >= LONG_HALT && is_clear, false),
@@ -246,14 +258,9 @@ impl Encounter {
 
 /// The elements of a scene.
 pub(super) fn encounters(scene: &TrafficScene) -> Vec<Encounter> {
-    let mut all: Vec<Encounter> = scene
-        .lines()
-        .into_iter()
-        .map(|(at, is_stop)| {
-            let element = if is_stop { EvasionElement::StopLine } else { EvasionElement::GiveWayLine };
-            Encounter::new(element, None, at, 0.0)
-        })
-        .collect();
+    let turns = RoadTurn::of(&scene.course);
+    let mut all: Vec<Encounter> =
+        scene.lines().into_iter().map(|(at, is_stop)| of_line(&turns, at, is_stop)).collect();
     let crosses = |at: f64| {
         let is_here = |along: f64| (0.0..ZEBRA).contains(&(along - at));
         scene.boxes.iter().position(|it| it.motion == BoxMotion::Across && is_here(it.along))
@@ -269,7 +276,20 @@ pub(super) fn encounters(scene: &TrafficScene) -> Vec<Encounter> {
         ..Encounter::new(EvasionElement::BarredArea, None, at, long)
     }));
     all.extend(scene.boxes.iter().enumerate().filter_map(|(index, it)| of_box(scene, index, it)));
+    all.retain(|it| !turns.iter().any(|turn| turn.skips(it.along)));
     all
+}
+
+/// The element of a line at which cars stop, before a turn or not.
+fn of_line(turns: &[RoadTurn], at: f64, is_stop: bool) -> Encounter {
+    let turn = turns.iter().find(|turn| (0.0..BEFORE_TURN).contains(&(turn.from - at)));
+    let element = match turn {
+        Some(_) => EvasionElement::Turn,
+        None if is_stop => EvasionElement::StopLine,
+        None => EvasionElement::GiveWayLine,
+    };
+    let (length, width) = turn.map_or((0.0, 0.0), |turn| (BEHIND_TURN, turn.skipped()));
+    Encounter { width, is_stop, ..Encounter::new(element, None, at, length) }
 }
 
 /// The element of a box that does not cross the road on foot.

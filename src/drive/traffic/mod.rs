@@ -21,6 +21,7 @@ mod score;
 mod shift;
 #[cfg(test)]
 mod tests;
+mod turn;
 
 pub use actors::{CarFront, TrafficActors};
 pub use driver::{TrafficDriver, TrafficState};
@@ -33,3 +34,4 @@ pub use radio::{
 pub use referee::{FreeDrive, FreeDriveRules, FreeDriveScore};
 pub use scene::{BoxMotion, RoadBox, TrafficScene};
 pub use score::{EvasionElement, EvasionRow, EvasionScore};
+pub use turn::RoadTurn;

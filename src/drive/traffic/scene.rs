@@ -1,5 +1,6 @@
 use std::sync::Arc;
 
+use super::turn::draw_turn;
 use crate::geometry::{Point, Pose};
 use crate::random::Stream;
 use crate::world::road::{
@@ -106,9 +107,12 @@ impl TrafficScene {
     /// area on a straight, a slow box where passing is allowed, and up to four boxes that stand. In the other
     /// lane, a box stands behind one of these, and boxes come towards the car there and at the barred area,
     /// if these find a straight with enough room; other marks may be removed there. Zones beside what is
-    /// passed become dashed, and patches where pedestrians wait are removed.
-    pub fn drawn(course: RoadCourse, seed: u64) -> Self {
-        let taken = course.marks.iter().filter_map(|mark| extent(&course, mark)).collect();
+    /// passed become dashed, and patches where pedestrians wait are removed. Half of the courses that cross
+    /// themselves have a mandatory turn there, and nothing else on the part that it skips.
+    pub fn drawn(mut course: RoadCourse, seed: u64) -> Self {
+        let turn = draw_turn(&mut course, &mut Stream::new(seed).child("turn", 0));
+        let marks = course.marks.iter().filter_map(|mark| extent(&course, mark));
+        let taken = marks.chain(turn).collect();
         let random = Stream::new(seed).child("traffic", 0);
         let mut drawing = Drawing { course, random, taken, passed: Vec::new(), boxes: Vec::new() };
         drawing.end_speed_zones();

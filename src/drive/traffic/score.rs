@@ -16,6 +16,8 @@ pub enum EvasionElement {
     StopLine,
     /// A give-way line, straight on: 5 points.
     GiveWayLine,
+    /// A mandatory turn behind one of these lines: 15 points for the halt and the right turn.
+    Turn,
     /// Traffic from the right at one of these lines: 10 points.
     CrossTraffic,
     /// A crosswalk without pedestrians: 10 points.
@@ -26,7 +28,7 @@ pub enum EvasionElement {
 
 impl EvasionElement {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::StaticObstacle,
         Self::DynamicObstacle,
         Self::NoPassing,
@@ -34,6 +36,7 @@ impl EvasionElement {
         Self::BarredArea,
         Self::StopLine,
         Self::GiveWayLine,
+        Self::Turn,
         Self::CrossTraffic,
         Self::EmptyCrosswalk,
         Self::Crosswalk,
@@ -46,6 +49,7 @@ impl EvasionElement {
             Self::DynamicObstacle | Self::Crosswalk => (15.0, 10.0),
             Self::NoPassing | Self::OncomingObstacle => (5.0, 10.0),
             Self::StopLine => (5.0, 5.0),
+            Self::Turn => (15.0, 5.0),
             Self::GiveWayLine => (5.0, 0.0),
             Self::EmptyCrosswalk | Self::BarredArea => (10.0, 0.0),
         }
@@ -61,6 +65,7 @@ impl EvasionElement {
             Self::BarredArea => "barred area",
             Self::StopLine => "stop line",
             Self::GiveWayLine => "give-way line",
+            Self::Turn => "turn",
             Self::CrossTraffic => "cross traffic",
             Self::EmptyCrosswalk => "empty crosswalk",
             Self::Crosswalk => "crosswalk with pedestrian",

@@ -81,6 +81,30 @@ fn lines_ask_for_their_halts() {
 }
 
 #[test]
+fn turns_ask_for_the_halt_and_for_the_other_part_of_the_road() {
+    let eight = "course 1\nlane 400\nstraight 1900\narrow right\nstraight 1100\ncrossing 90 none give-way\n\
+        straight 3000\narc 3000 270\nstraight 3000\ncrossing 90 none\nstraight 3000\narc 3000 -270\n";
+    let scene = TrafficScene { course: course::parse(eight, "eight").unwrap(), boxes: Vec::new() };
+    let turn = RoadTurn::of(&scene.course)[0];
+    for (halt, turns, expected) in [(1.1, true, RIGHT), (0.5, true, NEUTRAL), (1.1, false, NEUTRAL)] {
+        let mut referee = ObstacleEvasion::new(scene.clone(), &RobotSpec::road_car(), 1);
+        let actors = TrafficActors::new(scene.clone());
+        let (mut along, mut stood) = (0.0, 0.0);
+        for step in 0..600 {
+            let stands = along >= 2.1 && stood < halt;
+            let speed = if stands { 0.0 } else { 1.0 };
+            stood += if stands { 0.02 } else { 0.0 };
+            along += 0.02 * speed;
+            // A sharp corner from lane to lane.
+            let on = if turns && along > 2.8 { along + turn.skipped() } else { along };
+            referee.see(0.02 * f64::from(step), &scene.course.pose(on, 0.0), speed, &actors);
+        }
+        assert_eq!(row(referee.score(), EvasionElement::Turn), expected, "{halt} {turns}");
+        assert_eq!((referee.score().departures, referee.possible()), (0, 15.0));
+    }
+}
+
+#[test]
 fn pedestrians_and_crossing_traffic_go_first() {
     let person = (8.15, -0.32, BoxMotion::Across);
     for (halt, expected) in [((7.55, 6.0), RIGHT), ((7.55, 2.0), NEUTRAL), ((7.1, 6.0), NEUTRAL)] {
@@ -180,7 +204,7 @@ fn speed_zones_begin_and_end_at_their_numbers() {
 #[test]
 fn drawn_scenes_follow_the_rules() {
     let options = RoadCourseOptions { crossings: 0.9, zebras: 0.8, ..RoadCourseOptions::default() };
-    let mut seen = [0; 5];
+    let (mut seen, mut turns) = ([0; 5], 0);
     for seed in 0..200 {
         let course = generate(seed, &options).unwrap();
         let scene = TrafficScene::drawn(course, seed);
@@ -202,9 +226,10 @@ fn drawn_scenes_follow_the_rules() {
             scene.boxes.iter().filter(|it| matches!(it.motion, BoxMotion::Static | BoxMotion::Along(_)));
         let places: Vec<f64> = on_road.map(|it| it.along).collect();
         assert!(places.windows(2).all(|pair| pair[1] - pair[0] > 1.4), "{seed}: {places:?}");
+        turns += RoadTurn::of(&scene.course).len();
         assert_eq!(scene, TrafficScene::drawn(generate(seed, &options).unwrap(), seed), "{seed}");
     }
-    assert!(seen.iter().all(|count| *count > 4), "{seen:?}");
+    assert!(seen.iter().all(|count| *count > 4) && turns > 2, "{seen:?} {turns}");
 }
 
 #[test]

@@ -129,6 +129,8 @@ pub struct LaneMarkingFinder {
     camera: RoadCamera,
     points: Vec<MarkingPoint>,
     road: Option<Road>,
+    /// Whether the road is where odometry expects it, not where the last image showed it.
+    is_expected: bool,
     /// Distance driven since the road was last seen (m).
     blind: f64,
 }
@@ -170,7 +172,15 @@ impl LaneMarkingFinder {
         require("size of the road", size, (0.1..=10.0).contains(&size), "0.1 to 10")?;
         let filter = MarkingFilter::new(camera, road_model.line_width, REACH * size)?;
         let own = RoadCamera { height: camera.height / size, ahead: camera.ahead / size, ..camera };
-        Ok(Self { road_model, filter, camera: own, points: Vec::new(), road: None, blind: 0.0 })
+        Ok(Self {
+            road_model,
+            filter,
+            camera: own,
+            points: Vec::new(),
+            road: None,
+            is_expected: false,
+            blind: 0.0,
+        })
     }
 
     /// Points of lines in the last image, in the robot's frame.
@@ -189,6 +199,16 @@ impl LaneMarkingFinder {
         self.blind = 0.0;
     }
 
+    /// Expects a straight road in the next image where odometry says that it is: with the car at a distance to
+    /// the left of the own lane's centre (m) and in a direction relative to it (rad), and with edge lines at a
+    /// distance from the road's centre line (m).
+    pub(crate) fn expect(&mut self, offset: f64, heading: f64, edge: f64) {
+        let size = self.road_model.size;
+        let middle = 0.5 * self.side() * edge;
+        self.road = Some(Road::new((middle + offset) / size, heading, 0.0, Some(edge / size)));
+        (self.is_expected, self.blind) = (true, 0.0);
+    }
+
     /// Processes an image after the car has driven some distance (m) and turned by an angle (rad) since the
     /// last one. A search assumes that the car is approximately in its lane.
     pub fn see(&mut self, image: GrayView<'_>, (metres, turn): (f64, f64)) -> LaneEstimate {
@@ -203,14 +223,16 @@ impl LaneMarkingFinder {
         let lost = self.blind > BLIND;
         let tracked = self.road.take().filter(|_| !lost).map(|mut road| {
             road.drive(metres, turn);
-            (road, TRACKED)
+            (road, if self.is_expected { SOUGHT } else { TRACKED })
         });
+        let is_kept = tracked.is_some();
+        self.is_expected = false;
         let (mut road, wide) = tracked.unwrap_or_else(|| (self.acquire(), SOUGHT));
         let support = self.fit(&mut road, wide);
         self.blind = if support < ENOUGH { self.blind + metres.abs() } else { 0.0 };
         let lane = self.estimate(&road, support);
         // A road that was not found in the first image is searched again.
-        self.road = (support >= ENOUGH || wide == TRACKED).then_some(road);
+        self.road = (support >= ENOUGH || is_kept).then_some(road);
         lane
     }
 

@@ -27,8 +27,9 @@ const SOLID: f64 = 0.55;
 const DASHED: f64 = 0.22;
 /// Least mean contrast of a line across the other lane.
 const OTHER: f64 = 0.20;
-/// Least amplitude at the period of dashes as a share of the mean. That of dashes is 1.08.
-const PERIODIC: f64 = 0.55;
+/// Least amplitude at the period of dashes as a share of the mean. That of dashes is 0.54 and of worn ones
+/// about 0.5, that of the digits of a number 0.31, and that of a solid line across a lane at most 0.15.
+const PERIODIC: f64 = 0.45;
 /// Least amplitude of a row of a crosswalk. That of fresh paint is 0.32.
 const STRIPED: f64 = 0.13;
 /// Least amplitude of a row of chequers. That of fresh paint is 0.32.
@@ -108,7 +109,8 @@ pub(super) fn lines(view: &RoadView, tones: &Tones, road: &RoadAhead, found: &mu
         }
         let beyond = spectrum(row, other);
         let is_chequered = [row - 1, row + 1].iter().any(|&row| chequers(row) > CHEQUERED);
-        let kind = if here.amplitude > PERIODIC * here.mean {
+        let stripes = || Spectrum::of(own, &tones.stripes, view.across(row, BROAD)).amplitude;
+        let kind = if here.amplitude > PERIODIC * here.mean && here.amplitude > stripes() {
             RoadElementKind::GiveWayLine
         } else if is_chequered || (beyond.visible > 0.5 && beyond.mean > OTHER) {
             RoadElementKind::StartLine

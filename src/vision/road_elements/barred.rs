@@ -10,8 +10,9 @@ const STRIP: (f64, f64) = (0.035, 0.125);
 const WINDOW: usize = 15;
 /// Least brightness of paint, between floor and paint.
 const BRIGHT: f64 = 0.45;
-/// Largest brightness of the floor, between floor and paint.
-const DARK: f64 = 0.25;
+/// Largest brightness of the floor between stripes, between floor and paint: their gaps are 30 mm wide, and a
+/// metre ahead a third as bright as paint.
+const DARK: f64 = 0.38;
 /// Least share of bright cells in a window: stripes cover 56 % of it.
 const STRIPED: f64 = 0.25;
 /// Least share of dark cells in a window, between stripes.
@@ -23,6 +24,9 @@ const LONG: usize = 25;
 /// Longest run of bright cells along the road in the strip: a stripe is 84 mm long there, and blurred. Boxes
 /// and patches of light are longer.
 const STRIPE: usize = 14;
+/// Largest length of ground that a pixel covers along the road (cells) where stripes are told apart: half of
+/// the gap between them, 66 mm along the edge.
+const RESOLVED: f64 = 3.3;
 /// Share of bright cells along the road below which a column is no part of an area.
 const EMPTY: f64 = 0.12;
 /// Number of such columns that end an area.
@@ -63,20 +67,21 @@ impl Count {
     }
 }
 
+/// Whether something is a box in the other lane.
+pub(super) fn is_in_other_lane(road: &RoadAhead, kind: RoadElementKind) -> bool {
+    matches!(kind, RoadElementKind::Obstacle { right, left }
+        if road.middle * (0.5 * (right + left) + road.middle) < 0.0)
+}
+
 /// Finds the barred area in the own lane: where it begins, how long it is, and how far it reaches to the
-/// left.
-pub(super) fn barred(view: &RoadView, road: &RoadAhead, found: &mut Vec<Detection>) {
+/// left. A box in the other lane is as bright as a crosswalk, whose stripes are in both lanes.
+pub(super) fn barred(view: &RoadView, road: &RoadAhead, has_box: bool, found: &mut Vec<Detection>) {
     // The edge of the own lane is on the side of its centre.
     let side = road.middle.signum();
     let strip = |side: f64| (side * (road.edge - STRIP.0), side * (road.edge - STRIP.1));
     let counts =
         |side: f64| -> Vec<Count> { (0..ROWS).map(|row| Count::of(view, row, strip(side))).collect() };
     let (own, other) = (counts(side), counts(-side));
-    // Boxes there are bright as well, and no crosswalk.
-    let has_box = found.iter().any(|it| {
-        matches!(it.kind, RoadElementKind::Obstacle { right, left }
-        if side * (0.5 * (right + left) + road.middle) < 0.0)
-    });
     let is_barred = |row: usize| {
         let from = row.saturating_sub(WINDOW / 2);
         let window = from..(from + WINDOW).min(ROWS);
@@ -85,6 +90,7 @@ pub(super) fn barred(view: &RoadView, road: &RoadAhead, found: &mut Vec<Detectio
             && Count::share(own.dark, own.all) > BETWEEN
             && (has_box || Count::share(other.bright, other.all) < OTHER)
     };
+    let resolved = (0..ROWS).take_while(|&row| view.depth(row) <= RESOLVED).count();
     let mut row = 0;
     while row < ROWS {
         if !is_barred(row) {
@@ -95,7 +101,8 @@ pub(super) fn barred(view: &RoadView, road: &RoadAhead, found: &mut Vec<Detectio
         while row < ROWS && is_barred(row) {
             row += 1;
         }
-        if row - from >= LONG && longest(view, strip(side), from..row) <= STRIPE {
+        let clear = from..row.min(resolved);
+        if clear.len() >= LONG && longest(view, strip(side), clear) <= STRIPE {
             let inner = inner_side(view, road, side, from..row);
             let (right, left) = (inner.min(side * road.edge), inner.max(side * road.edge));
             let kind = RoadElementKind::Barred {

@@ -77,8 +77,14 @@ fn begin(edge: f64, slope: f64) -> f64 {
     edge + STRIP.0.max(edge * cosine + 0.02)
 }
 
-/// Finds the middle of the nearest crossing on one side of the road: 1 to the left, -1 to the right.
-pub(super) fn on_side(view: &RoadView, road: &RoadAhead, side: f64, found: &mut Vec<Detection>) {
+/// Finds the middle of the nearest crossing on one side of the road: 1 to the left, -1 to the right. Returns
+/// the angle from the direction of the road to that of its arm (rad).
+pub(super) fn on_side(
+    view: &RoadView,
+    road: &RoadAhead,
+    side: f64,
+    found: &mut Vec<Detection>,
+) -> Option<f64> {
     let strip = Strip::new(view, road.edge, side);
     let may_leave = strip.may_leave();
     let leaves = |row: usize| if may_leave[row] { leaving(&strip, road.edge, side, row) } else { (0.0, 0.0) };
@@ -97,9 +103,10 @@ pub(super) fn on_side(view: &RoadView, road: &RoadAhead, side: f64, found: &mut 
             let kind = RoadElementKind::Crossing { left: side > 0.0, right: side < 0.0 };
             found.push(Detection::new(kind, middle));
             // Next come the arm's other lines.
-            return;
+            return Some(angle);
         }
     }
+    None
 }
 
 /// Contrast of the clearest line that leaves the road from its edge at a row, and its slope: distance along

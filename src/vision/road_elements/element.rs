@@ -36,6 +36,11 @@ pub enum RoadElementKind {
     /// The number of a speed limit on the own lane (km/h at the scale of the rules: 36 are 1 m/s); its place
     /// is its near edge.
     SpeedLimit(u8),
+    /// A turn arrow on the own lane; its place is its near edge.
+    TurnArrow {
+        /// Whether it points to the left.
+        left: bool,
+    },
     /// The number of a speed limit that ends, struck out; its place is its near edge.
     SpeedLimitEnd,
     /// A parking area beside the road; its place is where it begins.

@@ -1,3 +1,5 @@
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use super::across::Tones;
 use super::distant::OtherLane;
 use super::element::{Detection, RoadElement, RoadElementKind};
@@ -70,6 +72,8 @@ pub struct RoadElementFinder {
     found: Vec<Detection>,
     tracks: Vec<Track>,
     other_lane: OtherLane,
+    /// Angle from the direction of the road to the other road's at a crossing, positive to the left (rad).
+    angle: f64,
     /// Evidence that the centre line is dashed on the own side.
     dashed: f64,
 }
@@ -91,12 +95,18 @@ const BEHIND: f64 = -1.0;
 /// Area beside a crosswalk where pedestrians wait, from its near edge (m): 450 mm by the rules, and the
 /// error.
 const WAITING: std::ops::Range<f64> = -0.10..0.52;
+/// Length of a start line by the rules' drawing, with the error of its place (m).
+const CHEQUERS: f64 = 0.08;
 /// Length of a crosswalk, by the rules (m).
 const ZEBRA: f64 = 0.40;
 /// Share of a detection's place in the running estimate.
 const SHARE: f64 = 0.4;
 /// Share of a detection's speed in the running estimate of an obstacle's.
 const SPEED_SHARE: f64 = 0.2;
+/// Speed of boxes that move, by the rules (m/s). Near the limits of the view, they seem to be faster.
+const FASTEST: f64 = 0.6;
+/// Share of a crossing's angle in one image in the running estimate.
+const ANGLE_SHARE: f64 = 0.15;
 
 impl RoadElementFinder {
     /// Creates a finder. Fails for a camera or a road out of range.
@@ -115,6 +125,7 @@ impl RoadElementFinder {
             found: Vec::new(),
             tracks: Vec::new(),
             other_lane: OtherLane::default(),
+            angle: FRAC_PI_2,
             dashed: 0.0,
         })
     }
@@ -149,6 +160,12 @@ impl RoadElementFinder {
         let edge = self.edge - 0.02;
         let sides = [edge + beyond / self.size, edge];
         obstacle::is_occupied(&self.view, sides, (from / self.size, to / self.size), paint / self.size)
+    }
+
+    /// Angle from the direction of the road to that of the other one at the crossing that was seen last,
+    /// positive to the left (rad); 90 degrees before any.
+    pub fn crossing_angle(&self) -> f64 {
+        self.angle
     }
 
     /// Whether cars may cross the marking between the lanes from the own one, a little ahead.
@@ -204,13 +221,21 @@ impl RoadElementFinder {
         obstacle::boxes(view, &road, waiting, found);
         across::zebras(view, &self.tones, &road, found);
         across::lines(view, &self.tones, &road, found);
+        drop_chequers(found);
         // Boxes hide edge lines, and their outlines look like lines that leave the road.
         if found.iter().all(|detection| !matches!(detection.kind, RoadElementKind::Obstacle { .. })) {
-            crossing::on_side(view, &road, 1.0, found);
-            crossing::on_side(view, &road, -1.0, found);
+            let left = crossing::on_side(view, &road, 1.0, found);
+            let right = crossing::on_side(view, &road, -1.0, found).map(|angle| PI - angle);
+            for angle in left.into_iter().chain(right) {
+                self.angle += ANGLE_SHARE * (angle - self.angle);
+            }
         }
         beside::parking(view, &road, found);
-        barred::barred(view, &road, found);
+        // A box may have come so near that its foot is out of view.
+        let boxes = self.tracks.iter().filter(|track| track.evidence >= PRESENT).map(|track| track.kind);
+        let is_box = |kind: RoadElementKind| barred::is_in_other_lane(&road, kind);
+        let has_box = boxes.chain(found.iter().map(|it| it.kind)).any(is_box);
+        barred::barred(view, &road, has_box, found);
         found.extend(self.numbers.find(view, &road));
         let near = found.iter().filter(|it| matches!(it.kind, RoadElementKind::Obstacle { .. }));
         let hidden = near.map(|it| it.ahead).fold(f64::INFINITY, f64::min);
@@ -254,6 +279,7 @@ impl RoadElementFinder {
                 | RoadElementKind::Barred { .. }
                 // A number is read where it is sharp.
                 | RoadElementKind::SpeedLimit(_)
+                | RoadElementKind::TurnArrow { .. }
                 | RoadElementKind::SpeedLimitEnd => false,
                 _ => view.sees(row, super::view::column(self.middle)),
             };
@@ -266,6 +292,14 @@ impl RoadElementFinder {
         }
         self.tracks.retain(|track| track.evidence > 0.0 && track.ahead > BEHIND);
     }
+}
+
+/// Drops boxes with their feet on the start line: chequers in a patch of light end as sharply as a box does.
+fn drop_chequers(found: &mut Vec<Detection>) {
+    let lines = found.iter().filter(|it| it.kind == RoadElementKind::StartLine);
+    let lines: Vec<f64> = lines.map(|it| it.ahead).collect();
+    let is_box = |it: &Detection| matches!(it.kind, RoadElementKind::Obstacle { .. });
+    found.retain(|it| !is_box(it) || lines.iter().all(|line| (it.ahead - line).abs() > CHEQUERS));
 }
 
 impl Track {
@@ -281,9 +315,9 @@ impl Track {
 
     /// Whether a detection is of another number in the same place.
     fn is_other_number(&self, detection: &Detection) -> bool {
-        use RoadElementKind::{SpeedLimit, SpeedLimitEnd};
-        let are_numbers =
-            [self.kind, detection.kind].map(|kind| matches!(kind, SpeedLimit(_) | SpeedLimitEnd));
+        use RoadElementKind::{SpeedLimit, SpeedLimitEnd, TurnArrow};
+        let are_numbers = [self.kind, detection.kind]
+            .map(|kind| matches!(kind, SpeedLimit(_) | SpeedLimitEnd | TurnArrow { .. }));
         are_numbers == [true; 2] && self.kind != detection.kind && self.off(detection) < 0.2
     }
 
@@ -321,7 +355,8 @@ impl Track {
                 *right += SHARE * (r - *right);
                 *left += SHARE * (l - *left);
                 self.ahead += SHARE * off;
-                self.speed += SPEED_SHARE * off / seconds.max(1e-3);
+                let speed = self.speed + SPEED_SHARE * off / seconds.max(1e-3);
+                self.speed = speed.clamp(-FASTEST, FASTEST);
             }
             (Barred { right, left, length }, Barred { right: r, left: l, length: long }) => {
                 *right += SHARE * (r - *right);

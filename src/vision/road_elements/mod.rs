@@ -1,5 +1,5 @@
 //! What a driver meets on a road (book, chapter 13), found by camera on the ground: stop and give-way lines,
-//! zebra crossings, crossings, parking areas, and white boxes that stand on the road.
+//! zebra crossings, crossings, turn arrows, parking areas, and white boxes that stand on the road.
 //!
 //! [`RoadElementFinder`] straightens the road in each image by the estimate of
 //! [`LaneMarkingFinder`](super::lane_markings::LaneMarkingFinder): a picture of the ground whose rows are
@@ -15,6 +15,7 @@
 //! | crossing | an edge line that ends, and a line that leaves the road there |
 //! | barred area | bright and dark cells beside the edge line of the own lane, and none in the other lane |
 //! | speed limit | digits of seven strokes in the middle of the own lane; a line across them ends it |
+//! | turn arrow | a shaft in the middle of the own lane with a branch to one side |
 //! | parking area | a line parallel to the edge, where the area ends by the rules |
 //! | obstacle | a sharp step to a wide bright area: the foot of a box |
 //!
@@ -43,6 +44,8 @@ mod element;
 mod finder;
 mod number;
 mod obstacle;
+#[cfg(test)]
+mod tests;
 mod view;
 
 pub use element::{RoadElement, RoadElementKind};

@@ -1,4 +1,4 @@
-//! Numbers of speed limits on the own lane, and those that are struck out.
+//! Numbers of speed limits on the own lane, those that are struck out, and turn arrows.
 
 use super::element::{Detection, RoadElementKind};
 use super::view::{CELL, COLUMNS, ROWS, RoadView, column};
@@ -19,6 +19,9 @@ const DIGITS: [u8; 10] = [0x3f, 0x06, 0x5b, 0x4f, 0x66, 0x6d, 0x7d, 0x07, 0x7f, 
 /// The line that strikes a number out, by the rules' drawing: how far it begins before the digits, its
 /// distance from the lane's middle at both ends, and its width (cells).
 const STRIKE: (usize, f64, f64) = (5, 10.0, 2.0);
+/// A turn arrow, by the rules' drawing: length and width of its shaft, and reach of its branch to the side
+/// (cells). The branch leaves the shaft half its width before its end.
+const ARROW: (f64, f64, f64) = (35.0, 3.5, 11.2);
 /// Rows of a pattern, from where the line that strikes it out begins to where that ends.
 const LONG: usize = 50;
 /// Columns of a pattern to each side of its middle.
@@ -44,6 +47,7 @@ const CLEAR: f32 = 0.12;
 #[derive(Debug, Clone)]
 pub(super) struct Numbers {
     patterns: Vec<Pattern>,
+    arrows: [Pattern; 2],
 }
 
 /// The share of each cell that is painted, row by row away from the camera.
@@ -58,10 +62,11 @@ impl Numbers {
     pub(super) fn new() -> Self {
         let plain = (1..10).map(|tens| Pattern::drawn(RoadElementKind::SpeedLimit(10 * tens), tens, false));
         let struck = (1..10).map(|tens| Pattern::drawn(RoadElementKind::SpeedLimitEnd, tens, true));
-        Self { patterns: plain.chain(struck).collect() }
+        let arrows = [true, false].map(Pattern::arrow);
+        Self { patterns: plain.chain(struck).collect(), arrows }
     }
 
-    /// Finds the nearest number on the own lane.
+    /// Finds the nearest number or turn arrow on the own lane.
     pub(super) fn find(&self, view: &RoadView, road: &RoadAhead) -> Option<Detection> {
         let middle = column(road.middle);
         if middle < STRIP || middle + STRIP >= COLUMNS {
@@ -69,7 +74,9 @@ impl Numbers {
         }
         let begin = begin(view, middle)?;
         let patches = STRETCHES.map(|stretch| Patch::cut(view, road, begin, stretch));
-        let (kind, row) = self.read(patches.iter().flatten(), view.depth(begin))?;
+        let blur = view.depth(begin);
+        let read = self.read(patches.iter().flatten(), blur);
+        let (kind, row) = read.or_else(|| self.read_arrow(&patches.iter().flatten(), blur))?;
         // The line that strikes a number out begins before it.
         let struck = if kind == RoadElementKind::SpeedLimitEnd { STRIKE.0 } else { 0 };
         Some(Detection::new(kind, view.ahead(begin + row) - CELL * (SEARCH + struck) as f64))
@@ -93,6 +100,24 @@ impl Numbers {
         let is_clear = like > LIKE && others.all(|other| patch.lead(best, other, place) > CLEAR);
         is_clear.then_some((best.kind, place.row))
     }
+
+    /// The turn arrow in one of some patches that are blurred along the road, and the row where its pattern
+    /// begins.
+    fn read_arrow<'a>(
+        &self,
+        patches: &(impl Iterator<Item = &'a Patch> + Clone),
+        blur: f64,
+    ) -> Option<(RoadElementKind, usize)> {
+        let [left, right] = [0, 1].map(|index| self.arrows[index].seen(blur));
+        let best = |pattern: &Seen| {
+            let likes = patches.clone().map(|patch| (patch.like(pattern, Place::all()), patch));
+            likes.max_by(|a, b| a.0.0.total_cmp(&b.0.0))
+        };
+        let (((a, at_left), on_left), ((b, at_right), on_right)) = (best(&left)?, best(&right)?);
+        let (like, place, patch, one, other) =
+            if a > b { (a, at_left, on_left, &left, &right) } else { (b, at_right, on_right, &right, &left) };
+        (like > LIKE && patch.lead(one, other, place) > CLEAR).then_some((one.kind, place.row))
+    }
 }
 
 /// First row of what stands on the lane, if the lane is free before it.
@@ -115,6 +140,16 @@ impl Pattern {
         }
         let cells = (0..LONG * ACROSS).map(|at| painted(&strokes, at / ACROSS, at % ACROSS)).collect();
         Self { kind, cells }
+    }
+
+    fn arrow(left: bool) -> Self {
+        let (long, wide, reach) = ARROW;
+        let (bend, side) = (long - 0.5 * wide, if left { reach } else { -reach });
+        let shaft = Stroke { from: (0.0, 0.0), to: (long, 0.0), wide };
+        let branch = Stroke { from: (bend, 0.0), to: (bend, side), wide };
+        let strokes = [shaft, branch];
+        let cells = (0..LONG * ACROSS).map(|at| painted(&strokes, at / ACROSS, at % ACROSS)).collect();
+        Self { kind: RoadElementKind::TurnArrow { left }, cells }
     }
 
     /// The pattern as seen by pixels that cover some cells along the road.

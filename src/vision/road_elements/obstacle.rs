@@ -23,6 +23,8 @@ const EVEN: f64 = 0.6;
 const TALL: usize = 14;
 /// Least width (m). By the rules it is 100 mm; paint is at most 60 mm wide.
 const WIDE: f64 = 0.075;
+/// The same on the road (m), where numbers stand: from afar, they are blurred.
+const WIDE_ON_ROAD: f64 = 0.085;
 /// Rows that a box covers at least (cells); lines across the road cover four.
 const DEEP: usize = 9;
 /// Largest distance along the road between the feet of a box's front (cells): it may stand askew.
@@ -53,7 +55,8 @@ pub(super) fn boxes(
         {
             let near = front.clone().filter_map(|column| feet[column]).min().unwrap_or(0);
             let is_on_road = left(front.start) < road.edge && left(front.end - 1) > -road.edge;
-            if !is_on_road && !waiting(view.ahead(near)) {
+            let is_wide = front.len() as f64 * CELL >= WIDE_ON_ROAD;
+            if !(is_on_road && is_wide || waiting(view.ahead(near))) {
                 continue;
             }
             let own = |column: usize| left(column) - road.middle;
@@ -83,11 +86,14 @@ pub(super) fn is_occupied(
         (row..(row + long).min(ROWS)).all(|other| is_bright(other, view.on_ray(row, column, other)))
     };
     let mut deep = vec![0; COLUMNS];
-    (view.row(from)..=view.row(to)).any(|row| {
+    let (first, last) = (view.row(from), view.row(to));
+    (first..ROWS).any(|row| {
         let mut run = 0;
+        let least = deep_at(view, row);
         for column in road.clone() {
             deep[column] = if is_bright(row, column) { deep[column] + 1 } else { 0 };
-            run = if deep[column] >= DEEP { run + 1 } else { 0 };
+            let is_deep = deep[column] >= least && row + 1 - deep[column] <= last;
+            run = if is_deep { run + 1 } else { 0 };
             if run >= wide
                 && dims(view, row, column + 1 - run, -1, SHARP)
                 && dims_beyond(view, row, column)
@@ -98,6 +104,11 @@ pub(super) fn is_occupied(
         }
         false
     })
+}
+
+/// Rows that only a box covers as far as a row (cells): a pixel blurs a line before and behind it.
+fn deep_at(view: &RoadView, row: usize) -> usize {
+    DEEP + (2.0 * view.depth(row)) as usize
 }
 
 /// Whether the surface to the left of a column ends sharply.

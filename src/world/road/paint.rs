@@ -86,6 +86,8 @@ impl Painter<'_> {
         let course = self.course;
         let mut starts = course.centre.clone();
         starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // Dashes go on where their kind does: two of them that meet would be one of up to twice the length.
+        starts.dedup_by(|next, before| next.1 == before.1);
         let missing = self.missing(Line::Centre);
         let present = self.present(missing);
         let beside = 0.5 * (self.size(DOUBLE_GAP) + course.line_width);

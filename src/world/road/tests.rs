@@ -2,6 +2,7 @@ use proptest::prelude::*;
 
 use super::paint::{is_convex, quads};
 use super::*;
+use crate::geometry::cross;
 use crate::world::formats::course as file;
 
 /// Writes the pictures of some courses for inspection.
@@ -117,6 +118,31 @@ fn a_picture_shows_lines_where_they_are() {
     }
     let error = course.floor_image(&Appearance { pixel: 1e-5, ..Appearance::default() }).unwrap_err();
     assert!(matches!(error, CourseError::TooLarge { .. }), "{error}");
+}
+
+/// Lengths of the pieces of paint along the middle of a road (m), to 10 mm.
+fn pieces(course: &RoadCourse) -> Vec<f64> {
+    let quads = quads(course);
+    let is_painted = |along: f64| {
+        let place = course.line.at(along).pose.position();
+        quads.iter().any(|quad| {
+            let sides = (0..4).map(|i| cross(quad[(i + 1) % 4] - quad[i], place - quad[i]));
+            let (left, right) =
+                (sides.clone().all(|side| side >= 0.0), sides.clone().all(|side| side <= 0.0));
+            left || right
+        })
+    };
+    let cells: Vec<bool> = (0..400).map(|i| is_painted(1.005 + 0.01 * f64::from(i))).collect();
+    let runs = cells.chunk_by(|one, next| one == next).filter(|run| run[0]);
+    runs.map(|run| 0.01 * run.len() as f64).collect()
+}
+
+#[test]
+fn dashes_go_on_where_their_kind_is_named_again() {
+    let half = "straight 3000\narc 1500 180\n";
+    let text = format!("course 1\nstraight 1950\ncentre dashed\nstraight 1050\narc 1500 180\n{half}");
+    let pieces = pieces(&file::parse(&text, "oval").unwrap());
+    assert!(pieces.len() > 5 && pieces.iter().all(|long| *long < 0.22), "{pieces:?}");
 }
 
 proptest! {

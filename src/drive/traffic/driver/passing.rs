@@ -11,6 +11,10 @@ const NOTICE: f64 = 0.95;
 const FREE_LANE: f64 = 1.0;
 /// Longest time for which an obstacle beside the car is not seen (s).
 const MEMORY: f64 = 3.0;
+/// Distance ahead of the origin below which the view cuts what is in the lane beside the car (m).
+const CUT: f64 = 0.5;
+/// Speed of boxes that move, by the rules (m/s).
+const DRIVES: f64 = 0.6;
 /// Distance before an obstacle at which a car waits for oncoming traffic (m): from there it can change lanes.
 const WAITS: f64 = 0.85;
 /// Distance before an obstacle up to which a car that changes lanes returns to give way (m): the other half
@@ -41,10 +45,19 @@ impl TrafficDriver {
             return;
         }
         let Some((last, seen, driven)) = self.passed else { return };
-        let speed = if last.speed > MOVES { last.speed } else { 0.0 };
+        let moves = last.speed > MOVES;
+        let speed = if moves { DRIVES } else { 0.0 };
         let ahead = last.ahead + speed * (time - seen) - (self.driven - driven);
-        if let Some(it) = obstacles.iter().find(|it| (it.ahead - ahead).abs() < SAME) {
-            self.passed = Some((*it, time, self.driven));
+        let index = obstacles.iter().position(|it| (it.ahead - ahead).abs() < SAME);
+        // Of what drives beside the car, a part is seen, and the car's own motion makes it seem to stand.
+        let index = if moves && ahead < CUT {
+            obstacles.retain(|it| (it.ahead - ahead).abs() >= SAME);
+            None
+        } else {
+            index
+        };
+        if let Some(index) = index {
+            self.passed = Some((obstacles[index], time, self.driven));
         } else if time - seen < MEMORY {
             obstacles.push(Obstacle { ahead, ..last });
         }

@@ -10,10 +10,15 @@ use crate::world::RobotSpec;
 use crate::world::formats::course;
 use crate::world::road::Appearance;
 
-/// Drives on an oval with boxes for some seconds. Returns the states in their order, and the referee.
-fn drive(boxes: &[(f64, f64, BoxMotion)], seconds: f64) -> (Vec<TrafficState>, ObstacleEvasion) {
-    let text = "course 1\nlane 400\nstraight 10000\narc 1500 180\nstraight 10000\narc 1500 180\n";
-    let course = course::parse(text, "oval").unwrap();
+const OVAL: &str = "straight 10000\narc 1500 180\nstraight 10000\narc 1500 180\n";
+
+/// Drives on a course with boxes for some seconds. Returns the states in their order, and the referee.
+fn drive(
+    sections: &str,
+    boxes: &[(f64, f64, BoxMotion)],
+    seconds: f64,
+) -> (Vec<TrafficState>, ObstacleEvasion) {
+    let course = course::parse(&format!("course 1\nlane 400\n{sections}"), "sections").unwrap();
     let boxes = boxes.iter().map(|&(along, left, motion)| RoadBox { along, left, size: [0.2; 3], motion });
     let scene = TrafficScene { course, boxes: boxes.collect() };
     let spec = RobotSpec::road_car();
@@ -50,7 +55,7 @@ fn row(referee: &ObstacleEvasion, element: EvasionElement) -> EvasionRow {
 fn a_car_waits_for_what_comes_before_it_passes() {
     use TrafficState::{Behind, Follow, Pass, Return};
     let boxes = [(5.0, 0.0, BoxMotion::Static), (6.4, 0.42, BoxMotion::Oncoming(4.0))];
-    let (states, referee) = drive(&boxes, 15.0);
+    let (states, referee) = drive(OVAL, &boxes, 15.0);
     assert_eq!(states, [Follow, Behind, Pass, Return, Follow]);
     assert_eq!(row(&referee, EvasionElement::OncomingObstacle).right, 1, "{:?}", referee.score());
     assert_eq!(row(&referee, EvasionElement::StaticObstacle).right, 1, "{:?}", referee.score());
@@ -61,8 +66,41 @@ fn a_car_waits_for_what_comes_before_it_passes() {
 fn a_car_passes_although_a_box_stands_in_the_other_lane() {
     use TrafficState::{Follow, Pass, Return};
     let boxes = [(4.0, 0.0, BoxMotion::Static), (6.1, 0.42, BoxMotion::Static)];
-    let (states, referee) = drive(&boxes, 9.0);
+    let (states, referee) = drive(OVAL, &boxes, 9.0);
     assert_eq!(states, [Follow, Pass, Return, Follow]);
     assert_eq!(row(&referee, EvasionElement::StaticObstacle).right, 2, "{:?}", referee.score());
     assert_eq!(referee.score().collisions, 0);
+}
+
+#[test]
+fn a_car_returns_in_time_before_what_it_has_passed_while_that_drove() {
+    use TrafficState::{Follow, Pass, Return};
+    let (states, referee) = drive(OVAL, &[(3.0, 0.0, BoxMotion::Along(5.0))], 11.0);
+    assert_eq!(states, [Follow, Pass, Return, Follow]);
+    assert_eq!(row(&referee, EvasionElement::DynamicObstacle).right, 1, "{:?}", referee.score());
+}
+
+#[test]
+fn a_car_stays_out_of_an_area_behind_which_a_box_has_come() {
+    let area =
+        "straight 5000\nbarred right 1200 200\nstraight 5000\narc 1500 180\nstraight 10000\narc 1500 180\n";
+    let (_, referee) = drive(area, &[(6.3, 0.42, BoxMotion::Oncoming(4.0))], 15.0);
+    assert_eq!(row(&referee, EvasionElement::OncomingObstacle).right, 1, "{:?}", referee.score());
+    assert_eq!(row(&referee, EvasionElement::BarredArea).right, 1, "{:?}", referee.score());
+}
+
+#[test]
+fn a_car_turns_off_where_an_arrow_tells_it_to() {
+    use TrafficState::{Follow, Stop, Turn, Wait};
+    for (way, bend) in [("right", 270), ("left", -270)] {
+        let sections = format!(
+            "straight 1900\narrow {way}\nstraight 1100\ncrossing 90 none stop\nstraight 3000\n\
+             arc 3000 {bend}\nstraight 3000\ncrossing 90 none\nstraight 3000\narc 3000 {}\n",
+            -bend
+        );
+        let (states, referee) = drive(&sections, &[], 14.0);
+        assert_eq!(states, [Follow, Stop, Wait, Turn, Follow], "{way}");
+        assert_eq!(row(&referee, EvasionElement::Turn).right, 1, "{way}: {:?}", referee.score());
+        assert_eq!(referee.score().departures, 0, "{way}");
+    }
 }
