@@ -60,7 +60,7 @@ pub(crate) struct Args {
     pub(crate) network: bool,
 
     /// How often the network sees as many signs as there are.
-    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=1000), allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u64).range(1..=1000), allow_hyphen_values = true)]
     pub(crate) epochs: u64,
 
     /// Number of threads that train it [default: one per core].

@@ -56,6 +56,8 @@ const LEAST_MOTION_ERROR: f64 = 1e-5;
 pub(super) const KNOWN: f64 = 0.03;
 /// Lengths by which a pose is moved that is not known (m).
 const SLIDES: [f64; 4] = [0.08, 0.04, 0.02, 0.01];
+/// Number of times that it is moved by a length, at most.
+const MOST_SLIDES: usize = 10;
 /// Difference below which two hypotheses are the same (m, rad).
 const SAME: (f64, f64) = (0.06, 0.06);
 
@@ -145,14 +147,15 @@ impl Hypothesis {
         }
         let mut found = evidence(map, scan, bench, &self.pose, parameters, gate);
         if self.deviation() > KNOWN {
-            let axis = self.covariance.symmetric_eigen();
-            let axis = axis.eigenvectors.column(axis.eigenvalues.imax()).into_owned();
+            let axes = self.covariance.symmetric_eigen();
+            let axis = axes.eigenvectors.column(axes.eigenvalues.imax()).into_owned();
             for step in SLIDES.into_iter().flat_map(|step| [step, -step]) {
-                let Pose { x, y, heading } = self.pose;
-                let aside = axis * step;
-                let pose = Pose::new(x + aside.x, y + aside.y, normalize_angle(heading + aside.z));
-                let other = evidence(map, scan, bench, &pose, parameters, gate);
-                if other.log_likelihood > found.log_likelihood {
+                for _ in 0..MOST_SLIDES {
+                    let pose = slid(&self.pose, &(axis * step));
+                    let other = evidence(map, scan, bench, &pose, parameters, gate);
+                    if other.log_likelihood <= found.log_likelihood {
+                        break;
+                    }
                     (self.pose, found) = (pose, other);
                 }
             }
@@ -160,6 +163,11 @@ impl Hypothesis {
         self.explained = found.explained;
         found.log_likelihood
     }
+}
+
+/// A pose, moved by a change of x, y and heading.
+fn slid(pose: &Pose, change: &Vector3<f64>) -> Pose {
+    Pose::new(pose.x + change.x, pose.y + change.y, normalize_angle(pose.heading + change.z))
 }
 
 /// Errors of a motion by odometry, of x, y and heading.
