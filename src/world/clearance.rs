@@ -160,12 +160,11 @@ impl Clearance {
     ///
     /// The run time is proportional to the number of cells plus the cells within the limit of each solid.
     pub fn new(world: &World, resolution: f64, limit: f64) -> Result<Self, ParameterError> {
-        let (site, margin) = (world.site(), limit + 2.0 * resolution);
-        // How far walls with an end in the site reach out of it.
-        let ends_in = |wall: &&Wall| site.contains(wall.line.a) || site.contains(wall.line.b);
-        let thickest =
-            world.walls.iter().filter(ends_in).map(|wall| 0.5 * wall.thickness).fold(0.0, f64::max);
-        Self::over(world, site.inflated(margin + thickest), resolution, limit)
+        let site = world.site();
+        // How far walls in the site reach out of it.
+        let is_in = |wall: &&Wall| site.inflated(0.5 * wall.thickness).span(&wall.line).is_some();
+        let thickest = world.walls.iter().filter(is_in).map(|wall| 0.5 * wall.thickness).fold(0.0, f64::max);
+        Self::over(world, site.inflated(limit + thickest + 2.0 * resolution), resolution, limit)
     }
 
     /// The same on a raster over a part of the world; solids beyond it count as well.

@@ -1,6 +1,7 @@
 mod passing;
 #[cfg(test)]
 mod tests;
+mod turn;
 mod turning;
 
 use std::ops::ControlFlow;
@@ -90,7 +91,7 @@ pub struct TrafficDriver {
     occupied: f64,
     /// The obstacle that it passes, and time (s) and distance driven (m) when that was last seen.
     passed: Option<(Obstacle, f64, f64)>,
-    turn: Option<turning::Turn>,
+    turn: Option<turn::Turn>,
     /// Maximum speed that others allow, and that of the speed zone (m/s).
     limit: f64,
     zone: f64,

@@ -375,21 +375,6 @@ impl RoadCourse {
         })
     }
 
-    /// Crossings of the road with itself: both places along the line, the earlier one first (m).
-    ///
-    /// ```
-    /// use roverlab::world::formats::course;
-    /// let pass = "straight 3000\ncrossing 90 none\nstraight 3000\narc 3000";
-    /// let eight = course::parse(&format!("course 1\n{pass} 270\n{pass} -270\n"), "eight")?;
-    /// let [(first, second)] = eight.own_crossings()[..] else { panic!("it crosses itself once") };
-    /// assert!(first == 3.0 && (second - first - 20.14).abs() < 0.01);
-    /// # Ok::<(), roverlab::world::formats::FormatError>(())
-    /// ```
-    pub fn own_crossings(&self) -> Vec<(f64, f64)> {
-        let pairs = super::crossings::shared_crossings(self);
-        pairs.into_iter().map(|(a, b)| (a.min(b), a.max(b))).collect()
-    }
-
     /// Distance along the road from the middle of a crossing to where the edge lines resume (m).
     pub fn crossing_reach(&self, crossing: &Crossing) -> f64 {
         (self.edge() + 0.5 * self.line_width) / math::sin(crossing.angle).abs().max(0.5)

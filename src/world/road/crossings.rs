@@ -12,6 +12,23 @@ const AROUND: f64 = 2.0;
 /// Largest distance between the middles of a crossing on its two ways (m).
 const TOGETHER: f64 = 0.15;
 
+impl RoadCourse {
+    /// Crossings of the road with itself: both places along the line, the earlier one first (m).
+    ///
+    /// ```
+    /// use roverlab::world::formats::course;
+    /// let pass = "straight 3000\ncrossing 90 none\nstraight 3000\narc 3000";
+    /// let eight = course::parse(&format!("course 1\n{pass} 270\n{pass} -270\n"), "eight")?;
+    /// let [(first, second)] = eight.own_crossings()[..] else { panic!("it crosses itself once") };
+    /// assert!(first == 3.0 && (second - first - 20.14).abs() < 0.01);
+    /// # Ok::<(), roverlab::world::formats::FormatError>(())
+    /// ```
+    pub fn own_crossings(&self) -> Vec<(f64, f64)> {
+        let pairs = shared_crossings(self);
+        pairs.into_iter().map(|(a, b)| (a.min(b), a.max(b))).collect()
+    }
+}
+
 /// Fails where a road crosses or nearly crosses itself without a crossing.
 pub(super) fn check(course: &RoadCourse) -> Result<(), CourseError> {
     let line = &course.line;

@@ -1,23 +1,11 @@
 //! Turns at crossings: the lane has no lines there, and odometry leads from one lane to the other.
 
+use super::turn::Turn;
 use super::{LINE, TrafficDriver};
 use crate::drive::lane_keeping::LaneObservation;
-use crate::geometry::{Point, Pose, Twist, angle_difference, math};
+use crate::geometry::{Point, Pose, Twist};
 use crate::vision::lane_markings::LaneEstimate;
 use crate::vision::road_elements::{RoadElement, RoadElementKind};
-
-/// A turn that has begun.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Turn {
-    /// The middle of the lane that it leads to, in the frame of odometry.
-    lane: Pose,
-    /// 1 to the left, -1 to the right.
-    side: f64,
-    /// Distance from the other road's centre line to its edge lines (m): that of this road.
-    edge: f64,
-    /// Number of images in which the new lane was where odometry expects it.
-    agreed: u32,
-}
 
 /// Distance of a crossing's middle from the origin at which the car begins (m): it stands a little nearer
 /// before a line.
@@ -27,12 +15,6 @@ const BEGINS: f64 = 1.05;
 const ARROW: std::ops::Range<f64> = -1.6..-0.6;
 /// Speed (m/s).
 const SPEED: f64 = 0.45;
-/// Curvatures of turns to the near side of the crossing and to the far side (1/m).
-const CURVATURES: [f64; 2] = [1.9, 1.5];
-/// Largest curvature (1/m): a car at a scale of 1:10 turns with 2.0.
-const SHARPEST: f64 = 1.95;
-/// Angle to the new lane below which the car settles on it (rad), and the distance in which it does (m).
-const SETTLES: (f64, f64) = (0.35, 0.30);
 /// Angle below which the new lane is looked for (rad).
 const SEES: f64 = 0.7;
 /// Number of points of its lines that suffice.
@@ -43,26 +25,6 @@ const AGREES: (f64, f64) = (0.15, 0.20);
 const IMAGES: u32 = 4;
 /// Distance along the new lane behind the crossing at which the turn is over in any case (m).
 const OVER: f64 = 1.2;
-
-impl Turn {
-    /// The car on the new lane at a pose of odometry.
-    fn on_lane(&self, odometry: &Pose) -> Pose {
-        let place = self.lane.to_local(odometry.position());
-        Pose::new(place.x, place.y, angle_difference(odometry.heading, self.lane.heading))
-    }
-
-    /// Curvature that leads to the lane: straight on, then an arc that ends on it.
-    fn curvature(&self, car: &Pose, far: bool) -> f64 {
-        let angle = -self.side * car.heading;
-        if angle < SETTLES.0 {
-            let (back, sine) = (car.y / (SETTLES.1 * SETTLES.1), 2.0 * math::sin(car.heading) / SETTLES.1);
-            return (-back - sine).clamp(-SHARPEST, SHARPEST);
-        }
-        let left = (self.side * car.y).max(1e-3);
-        let bend = ((1.0 - math::cos(angle)) / left).min(SHARPEST);
-        if bend < CURVATURES[usize::from(far)] && angle > 1.0 { 0.0 } else { self.side * bend }
-    }
-}
 
 impl TrafficDriver {
     /// Begins a turn where an arrow tells to, before a crossing at which the car need not stop any more.
@@ -119,7 +81,7 @@ impl TrafficDriver {
             && (lane.offset - car.y).abs() < AGREES.0
             && (lane.heading - car.heading).abs() < AGREES.1;
         turn.agreed = if agrees { turn.agreed + 1 } else { 0 };
-        let is_settled = turn.agreed >= IMAGES && car.heading.abs() < SETTLES.0;
+        let is_settled = turn.agreed >= IMAGES && Turn::is_nearly_over(&car);
         if is_settled || car.x > turn.edge + OVER {
             self.turn = None;
             return None;
