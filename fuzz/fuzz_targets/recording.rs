@@ -1,5 +1,5 @@
-//! A recording: read, recovered, and what is recovered with its header is read. After `~`, an input is a list of
-//! edits of a whole recording.
+//! A recording: read, recovered, and what is recovered with its header is read. After `~`, an input is a list
+//! of edits of a whole recording.
 #![no_main]
 
 use std::sync::LazyLock;

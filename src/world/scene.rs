@@ -20,8 +20,8 @@ pub struct World {
     pub markers: Vec<Marker>,
     /// Signs and figures, visible to cameras only.
     pub billboards: Vec<Billboard>,
-    /// Pose at which a run starts, from the world's file or the first robot of a script. Of several places far from each other, it decides
-    /// which one maps cover, see [`site`](World::site).
+    /// Pose at which a run starts, from the world's file or the first robot of a script. Of several places
+    /// far from each other, it decides which one maps cover, see [`site`](World::site).
     pub start: Option<Pose>,
     /// Named places: the letters of a maze.
     pub places: Vec<Place>,

@@ -17,8 +17,8 @@ impl World {
     ///
     /// Maps of a world cover this box. A gap must be more than 30 m wide, ten times as wide as the group of
     /// things, and spanned by at most one wall, because two form a corridor. A floor that extends as far as
-    /// the outliers was made for them and is cut as well. Of two places with such a gap between them, the site
-    /// is the one with the world's [`start`](World::start), otherwise the one with more things.
+    /// the outliers was made for them and is cut as well. Of two places with such a gap between them, the
+    /// site is the one with the world's [`start`](World::start), otherwise the one with more things.
     ///
     /// ```
     /// use roverlab::geometry::Point;
@@ -66,7 +66,8 @@ impl World {
         let ends: Vec<[Point; 2]> = walls.chain(objects).filter(is_finite).collect();
         let mut points: Vec<Point> = ends.iter().flatten().copied().collect();
         let all = Aabb::around(points.iter().copied())?;
-        // A floor is a thing as well, unless it was made for all the others: a single wall far from it is an outlier.
+        // A floor is a thing as well, unless it was made for all the others: a single wall far from it is an
+        // outlier.
         let floor = [self.floor.min, self.floor.max];
         let has_floor = is_finite(&floor) && self.floor.size().min() > 0.0 && self.floor != all;
         points.extend(floor.into_iter().filter(|_| has_floor));

@@ -22,8 +22,8 @@ The car sees the road by a camera of 320 x 240 pixels, 30 times a second, and kn
 
 The referee is that of Obstacle Evasion (CAuDri-Challenge 2025) for obstacles that stand, move or come in
 the other lane, no-passing zones, barred areas, stop and give-way lines, traffic from the right, crosswalks,
-speed zones, and turns by arrows at crossings of the road with itself. Five minutes, or --time-limit. There are no
-signs, and `parking` is a command of its own.
+speed zones, and turns by arrows at crossings of the road with itself. Five minutes, or --time-limit. There
+are no signs, and `parking` is a command of its own.
 
 With --campaign, many courses, each with worn paint, patches of light, and a light of 50 to 150 %.
 

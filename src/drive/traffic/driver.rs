@@ -91,6 +91,7 @@ pub struct TrafficDriver {
     occupied: f64,
     /// The obstacle that it passes, and time (s) and distance driven (m) when that was last seen.
     passed: Option<(Obstacle, f64, f64)>,
+    /// The turn that has begun.
     turn: Option<turn::Turn>,
     /// Maximum speed that others allow, and that of the speed zone (m/s).
     limit: f64,

@@ -107,8 +107,8 @@ impl Drop for LogFile {
         if !self.whole {
             return;
         }
-        // What is still buffered is not written. In a folder of others, where nothing can be removed, the file
-        // is empty at least. Nobody is left to hear of errors.
+        // What is still buffered is not written. In a folder of others, where nothing can be removed, the
+        // file is empty at least. Nobody is left to hear of errors.
         if let Ok(named) = self.named.try_clone() {
             let unfinished = std::mem::replace(&mut self.file, BufWriter::new(named));
             let _ = unfinished.into_parts().0.set_len(0);

@@ -70,8 +70,8 @@ fn resolution_of(bounds: &Aabb, finest: f64) -> f64 {
     finest.max((size.x * size.y / MAX_CELLS).sqrt())
 }
 
-/// Where a robot may be on the way from a start to a goal: the world's site, or all of the world and what lies
-/// between if one of them is elsewhere.
+/// Where a robot may be on the way from a start to a goal: the world's site, or all of the world and what
+/// lies between if one of them is elsewhere.
 fn whole_around(world: &World, ends: [Point; 2]) -> Aabb {
     let site = world.site();
     let is_in_site = ends.iter().all(|end| site.contains(*end));
@@ -123,8 +123,8 @@ fn is_within(places: &Aabb, window: &Aabb, whole: &Aabb) -> bool {
     })
 }
 
-/// Bounding box of the centres of all cells that a robot may reach from one of some places, `None` if they are
-/// in none, and whether another place is among them.
+/// Bounding box of the centres of all cells that a robot may reach from one of some places, `None` if they
+/// are in none, and whether another place is among them.
 fn reached(
     clearance: &Clearance,
     from: &[Point],
@@ -171,8 +171,8 @@ pub(super) fn refused(error: &ParameterError) -> Error {
 }
 
 impl Chart {
-    /// The chart of what a robot can reach from a start on its way to a goal, in cells of `finest` metres or as
-    /// small as the maximum number of cells allows.
+    /// The chart of what a robot can reach from a start on its way to a goal, in cells of `finest` metres or
+    /// as small as the maximum number of cells allows.
     pub(super) fn new(
         world: &World,
         ends: [Point; 2],

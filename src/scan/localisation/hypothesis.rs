@@ -108,9 +108,10 @@ impl Hypothesis {
     /// Matches the pose to a scan in a number of Gauss-Newton steps, near the pose by odometry. Returns the
     /// logarithm of the scan's likelihood.
     ///
-    /// Edges of surfaces have no normal, so that these steps leave the pose where it is along a single wall. It
-    /// is then moved along the axis that is known least to where the scan is more likely: otherwise, of poses
-    /// that the world does not distinguish, those would seem more probable that a search has hit better.
+    /// Edges of surfaces have no normal, so that these steps leave the pose where it is along a single wall.
+    /// It is then moved along the axis that is known least to where the scan is more likely: otherwise, of
+    /// poses that the world does not distinguish, those would seem more probable that a search has hit
+    /// better.
     pub(super) fn match_scan(
         &mut self,
         map: &LocalisationMap,

@@ -70,8 +70,8 @@ impl LocalisationMap {
         across.chain(along(max.y - min.y).flat_map(move |y| [min.x, max.x].map(|x| Point::new(x, min.y + y))))
     }
 
-    /// Whether a disc touches nothing, to within 40 mm. Radii above 0.3 m count as 0.3 m. Beyond the map, there
-    /// is nothing.
+    /// Whether a disc touches nothing, to within 40 mm. Radii above 0.3 m count as 0.3 m. Beyond the map,
+    /// there is nothing.
     pub fn is_free(&self, place: Point, radius: f64) -> bool {
         let far = self.clearance.at_point(place);
         let least = radius.min(CLEARANCE - 1e-6)

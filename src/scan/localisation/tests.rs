@@ -251,7 +251,8 @@ proptest! {
         let truth = Pose::new(place.0, place.1, place.2);
         prop_assume!(map.is_free(truth.position(), 0.1));
         let scan = scan_at(&map, &truth, seed);
-        if let Some(found) = search::search(&map, &map.within_reach(0.0), &scan, &LocaliserParameters::default(), 0.85) {
+        let (bounds, parameters) = (map.within_reach(0.0), LocaliserParameters::default());
+        if let Some(found) = search::search(&map, &bounds, &scan, &parameters, 0.85) {
             let is_near = |pose: &Pose| {
                 pose.distance_to(truth.position()) < 0.2 && angle_difference(pose.heading, truth.heading).abs() < 0.05
             };

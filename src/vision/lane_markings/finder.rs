@@ -199,9 +199,9 @@ impl LaneMarkingFinder {
         self.blind = 0.0;
     }
 
-    /// Expects a straight road in the next image where odometry says that it is: with the car at a distance to
-    /// the left of the own lane's centre (m) and in a direction relative to it (rad), and with edge lines at a
-    /// distance from the road's centre line (m).
+    /// Expects a straight road in the next image where odometry says that it is: with the car at a distance
+    /// to the left of the own lane's centre (m) and in a direction relative to it (rad), and with edge lines
+    /// at a distance from the road's centre line (m).
     pub(crate) fn expect(&mut self, offset: f64, heading: f64, edge: f64) {
         let size = self.road_model.size;
         let middle = 0.5 * self.side() * edge;
