@@ -22,8 +22,8 @@ JSON fields:
   light
   picture
   rows                        with --campaign only: the table, by turbidity
-Outcomes: found, not_found (a success where nothing is red), false_find (more than 300 mm from anything red), timed_out,
-failed; with --campaign: passed, wrong."
+Outcomes: found, not_found (a success where nothing is red), blind (it was too dark for colours), false_find (more than 300 mm
+from anything red), timed_out, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
     /// Brightness of the light; 1 is a well lit pool [default: 1].

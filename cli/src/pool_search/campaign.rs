@@ -75,7 +75,7 @@ fn trial(args: &Args, seed: u64) -> Result<Trial, Failure> {
     let scene = scene(seed);
     let mut stream = Stream::new(seed).child("light", 0);
     let light = stream.between(LIGHT[0], LIGHT[1]);
-    let time = args.common.time_limit.unwrap_or_else(|| limit(&Site::of(&scene.world, DEPTH), 1.0));
+    let time = args.common.time_limit.unwrap_or_else(|| limit(&Site::of(&scene, DEPTH), 1.0));
     let conditions =
         Conditions { seed, light, common: None, reserve: RESERVE, ..Conditions::new(&args.common, time)? };
     let done: Hunt = hunt(&scene, &conditions, |_| {})?;

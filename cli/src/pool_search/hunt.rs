@@ -36,7 +36,7 @@ impl Hunt {
 /// Searches a scene's pool.
 pub(super) fn hunt(scene: &Scene, conditions: &Conditions, watch: impl FnMut(f64)) -> Result<Hunt, Failure> {
     let robot = &scene.robots[0];
-    let site = Site::of(&scene.world, DEPTH);
+    let site = Site::of(scene, DEPTH);
     let survey = SurveyParameters {
         depth: DEPTH,
         brim: NEAREST,

@@ -19,7 +19,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
     let scene = afloat((common, &args.waters), &surveyor(), || scene(common.seed))?;
-    let limit = limit(&Site::of(&scene.world, DEPTH), 1.0);
+    let limit = limit(&Site::of(&scene, DEPTH), 1.0);
     let light = args.light.unwrap_or(1.0);
     let conditions = Conditions { light, ..Conditions::new(common, limit)? };
     let done = hunt(&scene, &conditions, paced(common))?;
@@ -30,6 +30,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
             PoolSearchOutcome::Found => Outcome::verdict("found"),
             PoolSearchOutcome::NotFound if done.is_there => Outcome::failure("not_found"),
             PoolSearchOutcome::NotFound => Outcome::verdict("not_found"),
+            PoolSearchOutcome::Blind => Outcome::failure("blind"),
             _ => Outcome::failure("timed_out"),
         })
         .field("found", done.place.is_some())

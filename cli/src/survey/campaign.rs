@@ -92,7 +92,7 @@ pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
 
 fn trial(args: &Args, seed: u64) -> Result<Trial, Failure> {
     let scene = scene(seed, args.altitude);
-    let site = Site::of(&scene.world, args.depth);
+    let site = Site::of(&scene, args.depth);
     let limit = args.common.time_limit.unwrap_or_else(|| limit(&site, args.spacing));
     let conditions =
         Conditions { seed, common: None, reserve: RESERVE, ..Conditions::new(&args.common, limit)? };

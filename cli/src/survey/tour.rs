@@ -56,7 +56,7 @@ pub(super) fn tour(
     watch: impl FnMut(f64),
 ) -> Result<Tour, Failure> {
     let robot = &scene.robots[0];
-    let site = Site::of(&scene.world, parameters.depth);
+    let site = Site::of(scene, parameters.depth);
     let mut survey =
         Survey::new(&robot.spec, robot.pose, site.area, site.by_walls, parameters).map_err(Failure::input)?;
     let (cells, cell) = whole_cells(&site.area.inflated(-OFF), parameters.spacing.max(NARROWEST));

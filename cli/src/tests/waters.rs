@@ -172,9 +172,18 @@ fn something_red_is_found_in_turbid_water_and_only_there() {
     let ended = run("pool_search", &["--world", &world]);
     assert_outcome(&ended, "not_found");
     assert!(ended.1["found"] == false && ended.1["position_error_mm"].is_null(), "{}", ended.1);
-    // In the dark, what is there is missed.
-    let (status, report, err) = run("pool_search", &["--seed", "5", "--light", "0"]);
-    assert_eq!((status, &report["outcome"]), (1, &"not_found".into()), "{report} {err}");
+    // Beside upright walls, where lanes end, it turns on the spot.
+    let walled = small_pool("walled", "water_level 1900\n", 2000);
+    for seed in ["1", "2", "3"] {
+        let ended = run("pool_search", &["--world", &walled, "--seed", seed]);
+        assert_outcome(&ended, "not_found");
+        assert_eq!(ended.1["collisions"], 0, "{}", ended.1);
+    }
+    // In the dark nobody knows what is there.
+    for options in [["--seed", "5"], ["--world", &world]] {
+        let (status, report, err) = run("pool_search", &[&options[..], &["--light", "0"]].concat());
+        assert_eq!((status, &report["outcome"]), (1, &"blind".into()), "{report} {err}");
+    }
 }
 
 #[test]

@@ -1,5 +1,5 @@
 use roverlab::geometry::{Aabb, Point, Segment, Vector};
-use roverlab::world::{HeightField, Wall, World};
+use roverlab::world::{HeightField, Raster, Wall, World};
 
 use super::ground;
 
@@ -7,9 +7,14 @@ use super::ground;
 #[derive(Debug, Clone)]
 pub(crate) struct Shore {
     sides: Vec<Segment>,
-    /// Thickness of the thickest wall (m).
-    thickest: f64,
+    /// Metres at most by which the outermost ends are farther out than the inner faces: the thickest wall, or
+    /// what is left of sides that went on.
+    across: f64,
 }
+
+/// Width of the cells in which enclosed water is looked for (m), and the most of them along a side.
+const CELL: f64 = 0.1;
+const CELLS: f64 = 1000.0;
 
 /// The cosine of the angle (45 degrees) by which a side nearby is turned at a corner.
 const TURNED: f64 = 0.707;
@@ -19,12 +24,46 @@ impl Shore {
     pub(crate) fn of(world: &World, height: f64) -> Self {
         let site = world.site();
         let high = world.walls.iter().filter(|wall| wall.height >= height);
-        let walls: Vec<Wall> = high.filter_map(|wall| part_in(&site, wall)).collect();
+        let part = |wall: &Wall| Some(Wall { line: part_in(&site, &wall.line)?, ..*wall });
+        let walls: Vec<Wall> = high.filter_map(part).collect();
         let mut sides: Vec<Segment> = walls.iter().flat_map(faces).collect();
         if let Some(ground) = ground(world) {
             sides.extend(contour(ground, height));
         }
-        Self { sides, thickest: walls.iter().map(|wall| wall.thickness).fold(0.0, f64::max) }
+        Self { sides, across: walls.iter().map(|wall| wall.thickness).fold(0.0, f64::max) }
+    }
+
+    /// The part of it around the water at a place; all of it where that is open.
+    pub(crate) fn around(self, place: Point) -> Self {
+        let Some((area, margin)) = self.basin(place) else { return self };
+        let is_in = |side: &Segment| area.contains(side.a) && area.contains(side.b);
+        let goes_on = |side: &Segment| !is_in(side) && area.span(side).is_some();
+        let across = if self.sides.iter().any(goes_on) { self.across.max(margin) } else { self.across };
+        Self { sides: self.sides.iter().filter_map(|side| part_in(&area, side)).collect(), across }
+    }
+
+    /// A box around the water that sides enclose at a place, and the most by which it is larger (m); `None`
+    /// if that water is open.
+    fn basin(&self, place: Point) -> Option<(Aabb, f64)> {
+        let all = Aabb::around(self.points())?;
+        let cell = CELL.max(all.size().max() / CELLS);
+        let raster = Raster::over(all.inflated(2.0 * cell), cell).ok()?;
+        let mut is_side = vec![false; raster.cells()];
+        for side in &self.sides {
+            // Steps of half a cell leave no gap through which edge-connected cells pass.
+            let steps = (2.0 * (side.b - side.a).norm() / cell).ceil().max(1.0) as usize;
+            for step in 0..=steps {
+                let at = side.a + (side.b - side.a) * (step as f64 / steps as f64);
+                raster.cell_at(at).into_iter().for_each(|cell| is_side[cell] = true);
+            }
+        }
+        let regions = raster.regions(|cell| !is_side[cell]);
+        let here = regions[raster.cell_at(place)?].filter(|here| Some(*here) != regions[0])?;
+        let cells = (0..raster.cells()).filter(|cell| regions[*cell] == Some(here));
+        let water = Aabb::around(cells.map(|cell| raster.centre(cell)))?;
+        // Half a cell up to its edge, and one for the sides.
+        let margin = 1.5 * cell;
+        Some((water.inflated(margin), margin))
     }
 
     /// The box within the walls around it; `None` if there is no side.
@@ -32,7 +71,7 @@ impl Shore {
         let mut area = Aabb::around(self.points())?;
         // Of each wall there, the inner face.
         for axis in [0, 1] {
-            let across = self.thickest + 1e-9;
+            let across = self.across + 1e-9;
             let (low, high) = (area.min[axis] + across, area.max[axis] - across);
             let at = || self.points().map(|point| point[axis]);
             area.min[axis] = at().filter(|at| *at <= low).fold(area.min[axis], f64::max);
@@ -69,12 +108,11 @@ impl Shore {
     }
 }
 
-/// The part of a wall in a box; `None` if it misses the box.
-fn part_in(area: &Aabb, wall: &Wall) -> Option<Wall> {
-    let Segment { a, b } = wall.line;
-    let [begin, end] = area.span(&wall.line)?;
-    let line = Segment::new(a + (b - a) * begin, b - (b - a) * (1.0 - end));
-    Some(Wall { line, ..*wall })
+/// The part of a line in a box; `None` if it misses the box.
+fn part_in(area: &Aabb, line: &Segment) -> Option<Segment> {
+    let [begin, end] = area.span(line)?;
+    let Segment { a, b } = *line;
+    Some(Segment::new(a + (b - a) * begin, b - (b - a) * (1.0 - end)))
 }
 
 /// Both faces of a wall.
@@ -118,8 +156,16 @@ fn contour(ground: &HeightField, height: f64) -> Vec<Segment> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{LEVEL, Site, pool, widest};
+    use roverlab::geometry::Pose;
+    use roverlab::world::Scene;
+
+    use super::super::{LEVEL, Site, pool, surveyor, widest};
     use super::*;
+
+    /// The water of a world in which a craft is at (3, 2) m.
+    fn site_of(world: &World) -> Site {
+        Site::of(&Scene::with_robot(world.clone(), surveyor(), Pose::new(3.0, 2.0, 0.0)), 0.5)
+    }
 
     /// Of thick walls the inner faces count, and low ones stop a craft too.
     #[test]
@@ -131,7 +177,7 @@ mod tests {
             }
             let start = widest(&world, 1.9).unwrap();
             assert!((start.x - 4.0).abs() < 1.5 && (start.y - 3.0).abs() < 0.2, "{start:?}");
-            let site = Site::of(&world, 0.5);
+            let site = site_of(&world);
             assert_eq!(site.by_walls, height > 1.0);
             assert!(!site.by_walls || (site.area.size() - Vector::new(7.6, 5.6)).norm() < 1e-9, "{site:?}");
         }
@@ -144,15 +190,55 @@ mod tests {
         for wall in &mut world.walls {
             wall.height = 1.0;
         }
-        let site = Site::of(&world, 0.5);
+        let site = site_of(&world);
         for (from, to) in [((1e3, 0.0), (1e3, 1.0)), ((-1e6, 1.0), (-1e6, 2.0)), ((6.0, 5.0), (1e6, 5.0))] {
             let mut strayed = world.clone();
             let stray = Wall::new(Point::new(from.0, from.1), Point::new(to.0, to.1));
             strayed.walls.push(Wall { height: 1.0, ..stray });
-            let found = Site::of(&strayed, 0.5);
+            let found = site_of(&strayed);
             assert!(found.by_walls && (found.area.size() - site.area.size()).norm() < 1e-9, "{found:?}");
             assert!(Shore::of(&strayed, 0.5).length() <= Shore::of(&world, 0.5).length() + 1e-9);
         }
+    }
+
+    /// Water beyond the walls around a craft is not its own, be it a single wall or a whole other pool, and
+    /// also if a wall goes on to there.
+    #[test]
+    fn the_site_is_the_water_that_walls_enclose_around_a_craft() {
+        let basin = |x: f64, y: f64| {
+            let corners = [(0.0, 0.0), (8.0, 0.0), (8.0, 6.0), (0.0, 6.0), (0.0, 0.0)];
+            let corners = corners.map(|(right, up)| Point::new(x + right, y + up));
+            corners
+                .windows(2)
+                .map(|ends| Wall { height: 2.0, ..Wall::new(ends[0], ends[1]) })
+                .collect::<Vec<_>>()
+        };
+        let alone = World { water_level: Some(1.9), walls: basin(0.0, 0.0), ..World::empty(30.0, 20.0) };
+        let area = site_of(&alone).area;
+        assert!((area.size() - Vector::new(7.99, 5.99)).norm() < 1e-9, "{area:?}");
+        let line = |from: (f64, f64), to: (f64, f64)| {
+            vec![Wall { height: 2.0, ..Wall::new(Point::new(from.0, from.1), Point::new(to.0, to.1)) }]
+        };
+        let others = [
+            line((20.0, 0.0), (20.0, 1.0)),
+            line((8.0, 6.0), (25.0, 6.0)),
+            line((-10.0, 0.0), (25.0, 0.0)),
+            basin(8.0, 0.0),
+            basin(15.0, 10.0),
+        ];
+        for other in others {
+            let mut world = alone.clone();
+            world.walls.extend(other);
+            let found = site_of(&world);
+            assert!(found.by_walls, "{found:?}");
+            for (is, was) in [(found.area.min, area.min), (found.area.max, area.max)] {
+                assert!((is - was).norm() < 1e-9, "{found:?}");
+            }
+        }
+        let mut open = alone.clone();
+        open.walls.pop();
+        open.walls.extend(line((20.0, 0.0), (20.0, 1.0)));
+        assert!(site_of(&open).area.size().x > 19.9);
     }
 
     /// Also where the last sample of the ground is, by its rounded place, just beyond it.

@@ -1,5 +1,5 @@
 use roverlab::geometry::{Aabb, Point};
-use roverlab::world::{RobotSpec, World};
+use roverlab::world::{RobotSpec, Scene};
 
 use super::Shore;
 
@@ -15,10 +15,11 @@ pub(crate) struct Site {
 /// Metres that sides may be off straight ones.
 const STRAIGHT: f64 = 0.05;
 impl Site {
-    /// The water of a world at a depth.
-    pub(crate) fn of(world: &World, depth: f64) -> Self {
+    /// The water around a scene's first robot at a depth.
+    pub(crate) fn of(scene: &Scene, depth: f64) -> Self {
+        let world = &scene.world;
         let level = world.water_level.unwrap_or_default();
-        let shore = Shore::of(world, level - depth);
+        let shore = Shore::of(world, level - depth).around(scene.robots[0].pose.position());
         let Some(area) = shore.bounds() else {
             return Self { area: world.site(), by_walls: false };
         };

@@ -18,6 +18,17 @@ pub(super) struct ColourSpotter {
     components: Components,
 }
 
+/// What an image shows of a colour.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Sight {
+    /// Nothing of it.
+    Nothing,
+    /// The ground gives back too little light to tell colours.
+    Dark,
+    /// A thing of it, so many pixels from the middle of the image.
+    Thing { column: f64, row: f64 },
+}
+
 /// The level that the ground has after division: brighter things have room above it.
 const GROUND: u32 = 128;
 /// Hues around a circle on RoBIOS's scale, and the most that a hue may differ: 14 degrees.
@@ -44,12 +55,12 @@ impl ColourSpotter {
         Self { hue, mask: Vec::new(), components: Components::new() }
     }
 
-    /// The column and row, in pixels from the middle of the picture, of the largest thing of the colour that
-    /// is not cut off by the picture's edge. The ground is so many metres below the camera.
-    pub(super) fn find(&mut self, image: &RgbImage, altitude: f64) -> Result<Option<(f64, f64)>, ImageError> {
+    /// The largest thing of the colour that is not cut off by the image's edge. The ground is so many metres
+    /// below the camera.
+    pub(super) fn find(&mut self, image: &RgbImage, altitude: f64) -> Result<Sight, ImageError> {
         let ground = ground(image);
         if ground.contains(&0) {
-            return Ok(None);
+            return Ok(Sight::Dark);
         }
         let (width, height) = (image.width() as usize, image.height() as usize);
         // Light goes down there, and up again.
@@ -73,9 +84,10 @@ impl ColourSpotter {
             blob.min.0 > 0 && blob.min.1 > 0 && blob.max.0 + 1 < width && blob.max.1 + 1 < height
         });
         let largest = whole.max_by_key(|blob| blob.area);
-        Ok(largest.map(|blob| {
+        Ok(largest.map_or(Sight::Nothing, |blob| {
             let (column, row) = blob.centroid;
-            (column + 0.5 - 0.5 * width as f64, row + 0.5 - 0.5 * height as f64)
+            let (column, row) = (column + 0.5 - 0.5 * width as f64, row + 0.5 - 0.5 * height as f64);
+            Sight::Thing { column, row }
         }))
     }
 }
@@ -118,8 +130,8 @@ mod tests {
     fn a_colour_is_found_through_water_and_in_little_light() {
         let mut spotter = ColourSpotter::new(Colour::RED);
         for light in [0.3, 1.0] {
-            let (column, row) = spotter.find(&picture([200, 30, 30], light), 1.2).unwrap().unwrap();
-            assert!((column + 6.0).abs() < 1e-9 && (row - 7.5).abs() < 1e-9, "{column} {row}");
+            let sight = spotter.find(&picture([200, 30, 30], light), 1.2).unwrap();
+            assert_eq!(sight, Sight::Thing { column: -6.0, row: 7.5 });
         }
     }
 
@@ -129,9 +141,9 @@ mod tests {
         for other in
             [[230, 140, 20], [40, 60, 200], [30, 160, 60], [60, 60, 60], [90, 30, 30], [250, 250, 250]]
         {
-            assert_eq!(spotter.find(&picture(other, 1.0), 1.2).unwrap(), None, "{other:?}");
+            assert_eq!(spotter.find(&picture(other, 1.0), 1.2).unwrap(), Sight::Nothing, "{other:?}");
         }
-        assert_eq!(spotter.find(&picture([200, 30, 30], 0.0), 1.2).unwrap(), None);
+        assert_eq!(spotter.find(&picture([200, 30, 30], 0.0), 1.2).unwrap(), Sight::Dark);
         // Gray ledges below the surface, with most of their red; the last ones in the shade.
         let ground = [90, 166, 186];
         for (ledge, ground) in
@@ -140,7 +152,7 @@ mod tests {
             let picture = RgbImage::from_fn(40, 30, |x, y| {
                 Rgb(if (10..18).contains(&x) && (20..25).contains(&y) { ledge } else { ground })
             });
-            assert_eq!(spotter.find(&picture, 1.5).unwrap(), None, "{ledge:?}");
+            assert_eq!(spotter.find(&picture, 1.5).unwrap(), Sight::Nothing, "{ledge:?}");
         }
     }
 }

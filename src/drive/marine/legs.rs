@@ -114,7 +114,9 @@ pub(super) fn steer(pose: &Pose, moves: Vector, wanted: Vector) -> Steered {
     let aim = wanted + (wanted - moves) * LEAD;
     let points = aim.norm() > LITTLE;
     let off = if points { angle_difference(math::atan2(aim.y, aim.x), pose.heading) } else { 0.0 };
-    Steered { turn: (GAIN * off).clamp(-FASTEST, FASTEST), speed: wanted.norm() * math::cos(off) }
+    // The way aside is the least where the bow is far off.
+    let ahead = math::cos(off);
+    Steered { turn: (GAIN * off).clamp(-FASTEST, FASTEST), speed: wanted.norm() * ahead * ahead.abs() }
 }
 
 /// A velocity in a craft's frame as the world sees it.

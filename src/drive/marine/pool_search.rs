@@ -2,7 +2,7 @@ use std::ops::ControlFlow;
 
 use image::RgbImage;
 
-use super::colour_spotter::ColourSpotter;
+use super::colour_spotter::{ColourSpotter, Sight};
 use super::{Survey, SurveyObservation, SurveyOutcome, SurveyParameters, Thrust};
 use crate::geometry::{Aabb, Point, Point3, Pose, Pose3, Vector3, math};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
@@ -44,13 +44,19 @@ pub enum PoolSearchOutcome {
     Found,
     /// All lanes are done without a find.
     NotFound,
+    /// The same, but most pictures of the floor were too dark for any colour.
+    Blind,
     /// The time limit came first.
     TimedOut,
     /// The observer stopped the run.
     Stopped,
 }
 
-halts!(PoolSearchOutcome { Found: "it was found", NotFound: "all lanes are done without a find" });
+halts!(PoolSearchOutcome {
+    Found: "it was found",
+    NotFound: "all lanes are done without a find",
+    Blind: "nothing could be seen",
+});
 
 /// Searches the floor of a pool for a colour, along the lanes of a [`Survey`] with the camera pointing down
 /// (book, section 8.5).
@@ -89,6 +95,9 @@ pub struct PoolSearch {
     down: f64,
     /// Depth of the deepest floor so far, by the sensor that looks down (m).
     deepest: f64,
+    /// Pictures of the floor, and those of them that were dark.
+    pictures: u32,
+    dark: u32,
     finds: Vec<Find>,
     found: Option<Point>,
 }
@@ -132,6 +141,8 @@ impl PoolSearch {
             area,
             down,
             deepest: 0.0,
+            pictures: 0,
+            dark: 0,
             finds: Vec::new(),
             found: None,
         })
@@ -154,8 +165,15 @@ impl PoolSearch {
         }
         self.deepest = self.deepest.max(seen.survey.dive.depth + seen.survey.down);
         let altitude = self.deepest - seen.survey.dive.depth;
-        let thing = self.spotter.find(&seen.image, altitude).map_err(Error::caused_by)?;
-        let Some((column, row)) = thing else { return Ok(None) };
+        self.pictures += 1;
+        let (column, row) = match self.spotter.find(&seen.image, altitude).map_err(Error::caused_by)? {
+            Sight::Thing { column, row } => (column, row),
+            Sight::Nothing => return Ok(None),
+            Sight::Dark => {
+                self.dark += 1;
+                return Ok(None);
+            }
+        };
         let focal = 0.5 * f64::from(seen.image.width()) / math::tan(0.5 * self.camera.field_of_view);
         // The top of the picture is ahead.
         let own = Vector3::new(-row, -column, -focal);
@@ -215,6 +233,9 @@ impl Behaviour for PoolSearch {
         Ok(match lanes {
             _ if self.found.is_some() => ControlFlow::Break(PoolSearchOutcome::Found),
             ControlFlow::Continue(thrust) => ControlFlow::Continue(thrust),
+            ControlFlow::Break(SurveyOutcome::Covered) if 2 * self.dark > self.pictures => {
+                ControlFlow::Break(PoolSearchOutcome::Blind)
+            }
             ControlFlow::Break(SurveyOutcome::Covered) => ControlFlow::Break(PoolSearchOutcome::NotFound),
             ControlFlow::Break(SurveyOutcome::TimedOut) => ControlFlow::Break(PoolSearchOutcome::TimedOut),
             ControlFlow::Break(SurveyOutcome::Stopped) => ControlFlow::Break(PoolSearchOutcome::Stopped),

@@ -229,13 +229,10 @@ impl Header<'_> {
             Value::Scalar(scalar) => return Err(self.wrong(&scalar, expected)),
         };
         let number = |index: usize, what: &str| {
-            self.number(&list[index], what, |value: f64| value.abs() <= MAX_METRES)
+            let expected = format!("the origin's {what}, at most {MAX_METRES} either way");
+            self.number(&list[index], &expected, |value: f64| value.abs() <= MAX_METRES)
         };
-        Ok(Pose::new(
-            number(0, "the origin's x in metres")?,
-            number(1, "the origin's y in metres")?,
-            number(2, "the origin's yaw in radians")?,
-        ))
+        Ok(Pose::new(number(0, "x in metres")?, number(1, "y in metres")?, number(2, "yaw in radians")?))
     }
 
     fn image(&mut self) -> Result<(String, Location), FormatError> {
