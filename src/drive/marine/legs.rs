@@ -114,9 +114,10 @@ pub(super) fn steer(pose: &Pose, moves: Vector, wanted: Vector) -> Steered {
     let aim = wanted + (wanted - moves) * LEAD;
     let points = aim.norm() > LITTLE;
     let off = if points { angle_difference(math::atan2(aim.y, aim.x), pose.heading) } else { 0.0 };
-    // The way aside is the least where the bow is far off.
+    // Backing moves the craft aside too, towards a wall it has just come along: so it is slow.
     let ahead = math::cos(off);
-    Steered { turn: (GAIN * off).clamp(-FASTEST, FASTEST), speed: wanted.norm() * ahead * ahead.abs() }
+    let share = if ahead < 0.0 { -ahead * ahead } else { ahead };
+    Steered { turn: (GAIN * off).clamp(-FASTEST, FASTEST), speed: wanted.norm() * share }
 }
 
 /// A velocity in a craft's frame as the world sees it.
