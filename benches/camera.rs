@@ -1,4 +1,4 @@
-//! Images of the simulated camera: a room with 50 things in it.
+//! Images of the simulated camera: a room with 50 things in it, and a course of a model road.
 
 use std::hint::black_box;
 use std::sync::Arc;
@@ -9,6 +9,7 @@ use roverlab::geometry::Pose;
 use roverlab::io::sim::{SimOptions, SimRobot, Simulation};
 use roverlab::io::{Camera, Clock, Resolution};
 use roverlab::random::Stream;
+use roverlab::world::road::{Appearance, RoadCourseOptions, generate};
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Shape, World};
 
 /// A robot in a corner of a room with 50 things before it.
@@ -60,5 +61,28 @@ fn images(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, images);
+/// A car that stands on a course with patches of light and worn paint.
+fn roads(c: &mut Criterion) {
+    let course = generate(3, &RoadCourseOptions::default()).expect("a course");
+    let world = course.world(&Appearance { wear: 0.2, glare: 2, ..Appearance::default() }).expect("a world");
+    let scene = Scene::with_robot(world, RobotSpec::road_car(), course.start());
+    let mut group = c.benchmark_group("camera, a course");
+    group.throughput(Throughput::Elements(1));
+    for (name, options) in [("ideal", SimOptions::ideal()), ("noise 1", SimOptions::default())] {
+        let mut car = Simulation::new(&scene, options).and_then(|s| s.robot(0)).expect("a car");
+        let mut image = RgbImage::default();
+        car.set_resolution(Resolution::Qvga).expect("a camera");
+        car.image_into(&mut image).expect("an image");
+        group.bench_function(format!("Qvga, {name}"), |b| {
+            b.iter(|| {
+                // The next frame: until then the image is the same.
+                car.wait(0.04)?;
+                car.image_into(black_box(&mut image))
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, images, roads);
 criterion_main!(benches);

@@ -40,6 +40,16 @@ pub(super) fn first_pixel(edge: f64, count: usize) -> usize {
     whole + usize::from((whole as f64) < shifted)
 }
 
+/// The whole part of a number from 0 to 2²³, by its bits: the compiler does that for many numbers at once, but
+/// not the conversion, for which a number might be out of range.
+#[inline(always)]
+#[allow(clippy::inline_always, reason = "part of loops compiled for several processors")]
+pub(super) fn whole(number: f32) -> u32 {
+    /// The number from which on the bits of a fraction are those of a whole number.
+    const WHOLE: f32 = 8_388_608.0;
+    (number.floor() + WHOLE).to_bits() - WHOLE.to_bits()
+}
+
 /// A linear function on the picture: its value at the centre of pixel (0, 0) and its increments per column
 /// and row.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,6 +1,6 @@
 use image::RgbImage;
 
-use super::canvas::Canvas;
+use super::canvas::{Canvas, whole};
 use crate::geometry::math;
 use crate::io::sim::NoiseModel;
 use crate::random::Stream;
@@ -188,7 +188,7 @@ fn grain(image: &mut [u8], sigma: f32, seed: u32) {
     for (i, byte) in (0_u32..).zip(image) {
         let level = f32::from(*byte);
         let noise = f32::from(four_bytes(i, seed)) * scale * level.max(DARKEST).sqrt();
-        *byte = (level + noise + 0.5).clamp(0.0, 255.0) as u8;
+        *byte = whole((level + noise + 0.5).clamp(0.0, 255.0)) as u8;
     }
 }
 

@@ -4,7 +4,8 @@ use super::canvas::{Canvas, Packed, first_pixel};
 use super::light::{lit, scaled};
 use super::model::dimmed;
 use super::relief::{Rays, Relief};
-use super::texture::{Level, Texture, between};
+use super::run::{Run, smooth_at};
+use super::texture::{Level, Texture};
 use super::view::View;
 use crate::geometry::{Aabb, Point, Vector, math};
 use crate::world::{Colour, HeightField};
@@ -111,9 +112,7 @@ impl Ground {
         let (level, _) = self.texture.level(pixel * whole.width as f64 / size.x);
         let u = (at.x - self.floor.min.x) / size.x * level.width as f64;
         let v = (self.floor.max.y - at.y) / size.y * level.height as f64;
-        let mut texel = [0];
-        Run { u, v, du: 0.0, dv: 0.0 }.smooth(level, &mut texel);
-        texel[0]
+        smooth_at(level, u, v)
     }
 
     fn draw_floor(&self, pixels: &mut [Packed], line: &FloorRow) {
@@ -189,72 +188,6 @@ impl Ground {
         (from.min(to), to)
     }
 }
-
-/// Texels along a row: the first position and the step.
-struct Run {
-    u: f64,
-    v: f64,
-    du: f64,
-    dv: f64,
-}
-
-impl Run {
-    /// Bilinear interpolation for pixels smaller than texels. Edge texels repeat beyond the edge.
-    fn smooth(&self, level: &Level, pixels: &mut [Packed]) {
-        let edge = |size: usize| (size as f32 - 1.0, size as i32 - 1);
-        let ((right, last_column), (bottom, last_row)) = (edge(level.width), edge(level.height));
-        let (u, v, du, dv) = (self.u as f32 - 0.5, self.v as f32 - 0.5, self.du as f32, self.dv as f32);
-        for (i, pixel) in (0_u32..).zip(pixels) {
-            let (x, y) = ((u + du * i as f32).clamp(0.0, right), (v + dv * i as f32).clamp(0.0, bottom));
-            let (column, row) = (x as i32, y as i32);
-            let (to_right, down) = ((256.0 * (x - column as f32)) as u32, (256.0 * (y - row as f32)) as u32);
-            let (next, below) = ((column + 1).min(last_column) as usize, (row + 1).min(last_row) as usize);
-            let (upper, lower) =
-                (&level.texels[row as usize * level.width..], &level.texels[below * level.width..]);
-            let column = column as usize;
-            let top = between(upper[column], upper[next], to_right);
-            let texel = between(top, between(lower[column], lower[next], to_right), down);
-            *pixel = texel & 0xff_ff_ff;
-        }
-    }
-
-    /// Averages the texels of some runs, a power of two in number. Positions that rounding moves off the
-    /// image use the nearest texel.
-    fn averaged(runs: &[Run], level: &Level, pixels: &mut [Packed]) {
-        let (last_column, last_row) = (level.width as i32 - 1, level.height as i32 - 1);
-        let shift = runs.len().trailing_zeros();
-        let half = runs.len() as u32 / 2;
-        for (i, pixel) in (0_u32..).zip(pixels) {
-            // Two channels at a time, each with headroom for the sum.
-            let (mut ends, mut middle) = (half << 16 | half, half);
-            for &Run { u, v, du, dv } in runs {
-                let x = ((u + du * f64::from(i)) as i32).clamp(0, last_column);
-                let y = ((v + dv * f64::from(i)) as i32).clamp(0, last_row);
-                let texel = level.texels[y as usize * level.width + x as usize];
-                ends += texel & 0xff_00_ff;
-                middle += texel >> 8 & 0xff;
-            }
-            *pixel = ends >> shift & 0xff_00_ff | (middle >> shift) << 8;
-        }
-    }
-
-    /// Samples a repeated pattern whose sides are powers of two.
-    fn repeated(&self, level: &Level, pixels: &mut [Packed]) {
-        let side = level.width as f64;
-        let home = |place: f64| place - side * (place / side).floor();
-        let (u, v, du, dv) = (home(self.u) as f32, home(self.v) as f32, self.du as f32, self.dv as f32);
-        let (mask, side) = (level.width as i32 - 1, level.width as i32);
-        for (i, pixel) in (0_u32..).zip(pixels) {
-            // Positions may be negative; the shift turns truncation into rounding down.
-            let x = (u + du * i as f32 + SHIFT) as i32 & mask;
-            let y = (v + dv * i as f32 + SHIFT) as i32 & mask;
-            *pixel = level.texels[(y * side + x) as usize];
-        }
-    }
-}
-
-/// More texels than a row crosses, and a multiple of every pattern's side.
-const SHIFT: f32 = 131_072.0;
 
 /// Floor intersections of a row's rays; `None` if there are none.
 fn floor_row(view: &View, row: usize) -> Option<FloorRow> {

@@ -18,6 +18,7 @@ mod model;
 mod murk;
 mod poster;
 mod relief;
+mod run;
 mod scenery;
 mod slanted;
 mod solids;
