@@ -137,10 +137,13 @@ impl FirstSteps {
 
     /// The legs of the task; `None` without room for it.
     fn plan(&self, points: &[Point]) -> Result<Option<Vec<Leg>>> {
-        let FirstStepsParameters { diameter, radius, .. } = self.parameters;
+        let FirstStepsParameters { diameter, radius, gap, .. } = self.parameters;
         match self.task {
             FirstTask::Wall => {
-                let Some((range, _)) = ahead(points, radius) else { return Ok(None) };
+                let has_way = |range: f64| range - radius - gap > ARRIVAL;
+                let Some((range, _)) = ahead(points, radius).filter(|(range, _)| has_way(*range)) else {
+                    return Ok(None);
+                };
                 let line = Path::straight(Point::origin(), Point::new(range, 0.0))?;
                 Ok(Some(vec![Leg::ToWall(self.follower(line)?)]))
             }

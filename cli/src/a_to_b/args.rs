@@ -32,7 +32,8 @@ JSON fields:
   landmark_scans              scans that showed a landmark
   time_limit_s, picture
   rows                        with --campaign only: the table
-Outcomes: reached, caught (a moving goal), missed, blocked, timed_out, collided, failed; with --campaign: passed, wrong."
+Outcomes: reached, caught (a moving goal), missed (all by its own odometry; the error is the truth), blocked, timed_out,
+collided, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
     /// Method of driving to the goal.

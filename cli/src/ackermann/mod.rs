@@ -28,7 +28,7 @@ JSON fields:
   heading_error_deg           true error of the heading, or null
   turning_radius_mm           radius of the turning circle
   time_limit_s, picture
-Outcomes: reached, missed, blocked, timed_out, collided, failed."
+Outcomes: reached, missed (both by its own odometry; the error is the truth), blocked, timed_out, collided, failed."
 )]
 pub(crate) struct Args {
     /// Method of driving to the goal.

@@ -34,7 +34,8 @@ JSON fields:
   stopped_s                   time from its order to stand until all cars stood, if they did
   went_on                     whether all cars drove on after its order to do so
   picture
-Outcomes: shared (no contact, no departure, all cars moved, stopped and went on), touched, disturbed, failed."
+Outcomes: shared (no contact, no departure, all cars moved, stopped and went on), touched, disturbed, timed_out (before the
+order to stand), failed."
 )]
 pub(crate) struct Args {
     /// Course to drive: `eight`, a seed, or a file in the format of docs/courses.md.
@@ -71,11 +72,12 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
 }
 
 fn report(args: &Args, setting: &Setting, shared: &Shared) -> Report {
-    let is_obeyed = !shared.is_ordered || (shared.stopped.is_some() && shared.went_on);
+    let is_obeyed = shared.stopped.is_some() && shared.went_on == Some(true);
     let all_move = shared.cars.iter().all(|car| car.score.distance > 1.0);
     let departures: u32 = shared.cars.iter().map(|car| car.score.departures).sum();
     let word = match () {
         () if shared.contacts > 0 => Outcome::failure("touched"),
+        () if !shared.is_ordered => Outcome::failure("timed_out"),
         () if is_obeyed && all_move && departures == 0 => Outcome::verdict("shared"),
         () => Outcome::failure("disturbed"),
     };

@@ -39,10 +39,10 @@ pub(super) struct Shared {
     /// Number of cars that the station heard last.
     pub(super) heard: usize,
     /// Whether the station has ordered to stand, time until all cars stood (s), and whether all of them drove
-    /// on.
+    /// on after the order.
     pub(super) is_ordered: bool,
     pub(super) stopped: Option<f64>,
-    pub(super) went_on: bool,
+    pub(super) went_on: Option<bool>,
     pub(super) time: f64,
 }
 
@@ -93,7 +93,7 @@ pub(super) fn drive<'a>(
     }
     let mut shared = watch.shared;
     shared.time = fleet.time()?;
-    shared.went_on = !shared.is_ordered || watch.moved.iter().all(|moved| *moved);
+    shared.went_on = shared.is_ordered.then(|| watch.moved.iter().all(|moved| *moved));
     shared.heard = station
         .borrow()
         .cars()

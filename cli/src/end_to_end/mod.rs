@@ -32,7 +32,8 @@ JSON fields:
                                     interruption came after it)
   attention                         --attention: the picture
   and those of lane-keeping otherwise
-Outcomes: learned; kept, departed (of lanes), failed; with --campaign: passed (autonomy of at least 99 %), wrong."
+Outcomes: learned; kept, departed (of lanes), timed_out (in its lane, before --minutes were over), failed; with --campaign: passed
+(autonomy of at least 99 %), wrong."
 )]
 pub(crate) struct Args {
     /// Train a network.

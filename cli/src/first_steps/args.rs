@@ -20,7 +20,7 @@ JSON fields:
   max_deviation_mm            circle: largest true distance to the circle
   time_limit_s, picture
   rows                        with --campaign only: the table, by task
-Outcomes: returned, no_room, timed_out, collided, failed; with --campaign: passed, wrong."
+Outcomes: returned (by its own estimate; the errors are the truth), no_room, timed_out, collided, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
     /// Task to drive.

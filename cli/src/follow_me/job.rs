@@ -35,12 +35,13 @@ JSON fields:
   lost                        number of those that are three times as far away as required at the end, or have not seen the
                               robot ahead for three seconds
   pattern                     how the leader drives
-  mean_gap_mm, max_gap_mm     distance to the robot ahead, after the first 10 s
+  mean_gap_mm, max_gap_mm     distance to the robot ahead, after the first 10 s, or null
   obstacles                   number of objects in the world
   time_limit_s, picture
   rows                        with --campaign only: the table
 Collisions are those of all robots; pose, odometry and path length are the leader's.
-Outcomes: followed, lost, blocked (the leader found no way and drove less than a third of the possible distance), collided; with --campaign: passed, wrong."
+Outcomes: followed, lost, blocked (the leader found no way and drove less than a third of the possible distance), timed_out
+(in the first 10 s), collided; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
     /// Number of followers [default: those of the world, or 1].
@@ -103,6 +104,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     drop(fleet);
     let outcome = match () {
         () if run.is_leader_held() => Outcome::failure("blocked"),
+        () if run.lost.is_empty() && !run.has_formed() => Outcome::failure("timed_out"),
         () if run.lost.is_empty() => Outcome::verdict("followed"),
         () => Outcome::failure("lost"),
     };
@@ -119,8 +121,8 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     .field("mode", mode.name())
     .field("pattern", args.pattern.name())
     .field("lost", run.lost.len())
-    .field("mean_gap_mm", millimetres(run.mean_gap))
-    .field("max_gap_mm", millimetres(run.largest_gap))
+    .field("mean_gap_mm", run.has_formed().then(|| millimetres(run.mean_gap)))
+    .field("max_gap_mm", run.has_formed().then(|| millimetres(run.largest_gap)))
     .field("obstacles", scene.world.objects.len())
     .field("time_limit_s", rounded(seconds));
     Ok(common.draw(report, "follow_me.svg", || picture(args, &scene, &run, mode)))

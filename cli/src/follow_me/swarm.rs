@@ -33,6 +33,11 @@ pub(crate) struct SwarmRun {
 }
 
 impl SwarmRun {
+    /// Whether it lasted until the swarm had formed, so that there are gaps.
+    pub(crate) fn has_formed(&self) -> bool {
+        self.largest_gap > 0.0
+    }
+
     /// Whether the leader hardly moved, so that there was little to follow.
     pub(crate) fn is_leader_held(&self) -> bool {
         self.leader_path < CruiseParameters::default().speed * self.sim_time / 3.0

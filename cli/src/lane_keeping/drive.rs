@@ -65,6 +65,13 @@ pub(crate) struct Plan<'a> {
     pub(crate) common: &'a CommonArgs,
 }
 
+impl Plan<'_> {
+    /// Whether the time limit comes before the end of the drive.
+    pub(crate) fn is_cut(&self) -> bool {
+        self.common.time_limit.is_some_and(|limit| limit < 60.0 * self.minutes)
+    }
+}
+
 /// Speed of a network (m/s).
 const NETWORK_SPEED: f64 = 1.0;
 

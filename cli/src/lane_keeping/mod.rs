@@ -49,7 +49,8 @@ JSON fields:
   distance_median_m           campaign: of all courses
   survived                    campaign: number that survived the first minute
   departures_per_km           campaign: of all courses, as departures, interventions, autonomy_percent and offset_rms_mm
-Outcomes: kept, departed (of lanes), failed; with --campaign: passed (at least 98 % are clean), wrong."
+Outcomes: kept, departed (of lanes), timed_out (in its lane, before --minutes were over), failed; with --campaign: passed (at least
+98 % are clean), wrong."
 )]
 pub(crate) struct Args {
     /// Course to drive: a seed, or a file in the format of docs/courses.md.
@@ -204,6 +205,7 @@ fn report(plan: &Plan<'_>, setting: &Setting, drive: &Drive) -> Report {
     let score = &drive.score;
     let (word, error) = match &drive.ending {
         Err(error) => (Outcome::failure("failed"), Some(error.clone())),
+        Ok(()) if is_clean(score) && plan.is_cut() => (Outcome::failure("timed_out"), None),
         Ok(()) if is_clean(score) => (Outcome::verdict("kept"), None),
         Ok(()) => (Outcome::failure("departed"), None),
     };

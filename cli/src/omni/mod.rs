@@ -26,7 +26,7 @@ JSON fields:
   max_heading_error_deg       square: largest true change of the heading
   turned_deg                  spin: total true rotation of the robot
   time_limit_s, picture
-Outcomes: reached, missed, timed_out, collided, failed."
+Outcomes: reached, missed (both by its own odometry; the error is the truth), timed_out, collided, failed."
 )]
 pub(crate) struct Args {
     /// Task to drive.

@@ -19,7 +19,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
     let scene = afloat((common, &args.waters), &surveyor(), || scene(common.seed))?;
-    let limit = limit(&Site::of(&scene, DEPTH), 1.0);
+    let limit = limit(&Site::open(&scene, DEPTH)?, 1.0);
     let light = args.light.unwrap_or(1.0);
     let conditions = Conditions { light, ..Conditions::new(common, limit)? };
     let done = hunt(&scene, &conditions, paced(common))?;

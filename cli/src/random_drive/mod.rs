@@ -38,7 +38,8 @@ JSON fields:
   time_limit_s, picture
   metres                      with --campaign only: path length of the first robots
 Collisions are those of all robots; pose, odometry and path length are the first one's.
-Outcomes: driven, collided, failed; with --campaign: passed, wrong, collided."
+Outcomes: driven, blocked (a robot drove less than a tenth of what it would straight on), collided, failed; with --campaign: passed,
+wrong, collided."
 )]
 pub(crate) struct Args {
     /// Number of robots [default: those of the world, or 1].
@@ -61,6 +62,8 @@ crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
 const SECONDS: f64 = 120.0;
 /// Number of places tried for an additional robot.
 const PLACES_TRIED: u32 = 50;
+/// Share of what a robot would drive straight on below which it found no way.
+const HELD: f64 = 0.1;
 /// Time between path points of several robots (s).
 const STEP: f64 = 0.1;
 
@@ -179,7 +182,7 @@ fn alone(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure> {
         turns: run.ending.as_ref().copied().unwrap_or(0),
         contacts: run.truth.contacts.into(),
         contact_places: run.truth.contact_places.clone(),
-        report: run.report(|_| Outcome::verdict("driven")),
+        report: run.report(|_| ended(std::slice::from_ref(&run.trail))),
         paths: vec![run.trail],
     })
 }
@@ -251,9 +254,19 @@ fn together<'a>(
         path_length: Some(first.path_length),
         pose: Some(first.pose),
         odometry: Some(scene.robots[0].pose.compose(&first.odometry)),
-        ..Report::new(Outcome::verdict("driven"))
+        ..Report::new(ended(&paths))
     };
     Ok(Outing { turns: turns.iter().map(|turns| turns.get()).sum(), contacts, contact_places, report, paths })
+}
+
+/// How a drive ended without a contact: a robot that came hardly anywhere found no way.
+fn ended(paths: &[Trail]) -> Outcome {
+    let speed = RandomDriveParameters::default().speed;
+    let is_held = |path: &Trail| {
+        let steps = path.windows(2).map(|ends| (ends[1].1.position() - ends[0].1.position()).norm());
+        path.last().is_some_and(|(time, _)| steps.sum::<f64>() < HELD * speed * time)
+    };
+    if paths.iter().any(is_held) { Outcome::failure("blocked") } else { Outcome::verdict("driven") }
 }
 
 /// Fraction of the floor that the robots have passed over.

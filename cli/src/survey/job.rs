@@ -25,7 +25,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     }
     let scene = afloat((common, &args.waters), &surveyor(), || scene(common.seed, args.altitude))?;
     check_room(args, &scene)?;
-    let site = Site::of(&scene, args.depth);
+    let site = Site::open(&scene, args.depth)?;
     let conditions = Conditions::new(common, limit(&site, args.spacing))?;
     let done = tour(&scene, args.parameters(&scene.world), &conditions, paced(common))?;
     let quality = &done.quality;

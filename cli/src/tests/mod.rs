@@ -8,6 +8,7 @@ mod distbug;
 mod distbug_campaign;
 mod driving;
 mod end_to_end;
+mod endings;
 mod evolution;
 mod first_steps;
 mod grids;

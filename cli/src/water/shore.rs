@@ -80,6 +80,11 @@ impl Shore {
         Some(area)
     }
 
+    /// Whether a side reaches into a box.
+    pub(crate) fn crosses(&self, area: &Aabb) -> bool {
+        self.sides.iter().any(|side| area.span(side).is_some())
+    }
+
     /// The length of all its sides (m).
     pub(crate) fn length(&self) -> f64 {
         self.sides.iter().map(|side| (side.b - side.a).norm()).sum()

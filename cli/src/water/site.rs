@@ -1,7 +1,8 @@
-use roverlab::geometry::{Aabb, Point};
+use roverlab::geometry::{Aabb, Point, units};
 use roverlab::world::{RobotSpec, Scene};
 
 use super::Shore;
+use crate::common::Failure;
 
 /// What of a world's water is to be surveyed or searched.
 #[derive(Debug, Clone, Copy)]
@@ -10,6 +11,8 @@ pub(crate) struct Site {
     pub(crate) area: Aabb,
     /// Whether these are straight, so that they tell the place.
     pub(crate) by_walls: bool,
+    /// Whether nothing else is in the way of lanes between them.
+    is_open: bool,
 }
 
 /// Metres that sides may be off straight ones.
@@ -21,14 +24,30 @@ impl Site {
         let level = world.water_level.unwrap_or_default();
         let shore = Shore::of(world, level - depth).around(scene.robots[0].pose.position());
         let Some(area) = shore.bounds() else {
-            return Self { area: world.site(), by_walls: false };
+            return Self { area: world.site(), by_walls: false, is_open: true };
         };
         let inset = |point: Point| {
             let (low, high) = (point - area.min, area.max - point);
             low.x.min(low.y).min(high.x).min(high.y)
         };
         let by_walls = shore.points().all(|point| inset(point) < STRAIGHT);
-        Self { area, by_walls }
+        let is_open = !shore.crosses(&area.inflated(-NEAREST));
+        Self { area, by_walls, is_open }
+    }
+
+    /// The same; fails where lanes would lead over walls or ground.
+    pub(crate) fn open(scene: &Scene, depth: f64) -> Result<Self, Failure> {
+        let site = Self::of(scene, depth);
+        if site.is_open {
+            return Ok(site);
+        }
+        let (found, size) =
+            (units::to_mm(depth).round(), site.area.size().map(|side| units::to_mm(side).round()));
+        Err(Failure::input(format!(
+            "found walls or ground amid the water of {} x {} mm around the craft, {found} mm deep; expected \
+             water with nothing in it but at its sides",
+            size.x, size.y
+        )))
     }
 }
 

@@ -258,6 +258,7 @@ impl Engine {
         self.move_bodies(drifts);
         if let Some(hills) = &mut self.hills {
             hills.yield_to(&mut self.bodies, &self.machines, &mut self.space);
+            hills.measure(&mut self.machines);
             self.slide_things();
         }
         self.feel();

@@ -19,6 +19,11 @@ pub(in crate::io::sim) struct Swimmer {
     clearance: f64,
     /// Ticks since the hull touched the ground.
     free_ticks: u32,
+    /// Speed of the water around it in the last tick (m/s), where it was before that, and whether something
+    /// was in its way.
+    flow: Vector3,
+    before: Point3,
+    held: bool,
     broken: bool,
 }
 
@@ -55,7 +60,19 @@ impl Swimmer {
             let end = |part: &HullPart| part.centre()[axis].abs() + part.half_size()[axis];
             craft.hull().iter().map(end).fold(0.0, f64::max)
         });
-        Self { craft, state, points, windage, half, clearance: 0.0, free_ticks: ANOTHER, broken: false }
+        Self {
+            craft,
+            state,
+            points,
+            windage,
+            half,
+            clearance: 0.0,
+            free_ticks: ANOTHER,
+            flow: Vector3::zeros(),
+            before: Point3::origin(),
+            held: false,
+            broken: false,
+        }
     }
 
     /// Puts it somewhere: so many metres above the ground; at 0, where it comes to rest: afloat, or on the
@@ -136,6 +153,7 @@ impl Swimmer {
             return None;
         }
         let before = self.state;
+        (self.before, self.held) = (self.pose().position, false);
         let hull = [Vector3::x() * self.half[0], Vector3::y() * self.half[1]];
         let hull = hull.map(|half| (self.state.attitude * half).xy());
         let water = waters.around(self.state.position.xy(), self.state.position.z, hull, time);
@@ -152,14 +170,26 @@ impl Swimmer {
             self.state.velocity = CraftMotion::STILL;
             return None;
         }
-        let over = self.velocity();
-        let flow = self.state.attitude.inverse() * water.velocity;
+        self.flow = water.velocity;
+        touched
+    }
+
+    /// Lets its drive measure how it has moved in a tick, once obstacles have taken their part of that.
+    pub(in crate::io::sim) fn measure(&self, ground: &HeightField, drive: &mut CraftDrive) {
+        if self.broken {
+            return;
+        }
+        let (own, mut over) = (self.state.attitude.inverse(), self.velocity());
+        if self.held {
+            // The speed at the end of a tick is not that of a craft which an obstacle holds in each.
+            over.linear = own * ((self.pose().position - self.before) / TICK);
+        }
+        let flow = own * self.flow;
         let through = CraftMotion { linear: over.linear - flow, ..over };
         let [through, over] = [through, over].map(|motion| self.levelled(&motion));
         let place = self.state.position;
         let altitude = place.z - ground.height(place.xy()).unwrap_or(0.0);
         drive.sense(&through, &over, altitude);
-        touched
     }
 
     /// Whether its numbers are of a craft that could be: finite, and no faster than any.
@@ -193,6 +223,7 @@ impl Swimmer {
         *linear += stopping(linear, &(own * (way / TICK)));
         *angular += stopping(angular, &(own * Vector3::new(0.0, 0.0, turned / TICK)));
         self.clearance = 0.0;
+        self.held = true;
     }
 
     /// Stops what of the hull has come into the ground. Returns where, if it is another contact.

@@ -190,6 +190,15 @@ impl Hills {
             space.set_level(body.solid, level);
         }
     }
+
+    /// Lets the drives of craft measure how these have moved in a tick.
+    pub(in crate::io::sim) fn measure(&self, machines: &mut [Machine]) {
+        for (mover, machine) in self.movers.iter().zip(machines) {
+            if let (Mover::Swimming(swimmer), Some(drive)) = (mover, machine.drive.craft_mut()) {
+                swimmer.measure(&self.ground, drive);
+            }
+        }
+    }
 }
 
 impl Mover {
