@@ -1,5 +1,8 @@
 //! Keeping the lane by camera: what is seen of it beside what is true, and whole drives.
 
+#[path = "lane_keeping/book_loop.rs"]
+mod book_loop;
+
 use std::ops::ControlFlow;
 
 use image::RgbImage;
@@ -170,7 +173,6 @@ fn a_gap_of_a_metre_and_a_blackout_are_driven_through_by_odometry() {
 /// What takes minutes.
 mod campaigns {
     use super::*;
-    use roverlab::world::road::{Alignment, Element, Traffic};
     use roverlab::world::{Texture, World};
 
     #[test]
@@ -193,49 +195,19 @@ mod campaigns {
         }
     }
 
-    /// The book's loop at a scale of about 2:1 as its published picture shows it: the middle of the road.
-    fn loop_of_the_book() -> RoadCourse {
-        let line = vec![
-            Element::straight(0.7880),
-            Element::arc(0.3938, -2.3664),
-            Element::straight(1.2924),
-            Element::arc(0.3956, -2.3430),
-            Element::straight(0.3543),
-            Element::arc(0.4429, -2.3825),
-            Element::straight(1.2267),
-            Element::arc(0.3938, -2.3289),
-            Element::straight(1.7714),
-            Element::arc(0.3956, -1.5718),
-            Element::straight(1.2105),
-            Element::arc(0.5905, -1.5738),
-            Element::straight(0.7880),
-        ];
-        let line = Alignment::new(Pose::new(1.4540, 0.4570, -3.1446), line);
-        RoadCourse {
-            traffic: Traffic::Left,
-            size: 0.471,
-            line,
-            lane_width: 0.1781,
-            line_width: 0.0197,
-            centre: Vec::new(),
-            marks: Vec::new(),
-        }
-    }
-
     #[test]
     #[ignore = "a campaign on published data: ROVERLAB_DATA=FOLDER cargo test --release --all-features --test lane_keeping campaigns"]
     fn twenty_laps_of_the_books_loop_by_a_wide_lens() {
-        let data =
-            std::env::var_os("ROVERLAB_DATA").expect("ROVERLAB_DATA names the folder of published data");
-        let image = std::path::Path::new(&data).join("worlds/carolo/carolo.png");
-        let image = image::open(image).unwrap().into_rgba8();
-        let course = loop_of_the_book();
+        let image = book_loop::picture();
+        let course = book_loop::course();
         let mut spec = RobotSpec::s4();
         let lens = spec.camera.as_mut().unwrap();
         (lens.field_of_view, lens.fisheye) = (units::from_deg(150.0), true);
         let camera = spec.camera.as_ref().unwrap().into();
-        let world =
-            World { floor_texture: Some(Texture::new("carolo.png", image)), ..World::empty(3.1, 3.1) };
+        let world = World {
+            floor_texture: Some(Texture::new("carolo.png", image)),
+            ..World::empty(book_loop::SIDE, book_loop::SIDE)
+        };
         let scene = Scene::with_robot(world, spec.clone(), course.start());
         let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1)).unwrap();
         let (mut robot, truth) = (simulation.robot(0).unwrap(), simulation.truth());

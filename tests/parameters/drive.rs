@@ -219,7 +219,7 @@ fn lanes() {
 fn roads() {
     check!(RoadCourseOptions = RoadCourseOptions::default(), |p| generate(1, &p)?,
         { Bounded: size, lane_width; NotNegative: longest_gap;
-          BoundedFromZero: gaps, crossings, zebras, parking, artefacts; } but traffic);
+          BoundedFromZero: inner_radius, gaps, crossings, zebras, parking, artefacts; } but traffic);
     let course = generate(1, &RoadCourseOptions::default()).unwrap();
     check!(FreeDriveRules = FreeDriveRules::default(),
         |p| FreeDrive::new(course.clone(), &RobotSpec::road_car(), p)?,

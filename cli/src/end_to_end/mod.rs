@@ -1,6 +1,8 @@
 //! The command `end-to-end`.
 
 #[cfg(feature = "learn")]
+mod lesson;
+#[cfg(feature = "learn")]
 mod train;
 
 use std::num::NonZero;
@@ -21,9 +23,10 @@ several results are classes of curvature, ten as in the book with an --architect
 without odometry.
 
 --train drives courses of its own, other ones than those of a campaign, by the lane keeper of `lane-keeping`, which is disturbed now
-and then, and learns its steering. In further rounds the network drives half as many courses itself, and learns what the lane
-keeper would have steered there (DAgger). Equal options give equal weights on one machine, whatever the number of threads. What
-is learned so far is kept in the folder FILE.training, from which the same command goes on after an interruption.
+and then, and learns its steering. Half of the courses have bends as tight as those of the book's loop, and beside half of the roads
+another floor begins. In further rounds the network drives half as many courses itself, and learns what the lane keeper would have
+steered there (DAgger). Equal options give equal weights on one machine, whatever the number of threads. What is learned so far is
+kept in the folder FILE.training, from which the same command goes on after an interruption.
 
 JSON fields:
   architecture, examples            --train: the network; number of images

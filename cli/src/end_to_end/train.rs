@@ -3,29 +3,19 @@
 use std::num::NonZero;
 use std::path::Path;
 
-use roverlab::drive::end_to_end::{NetworkDriver, SteeringExamples, SteeringTeacher, TeacherParameters};
-use roverlab::drive::lane_keeping::LaneKeeperParameters;
-use roverlab::drive::traffic::{FreeDrive, FreeDriveRules};
+use roverlab::drive::end_to_end::SteeringExamples;
 use roverlab::files::write_whole;
-use roverlab::io::control::{run, until};
-use roverlab::io::sim::Simulation;
 use roverlab::learn::{Loss, Trainer, TrainerOptions};
-use roverlab::random::Stream;
 use roverlab::vision::network::Network;
-use roverlab::world::RobotSpec;
 use serde_json::{Value, json};
 
+use super::lesson::lesson;
 use super::{Args, MOST_ROUNDS};
 use crate::common::{
     Failure, Outcome, Progress, Report, Stopwatch, TrainingStore, check_writable, rounded, share_out, threads,
 };
-use crate::lane_keeping::{Setting, keeper};
 use crate::signs::hash;
 
-/// Duration of a lesson (s).
-const LESSON: f64 = 20.0;
-/// Speed in lessons (m/s).
-const SPEED: f64 = 1.0;
 /// Rate of the first epoch of a round; it falls evenly to a tenth.
 const RATE: f64 = 1e-3;
 /// Seeds of lessons begin far from those that people choose.
@@ -124,33 +114,4 @@ impl Row {
     fn json(&self) -> Value {
         json!({ "examples": self.examples, "loss": self.loss.map(rounded), "interventions": self.interventions })
     }
-}
-
-/// A lesson on a course of its own, which ends early if the car goes astray.
-fn lesson(args: &Args, seed: u64, pupil: Option<&Network>) -> Result<(SteeringExamples, bool), Failure> {
-    let setting = Setting::drawn(seed)?;
-    let spec = RobotSpec::road_car();
-    let simulation =
-        Simulation::new(&setting.scene()?, setting.options(args.common.noise)).map_err(Failure::input)?;
-    let (mut car, truth) = (simulation.robot(0).map_err(Failure::run)?, simulation.truth());
-    let mut referee =
-        FreeDrive::new(setting.course.clone(), &spec, FreeDriveRules::default()).map_err(Failure::input)?;
-    let keeper = keeper(&setting.course, LaneKeeperParameters::default())?;
-    let seed = Stream::new(seed).child("lesson", 0).bits();
-    let parameters = TeacherParameters {
-        speed: SPEED,
-        disturbance: args.disturbance,
-        seed,
-        ..TeacherParameters::default()
-    };
-    let mut teacher = SteeringTeacher::new(keeper, args.architecture.input(), parameters)?;
-    if let Some(network) = pupil {
-        teacher = teacher.with_pupil(NetworkDriver::new(network.clone(), SPEED)?);
-    }
-    let mut astray = false;
-    run(&mut car, &mut teacher, LESSON, |_, _, _| {
-        astray = referee.see(truth.time(), &truth.pose(0).expect("there is a car"));
-        until(astray)
-    })?;
-    Ok((teacher.into_examples(), astray))
 }

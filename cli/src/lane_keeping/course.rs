@@ -31,6 +31,11 @@ impl Setting {
 
     /// The course of a seed in a campaign, with its own light and wear.
     pub(crate) fn drawn(seed: u64) -> Result<Self, Failure> {
+        Self::drawn_by(seed, &RoadCourseOptions::default())
+    }
+
+    /// The same for courses of other options.
+    pub(crate) fn drawn_by(seed: u64, options: &RoadCourseOptions) -> Result<Self, Failure> {
         let mut random = Stream::new(seed).child("lane keeping", 0);
         let light = random.between(0.5, 1.5);
         let look = Appearance {
@@ -39,7 +44,8 @@ impl Setting {
             seed,
             ..Appearance::default()
         };
-        Ok(Self { name: seed.to_string(), course: generated(seed)?, look, light, seed })
+        let course = generate(seed, options).map_err(Failure::input)?;
+        Ok(Self { name: seed.to_string(), course, look, light, seed })
     }
 
     /// The car at the start of the course.

@@ -11,7 +11,7 @@ pub(super) const LANES: [f64; 2] = [0.35, 0.45];
 /// Accepted width of a line (m); 18 to 20 mm by the rules.
 const LINES: [f64; 2] = [0.015, 0.025];
 /// Smallest radius of the centre line (m).
-const RADIUS: f64 = 1.0;
+pub(super) const RADIUS: f64 = 1.0;
 /// Largest closing error that is spread over the road (m, rad).
 const CLOSING: (f64, f64) = (0.10, 0.0524);
 /// Largest number of marks.

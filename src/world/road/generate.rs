@@ -1,5 +1,5 @@
 use super::alignment::{Alignment, Element};
-use super::check::LANES;
+use super::check::{LANES, RADIUS};
 use super::course::{
     Centre, CourseError, Crossing, Line, RightOfWay, RoadCourse, RoadMark, RoadMarkKind, RoadSide, Traffic,
 };
@@ -16,6 +16,9 @@ pub struct RoadCourseOptions {
     pub size: f64,
     /// Smallest and largest lane width (m).
     pub lane_width: [f64; 2],
+    /// Smallest radius of the road's inner edge (m), 1 by the rules. The road's middle has a radius of at
+    /// least 1 m all the same.
+    pub inner_radius: f64,
     /// Gaps in lines per metre of the road.
     pub gaps: f64,
     /// Longest gap (m).
@@ -39,6 +42,7 @@ impl Default for RoadCourseOptions {
             traffic: Traffic::Right,
             size: 1.0,
             lane_width: [0.35, 0.45],
+            inner_radius: 1.0,
             gaps: 0.15,
             longest_gap: 1.0,
             crossings: 0.6,
@@ -58,6 +62,7 @@ impl RoadCourseOptions {
         let [narrow, wide] = self.lane_width;
         within("smallest lane width", narrow, LANES)?;
         within("largest lane width", wide, [narrow, LANES[1]])?;
+        within("smallest radius of inner edges", self.inner_radius, [0.0, LARGEST])?;
         within("gaps per metre", self.gaps, [0.0, MOST_MARKS])?;
         require_not_negative("longest gap", self.longest_gap)?;
         within("probability of crossings", self.crossings, [0.0, 1.0])?;
@@ -99,8 +104,8 @@ const SHORTEST: f64 = 0.3;
 const GENTLEST: f64 = 0.15;
 /// Lengths of parking areas (m): 1.8 m along the road on the right, and four spots of 350 mm on the left.
 const PARKING: (f64, f64) = (1.8, 1.4);
-/// Smallest radius of a road's inner edge, by the rules.
-const INNER: f64 = 1.0;
+/// Largest radius of inner edges that can be asked for (m).
+const LARGEST: f64 = 3.0;
 
 /// Bend at a corner: its elements, and the distance from the corner to its beginning and end (m).
 struct Bend {
@@ -113,7 +118,7 @@ fn attempt_course(
     options: &RoadCourseOptions,
 ) -> Option<Result<RoadCourse, CourseError>> {
     let lane = random.between(options.lane_width[0], options.lane_width[1]);
-    let least = INNER + lane + 0.03;
+    let least = (options.inner_radius + lane + 0.03).max(RADIUS);
     let eight = random.chance(0.33);
     let corners = if eight { eight_corners(random) } else { star_corners(random) };
     let turns = turns(&corners);

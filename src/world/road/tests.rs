@@ -36,6 +36,20 @@ fn every_seed_gives_a_course_and_the_file_gives_it_back() {
 }
 
 #[test]
+fn bends_are_tighter_where_that_is_asked_for() {
+    let tightest = |options: &RoadCourseOptions| {
+        let courses = (0..12).map(|seed| generate(seed, options).unwrap());
+        let elements = courses.flat_map(|course| course.line.elements().to_vec());
+        1.0 / elements.flat_map(|element| element.curvature).fold(0.0, |most: f64, bend| most.max(bend.abs()))
+    };
+    let rules = RoadCourseOptions { lane_width: [0.4, 0.45], ..RoadCourseOptions::default() };
+    assert!(tightest(&rules) >= 1.43);
+    let tight = RoadCourseOptions { inner_radius: 0.0, ..rules };
+    assert!((0.999..1.1).contains(&tightest(&tight)), "{}", tightest(&tight));
+    assert!(generate(1, &RoadCourseOptions { inner_radius: -0.1, ..rules }).is_err());
+}
+
+#[test]
 fn what_is_no_course_is_refused_by_name() {
     for (text, expected) in [
         ("", "x:1:1: found an empty file; expected `course 1`"),
