@@ -183,6 +183,9 @@ mod campaigns {
         assert!(sums.autonomy() >= 95.0, "{sums:?}");
     }
 
+    /// A change of what is learned from, by its name.
+    type Shift<'s> = (&'s str, Box<dyn Fn(Setting) -> Setting + 's>);
+
     #[test]
     #[ignore = "a campaign: cargo test --release --all-features --test end_to_end campaigns -- --ignored --nocapture"]
     fn what_it_has_not_learned() {
@@ -208,7 +211,6 @@ mod campaigns {
             let light = 0.7 + 0.6 * draw(y / 100 + 1) + 0.3 * draw(x / 8 + 4096 * y);
             if shade > 120.0 { [shade; 3] } else { [105.0, 70.0, 40.0].map(|part| part * light) }
         };
-        type Shift<'s> = (&'s str, Box<dyn Fn(Setting) -> Setting + 's>);
         let shifts: Vec<Shift<'_>> = vec![
             ("as learned", Box::new(|s| s)),
             ("light of 10 %", Box::new(|s| light(s, 0.1))),
