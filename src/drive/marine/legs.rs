@@ -111,13 +111,24 @@ const LITTLE: f64 = 0.03;
 
 /// Steers a craft, which moves over ground, for another velocity.
 pub(super) fn steer(pose: &Pose, moves: Vector, wanted: Vector) -> Steered {
+    let (turn, ahead) = turn_towards(pose, moves, wanted);
+    Steered { turn, speed: wanted.norm() * ahead }
+}
+
+/// The same beside walls. Backing moves the craft aside too, towards a wall it has just come along: so it is
+/// slow.
+pub(super) fn steer_beside_walls(pose: &Pose, moves: Vector, wanted: Vector) -> Steered {
+    let (turn, ahead) = turn_towards(pose, moves, wanted);
+    let share = if ahead < 0.0 { -ahead * ahead } else { ahead };
+    Steered { turn, speed: wanted.norm() * share }
+}
+
+/// The turn rate, and the cosine of the angle off the course.
+fn turn_towards(pose: &Pose, moves: Vector, wanted: Vector) -> (f64, f64) {
     let aim = wanted + (wanted - moves) * LEAD;
     let points = aim.norm() > LITTLE;
     let off = if points { angle_difference(math::atan2(aim.y, aim.x), pose.heading) } else { 0.0 };
-    // Backing moves the craft aside too, towards a wall it has just come along: so it is slow.
-    let ahead = math::cos(off);
-    let share = if ahead < 0.0 { -ahead * ahead } else { ahead };
-    Steered { turn: (GAIN * off).clamp(-FASTEST, FASTEST), speed: wanted.norm() * share }
+    ((GAIN * off).clamp(-FASTEST, FASTEST), math::cos(off))
 }
 
 /// A velocity in a craft's frame as the world sees it.

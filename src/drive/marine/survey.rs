@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use super::fix::Fix;
 use super::floor_track::FloorTrack;
 use super::helm::Helm;
-use super::legs::{Legs, Steered, over_ground, steer};
+use super::legs::{Legs, Steered, over_ground, steer_beside_walls};
 use super::zero::Zero;
 use super::{DepthHoldParameters, DiveObservation, Sounding, Thrust};
 use crate::geometry::{Aabb, Point, Pose, Vector, math};
@@ -398,7 +398,7 @@ impl Behaviour for Survey {
         }
         let velocity = self.fix.velocity();
         let wanted = self.legs.guide(pose.position(), self.helm.seconds());
-        let Steered { turn, speed } = steer(&pose, over_ground(&pose, velocity), wanted);
+        let Steered { turn, speed } = steer_beside_walls(&pose, over_ground(&pose, velocity), wanted);
         let push = self.helm.push(velocity.x, if self.ready { speed } else { 0.0 }, turn);
         Ok(ControlFlow::Continue(self.helm.thrust_along(self.goal(), push)?))
     }
