@@ -55,3 +55,9 @@ pub fn direction(angle: f64) -> Vector {
     let (sin, cos) = math::sin_cos(angle);
     Vector::new(cos, sin)
 }
+
+/// Length of a way along straight lines between points; 0 for fewer than two.
+pub(crate) fn way_length(points: &[Point]) -> f64 {
+    // An empty sum is -0.
+    points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).fold(0.0, |length, step| length + step)
+}

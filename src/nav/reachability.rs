@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::f64::consts::SQRT_2;
 
-use crate::geometry::Point;
+use crate::geometry::{Point, way_length};
 use crate::world::{Clearance, Raster, World};
 
 /// The possible positions of a disc-shaped robot's centre in a world, and the ways between them.
@@ -116,7 +116,7 @@ impl Reachability {
         let inner = cells.get(1..cells.len().saturating_sub(1)).unwrap_or_default();
         points.extend(inner.iter().map(|&cell| self.raster.centre(cell)));
         points.push(b);
-        let length = points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+        let length = way_length(&points);
         CellPath { points, length, expanded }
     }
 

@@ -1,5 +1,6 @@
 use super::lines::{between_walls, entered, squeezed};
 use crate::geometry::units::NEGLIGIBLE;
+use crate::geometry::way_length;
 use crate::nav::grid::{AnyAngle, GridPath, GridPlanner, GridSearch, PlanError};
 use crate::parameter::debug_as_sentence;
 use crate::world::{BitGrid, GridCell};
@@ -99,7 +100,7 @@ pub fn collision_free(
         let what = format!("the way squeezes between the blocked cells that touch at {corner}");
         return Err(violation(start, goal, what));
     }
-    let length: f64 = path.points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+    let length = way_length(&path.points);
     if !same(length, path.cost) {
         return Err(violation(start, goal, format!("a cost of {} for a path of {length} cells", path.cost)));
     }

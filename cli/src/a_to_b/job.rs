@@ -20,14 +20,14 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     }
     let common = &args.common;
     common.check_picture()?;
-    let turns = |spec: &RobotSpec| !matches!(spec.drive, DriveSpec::Ackermann { .. });
+    let turns = |spec: &RobotSpec| !matches!(spec.drive, DriveSpec::Ackermann { .. } | DriveSpec::Craft(_));
     let stand_in = StandIn { suits: turns, ..StandIn::default() };
     let mut trip = common.trip_to_pose_of(&stand_in, || scene::scene(common.goal))?;
     check_drive(
         common,
         trip.spec(),
         turns(trip.spec()),
-        "one that turns on the spot; the command `ackermann` drives cars",
+        "one on wheels that turns on the spot; the command `ackermann` drives cars",
     )?;
     let heading = scene::heading(common.goal, common.world.is_none());
     let limit = 60.0 + 20.0 * way(args, &trip);

@@ -33,7 +33,8 @@ JSON fields:
   really                      whether it is truly there
   off_middle_mm               distance from the middle of the estimated cell
   picture                     always
-Outcomes: goal, returned, lost (the estimated cell is wrong), stuck, timed_out, collided, failed."
+Outcomes: goal, returned, lost (the estimated cell is wrong), stuck, enclosed (walls on all sides), timed_out, collided,
+failed."
 )]
 pub(crate) struct LeftArgs {
     /// Method of driving from cell to cell.
@@ -95,6 +96,7 @@ pub(crate) fn work(args: &LeftArgs) -> Result<Report, Failure> {
     let off = at.map(|cell| (place.scale.centre(cell) - end).norm());
     let report = run.report(|&outcome| match outcome {
         LeftHandOutcome::Stalled => Outcome::failure("stuck"),
+        LeftHandOutcome::Enclosed => Outcome::failure("enclosed"),
         LeftHandOutcome::Stopped if !really => Outcome::failure("lost"),
         LeftHandOutcome::Stopped => Outcome::verdict(if at_goal { "goal" } else { "returned" }),
         _ => Outcome::failure("timed_out"),

@@ -91,7 +91,10 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         Ok(seen)
     })?;
     let run = run.lasting(seconds);
-    let report = report(&run, &scene, seconds, |_| Outcome::verdict("watched"));
+    let report = report(&run, &scene, seconds, |seen| match seen.images {
+        0 => Outcome::failure("timed_out"),
+        _ => Outcome::verdict("watched"),
+    });
     Ok(common.draw(report, "motion.svg", || picture("Watching for motion", &scene, &run)))
 }
 

@@ -14,7 +14,8 @@ fn room(side: u32) -> String {
 
 #[test]
 fn a_run_that_was_cut_short_is_no_success() {
-    let cases: [(&str, &[&str]); 4] = [
+    let cases: [(&str, &[&str]); 5] = [
+        ("motion", &["--time-limit", "0.05"]),
         ("lane_keeping", &["--minutes", "0.2", "--time-limit", "1"]),
         ("end_to_end", &["--minutes", "0.2", "--time-limit", "1"]),
         ("base_station", &["--cars", "2", "--time-limit", "3"]),
@@ -30,7 +31,10 @@ fn a_run_that_was_cut_short_is_no_success() {
 #[test]
 fn robots_without_room_say_so() {
     let cells = [room(300), room(500)];
-    let cases: [(&str, &[&str], &str); 4] = [
+    let closed = temporary("closed.txt");
+    fs::write(&closed, "o---o---o\n| S | G |\no---o---o\n").unwrap();
+    let cases: [(&str, &[&str], &str); 5] = [
+        ("maze_left", &["--world", text(&closed)], "enclosed"),
         ("random_drive", &["--robot", "Ackermann"], "blocked"),
         ("random_drive", &["--world", &cells[0]], "blocked"),
         ("first_steps", &["--world", &cells[0]], "no_room"),

@@ -72,6 +72,8 @@ pub struct CoverageMap {
 
 /// Number of cells along an edge of a tile.
 const TILE: usize = 16;
+/// Offsets in columns and rows of the cells that share an edge with one.
+const BESIDE: [(i64, i64); 4] = [(-1, 0), (1, 0), (0, -1), (0, 1)];
 
 impl CoverageMap {
     /// The map of a world for a robot at a start. Fails for a start without the clearance and for a world
@@ -109,8 +111,11 @@ impl CoverageMap {
 
     fn find_floor(&mut self) {
         let under = self.disc(self.parameters.radius);
-        for cell in 0..self.places.len() {
-            if self.places[cell] {
+        for cell in (0..self.places.len()).filter(|&cell| self.places[cell]) {
+            self.floor[cell] = true;
+            // What is beneath the robot at a place amid others is a place itself, or beneath it at a place
+            // beside none, on the way there.
+            if self.under(cell, &BESIDE).any(|beside| !self.places[beside]) {
                 for floor in self.under(cell, &under) {
                     self.floor[floor] = true;
                 }
@@ -248,5 +253,31 @@ impl CoverageMap {
     /// The cells beneath a robot, as offsets.
     pub(super) fn robot(&self) -> Vec<(i64, i64)> {
         self.disc(0.9 * self.parameters.radius)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::Wall;
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(crate::testing::cases(16))]
+        #[test]
+        fn the_floor_is_what_is_beneath_the_robot_at_all_places(
+            ends in [0.0..1.2f64, 0.0..0.9, 0.0..1.2, 0.0..0.9], radius in 0.02..0.2f64,
+        ) {
+            let mut world = World::walled(1.2, 0.9);
+            world.walls.push(Wall::new(Point::new(ends[0], ends[1]), Point::new(ends[2], ends[3])));
+            let parameters = CoverageMapParameters { radius, ..CoverageMapParameters::default() };
+            let Ok(map) = CoverageMap::new(&world, Point::new(0.25, 0.25), parameters) else { return Ok(()) };
+            let disc = map.disc(radius);
+            let mut beneath = vec![false; map.floor.len()];
+            for place in (0..beneath.len()).filter(|&place| map.places[place]) {
+                map.under(place, &disc).for_each(|cell| beneath[cell] = true);
+            }
+            prop_assert!(map.floor == beneath);
+        }
     }
 }

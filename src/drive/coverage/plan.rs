@@ -3,7 +3,7 @@ use std::collections::BTreeSet;
 use super::CoverageMap;
 use super::lanes::{Block, blocks};
 use super::route::{Routes, is_free};
-use crate::geometry::Point;
+use crate::geometry::{Point, way_length};
 use crate::io::Result;
 
 /// A path over the whole floor in parallel lanes, like a lawn mower's (book, sections 3.1 and 6.3), with
@@ -75,7 +75,7 @@ impl CoveragePlan {
 
     /// Length of the path (m).
     pub fn length(&self) -> f64 {
-        self.points.windows(2).map(|two| (two[1] - two[0]).norm()).sum()
+        way_length(&self.points)
     }
 
     /// Fraction of the floor covered if the path is driven to within a few millimetres.

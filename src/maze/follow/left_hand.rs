@@ -55,7 +55,8 @@ impl LeftHandParameters {
     }
 }
 
-/// Left-hand rule: left if free, else straight on, else right, else back (book, section 9.2).
+/// Left-hand rule: left if free, else straight on, else right, else back (book, section 9.2). It ends in a cell
+/// with walls on all sides.
 ///
 /// ```
 /// use roverlab::maze::{Direction, LeftHand, LeftHandParameters};
@@ -82,8 +83,8 @@ pub struct LeftHand {
 enum Phase {
     /// Stands in a cell.
     Choosing,
-    /// Turns on the spot.
-    Turning,
+    /// Turns on the spot, perhaps back from walls ahead and at both sides.
+    Turning { back: bool },
     /// Drives into the next cell.
     Driving,
     /// Comes to rest before the next reading, for at most this number of steps.
@@ -105,9 +106,11 @@ pub enum LeftHandOutcome {
     TimedOut,
     /// The robot stalled.
     Stalled,
+    /// There are walls on all sides.
+    Enclosed,
 }
 
-halts!(LeftHandOutcome { Stalled: "something holds the robot" });
+halts!(LeftHandOutcome { Stalled: "something holds the robot", Enclosed: "there are walls on all sides" });
 
 /// Observation of a [`LeftHand`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -162,12 +165,16 @@ impl LeftHand {
 
     /// Quarter turns to the left, -1 to 2, for the readings front, left, right.
     pub fn choose(&self, readings: [f64; 3]) -> i32 {
-        match readings.map(|reading| reading > self.parameters.threshold) {
-            [_, true, _] => 1,
-            [true, false, _] => 0,
-            [false, false, true] => -1,
-            [false, false, false] => 2,
+        match readings.map(|reading| self.is_wall(reading)) {
+            [_, false, _] => 1,
+            [false, true, _] => 0,
+            [true, true, false] => -1,
+            [true, true, true] => 2,
         }
+    }
+
+    fn is_wall(&self, reading: f64) -> bool {
+        reading <= self.parameters.threshold
     }
 
     fn turn_or_drive(&mut self, seen: &LeftHandObservation) -> Decision<Self> {
@@ -176,7 +183,7 @@ impl LeftHand {
             return self.set_off(seen);
         }
         self.heading = self.heading.turned_right((4 - quarters) as usize % 4);
-        self.phase = Phase::Turning;
+        self.phase = Phase::Turning { back: quarters == 2 };
         let angle = f64::from(quarters) * FRAC_PI_2;
         Ok(ControlFlow::Continue(Manoeuvre::Turn(angle, self.parameters.turn_rate)))
     }
@@ -232,11 +239,17 @@ impl Behaviour for LeftHand {
         let waits = Ok(ControlFlow::Continue(Manoeuvre::Continue));
         match self.phase {
             Phase::Choosing => self.turn_or_drive(seen),
-            Phase::Turning => {
+            Phase::Turning { back } => {
                 if let Some(controller) = &mut self.controller {
                     controller.turned(seen.pose);
                 }
-                if seen.done || seen.stalled { self.set_off(seen) } else { waits }
+                match seen.done || seen.stalled {
+                    false => waits,
+                    true if back && self.is_wall(seen.readings[0]) => {
+                        Ok(ControlFlow::Break(LeftHandOutcome::Enclosed))
+                    }
+                    true => self.set_off(seen),
+                }
             }
             Phase::Driving if seen.stalled => Ok(ControlFlow::Break(LeftHandOutcome::Stalled)),
             Phase::Driving => self.drive(seen),

@@ -1,4 +1,4 @@
-use crate::geometry::Point;
+use crate::geometry::{Point, way_length};
 use crate::parameter::debug_as_sentence;
 use crate::world::{BitGrid, GridCell};
 
@@ -127,7 +127,7 @@ impl GridPath {
 
     /// The path along straight lines between points.
     pub(super) fn along(points: Vec<Point>, statistics: SearchStatistics) -> Self {
-        let cost = points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+        let cost = way_length(&points);
         Self { points, cost, statistics }
     }
 }

@@ -3,7 +3,7 @@ use std::f64::consts::FRAC_PI_2;
 use super::parameters::{CAUTION, SummitParameters};
 use super::reckoning::Reckoning;
 use super::sight_map::SightMap;
-use crate::geometry::{Point, Pose, Twist, direction, math, normalize_angle};
+use crate::geometry::{Point, Pose, Twist, direction, math, normalize_angle, way_length};
 use crate::world::BitGrid;
 
 /// A way that a [`SummitSearch`](super::SummitSearch) drives.
@@ -101,7 +101,7 @@ impl Drive {
             return Step::Arrived;
         }
         let sign = if self.backwards { -1.0 } else { 1.0 };
-        let lost = time - self.nearest.1 > PATIENCE + 4.0 * length(&self.way) / speed;
+        let lost = time - self.nearest.1 > PATIENCE + 4.0 * way_length(&self.way) / speed;
         if tilt > climber.slope + TOO_STEEP || lost {
             return Step::NoWay { ahead: ahead_of(pose, sign), sign };
         }
@@ -155,11 +155,6 @@ fn along_way(way: &[Point], pose: Pose) -> f64 {
         way.iter().map(|point| (point - place).norm_squared()).fold(f64::INFINITY, f64::min)
     };
     if away(1.0) <= away(-1.0) { 1.0 } else { -1.0 }
-}
-
-/// Metres along a way.
-pub(super) fn length(way: &[Point]) -> f64 {
-    way.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum()
 }
 
 /// The beginning of a way.

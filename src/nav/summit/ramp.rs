@@ -2,11 +2,10 @@ use std::ops::ControlFlow;
 
 use super::axis::{Ramp, is_sloped};
 use super::chart::Chart;
-use super::drive::length;
 use super::explorer::{Explorer, SummitObservation, SummitPhase};
 use super::parameters::SummitParameters;
 use super::straight::Straight;
-use crate::geometry::{Point, Pose, Twist, Vector};
+use crate::geometry::{Point, Pose, Twist, Vector, way_length};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
 use crate::io::{Inertial, Lidar, Odometry, Result};
 use crate::nav::elevation::Climber;
@@ -302,7 +301,7 @@ impl RampCrossing {
     fn way_to(&self, look: &Look, goal: GridCell) -> Option<Vec<Point>> {
         let costs = Centred { room: &look.room };
         let way = self.explorer.way_over(&look.chart.safe, costs, look.start, goal)?;
-        (length(&way) > LEAST_WAY).then_some(way)
+        (way_length(&way) > LEAST_WAY).then_some(way)
     }
 }
 

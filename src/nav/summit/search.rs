@@ -1,10 +1,10 @@
 use std::ops::ControlFlow;
 
 use super::chart::Chart;
-use super::drive::{ARRIVED, length};
+use super::drive::ARRIVED;
 use super::explorer::{Explorer, SummitObservation, SummitPhase, climbing_costs};
 use super::parameters::SummitParameters;
-use crate::geometry::{Point, Pose, Twist};
+use crate::geometry::{Point, Pose, Twist, way_length};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
 use crate::io::{Inertial, Lidar, Odometry, Result};
 use crate::nav::grid::GridComponents;
@@ -184,7 +184,7 @@ impl SummitSearch {
             let way = self.explorer.way_over(&chart.perhaps, climbing_costs(&chart), start, target);
             let way = way.unwrap_or_else(|| vec![self.explorer.map.place(target)]);
             let known = self.explorer.known_part(&chart, &way);
-            if length(known) > LEAST_WAY {
+            if way_length(known) > LEAST_WAY {
                 return ControlFlow::Continue(self.explorer.drive(time, &chart, known));
             }
             // It has looked from here, and does not see that it could go on.
@@ -237,7 +237,7 @@ impl SummitSearch {
             return self.climb_on(time, chart);
         }
         // Ways that end on the top, not those that lead to it.
-        self.approaches += u32::from(length(&way) < self.explorer.parameters.stride);
+        self.approaches += u32::from(way_length(&way) < self.explorer.parameters.stride);
         ControlFlow::Continue(self.explorer.drive(time, chart, &way))
     }
 
