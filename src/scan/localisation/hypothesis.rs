@@ -84,6 +84,11 @@ impl Hypothesis {
         self.covariance[(0, 0)].max(self.covariance[(1, 1)]).max(0.0).sqrt()
     }
 
+    /// Whether the position is known in all directions.
+    pub(super) fn is_known(&self) -> bool {
+        self.deviation() <= KNOWN
+    }
+
     /// Moves with the robot, by its motion in its own frame.
     pub(super) fn predict(&mut self, motion: &Pose, parameters: &LocaliserParameters) {
         let before = self.pose;
@@ -111,7 +116,7 @@ impl Hypothesis {
     /// Edges of surfaces have no normal, so that these steps leave the pose where it is along a single wall.
     /// It is then moved along the axis that is known least to where the scan is more likely: otherwise, of
     /// poses that the world does not distinguish, those would seem more probable that a search has hit
-    /// better.
+    /// better. How probable a pose is by odometry counts there too, so that noise moves none along a wall.
     pub(super) fn match_scan(
         &mut self,
         map: &LocalisationMap,
@@ -129,13 +134,8 @@ impl Hypothesis {
         for _ in 0..steps {
             let found = evidence(map, scan, bench, &self.pose, parameters, gate);
             information = known + found.information;
-            let strayed = Vector3::new(
-                predicted.x - self.pose.x,
-                predicted.y - self.pose.y,
-                angle_difference(predicted.heading, self.pose.heading),
-            );
             let Some(solver) = information.cholesky() else { break };
-            let step = solver.solve(&(known * strayed + found.residual));
+            let step = solver.solve(&(known * strayed(&predicted, &self.pose) + found.residual));
             self.pose = Pose::new(
                 self.pose.x + step.x.clamp(-0.1, 0.1),
                 self.pose.y + step.y.clamp(-0.1, 0.1),
@@ -147,14 +147,20 @@ impl Hypothesis {
             self.covariance = covariance;
         }
         let mut found = evidence(map, scan, bench, &self.pose, parameters, gate);
-        if self.deviation() > KNOWN {
+        if !self.is_known() {
+            // How much less probable a pose is by odometry.
+            let unlikely = |pose: &Pose| {
+                let strayed = strayed(&predicted, pose);
+                0.5 * (strayed.transpose() * known * strayed).x
+            };
             let axes = self.covariance.symmetric_eigen();
             let axis = axes.eigenvectors.column(axes.eigenvalues.imax()).into_owned();
             for step in SLIDES.into_iter().flat_map(|step| [step, -step]) {
                 for _ in 0..MOST_SLIDES {
                     let pose = slid(&self.pose, &(axis * step));
                     let other = evidence(map, scan, bench, &pose, parameters, gate);
-                    if other.log_likelihood <= found.log_likelihood {
+                    let gain = other.log_likelihood - found.log_likelihood;
+                    if gain <= unlikely(&pose) - unlikely(&self.pose) {
                         break;
                     }
                     (self.pose, found) = (pose, other);
@@ -164,6 +170,12 @@ impl Hypothesis {
         self.explained = found.explained;
         found.log_likelihood
     }
+}
+
+/// What a pose is off the predicted one: x, y and heading.
+fn strayed(predicted: &Pose, pose: &Pose) -> Vector3<f64> {
+    let turned = angle_difference(predicted.heading, pose.heading);
+    Vector3::new(predicted.x - pose.x, predicted.y - pose.y, turned)
 }
 
 /// A pose, moved by a change of x, y and heading.
