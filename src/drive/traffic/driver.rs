@@ -50,12 +50,12 @@ pub enum TrafficState {
 /// | `Turn` | an arrow is before a crossing at which the car need not stop any more | an arc onto the other road by odometry, then onto its lane by camera | the lane is where odometry expects it: `Follow` |
 ///
 /// `Stop` and `Wait` add to the other states, whose path the car keeps. In each state, the speed is at most
-/// what bends and sight allow ([`LaneKeeper`]), what stops the car before a box in its way, and what the
-/// numbers of speed zones allow.
+/// what bends and sight allow ([`LaneKeeper`]), what stops the car before a box in its way, what the numbers
+/// of speed zones allow, and `crosswalk` at crosswalks.
 ///
 /// # Limits
 ///
-/// The start box and signs are not handled. Oncoming traffic is seen from 4 m on, and on
+/// The start box and signs are not handled. Lanes are changed along curves for a car at the rules' size. Oncoming traffic is seen from 4 m on, and on
 /// straights; what appears when the car is already within 0.5 m of what it passes is not given way. Give-way
 /// lines of which less than a third is left are not seen. `roverlab traffic --campaign` counts what goes
 /// wrong.
@@ -215,16 +215,17 @@ impl TrafficDriver {
     fn decide(&mut self, time: f64, speed: f64) -> f64 {
         let elements: Vec<RoadElement> = self.finder.elements().collect();
         let most = self.halt_speed(time, speed, &elements).min(self.zone_speed(&elements));
+        let most = most.min(self.crosswalk_speed(&elements));
         // A wait that has just ended forgets what was crossing.
         let elements: Vec<RoadElement> = self.finder.elements().collect();
-        let mut obstacles = obstacles(&elements, self.side);
+        let mut obstacles = obstacles(&elements, self.side, self.road_size);
         // Those behind a line are no reason to change lanes before it: traffic may be crossing there.
         if let Some(Halt::Approach { place } | Halt::Stand { place, .. }) = self.halt {
             obstacles.retain(|it| it.ahead < place - self.driven);
         }
         // Nor is what is in a crossing: it drives on.
         let (crossing, mut obstacles): (Vec<_>, Vec<_>) =
-            obstacles.into_iter().partition(|it| is_in_crossing(&elements, it.ahead));
+            obstacles.into_iter().partition(|it| is_in_crossing(&elements, it.ahead, self.road_size));
         self.remember(time, &mut obstacles);
         self.change_lanes(speed, &obstacles);
         obstacles.extend(crossing);
@@ -237,20 +238,31 @@ impl TrafficDriver {
         let mut most = f64::INFINITY;
         for RoadElement { kind, ahead, .. } in elements {
             match *kind {
-                _ if is_in_zebra(elements, *ahead) => {}
+                _ if is_in_zebra(elements, *ahead, self.road_size) => {}
                 RoadElementKind::SpeedLimit(number) => {
                     let limit = WITHIN * self.road_size * f64::from(number) / NUMBER;
-                    let left = (self.gap(*ahead) - SLOWED).max(0.0);
+                    let left = (self.gap(*ahead) - self.road_size * SLOWED).max(0.0);
                     most = most.min((limit * limit + 2.0 * self.parameters.brake * left).sqrt());
                     if left == 0.0 {
                         self.zone = limit;
                     }
                 }
-                RoadElementKind::SpeedLimitEnd if *ahead < -ENDED => self.zone = f64::INFINITY,
+                RoadElementKind::SpeedLimitEnd if *ahead < -ENDED * self.road_size => {
+                    self.zone = f64::INFINITY
+                }
                 _ => {}
             }
         }
         most.min(self.zone)
+    }
+
+    /// Maximum speed before crosswalks, and until the car's front is beyond.
+    fn crosswalk_speed(&self, elements: &[RoadElement]) -> f64 {
+        let TrafficParameters { crosswalk, brake, .. } = self.parameters;
+        let is_zebra = |element: &&RoadElement| element.kind == RoadElementKind::Zebra;
+        let ahead = elements.iter().filter(is_zebra).map(|element| self.gap(element.ahead));
+        let most = |gap: f64| (crosswalk * crosswalk + 2.0 * brake * gap.max(0.0)).sqrt();
+        ahead.filter(|gap| *gap > -CROSSWALK * self.road_size).map(most).fold(f64::INFINITY, f64::min)
     }
 
     /// Stops at lines and crosswalks. Returns the maximum speed.
@@ -275,15 +287,16 @@ impl TrafficDriver {
     /// Waits at a line until its time is over and nobody is on the road.
     fn wait(&mut self, time: f64, (place, since): (f64, f64), elements: &[RoadElement]) {
         let ahead = place - self.driven;
-        let is_here = |element: &&RoadElement| (element.ahead - ahead).abs() < SAME;
+        let is_here = |element: &&RoadElement| (element.ahead - ahead).abs() < self.road_size * SAME;
         let shows =
             |kind: RoadElementKind| elements.iter().filter(is_here).any(|element| element.kind == kind);
         let is_crosswalk = shows(RoadElementKind::Zebra);
         let is_short = shows(RoadElementKind::GiveWayLine) && !shows(RoadElementKind::StopLine);
+        let [line, crossing] = [LINE, CROSSING].map(|length| self.road_size * length);
         let is_occupied = if is_crosswalk {
             self.sees_pedestrian(ahead)
         } else {
-            self.finder.sees_box((ahead + LINE, ahead + LINE + CROSSING), PRIORITY, 0.0)
+            self.finder.sees_box((ahead + line, ahead + line + crossing), self.road_size * PRIORITY, 0.0)
         };
         if is_occupied {
             self.occupied = time;
@@ -291,7 +304,7 @@ impl TrafficDriver {
         let halt = self.parameters.halts[usize::from(is_short && !is_crosswalk)];
         if time - since >= halt && time - self.occupied > FREE {
             // What has crossed is gone: the road was seen to be free.
-            self.finder.forget_boxes((ahead, ahead + CROSSING));
+            self.finder.forget_boxes((ahead, ahead + crossing));
             self.released.push(place);
             self.released.retain(|place| self.driven - place < 1.0);
             self.halt = None;
@@ -300,28 +313,31 @@ impl TrafficDriver {
 
     /// Whether the car stops at a place ahead (m).
     fn is_stopping_at(&self, ahead: f64) -> bool {
-        matches!(self.halt, Some(Halt::Approach { place }) if (place - self.driven - ahead).abs() < SAME)
+        matches!(self.halt, Some(Halt::Approach { place }) if (place - self.driven - ahead).abs() < self.road_size * SAME)
     }
 
     /// Whether somebody is on a crosswalk a distance ahead (m): between its stripes, no foot tells a box.
     fn sees_pedestrian(&self, ahead: f64) -> bool {
-        self.finder.sees_box((ahead, ahead + CROSSWALK), 0.0, ZEBRA)
+        let [crosswalk, zebra] = [CROSSWALK, ZEBRA].map(|length| self.road_size * length);
+        self.finder.sees_box((ahead, ahead + crosswalk), 0.0, zebra)
     }
 
     /// The next place where the car has to stop, by the distance driven (m).
     fn next_halt(&self, elements: &[RoadElement]) -> Option<f64> {
         let has_to_stop = |element: &&RoadElement| match element.kind {
             // By the rules, elements are a metre apart: a line at a crosswalk is one of its stripes' ends.
-            RoadElementKind::StopLine | RoadElementKind::GiveWayLine => !is_in_zebra(elements, element.ahead),
+            RoadElementKind::StopLine | RoadElementKind::GiveWayLine => {
+                !is_in_zebra(elements, element.ahead, self.road_size)
+            }
             RoadElementKind::Zebra => {
-                elements.iter().any(|other| is_at(other, element.ahead))
+                elements.iter().any(|other| is_at(other, element.ahead, self.road_size))
                     || self.is_stopping_at(element.ahead) && self.sees_pedestrian(element.ahead)
             }
             _ => false,
         };
         let is_open = |place: &f64| {
             self.gap(place - self.driven) > -0.05
-                && self.released.iter().all(|done| (done - place).abs() > SAME)
+                && self.released.iter().all(|done| (done - place).abs() > self.road_size * SAME)
         };
         elements.iter().filter(has_to_stop).map(|element| self.driven + element.ahead).find(is_open)
     }

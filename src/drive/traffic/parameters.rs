@@ -9,6 +9,8 @@ pub struct TrafficParameters {
     pub lane: LaneKeeperParameters,
     /// Maximum speed while a standing obstacle is passed, and while a moving one is (m/s).
     pub passing: [f64; 2],
+    /// Maximum speed on a crosswalk and before one (m/s).
+    pub crosswalk: f64,
     /// Distance from the car's front to a line at which it stops (m).
     pub gap: f64,
     /// Distance behind an obstacle that is not passed (m).
@@ -30,6 +32,7 @@ impl Default for TrafficParameters {
         Self {
             lane: LaneKeeperParameters { speed: 0.9, ..LaneKeeperParameters::default() },
             passing: [0.7, 1.4],
+            crosswalk: 0.6,
             gap: 0.07,
             following: 0.45,
             brake: 1.2,
@@ -44,6 +47,7 @@ impl TrafficParameters {
     pub(super) fn validate(&self) -> Result<(), ParameterError> {
         require_positive("passing a standing obstacle", self.passing[0])?;
         require_positive("passing a moving obstacle", self.passing[1])?;
+        require_positive("speed on a crosswalk", self.crosswalk)?;
         require_not_negative("gap", self.gap)?;
         require_not_negative("following", self.following)?;
         require_positive("brake before lines", self.brake)?;

@@ -129,10 +129,13 @@ fn brightness(view: &RoadView, row: usize, range: (f64, f64), tone: &Tone) -> Sp
 
 /// Finds crosswalks: their near edges.
 pub(super) fn zebras(view: &RoadView, tones: &Tones, road: &RoadAhead, found: &mut Vec<Detection>) {
-    let inner = road.edge - MARGIN;
+    // Of each lane alone, because over both, stripes that are a little too near to each other would cancel.
+    let lanes = lanes(road);
     let striped = |row: usize| {
-        let spectrum = brightness(view, row, (-inner, inner), &tones.stripes);
-        spectrum.visible > 0.5 && spectrum.amplitude > STRIPED
+        let [own, other] = lanes.map(|lane| brightness(view, row, lane, &tones.stripes));
+        let mean = |of: fn(&Spectrum) -> f64| 0.5 * (of(&own) + of(&other));
+        mean(|lane| lane.visible) > 0.5
+            && mean(|lane| lane.visible * lane.amplitude) > STRIPED * mean(|lane| lane.visible)
     };
     let mut row = 0;
     while row < ROWS {

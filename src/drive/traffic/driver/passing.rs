@@ -46,12 +46,12 @@ impl TrafficDriver {
         }
         let Some((last, seen, driven)) = self.passed else { return };
         let moves = last.speed > MOVES;
-        let speed = if moves { DRIVES } else { 0.0 };
+        let speed = if moves { self.road_size * DRIVES } else { 0.0 };
         let ahead = last.ahead + speed * (time - seen) - (self.driven - driven);
-        let index = obstacles.iter().position(|it| (it.ahead - ahead).abs() < SAME);
+        let index = obstacles.iter().position(|it| (it.ahead - ahead).abs() < self.road_size * SAME);
         // Of what drives beside the car, a part is seen, and the car's own motion makes it seem to stand.
-        let index = if moves && ahead < CUT {
-            obstacles.retain(|it| (it.ahead - ahead).abs() >= SAME);
+        let index = if moves && ahead < self.road_size * CUT {
+            obstacles.retain(|it| (it.ahead - ahead).abs() >= self.road_size * SAME);
             None
         } else {
             index
@@ -70,7 +70,7 @@ impl TrafficDriver {
 
     /// Whether something comes in the other lane.
     fn comes(&self) -> bool {
-        comes(self.finder.in_other_lane(), self.parameters.body[0])
+        comes(self.finder.in_other_lane(), self.parameters.body[0], self.road_size)
     }
 
     /// Whether the car stays in its lane on a path at a distance beside the lane's centre (m).
@@ -82,7 +82,7 @@ impl TrafficDriver {
     /// Whether the car still can let pass what comes, as it has only begun to change lanes.
     fn has_to_yield(&self, beside: f64, obstacles: &[Obstacle]) -> bool {
         let reach = self.reach();
-        let is_near = |it: &Obstacle| it.is_in_way(reach) && self.gap(it.ahead) < YIELDS;
+        let is_near = |it: &Obstacle| it.is_in_way(reach) && self.gap(it.ahead) < self.road_size * YIELDS;
         self.lateral == Lateral::Pass
             && self.comes()
             && !self.stays_in_lane(beside)
@@ -92,8 +92,9 @@ impl TrafficDriver {
     /// Begins and ends passing.
     pub(super) fn change_lanes(&mut self, speed: f64, obstacles: &[Obstacle]) {
         let reach = self.reach();
-        let is_near =
-            |it: &&Obstacle| it.is_in_way(reach) && it.ahead + it.length > 0.0 && self.gap(it.ahead) < NOTICE;
+        let is_near = |it: &&Obstacle| {
+            it.is_in_way(reach) && it.ahead + it.length > 0.0 && self.gap(it.ahead) < self.road_size * NOTICE
+        };
         let beside = obstacles.iter().filter(is_near).map(|it| it.left + reach).reduce(f64::max);
         match beside {
             Some(beside) if self.has_to_yield(beside, obstacles) => {
@@ -127,7 +128,8 @@ impl TrafficDriver {
         let half = self.parameters.body[1];
         obstacles.iter().all(|it| {
             let is_in_way = it.right < beside + half && it.left > beside - half;
-            let is_near = it.ahead + it.length > 0.0 && self.gap(it.ahead) < NOTICE + FREE_LANE;
+            let is_near =
+                it.ahead + it.length > 0.0 && self.gap(it.ahead) < self.road_size * (NOTICE + FREE_LANE);
             !(is_in_way && is_near)
         })
     }
@@ -145,10 +147,10 @@ impl TrafficDriver {
         let front = self.side * (lane.offset + p.body[0] * math::sin(lane.heading));
         let (may_pass, comes) = (self.finder.may_pass(), self.comes());
         let apart = match self.lateral {
-            Lateral::Pass | Lateral::Return => SAFE,
-            Lateral::Behind if may_pass => WAITS,
-            Lateral::Own if may_pass && comes => WAITS,
-            Lateral::Own if may_pass => SAFE,
+            Lateral::Pass | Lateral::Return => self.road_size * SAFE,
+            Lateral::Behind if may_pass => self.road_size * WAITS,
+            Lateral::Own if may_pass && comes => self.road_size * WAITS,
+            Lateral::Own if may_pass => self.road_size * SAFE,
             Lateral::Own | Lateral::Behind => p.following,
         };
         if comes && matches!(self.lateral, Lateral::Own | Lateral::Behind) {
