@@ -2,13 +2,13 @@ use roverlab::geometry::math;
 use roverlab::random::Stream;
 use roverlab::vision::signs::Area;
 
-use super::{Marked, faces};
+use super::Marked;
+use super::faces::{Face, Faces};
 
 /// Size of the pictures (pixels), and their focal length, of a lens of 60 degrees.
 const SIZE: (usize, usize) = (320, 240);
 const FOCAL: f64 = 277.0;
-/// Side of a sign, and its distances (m).
-const SIDE: f64 = 0.1;
+/// Distances of a sign (m).
 const DISTANCES: [f64; 2] = [0.4, 1.5];
 /// Largest turn of a sign about its post (degrees).
 const TURN: f64 = 35.0;
@@ -21,22 +21,22 @@ const SAMPLES: usize = 3;
 /// Size from which a sign has to be found (pixels).
 pub(super) const LEAST: f64 = 20.0;
 
-/// Pictures with a sign each, and some without.
-pub(super) fn drawn(pictures: u32, seed: u64, purpose: &str) -> Vec<Marked> {
+/// Pictures with a face each, in turn, and some without.
+pub(super) fn drawn(faces: Faces, pictures: u32, seed: u64, purpose: &str) -> Vec<Marked> {
     let stream = Stream::new(seed);
-    (0..pictures).map(|index| frame(index, &mut stream.child(purpose, index.into()))).collect()
+    (0..pictures).map(|index| frame(faces, index, &mut stream.child(purpose, index.into()))).collect()
 }
 
 /// A sign in the ground of a picture.
 struct Sign {
-    class: usize,
+    face: &'static Face,
     area: Area,
 }
 
-fn frame(index: u32, stream: &mut Stream) -> Marked {
-    // Each seventh one is empty.
-    let class = index as usize % (faces::NAMES.len() + 1);
-    let sign = (class < faces::NAMES.len()).then(|| placed(class, stream));
+fn frame(faces: Faces, index: u32, stream: &mut Stream) -> Marked {
+    // After one of each face there is an empty one.
+    let face = faces.all().get(index as usize % (faces.all().len() + 1));
+    let sign = face.map(|face| placed(face, stream));
     let ground = Ground::new(stream);
     let light = stream.between(LIGHT[0], LIGHT[1]);
     let blur = stream.between(0.0, BLUR);
@@ -59,23 +59,31 @@ fn frame(index: u32, stream: &mut Stream) -> Marked {
             }));
         }
     }
-    let signs = sign.map(|sign| (sign.class, sign.area)).into_iter().collect();
+    let signs = sign.map_or_else(Vec::new, |sign| sign.marks(faces.class(sign.face)));
     Marked { name: format!("picture {index}"), pixels, size: SIZE, signs }
 }
 
-fn placed(class: usize, stream: &mut Stream) -> Sign {
-    let height = FOCAL * SIDE / stream.between(DISTANCES[0], DISTANCES[1]);
-    let width = height * math::cos(stream.between(-TURN, TURN).to_radians());
+fn placed(face: &'static Face, stream: &mut Stream) -> Sign {
+    let height = FOCAL * face.size.1 / stream.between(DISTANCES[0], DISTANCES[1]);
+    let width = height * (face.size.0 / face.size.1) * math::cos(stream.between(-TURN, TURN).to_radians());
     let left = stream.between(0.0, SIZE.0 as f64 - width);
     let top = stream.between(0.0, SIZE.1 as f64 - height);
-    Sign { class, area: Area::new(left, top, width, height) }
+    Sign { face, area: Area::new(left, top, width, height) }
 }
 
 impl Sign {
     fn colour(&self, (x, y): (f64, f64)) -> Option<[f64; 3]> {
         let place = ((x - self.area.left) / self.area.width, (y - self.area.top) / self.area.height);
         let inside = (0.0..1.0).contains(&place.0) && (0.0..1.0).contains(&place.1);
-        if inside { faces::colour(self.class, place) } else { None }
+        if inside { (self.face.colour)(place) } else { None }
+    }
+
+    /// The class and areas of its parts.
+    fn marks(&self, class: usize) -> Vec<(usize, Area)> {
+        let width = self.area.width / self.face.parts as f64;
+        let left = |part: usize| self.area.left + part as f64 * width;
+        let area = |part| Area { left: left(part), width, ..self.area };
+        (0..self.face.parts).map(|part| (class, area(part))).collect()
     }
 }
 

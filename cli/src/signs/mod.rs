@@ -17,6 +17,7 @@ use roverlab::vision::signs::{Area, SignFinder, SignModel, SignTrainer};
 
 use crate::common::{Failure, Outcome, PlainArgs, Report, Stopwatch, check_writable, regular_bytes};
 use evaluation::Evaluation;
+use faces::Faces;
 
 /// Command line of `signs`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -32,8 +33,10 @@ their pictures, all pictures have been scaled since; boxes are then taken to hav
 With --network, a network learns the classes too: from signs that are shown turned, slanted, darker, coarser and partly covered. What
 it has learned is kept in the folder FILE.training, from which the same command goes on after an interruption.
 
-Without a folder it learns from, and is tried on, pictures that it draws: six faces at 0.4 to 1.5 m, turned by up to 35 degrees, in
-30 to 150 % of the light, blurred by motion. Signs of less than 20 pixels may be found, but need not be.
+Without a folder it learns from, and is tried on, pictures that it draws: faces at 0.4 to 1.5 m, turned by up to 35 degrees, in
+30 to 150 % of the light, blurred by motion. Signs of less than 20 pixels may be found, but need not be. There are six faces of the
+book's model road, or with `--faces caudri` 25 faces of 19 classes that the rules of the CAuDri-Challenge name, in their sizes. A
+speed zone has any number there, and a board of three chevrons counts as three signs.
 
 JSON fields:
   pictures                    number of pictures that it was tried on, or that it learned from
@@ -75,13 +78,17 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE.safetensors", requires = "evaluate")]
     pub(crate) weights: Option<PathBuf>,
 
-    /// Pictures that are drawn to learn from.
-    #[arg(long, value_name = "N", default_value_t = 84, value_parser = clap::value_parser!(u32).range(7..=10_000), allow_hyphen_values = true)]
-    pub(crate) learn: u32,
+    /// Faces that are drawn.
+    #[arg(long, value_enum, default_value = "book")]
+    pub(crate) faces: Faces,
 
-    /// Pictures that are drawn to be tried on.
-    #[arg(long, value_name = "N", default_value_t = 28, value_parser = clap::value_parser!(u32).range(1..=100_000), allow_hyphen_values = true)]
-    pub(crate) frames: u32,
+    /// Pictures that are drawn to learn from [default: 12 of each face, and 12 without a sign].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(7..=10_000), allow_hyphen_values = true)]
+    pub(crate) learn: Option<u32>,
+
+    /// Pictures that are drawn to be tried on [default: 4 of each face, and 4 without a sign].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000), allow_hyphen_values = true)]
+    pub(crate) frames: Option<u32>,
 
     #[command(flatten)]
     pub(crate) plain: PlainArgs,
@@ -89,8 +96,8 @@ pub(crate) struct Args {
 
 crate::common::shares_options!(Args, plain: PlainArgs, unheeded: [
     ("always", &["animation"]),
-    ("train", &["frames", "learn", "picture"]),
-    ("evaluate", &["frames", "learn", "seed"]),
+    ("train", &["faces", "frames", "learn", "picture"]),
+    ("evaluate", &["faces", "frames", "learn", "seed"]),
     ("!network", &["epochs", "threads"]),
 ]);
 
@@ -113,21 +120,29 @@ impl Marked {
 /// The command's work.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     args.plain.check_picture()?;
-    let seed = args.plain.seed;
-    match (&args.train, &args.out, &args.evaluate, &args.weights) {
-        (Some(from), Some(out), ..) => train(args, from, out),
-        (.., Some(folder), Some(weights)) => {
-            let evaluation = evaluate(folder, weights)?;
-            Ok(args.plain.draw(evaluation.report(), "signs.svg", || drawing::picture(&evaluation)))
-        }
-        _ => {
-            let names: Vec<String> = faces::NAMES.map(String::from).to_vec();
-            let model = learned(&trainer(&names, &frames::drawn(args.learn, seed, "learned"))?, true, seed)?;
-            let pictures = frames::drawn(args.frames, seed, "tried");
-            let evaluation = Evaluation::by_search(&mut SignFinder::new(model), &pictures, frames::LEAST)?;
-            Ok(args.plain.draw(evaluation.report(), "signs.svg", || drawing::picture(&evaluation)))
-        }
+    let evaluation = match (&args.train, &args.out, &args.evaluate, &args.weights) {
+        (Some(from), Some(out), ..) => return train(args, from, out),
+        (.., Some(folder), Some(weights)) => evaluate(folder, weights)?,
+        _ => evaluate_drawn(args)?,
+    };
+    Ok(args.plain.draw(evaluation.report(), "signs.svg", || drawing::picture(&evaluation)))
+}
+
+/// Learns from pictures that are drawn, and is tried on others.
+fn evaluate_drawn(args: &Args) -> Result<Evaluation, Failure> {
+    let (faces, seed) = (args.faces, args.plain.seed);
+    // Each face once, and a picture without.
+    let round = faces.all().len() as u32 + 1;
+    let learn = args.learn.unwrap_or(12 * round);
+    if learn < round {
+        return Err(Failure::input(format!(
+            "--learn: found {learn}; expected at least {round}: each face once, and a picture without"
+        )));
     }
+    let names: Vec<String> = faces.names().into_iter().map(String::from).collect();
+    let model = learned(&trainer(&names, &frames::drawn(faces, learn, seed, "learned"))?, true, seed)?;
+    let pictures = frames::drawn(faces, args.frames.unwrap_or(4 * round), seed, "tried");
+    Evaluation::by_search(&mut SignFinder::new(model), &pictures, frames::LEAST)
 }
 
 fn train(args: &Args, from: &Path, out: &Path) -> Result<Report, Failure> {
