@@ -201,7 +201,7 @@ fn lanes() {
         { Positive: speed, pause; NotNegative: duration, disturbance; } but seed);
     check!(TrafficParameters = TrafficParameters::default(),
         |p| TrafficDriver::new(camera(), RoadModel::default(), p)?,
-        { Positive: brake; NotNegative: gap, following, clearance; } but lane, passing, halts, body);
+        { Positive: brake, crosswalk; NotNegative: gap, following, clearance; } but lane, passing, halts, body);
     check!(RoadSharingParameters = RoadSharingParameters::default(), |p| RoadSharing::new(p)?,
         { Positive: interval, memory, brake; NotNegative: gap, clearance; } but body);
     check!(RoadStationParameters = RoadStationParameters::default(), |p| RoadStation::new(p)?,

@@ -32,7 +32,8 @@ and with --campaign, instead of rows and runs:
   bugs               list of {bug, complete, runs, correct, contacts, wrong_seeds, contact_seeds, bounds_checked,
                      bounds_broken, closest} where `closest` is the largest ratio of a path to its bound
 Intervals [low, high] are 95 % bootstrap intervals over courses.
-Outcomes: compared, wrong (a verdict of a provably complete algorithm, or a bound), passed, collided."
+Outcomes: compared, wrong (a verdict of a provably complete algorithm, or a bound), timed_out (a run was cut by
+--time-limit), passed, collided."
 )]
 pub(crate) struct Args {
     /// Courses of each family, or runs in the world of --world [default: 10], or courses of the campaign

@@ -18,7 +18,13 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     args.common.tell(table::text(&rows));
     // Odometry errors can mislead any algorithm: verdicts are judged only without noise.
     let good = args.common.noise > 0.0 || table::all_correct(&rows);
-    let outcome = if good { Outcome::verdict("compared") } else { Outcome::failure("wrong") };
+    let is_cut = args.common.time_limit.is_some()
+        && entries.iter().flat_map(|entry| &entry.rides).any(|ride| ride.ending.is_timed_out());
+    let outcome = match (is_cut, good) {
+        (true, _) => Outcome::failure("timed_out"),
+        (false, true) => Outcome::verdict("compared"),
+        (false, false) => Outcome::failure("wrong"),
+    };
     let report =
         summed(outcome, &entries).table("rows", table::json(&rows)).table("runs", table::json_runs(&rows));
     drawn(args, report, entries.first().filter(|_| is_recorded))

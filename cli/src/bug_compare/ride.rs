@@ -26,6 +26,10 @@ pub(crate) enum Ending {
 }
 
 impl Ending {
+    pub(crate) fn is_timed_out(&self) -> bool {
+        matches!(self, Self::Verdict(BugOutcome::TimedOut | BugOutcome::Stopped))
+    }
+
     /// Name of the ending.
     pub(crate) fn word(&self) -> &'static str {
         match self {

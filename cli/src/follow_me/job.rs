@@ -1,5 +1,6 @@
 use std::sync::Arc;
 
+use roverlab::drive::CruiseParameters;
 use roverlab::geometry::{Point, units};
 use roverlab::io::sim::SimOptions;
 use roverlab::picture::{Figure, Mark, Picture, SERIES, Style};
@@ -40,8 +41,8 @@ JSON fields:
   time_limit_s, picture
   rows                        with --campaign only: the table
 Collisions are those of all robots; pose, odometry and path length are the leader's.
-Outcomes: followed, lost, blocked (the leader found no way and drove less than a third of the possible distance), timed_out
-(in the first 10 s), collided; with --campaign: passed, wrong."
+Outcomes: followed, lost, blocked (the leader found no way: it drove less than a third of the possible distance, and did not
+come by all markers), timed_out (in the first 10 s), collided; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
     /// Number of followers [default: those of the world, or 1].
@@ -103,7 +104,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let run = run(&mut *fleet, &scene, &waypoints, (mode, args.pattern), seconds, paced(common))?;
     drop(fleet);
     let outcome = match () {
-        () if run.is_leader_held() => Outcome::failure("blocked"),
+        () if run.is_leader_held() && !has_come_by(&scene, &run) => Outcome::failure("blocked"),
         () if run.lost.is_empty() && !run.has_formed() => Outcome::failure("timed_out"),
         () if run.lost.is_empty() => Outcome::verdict("followed"),
         () => Outcome::failure("lost"),
@@ -126,6 +127,14 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     .field("obstacles", scene.world.objects.len())
     .field("time_limit_s", rounded(seconds));
     Ok(common.draw(report, "follow_me.svg", || picture(args, &scene, &run, mode)))
+}
+
+/// Whether the leader has come by all of a world's markers, so that it found its way, however short.
+fn has_come_by(scene: &Scene, run: &SwarmRun) -> bool {
+    let near = CruiseParameters::default().arrival;
+    let is_passed = |place: Point| run.paths[0].iter().any(|(_, pose)| pose.distance_to(place) <= near);
+    let markers = &scene.world.markers;
+    !markers.is_empty() && markers.iter().all(|marker| is_passed(marker.position))
 }
 
 /// Rejects options that the robots of a fleet do not support.

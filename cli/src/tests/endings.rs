@@ -14,7 +14,8 @@ fn room(side: u32) -> String {
 
 #[test]
 fn a_run_that_was_cut_short_is_no_success() {
-    let cases: [(&str, &[&str]); 5] = [
+    let cases: [(&str, &[&str]); 6] = [
+        ("bug_compare", &["--time-limit", "1"]),
         ("motion", &["--time-limit", "0.05"]),
         ("lane_keeping", &["--minutes", "0.2", "--time-limit", "1"]),
         ("end_to_end", &["--minutes", "0.2", "--time-limit", "1"]),
@@ -48,6 +49,17 @@ fn robots_without_room_say_so() {
             "{command} {options:?}: {report} {err}"
         );
     }
+}
+
+/// A leader that stands at its only marker is not blocked.
+#[test]
+fn a_leader_may_arrive() {
+    let (world, scene) = (temporary("hall.wld"), temporary("hall.sim"));
+    fs::write(&world, "floor 6000 6000\n").unwrap();
+    let lines = "LabBot 1500 1500 0\nmarker 4500 1500 0 255 0\n";
+    fs::write(&scene, format!("world {}\n{lines}", text(&world))).unwrap();
+    let (status, report, err) = run("follow_me", &["--world", text(&scene)]);
+    assert_eq!((status, &report["outcome"]), (0, &"followed".into()), "{report} {err}");
 }
 
 /// A pool of 8 m x 6 m with more walls.

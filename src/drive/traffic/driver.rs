@@ -248,7 +248,7 @@ impl TrafficDriver {
                     }
                 }
                 RoadElementKind::SpeedLimitEnd if *ahead < -ENDED * self.road_size => {
-                    self.zone = f64::INFINITY
+                    self.zone = f64::INFINITY;
                 }
                 _ => {}
             }
