@@ -23,7 +23,7 @@ use roverlab::scan::{LocalisationMap, Localiser};
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Wall, World};
 
 use crate::common::{CommonArgs, Failure, OF_ONE_RUN, OF_PARTS, Outcome, PartArgs, Report, rounded};
-use crate::driving::{Conditions, Run, check_lidar, draw_contacts, paced, world_with_others};
+use crate::driving::{Conditions, Run, check_level_lidar, draw_contacts, paced, world_with_others};
 
 /// Command line of `coverage`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -81,7 +81,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     }
     common.check_picture()?;
     let scene = &common.placed_without_goal("the robot goes everywhere", scene)?;
-    check_lidar(scene)?;
+    check_level_lidar(scene)?;
     let done = cover(scene, |limit| Conditions::new(common, limit), paced(common))?;
     let Covered { plan, run, map, ratio, .. } = &done;
     let report = run.report(|outcome| match outcome {

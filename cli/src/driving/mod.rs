@@ -5,7 +5,7 @@ mod way;
 
 use std::sync::Arc;
 
-use roverlab::geometry::{Point, Pose, Twist};
+use roverlab::geometry::{Point, Pose, Twist, units};
 use roverlab::io::log::GroundTruth;
 use roverlab::io::sim::{NoiseModel, RobotTruth, SimOptions};
 use roverlab::io::{self, Drive, Key, TruthInSpace};
@@ -310,6 +310,25 @@ pub(crate) fn check_lidar(scene: &Scene) -> Result<(), Failure> {
         Some(_) => Ok(()),
         None => Err(Failure::input("found a robot without a lidar; expected one with a lidar")),
     }
+}
+
+/// Largest angle of a beam to the floor at which it counts as level (rad): over 10 m it rises by 10 mm.
+const LEVEL: f64 = 1e-3;
+
+/// Rejects a robot without a lidar, and one whose beams pass over walls or meet the floor, because maps have
+/// no heights.
+pub(crate) fn check_level_lidar(scene: &Scene) -> Result<(), Failure> {
+    check_lidar(scene)?;
+    let lidar = scene.robots[0].spec.lidar.unwrap_or_default();
+    let steepest =
+        [lidar.tilt, lidar.mount.pitch, lidar.mount.roll].map(f64::abs).into_iter().fold(0.0, f64::max);
+    if steepest > LEVEL {
+        let degrees = units::to_deg(steepest);
+        return Err(Failure::input(format!(
+            "found a lidar that is tilted by {degrees:.1} degrees; expected a level one, as the map has no heights"
+        )));
+    }
+    Ok(())
 }
 
 /// Rejects a robot with an unsuitable drive.

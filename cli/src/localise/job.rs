@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::drive::{Finding, Options, drive};
 use super::{campaign, picture, worlds};
 use crate::common::{CommonArgs, Failure, OF_PARTS, Outcome, PartArgs, Report, millimetres, rounded};
-use crate::driving::{Conditions, Run, check_lidar, paced, world_with_others};
+use crate::driving::{Conditions, Run, check_level_lidar, paced, world_with_others};
 
 /// Command line of `localise`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -16,6 +16,7 @@ use crate::driving::{Conditions, Run, check_lidar, paced, world_with_others};
     after_help = "\
 Without --world, the robot is at a random place, by the seed, in a built-in office. It knows the world, but neither its
 position nor its heading. It drives around at random until a single place explains all its scans, or --patience is over.
+Its lidar has to be level.
 
 With --campaign, many starts in worlds and halls, some of which look the same from several places; with --world, many
 starts in that world. An answer is wrong if it is a single place more than 100 mm or 5 standard deviations away, or one
@@ -72,7 +73,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
     let scene = common.placed_without_goal("the robot goes nowhere", || own_scene(common.seed))?;
-    check_lidar(&scene)?;
+    check_level_lidar(&scene)?;
     let conditions = Conditions { reserve: 0.0, ..Conditions::new(common, args.patience + 30.0)? };
     let run = run(args, &scene, &conditions, paced(common))?;
     let report = report(&run).field("time_limit_s", conditions.time_limit);

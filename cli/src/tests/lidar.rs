@@ -82,3 +82,15 @@ fn a_robot_that_fails_ends_the_run() {
     assert_eq!((status, report["outcome"].as_str()), (1, Some("failed")), "{report}");
     assert!(err.contains("link"), "{err}");
 }
+
+/// A map without heights does not tell what beams see that pass over walls.
+#[test]
+fn tilted_lidars_are_refused() {
+    for command in ["localise", "coverage"] {
+        let (status, _, err) = run(command, &["--robot", "LidarBot"]);
+        assert!(
+            status == 2 && err.contains("tilted by 10.0 degrees; expected a level one"),
+            "{command}: {err}"
+        );
+    }
+}

@@ -242,9 +242,7 @@ impl Localiser {
         let bounds = self.map.within_reach(self.driven.min(scan.range_max));
         for share in SHARES {
             let Some(poses) = search(&self.map, &bounds, scan, &self.parameters, share) else { break };
-            if !self.try_poses(poses, share, scan, bench) {
-                break;
-            }
+            self.try_poses(poses, share, scan, bench);
             self.unite();
             if self.hypotheses.len() <= MOST {
                 self.try_turned(share, scan, bench);
@@ -257,29 +255,23 @@ impl Localiser {
             self.hypotheses.clear();
         }
         self.unite();
-        // Poses that may be moved along a wall are as many as one likes, of which these are some.
-        if self.hypotheses.len() > MOST || !self.hypotheses.iter().all(Hypothesis::is_known) {
+        if self.hypotheses.len() > MOST {
             self.hypotheses.clear();
         }
         // One scan shows what is possible; the following ones how probable it is.
         self.hypotheses.iter_mut().for_each(|hypothesis| hypothesis.log_weight = 0.0);
     }
 
-    /// Creates hypotheses for those poses that explain a fraction of a scan after matching; false if one that
-    /// is not known explains it as well as any.
-    fn try_poses(&mut self, poses: Vec<Pose>, share: f64, scan: &LidarScan, bench: &mut Bench) -> bool {
+    /// Creates hypotheses for those poses that explain a fraction of a scan after matching.
+    fn try_poses(&mut self, poses: Vec<Pose>, share: f64, scan: &LidarScan, bench: &mut Bench) {
         for pose in poses {
             let mut hypothesis = Hypothesis::new(pose, CANDIDATE_SPREAD);
             hypothesis.log_weight =
                 hypothesis.match_scan(&self.map, scan, bench, &self.parameters, SEARCH_STEPS);
             if hypothesis.explained >= share && self.is_possible(&hypothesis) {
                 self.hypotheses.push(hypothesis);
-                if hypothesis.explained >= 1.0 - AS_WELL && !hypothesis.is_known() {
-                    return false;
-                }
             }
         }
-        true
     }
 
     /// Matches the scan again from headings around those found. Where walls consist of short pieces, as in a
