@@ -55,10 +55,10 @@ pub enum TrafficState {
 ///
 /// # Limits
 ///
-/// The start box and signs are not handled. Lanes are changed along curves for a car at the rules' size. Oncoming traffic is seen from 4 m on, and on
-/// straights; what appears when the car is already within 0.5 m of what it passes is not given way. Give-way
-/// lines of which less than a third is left are not seen. `roverlab traffic --campaign` counts what goes
-/// wrong.
+/// The start box and signs are not handled. Lanes are changed along curves for a car at the rules' size.
+/// Oncoming traffic is seen from 4 m on, and on straights; what appears when the car is already within 0.5
+/// m of what it passes is not given way. Give-way lines of which less than a third is left are not seen.
+/// `roverlab traffic --campaign` counts what goes wrong.
 ///
 /// ```
 /// use roverlab::drive::traffic::{TrafficDriver, TrafficParameters, TrafficState};
