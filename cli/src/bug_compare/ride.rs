@@ -26,6 +26,7 @@ pub(crate) enum Ending {
 }
 
 impl Ending {
+    /// Whether time was over before a verdict.
     pub(crate) fn is_timed_out(&self) -> bool {
         matches!(self, Self::Verdict(BugOutcome::TimedOut | BugOutcome::Stopped))
     }

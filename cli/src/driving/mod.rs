@@ -325,7 +325,7 @@ pub(crate) fn check_level_lidar(scene: &Scene) -> Result<(), Failure> {
     if steepest > LEVEL {
         let degrees = units::to_deg(steepest);
         return Err(Failure::input(format!(
-            "found a lidar that is tilted by {degrees:.1} degrees; expected a level one, as the map has no heights"
+            "found a lidar tilted by {degrees:.1} degrees; expected a level one, as maps have no heights"
         )));
     }
     Ok(())

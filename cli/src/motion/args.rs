@@ -30,7 +30,8 @@ JSON fields:
   scenes, pairs, false_alarms, found, reached, missed_seeds, lost_seeds
                               campaign of approaches: pairs of images while driving, the fractions of moving robots
                               found and reached, and the first seeds in which they were not
-Outcomes: watched, timed_out (no images compared), collided, failed; with --approach: reached, timed_out; with --campaign: passed, wrong."
+Outcomes: watched, timed_out (no images compared), collided, failed; with --approach: reached, timed_out; with --campaign:
+passed, wrong."
 )]
 pub(crate) struct Args {
     /// Keep the other robot still.

@@ -94,3 +94,25 @@ fn tilted_lidars_are_refused() {
         );
     }
 }
+
+/// Corners and walls of a hall look alike to a lidar that sees a half circle of 1.5 m. What the robot knows
+/// by odometry is not given up beside a wall, where noise makes other places along it seem likelier.
+#[test]
+fn a_half_blind_robot_is_not_sure_of_a_wrong_place() {
+    let [world, robot, scene] = ["hall_block.wld", "half_blind.robi", "half_blind.sim"].map(temporary);
+    let sides = ["0 0 3501.1 0", "3501.1 0 3501.1 4796.2", "3501.1 4796.2 0 4796.2", "0 4796.2 0 0"];
+    let walls = sides.map(|side| format!("{side} 10 300\n")).concat();
+    let block = "1747 4144 1807 4144\n1807 4144 1807 4204\n1807 4204 1747 4204\n1747 4204 1747 4144\n";
+    fs::write(&world, format!("floor 3501.13 4796.2\n{walls}{block}")).unwrap();
+    let body = "drive DIFFERENTIAL_DRIVE\nname Half\ncollider capsule 60 90 0 45 0\nmass 1 0 0 0\n";
+    let parts = "wheel 60 1800 540 80\naxis 20 0\nlidar 0 0 40 0 0 0 180 0 90\nlidar_range 1500\n";
+    fs::write(&robot, format!("{body}{parts}")).unwrap();
+    let lines = [&world, &robot].map(|file| file.display().to_string());
+    let start = "Half 2542.3 919.3 -51.8";
+    fs::write(&scene, format!("world {}\nrobot {}\n{start}\n", lines[0], lines[1])).unwrap();
+    for seed in ["6", "123"] {
+        let (_, report, err) = localise(&["--world", scene.to_str().unwrap(), "--seed", seed]);
+        let is_right = report["outcome"] != "localised" || number(&report, "position_error_mm") < 100.0;
+        assert!(is_right && err.is_empty(), "{seed}: {report} {err}");
+    }
+}

@@ -113,8 +113,8 @@ impl CoverageMap {
         let under = self.disc(self.parameters.radius);
         for cell in (0..self.places.len()).filter(|&cell| self.places[cell]) {
             self.floor[cell] = true;
-            // What is beneath the robot at a place amid others is a place itself, or beneath it at a place
-            // beside none, on the way there.
+            // Steps lead from a place to a cell beneath the robot, nearer and nearer. If not all are places,
+            // the cell is also beneath the robot at the last place before one that is none.
             if self.under(cell, &BESIDE).any(|beside| !self.places[beside]) {
                 for floor in self.under(cell, &under) {
                     self.floor[floor] = true;

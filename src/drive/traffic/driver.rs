@@ -313,7 +313,8 @@ impl TrafficDriver {
 
     /// Whether the car stops at a place ahead (m).
     fn is_stopping_at(&self, ahead: f64) -> bool {
-        matches!(self.halt, Some(Halt::Approach { place }) if (place - self.driven - ahead).abs() < self.road_size * SAME)
+        let is_there = |place: f64| (place - self.driven - ahead).abs() < self.road_size * SAME;
+        matches!(self.halt, Some(Halt::Approach { place }) if is_there(place))
     }
 
     /// Whether somebody is on a crosswalk a distance ahead (m): between its stripes, no foot tells a box.

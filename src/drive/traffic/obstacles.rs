@@ -27,7 +27,7 @@ const UNSEEN: f64 = 0.12;
 /// sides of its middle, and the error (m).
 const WAITING: std::ops::Range<f64> = -0.10..0.52;
 /// Distance beyond a crosswalk's near edge up to which nothing else stands, as elements are a metre apart by
-/// the rules (m): what looks like a box there are stripes that blur to one.
+/// the rules (m): what seems to stand there are stripes that blur to a box.
 const APART: f64 = 1.0;
 /// Length of a crosswalk (m).
 pub(super) const ZEBRA: f64 = 0.40;

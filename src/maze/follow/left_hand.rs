@@ -55,8 +55,8 @@ impl LeftHandParameters {
     }
 }
 
-/// Left-hand rule: left if free, else straight on, else right, else back (book, section 9.2). It ends in a cell
-/// with walls on all sides.
+/// Left-hand rule: left if free, else straight on, else right, else back (book, section 9.2). It ends in a
+/// cell with walls on all sides.
 ///
 /// ```
 /// use roverlab::maze::{Direction, LeftHand, LeftHandParameters};
@@ -243,12 +243,12 @@ impl Behaviour for LeftHand {
                 if let Some(controller) = &mut self.controller {
                     controller.turned(seen.pose);
                 }
-                match seen.done || seen.stalled {
-                    false => waits,
-                    true if back && self.is_wall(seen.readings[0]) => {
-                        Ok(ControlFlow::Break(LeftHandOutcome::Enclosed))
-                    }
-                    true => self.set_off(seen),
+                if !seen.done && !seen.stalled {
+                    waits
+                } else if back && self.is_wall(seen.readings[0]) {
+                    Ok(ControlFlow::Break(LeftHandOutcome::Enclosed))
+                } else {
+                    self.set_off(seen)
                 }
             }
             Phase::Driving if seen.stalled => Ok(ControlFlow::Break(LeftHandOutcome::Stalled)),

@@ -133,9 +133,9 @@ pub(super) fn zebras(view: &RoadView, tones: &Tones, road: &RoadAhead, found: &m
     let lanes = lanes(road);
     let striped = |row: usize| {
         let [own, other] = lanes.map(|lane| brightness(view, row, lane, &tones.stripes));
-        let mean = |of: fn(&Spectrum) -> f64| 0.5 * (of(&own) + of(&other));
-        mean(|lane| lane.visible) > 0.5
-            && mean(|lane| lane.visible * lane.amplitude) > STRIPED * mean(|lane| lane.visible)
+        let visible = own.visible + other.visible;
+        let amplitude = own.visible * own.amplitude + other.visible * other.amplitude;
+        visible > 1.0 && amplitude > STRIPED * visible
     };
     let mut row = 0;
     while row < ROWS {
