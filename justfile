@@ -24,6 +24,10 @@ ci *arguments:
 bench *words:
     cargo bench -p roverlab-bench -- {{words}}
 
+# How the time of each system grows with its size: a table, and docs/curves.svg.
+bench-curves:
+    cargo bench -p roverlab-bench --bench curves -- --picture docs/curves.svg
+
 # The pictures of the README's gallery, in docs/pictures.
 pictures:
     .ci/pictures

@@ -13,8 +13,6 @@
 mod compare;
 #[path = "planners/decomposition.rs"]
 mod decomposition;
-#[path = "planners/maps.rs"]
-mod maps;
 #[path = "planners/mesh.rs"]
 mod mesh;
 #[path = "planners/peers.rs"]
@@ -25,6 +23,8 @@ mod summary;
 mod table;
 
 use std::process::ExitCode;
+
+use roverlab_bench::maps;
 
 /// What the command line asks for.
 #[derive(Debug)]

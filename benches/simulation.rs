@@ -306,7 +306,6 @@ criterion_group!(
     robots::racing,
     craft::one_craft,
     craft::craft_fleet,
-    robots::fleet,
-    robots::growth
+    robots::fleet
 );
 criterion_main!(benches);

@@ -8,6 +8,7 @@ use roverlab::geometry::{Point, Pose, Vector, units};
 use roverlab::io::control::run;
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::kinematics::marine::CraftSpec;
+use roverlab::picture::{Mark, Picture, Style};
 use roverlab::world::{RobotSpec, Scene, Water, World};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -20,7 +21,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // By its Doppler log, it knows the way over ground.
     let raft = RobotSpec { dvl: Some(10.0), ..RobotSpec::solar_raft() };
     let start = Pose::new(4.0, 4.0, 0.0);
-    let simulation = Simulation::new(&Scene::with_robot(lake, raft, start), SimOptions::with_noise(1.0, 1))?;
+    let scene = Scene::with_robot(lake, raft, start);
+    let simulation =
+        Simulation::new(&scene, SimOptions { trail_interval: Some(0.2), ..SimOptions::with_noise(1.0, 1) })?;
     let truth = simulation.truth();
 
     let course = [Point::new(14.0, 4.0), Point::new(14.0, 12.0), Point::new(6.0, 14.0)];
@@ -42,5 +45,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         units::to_mm(off)
     );
     assert!(missed < 0.5 && off < 0.5);
+
+    let (end, mut picture) = (truth.robot(0)?, Picture::new(&scene.world));
+    picture.title("A raft on its course, in wind and current").mark(Mark::Start, start.position());
+    picture.line([start.position(), course[0], course[1], course[2]], Style::plan().labelled("course"));
+    picture.true_path(end.trail.iter().map(|point| point.pose.position()));
+    picture.robot(end.pose, &scene.robots[0].spec.footprint).save("target/pictures/boat.svg")?;
     Ok(())
 }

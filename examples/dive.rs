@@ -4,11 +4,12 @@
 //! `cargo run --release --example dive`
 
 use roverlab::drive::marine::{Dive, DiveOutcome, DiveParameters};
-use roverlab::geometry::{Pose, units};
+use roverlab::geometry::{Point, Pose, units};
 use roverlab::io::control::run;
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::{Clock, DepthSensor, Motors};
 use roverlab::kinematics::marine::CraftSpec;
+use roverlab::picture::{Picture, Style};
 use roverlab::world::{RobotSpec, Scene, World};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -20,8 +21,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let parameters = DiveParameters { depth: 2.0, duration: 60.0, ..DiveParameters::default() };
     let mut dive = Dive::new(&CraftSpec::mako(), parameters)?;
-    let mut farthest = 0.0_f64;
+    let (mut farthest, mut line) = (0.0_f64, Vec::new());
     let outcome = run(&mut mako, &mut dive, 120.0, |_, _, step| {
+        // A second is 50 mm wide.
+        line.push(Point::new(0.05 * step.time, 3.0 - step.seen.depth));
         if step.time > 25.0 {
             farthest = farthest.max((step.seen.depth - 2.0).abs());
         }
@@ -40,5 +43,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         units::to_mm(afloat)
     );
     assert!((mako.depth()? - afloat).abs() < 0.05);
+
+    let mut picture = Picture::new(&World::empty(5.0, 3.0));
+    picture.title("Depth against time").line(line, Style::true_path().labelled("depth"));
+    picture.line([1.0, 3.0].map(|height| Point::new(0.0, height)), Style::aid());
+    picture.line([0.0, 5.0].map(|time| Point::new(time, 1.0)), Style::plan().labelled("2 m"));
+    picture.save("target/pictures/dive.svg")?;
     Ok(())
 }

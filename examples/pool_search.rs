@@ -9,6 +9,7 @@ use roverlab::drive::marine::{PoolSearch, PoolSearchOutcome, PoolSearchParameter
 use roverlab::geometry::{Aabb, Point, Pose, units};
 use roverlab::io::control::run;
 use roverlab::io::sim::{SimOptions, Simulation};
+use roverlab::picture::{Mark, Picture};
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Shape, Water, World};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -24,7 +25,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mako = RobotSpec { dvl: Some(10.0), ..RobotSpec::mako() };
     let start = Pose::new(1.7, 1.7, 0.0);
     let scene = Scene::with_robot(pool, mako.clone(), start);
-    let simulation = Simulation::new(&scene, SimOptions { light: 0.5, ..SimOptions::with_noise(1.0, 1) })?;
+    let simulation = Simulation::new(
+        &scene,
+        SimOptions { light: 0.5, trail_interval: Some(0.2), ..SimOptions::with_noise(1.0, 1) },
+    )?;
 
     let area = Aabb::new(Point::origin(), Point::new(8.0, 6.0));
     let mut search = PoolSearch::new(&mako, start, area, true, PoolSearchParameters::default())?;
@@ -36,5 +40,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [x, y] = [place.x, place.y].map(units::to_mm);
     println!("found at ({x:.0}, {y:.0}) mm, {:.0} mm off", units::to_mm(off));
     assert!(off < 0.15);
+
+    let (end, mut picture) = (simulation.truth().robot(0)?, Picture::new(&scene.world));
+    picture.title("A search for something red").mark(Mark::Start, start.position()).mark(Mark::Goal, place);
+    picture.true_path(end.trail.iter().map(|point| point.pose.position()));
+    picture.robot(end.pose, &mako.footprint).save("target/pictures/pool_search.svg")?;
     Ok(())
 }

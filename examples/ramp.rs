@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // On the level, between both ramps: straight on, whatever comes.
     let [_, up, across, _] = levels.way[..] else { return Err("no ramps".into()) };
-    let middle = nalgebra::center(&up, &across);
+    let middle = up + (across - up) * 0.5;
     let parameters = CliffGuardParameters::of(&spec);
     let guarded = CliffGuard::equip(spec.clone(), &parameters);
     let start = Pose::new(middle.x, middle.y, levels.start.heading + 0.3);

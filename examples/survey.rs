@@ -7,6 +7,7 @@ use roverlab::drive::marine::{DepthMap, Survey, SurveyOutcome, SurveyParameters}
 use roverlab::geometry::{Aabb, Point, Pose, units};
 use roverlab::io::control::run;
 use roverlab::io::sim::{SimOptions, Simulation};
+use roverlab::picture::{Mark, Picture};
 use roverlab::world::{HeightField, RobotSpec, Scene, Terrain, World};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -21,7 +22,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mako = RobotSpec { dvl: Some(10.0), ..RobotSpec::mako() };
     let start = Pose::new(2.0, 2.0, 0.0);
     let scene = Scene::with_robot(pool, mako.clone(), start);
-    let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
+    let simulation =
+        Simulation::new(&scene, SimOptions { trail_interval: Some(0.2), ..SimOptions::with_noise(1.0, 1) })?;
 
     let mut survey = Survey::new(&mako, start, area, true, SurveyParameters::default())?;
     let mut map = DepthMap::new(area.inflated(-0.5), 1.0)?;
@@ -42,5 +44,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     println!("no depth is more than {:.0} mm off", units::to_mm(worst));
     assert!(worst < 0.03);
+
+    let (end, mut picture) = (simulation.truth().robot(0)?, Picture::new(&scene.world));
+    picture.title("Lanes over the floor of a pool").mark(Mark::Start, start.position());
+    picture.true_path(end.trail.iter().map(|point| point.pose.position()));
+    picture.robot(end.pose, &mako.footprint).save("target/pictures/survey.svg")?;
     Ok(())
 }

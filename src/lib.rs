@@ -80,10 +80,11 @@
 //! so is `picture`. With `default-features = false, features = ["vision"]` only the kernels of [`vision`]
 //! are compiled; `image` adds views of that crate's images.
 //!
-//! Off by default: `log` (recordings), `png` (pictures as PNG), `testing` (property-test strategies and
-//! checks for your own planners), `petgraph` (search on that crate's graphs), `rayon` (vision kernels and
-//! evolution on several threads), `checkpoint` (saved evolutions), `physics` (a walking robot), `learn`
-//! (training of networks), `robios` (a real EyeBot).
+//! Off by default: `log` (recordings; `lz4`, `zstd`: packed ones), `png` (pictures as PNG), `testing`
+//! (property-test strategies and checks for your own planners), `petgraph` (search on that crate's graphs),
+//! `parry2d` (worlds as shapes of that crate), `rayon` (vision kernels and evolution on several threads),
+//! `checkpoint` (saved evolutions), `physics` (a walking robot), `weights` (what has been learned, in files),
+//! `learn` (training of networks), `robios` (a real EyeBot).
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 // With some wings off, code used only by them is unused, and links to them are plain text.

@@ -152,7 +152,7 @@ mod campaigns {
     }
 
     #[test]
-    #[ignore = "a campaign on published data: ROVERLAB_DATA=FOLDER cargo test --release --all-features --test end_to_end campaigns"]
+    #[ignore = "a campaign on published data: ROVERLAB_DATA=FOLDER cargo test --release --all-features --test end_to_end campaigns -- --ignored --nocapture"]
     fn the_books_loop_at_the_size_of_lessons() {
         let image = image::imageops::flip_horizontal(&book_loop::picture());
         let network = network();

@@ -207,7 +207,7 @@ mod campaigns {
     }
 
     #[test]
-    #[ignore = "a campaign on published data: ROVERLAB_DATA=FOLDER cargo test --release --all-features --test lane_keeping campaigns"]
+    #[ignore = "a campaign on published data: ROVERLAB_DATA=FOLDER cargo test --release --all-features --test lane_keeping campaigns -- --ignored --nocapture"]
     fn twenty_laps_of_the_books_loop_with_its_lines_and_crosswalk() {
         let image = book_loop::picture();
         let course = book_loop::course();

@@ -36,6 +36,7 @@ macro_rules! lessons {
 lessons!(
     a_to_b,
     ackermann,
+    base_station,
     boat,
     bug_compare,
     camera,
@@ -68,7 +69,9 @@ lessons!(
     own_robot,
     parking,
     path_following,
+    ping,
     pool_search,
+    pool_wall,
     quadtree,
     random_drive,
     #[cfg(feature = "log")]
@@ -80,6 +83,7 @@ lessons!(
     ramp,
     summit,
     survey,
+    terrain_plan,
     traffic,
     two_robots,
     wall_following,

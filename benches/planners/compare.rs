@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use roverlab::nav::grid::{AnyAngle, GridPlanner, GridSearch};
+use roverlab_bench::maps::Map;
 
-use crate::maps::Map;
 use crate::table::{Answer, Entry, Truth};
 
 /// What a planner did on a map.

@@ -4,8 +4,7 @@ use std::time::Instant;
 
 use roverlab::nav::grid::Quadtree;
 use roverlab::world::BitGrid;
-
-use crate::maps;
+use roverlab_bench::maps;
 
 /// Decomposes the maps of a size that are made here.
 pub(crate) fn show(size: usize) {

@@ -12,8 +12,9 @@ use roverlab::io::sim::{Fleet, FleetRobot, SimOptions, SimRobot, Simulation, Tru
 use roverlab::io::{Clock, DistanceSensors, Psd, Result};
 use roverlab::kinematics::marine::CraftSpec;
 use roverlab::world::{RobotPlacement, RobotSpec, Scene, World};
+use roverlab_bench::fleet::PERIOD;
 
-use super::robots::{PERIOD, real_time_factor, run};
+use super::robots::{real_time_factor, run};
 
 /// Metres of the water in the pools.
 const DEEP: f64 = 1.9;

@@ -2,23 +2,17 @@
 
 use std::f64::consts::{PI, TAU};
 use std::hint::black_box;
-use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
 
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput};
 use roverlab::geometry::{Point, Pose, Twist, direction, math};
-use roverlab::io::sim::{Fleet, FleetRobot, NoiseModel, SimOptions, SimRobot, Simulation, Truth};
-use roverlab::io::{Clock, DistanceSensors, Drive, Lidar, LidarScan, LidarSettings, Odometry, Psd, Result};
+use roverlab::io::sim::{Fleet, SimOptions, SimRobot, Simulation, Truth};
+use roverlab::io::{Clock, Drive, Lidar, LidarScan, LidarSettings, Odometry, Result};
 use roverlab::race::{Cone, ConeColour, ConeTrack};
-use roverlab::world::space::{Solid, Space, Span};
-use roverlab::world::{
-    Colour, Footprint, Object, ObjectKind, RobotPlacement, RobotSpec, Scene, Shape, World,
-};
+use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Shape, World};
+use roverlab_bench::fleet::{PERIOD, avoid, avoiders};
 use roverlab_bench::{building, free_poses, thicket};
-
-/// Seconds between a robot's decisions.
-pub(super) const PERIOD: f64 = 0.1;
 
 /// A robot that looks around with its lidar ten times a second.
 struct Looker {
@@ -51,13 +45,6 @@ impl Looker {
         }
         Ok(())
     }
-}
-
-/// Ahead where there is room, and away from the nearer side.
-fn avoid(ahead: f64, left: f64, right: f64) -> Twist {
-    let room = (ahead - 0.15).clamp(0.0, 0.3);
-    let turn = if room < 0.1 { 2.0 } else { (left.min(0.5) - right.min(0.5)).clamp(-1.0, 1.0) };
-    Twist::new(room, turn)
 }
 
 /// Four walls and twenty discs.
@@ -172,42 +159,6 @@ pub(crate) fn racing(c: &mut Criterion) {
     group.finish();
 }
 
-/// So many S4s in a world, that read three PSDs and avoid what they see, ten times a second.
-fn avoiders(world: &World, robots: usize) -> Fleet<'static> {
-    let spec = Arc::new(RobotSpec::s4());
-    let placed = apart(free_poses(world, 3 * robots, 0.1, 6), robots);
-    let robots = placed.into_iter().map(|pose| RobotPlacement::new(Arc::clone(&spec), pose));
-    let scene = Scene { robots: robots.collect(), ..Scene::new(world.clone()) };
-    let options = SimOptions { noise: NoiseModel::real(), ..SimOptions::default() };
-    let mut fleet = Fleet::new(&scene, options).expect("a good scene");
-    for robot in 0..fleet.len() {
-        fleet
-            .control(robot, PERIOD, |robot: &mut FleetRobot<'_>| {
-                let ahead = robot.distance(Psd::FRONT)?;
-                let (left, right) = (robot.distance(Psd::LEFT)?, robot.distance(Psd::RIGHT)?);
-                robot.set_speed(avoid(ahead, left, right))?;
-                Ok(ControlFlow::Continue(()))
-            })
-            .expect("a robot and a period");
-    }
-    fleet
-}
-
-/// The first so many poses at which no two robots overlap.
-fn apart(poses: Vec<Pose>, robots: usize) -> Vec<Pose> {
-    let (outline, span) = (Footprint::Disc { radius: 0.06 }, Span { bottom: 0.0, top: 0.09 });
-    let mut space = Space::new(&[]);
-    let mut kept = Vec::with_capacity(robots);
-    for pose in poses {
-        if kept.len() < robots && space.clearance(&outline, &pose, span, 0.02, None) > 0.01 {
-            space.add(Solid::new(outline, pose, span.bottom, span.top));
-            kept.push(pose);
-        }
-    }
-    assert_eq!(kept.len(), robots, "the floor is too small");
-    kept
-}
-
 pub(super) fn run(fleet: &mut Fleet<'_>, seconds: f64) {
     fleet.run_for(black_box(seconds)).expect("nothing fails");
 }
@@ -249,18 +200,4 @@ pub(crate) fn fleet(c: &mut Criterion) {
     let factor = real_time_factor(50, PERIOD, || run(&mut fleet, PERIOD));
     println!("the same after ten minutes: {factor:.0} times real time");
     group.finish();
-}
-
-/// How the time grows with robots and walls, at one density of both.
-pub(crate) fn growth(_: &mut Criterion) {
-    println!("robots  walls   times real time   ns of a robot's tick");
-    let rows = [(100, 100), (100, 1000), (100, 10_000), (1000, 1000), (1000, 10_000), (10_000, 10_000)];
-    for (robots, walls) in rows {
-        let world = thicket(walls, 2);
-        let mut fleet = avoiders(&world, robots);
-        run(&mut fleet, 1.0);
-        let factor = real_time_factor(100, PERIOD, || run(&mut fleet, PERIOD));
-        let tick = 1e9 / (factor * 100.0 * robots as f64);
-        println!("{robots:>6} {walls:>6} {factor:>17.0} {tick:>22.0}");
-    }
 }

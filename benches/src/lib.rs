@@ -1,5 +1,8 @@
 //! Benchmarks of roverlab, and the worlds that they share; see the programs beside.
 
+pub mod fleet;
+pub mod maps;
+
 use roverlab::geometry::{Point, Pose, direction};
 use roverlab::random::Stream;
 use roverlab::world::{Wall, World};

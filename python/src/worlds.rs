@@ -177,7 +177,7 @@ fn in_space(world: &mut Stepped, index: usize) -> Result<[f64; SPACE]> {
         depth => depth?,
     };
     let truth = world.in_space(index)?;
-    let lost = truth.mishap.is_some_and(|mishap| mishap != Mishap::Stuck);
+    let lost = truth.mishap.is_some_and(Mishap::is_final);
     let Attitude { roll, pitch, yaw } = attitude;
     let height = truth.pose.position.z;
     Ok([roll, pitch, yaw, rates.x, rates.y, rates.z, depth, height, f64::from(u8::from(lost))])

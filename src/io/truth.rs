@@ -101,6 +101,13 @@ pub enum Mishap {
     Broken,
 }
 
+impl Mishap {
+    /// Whether the robot is lost: it will not drive again, in contrast to one that is stuck.
+    pub fn is_final(self) -> bool {
+        self != Self::Stuck
+    }
+}
+
 impl std::fmt::Display for Mishap {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {

@@ -189,9 +189,8 @@ fn the_border_of_the_world_is_an_edge() {
 }
 
 mod campaigns {
-    /// `cargo test --release --all-features --lib -- --ignored --nocapture ten_thousand_approaches`.
     #[test]
-    #[ignore = "takes minutes"]
+    #[ignore = "takes minutes: cargo test --release --all-features --lib -- --ignored ten_thousand_approaches"]
     fn ten_thousand_approaches() {
         super::approaches(super::EDGE, 10_000);
     }

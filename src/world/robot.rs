@@ -141,6 +141,40 @@ impl DriveSpec {
             Self::Differential { .. } | Self::Tracked { .. } | Self::Omni { .. } | Self::Craft(_) => None,
         }
     }
+
+    fn validate(&self) -> Result<(), ParameterError> {
+        match *self {
+            Self::Differential { wheel_diameter, track, max_wheel_speed, ticks_per_turn }
+            | Self::Ackermann { wheel_diameter, track, max_wheel_speed, ticks_per_turn, .. }
+            | Self::Tracked { wheel_diameter, track, max_wheel_speed, ticks_per_turn, .. }
+            | Self::Omni { wheel_diameter, track, max_wheel_speed, ticks_per_turn, .. } => {
+                require_positive("wheel diameter", wheel_diameter)?;
+                require_positive("track", track)?;
+                require_positive("maximal wheel speed", max_wheel_speed)?;
+                require_positive("ticks per turn", ticks_per_turn)?;
+            }
+            Self::Craft(ref craft) => {
+                let parts = craft.hull.len();
+                require("hull parts of a craft", parts as f64, parts > 0, "at least one")?;
+                craft.validate()?;
+            }
+        }
+        match *self {
+            Self::Ackermann { wheelbase, max_steering, dynamics, .. } => {
+                require_positive("wheelbase", wheelbase)?;
+                let good = max_steering > 0.0 && max_steering < std::f64::consts::FRAC_PI_2;
+                require("maximal steering", max_steering, good, "more than 0 and less than a right angle")?;
+                dynamics.map_or(Ok(()), |dynamics| dynamics.validate(wheelbase))
+            }
+            Self::Tracked { track, length, width, .. } => {
+                require_positive("belt length", length)?;
+                require_positive("belt width", width)?;
+                require("belt width", width, width <= track, "at most the distance between the belts")
+            }
+            Self::Omni { wheelbase, .. } => require_positive("wheelbase", wheelbase),
+            Self::Differential { .. } | Self::Craft(_) => Ok(()),
+        }
+    }
 }
 
 /// Mass and tyres of a car: the dynamic bicycle model, with one equivalent tyre per axle and without load
@@ -169,6 +203,20 @@ pub struct CarDynamics {
 impl CarDynamics {
     /// Speed above which tyres slip (m/s). Below half of it, wheels roll; in between, both are blended.
     pub const SLIPS: f64 = 4.0;
+
+    /// The integration is stable within these limits of stiffness and mass.
+    fn validate(&self, wheelbase: f64) -> Result<(), ParameterError> {
+        let within = |parameter, value: f64, most: f64, expected: &'static str| {
+            require(parameter, value, value > 0.0 && value < most, expected)
+        };
+        within("mass centre", self.mass_centre, wheelbase, "a place between the axles")?;
+        within("radius of gyration", self.gyration, 100.0, "more than 0 and less than 100")?;
+        within("grip", self.grip, 100.0, "more than 0 and less than 100")?;
+        within("tyre stiffness", self.stiffness, 100.0, "more than 0 and less than 100")?;
+        within("balance of the tyres", self.balance, 10.0, "more than 0 and less than 10")?;
+        within("brake", self.brake, 100.0, "more than 0 and less than 100")?;
+        within("steering rate", self.steering_rate, 100.0, "more than 0 and less than 100")
+    }
 }
 
 impl Default for CarDynamics {
@@ -299,65 +347,7 @@ impl RobotSpec {
     }
 
     fn validate_parts(&self) -> Result<(), ParameterError> {
-        match self.drive {
-            DriveSpec::Differential { wheel_diameter, track, max_wheel_speed, ticks_per_turn } => {
-                require_positive("wheel diameter", wheel_diameter)?;
-                require_positive("track", track)?;
-                require_positive("maximal wheel speed", max_wheel_speed)?;
-                require_positive("ticks per turn", ticks_per_turn)?;
-            }
-            DriveSpec::Ackermann {
-                wheel_diameter,
-                track,
-                wheelbase,
-                max_wheel_speed,
-                ticks_per_turn,
-                max_steering,
-                dynamics,
-            } => {
-                require_positive("wheel diameter", wheel_diameter)?;
-                require_positive("track", track)?;
-                require_positive("wheelbase", wheelbase)?;
-                let good = max_steering > 0.0 && max_steering < std::f64::consts::FRAC_PI_2;
-                require("maximal steering", max_steering, good, "more than 0 and less than a right angle")?;
-                require_positive("maximal wheel speed", max_wheel_speed)?;
-                require_positive("ticks per turn", ticks_per_turn)?;
-                if let Some(dynamics) = dynamics {
-                    let within = |parameter, value: f64, most: f64, expected: &'static str| {
-                        require(parameter, value, value > 0.0 && value < most, expected)
-                    };
-                    within("mass centre", dynamics.mass_centre, wheelbase, "a place between the axles")?;
-                    // The integration is stable within these limits of stiffness and mass.
-                    within("radius of gyration", dynamics.gyration, 100.0, "more than 0 and less than 100")?;
-                    within("grip", dynamics.grip, 100.0, "more than 0 and less than 100")?;
-                    within("tyre stiffness", dynamics.stiffness, 100.0, "more than 0 and less than 100")?;
-                    within("balance of the tyres", dynamics.balance, 10.0, "more than 0 and less than 10")?;
-                    within("brake", dynamics.brake, 100.0, "more than 0 and less than 100")?;
-                    within("steering rate", dynamics.steering_rate, 100.0, "more than 0 and less than 100")?;
-                }
-            }
-            DriveSpec::Tracked { wheel_diameter, track, length, width, max_wheel_speed, ticks_per_turn } => {
-                require_positive("wheel diameter", wheel_diameter)?;
-                require_positive("track", track)?;
-                require_positive("belt length", length)?;
-                require_positive("belt width", width)?;
-                require("belt width", width, width <= track, "at most the distance between the belts")?;
-                require_positive("maximal wheel speed", max_wheel_speed)?;
-                require_positive("ticks per turn", ticks_per_turn)?;
-            }
-            DriveSpec::Omni { wheel_diameter, track, wheelbase, max_wheel_speed, ticks_per_turn } => {
-                require_positive("wheel diameter", wheel_diameter)?;
-                require_positive("track", track)?;
-                require_positive("wheelbase", wheelbase)?;
-                require_positive("maximal wheel speed", max_wheel_speed)?;
-                require_positive("ticks per turn", ticks_per_turn)?;
-            }
-            DriveSpec::Craft(ref craft) => {
-                let parts = craft.hull.len();
-                require("hull parts of a craft", parts as f64, parts > 0, "at least one")?;
-                craft.validate()?;
-            }
-        }
+        self.drive.validate()?;
         let lag = self.motor.time_constant;
         require("motor time constant", lag, lag.is_finite() && lag >= 0.0, "a finite number of at least 0")?;
         require_positive("maximal acceleration", self.motor.max_acceleration)?;
@@ -375,20 +365,7 @@ impl RobotSpec {
             require_positive("PSD maximal range", psd.max_range)?;
             psd.mount.validate()?;
         }
-        if let Some(lidar) = &self.lidar {
-            let (fov, points) = (lidar.field_of_view, lidar.points as f64);
-            let full_turn = std::f64::consts::TAU * (1.0 + 1e-9);
-            require(
-                "lidar field of view",
-                fov,
-                fov > 0.0 && fov <= full_turn,
-                "more than 0 and at most a full turn",
-            )?;
-            require("lidar points", points, (1.0..=100_000.0).contains(&points), "1 to 100000")?;
-            require_positive("lidar maximal range", lidar.max_range)?;
-            require_finite("lidar tilt", lidar.tilt)?;
-            lidar.mount.validate()?;
-        }
+        self.lidar.as_ref().map_or(Ok(()), LidarSpec::validate)?;
         self.camera.as_ref().map_or(Ok(()), CameraSpec::validate)
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::ParameterError;
 use crate::geometry::{Point3, Pose3};
-use crate::parameter::{require, require_finite, require_not_negative};
+use crate::parameter::{require, require_finite, require_not_negative, require_positive};
 
 /// Pose of a sensor on a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -91,6 +91,23 @@ impl Default for LidarSpec {
             points: 360,
             max_range: PsdSpec::DEFAULT_MAX_RANGE,
         }
+    }
+}
+
+impl LidarSpec {
+    pub(super) fn validate(&self) -> Result<(), ParameterError> {
+        let (fov, points) = (self.field_of_view, self.points as f64);
+        let full_turn = std::f64::consts::TAU * (1.0 + 1e-9);
+        require(
+            "lidar field of view",
+            fov,
+            fov > 0.0 && fov <= full_turn,
+            "more than 0 and at most a full turn",
+        )?;
+        require("lidar points", points, (1.0..=100_000.0).contains(&points), "1 to 100000")?;
+        require_positive("lidar maximal range", self.max_range)?;
+        require_finite("lidar tilt", self.tilt)?;
+        self.mount.validate()
     }
 }
 

@@ -25,7 +25,7 @@ const NAMES = {
   safety: "Safety system", "lidar-scan": "Lidar scan", "first-steps": "To a wall and back", ping: "Ping by radio",
   "follow-me": "Follow me", edges: "Edges in images", program: "Programs in Python", dive: "To a depth",
   traffic: "Obstacles and halts", parking: "Parking a car",
-  "base-station": "Cars and a base station", "base-station": "Cars under a base station",
+  "base-station": "Cars under a base station",
 };
 
 export function nameOf(command) {

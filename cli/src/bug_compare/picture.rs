@@ -2,7 +2,7 @@ use roverlab::geometry::Point;
 use roverlab::picture::{Mark, Picture, SERIES, Style};
 
 use super::contest::Setting;
-use super::ride::{Conditions, Ending, Ride};
+use super::ride::{Conditions, Ride};
 
 /// One panel per algorithm, with the world and the path.
 pub(super) fn of(setting: &Setting, rides: &[Ride], conditions: Conditions) -> Picture {
@@ -33,9 +33,8 @@ fn timed(ride: &Ride) -> impl Iterator<Item = (f64, Point)> {
 
 fn label(ride: &Ride) -> String {
     let (name, metres) = (ride.kind.name(), ride.path_length);
-    match &ride.ending {
-        Ending::Verdict(_) if ride.ending.word() == "reached" => format!("{name}: {metres:.1} m"),
-        Ending::Verdict(_) => format!("{name}: {}", ride.ending.word().replace('_', " ")),
-        Ending::Failed(_) => format!("{name}: failed"),
+    match ride.word() {
+        "reached" => format!("{name}: {metres:.1} m"),
+        word => format!("{name}: {}", word.replace('_', " ")),
     }
 }

@@ -2,10 +2,11 @@ use roverlab::geometry::{Point, Pose};
 use roverlab::io::control::run;
 use roverlab::io::log::GroundTruth;
 use roverlab::io::sim::SimOptions;
-use roverlab::io::{self, ErrorKind};
 use roverlab::nav::{BugEvent, BugKind, BugOutcome, BugParameters, Guarantee};
 
 use crate::common::{Driven, Failure, Stage, StageTruth, Trip, at_goal};
+use crate::distbug::ending;
+use crate::driving::Ending;
 
 /// Driving conditions.
 #[derive(Debug, Clone, Copy)]
@@ -16,39 +17,12 @@ pub(crate) struct Conditions {
     pub(crate) time_limit: f64,
 }
 
-/// How an algorithm's run ended.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Ending {
-    /// With a verdict, or at the time limit.
-    Verdict(BugOutcome),
-    /// The robot failed.
-    Failed(String),
-}
-
-impl Ending {
-    /// Whether time was over before a verdict.
-    pub(crate) fn is_timed_out(&self) -> bool {
-        matches!(self, Self::Verdict(BugOutcome::TimedOut | BugOutcome::Stopped))
-    }
-
-    /// Name of the ending.
-    pub(crate) fn word(&self) -> &'static str {
-        match self {
-            Self::Verdict(BugOutcome::Reached) => "reached",
-            Self::Verdict(BugOutcome::Unreachable) => "unreachable",
-            Self::Verdict(BugOutcome::NoRoom) => "no_room",
-            Self::Verdict(BugOutcome::TimedOut | BugOutcome::Stopped) => "timed_out",
-            Self::Failed(_) => "failed",
-        }
-    }
-}
-
 /// One algorithm's run with its ground truth.
 #[derive(Debug, Clone)]
 pub(crate) struct Ride {
     pub(crate) kind: BugKind,
     pub(crate) guarantee: Guarantee,
-    pub(crate) ending: Ending,
+    pub(crate) ending: Ending<BugOutcome>,
     pub(crate) contacts: u32,
     /// Path length (m).
     pub(crate) path_length: f64,
@@ -64,14 +38,28 @@ pub(crate) struct Ride {
 }
 
 impl Ride {
+    /// Whether time was over before a verdict.
+    pub(crate) fn is_timed_out(&self) -> bool {
+        matches!(self.ending, Ok(BugOutcome::TimedOut | BugOutcome::Stopped))
+    }
+
+    /// Name of the ending.
+    pub(crate) fn word(&self) -> &'static str {
+        match self.ending {
+            Ok(BugOutcome::Reached) => "reached",
+            Ok(BugOutcome::Unreachable) => "unreachable",
+            Ok(BugOutcome::NoRoom) => "no_room",
+            Ok(BugOutcome::TimedOut | BugOutcome::Stopped) => "timed_out",
+            Err(_) => "failed",
+        }
+    }
+
     /// Whether the verdict is true: `reached` requires the robot's true position to be at the goal. Where
     /// nobody can tell whether the goal can be reached, either verdict may be.
     pub(crate) fn is_correct(&self, reachable: Option<bool>, noise: f64) -> bool {
         match self.ending {
-            Ending::Verdict(BugOutcome::Reached) => {
-                reachable != Some(false) && self.goal_distance <= at_goal(noise)
-            }
-            Ending::Verdict(BugOutcome::Unreachable | BugOutcome::NoRoom) => reachable != Some(true),
+            Ok(BugOutcome::Reached) => reachable != Some(false) && self.goal_distance <= at_goal(noise),
+            Ok(BugOutcome::Unreachable | BugOutcome::NoRoom) => reachable != Some(true),
             _ => false,
         }
     }
@@ -148,12 +136,4 @@ pub(crate) fn ride_with(
         follows,
         path,
     })
-}
-
-fn ending(result: io::Result<BugOutcome>) -> Ending {
-    match result {
-        Ok(outcome) => Ending::Verdict(outcome),
-        Err(error) if error.kind() == ErrorKind::TimedOut => Ending::Verdict(BugOutcome::TimedOut),
-        Err(error) => Ending::Failed(Failure::from(error).to_string()),
-    }
 }

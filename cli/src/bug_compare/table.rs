@@ -129,7 +129,7 @@ pub(super) fn json_runs(rows: &[Row<'_>]) -> Value {
             "bug": row.kind.name(),
             "family": row.family,
             "seed": setting.seed,
-            "outcome": ride.ending.word(),
+            "outcome": ride.word(),
             "reachable": setting.reachable,
             "correct": correct,
             "contacts": ride.contacts,

@@ -214,6 +214,7 @@ fn recording(wanted: &str, command: &Command, file: &OsString) -> Result<Log, Fa
     let log = Log::read(bytes).map_err(|error| refused(&error))?;
     let program = &log.header().program;
     if program != wanted {
+        let (program, wanted) = (program.replace('_', "-"), wanted.replace('_', "-"));
         return Err(refused(&format!(
             "found a recording of the program `{program}`; expected one of `{wanted}`"
         )));

@@ -182,7 +182,7 @@ impl Report {
         if let Some(words) = &self.words {
             return words.clone();
         }
-        let mut lines = vec![format!("{}: {}", header.command, self.word())];
+        let mut lines = vec![format!("{}: {}", header.command.replace('_', "-"), self.word())];
         let mut add = |name: &str, value: String| lines.push(format!("  {name:<18} {value}"));
         if let Some(time) = self.sim_time {
             add("simulated time", format!("{time:.2} s"));

@@ -4,10 +4,9 @@ use roverlab::io::log::GroundTruth;
 use roverlab::io::sim::{RobotTruth, SimOptions};
 use roverlab::io::{self, ErrorKind};
 use roverlab::nav::{BugEvent, BugOutcome, BugParameters, DistBug, WallSide};
-use serde_json::Value;
 
-use crate::common::{Failure, Portable, Stage, StageTruth, Trip, at_goal, unexpected};
-use crate::driving::Trail;
+use crate::common::{Failure, Stage, StageTruth, Trip, at_goal};
+use crate::driving::{Ending, Trail};
 
 /// Driving options.
 #[derive(Debug, Clone)]
@@ -16,33 +15,6 @@ pub(crate) struct Options {
     pub(crate) noise: f64,
     /// Time limit (s).
     pub(crate) time_limit: f64,
-}
-
-/// How the behaviour ended.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Ending {
-    /// With a verdict, or at the time limit.
-    Verdict(BugOutcome),
-    /// The robot failed.
-    Failed(String),
-}
-
-impl Portable for Ending {
-    fn packed(&self) -> Value {
-        match self {
-            Self::Verdict(outcome) => (Some(*outcome), None),
-            Self::Failed(error) => (None, Some(error.clone())),
-        }
-        .packed()
-    }
-
-    fn unpacked(value: &Value) -> Result<Self, String> {
-        match Portable::unpacked(value)? {
-            (Some(outcome), None) => Ok(Self::Verdict(outcome)),
-            (None, Some(error)) => Ok(Self::Failed(error)),
-            _ => Err(unexpected(value, "either an outcome or an error")),
-        }
-    }
 }
 
 /// An event of a run. Points are in the world.
@@ -67,7 +39,7 @@ pub(crate) enum Happening {
 /// A run with its ground truth.
 #[derive(Debug, Clone)]
 pub(crate) struct Drive {
-    pub(crate) ending: Ending,
+    pub(crate) ending: Ending<BugOutcome>,
     pub(crate) events: Vec<Event>,
     /// Ground truth at the end.
     pub(crate) truth: RobotTruth,
@@ -87,7 +59,7 @@ pub(crate) struct Drive {
 impl Drive {
     /// Whether the robot says that it is at the goal and in truth is not, as odometry has drifted.
     pub(crate) fn is_missed(&self, noise: f64) -> bool {
-        self.ending == Ending::Verdict(BugOutcome::Reached) && self.goal_distance > at_goal(noise)
+        self.ending == Ok(BugOutcome::Reached) && self.goal_distance > at_goal(noise)
     }
 
     /// Points of the events accepted by `pick`.
@@ -141,11 +113,11 @@ pub(crate) fn sim_options(options: &Options) -> SimOptions {
     }
 }
 
-fn ending(result: io::Result<BugOutcome>) -> Ending {
+/// The ending of a bug's run. The end of the simulator's time is that of the bug's.
+pub(crate) fn ending(result: io::Result<BugOutcome>) -> Ending<BugOutcome> {
     match result {
-        Ok(outcome) => Ending::Verdict(outcome),
-        Err(error) if error.kind() == ErrorKind::TimedOut => Ending::Verdict(BugOutcome::TimedOut),
-        Err(error) => Ending::Failed(Failure::from(error).to_string()),
+        Err(error) if error.kind() == ErrorKind::TimedOut => Ok(BugOutcome::TimedOut),
+        result => result.map_err(|error| Failure::from(error).to_string()),
     }
 }
 
@@ -198,7 +170,7 @@ impl Log {
         &self.events[before..]
     }
 
-    fn finish(mut self, bug: &DistBug, goal: Point, ending: Ending) -> Result<Drive, Failure> {
+    fn finish(mut self, bug: &DistBug, goal: Point, ending: Ending<BugOutcome>) -> Result<Drive, Failure> {
         let truth = self.truth.robot(0).map_err(Failure::run)?;
         let believed = self.start.compose(&bug.pose());
         let sim_time = self.truth.time().map_err(Failure::run)?;

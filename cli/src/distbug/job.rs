@@ -3,7 +3,7 @@ use std::fmt::Display;
 use roverlab::geometry::{Point, units};
 use roverlab::nav::{BugOutcome, WallSide};
 
-use super::{Args, Drive, Ending, Event, Happening, Options, campaign, drive, picture, scene, sim_options};
+use super::{Args, Drive, Event, Happening, Options, campaign, drive, picture, scene, sim_options};
 use crate::common::{CommonArgs, Failure, Outcome, Pacer, Progress, Report, Trip, millimetres, point_in_mm};
 
 /// The command's work: drives, reports events, draws.
@@ -93,28 +93,28 @@ fn verdict(drive: &Drive, noise: f64) -> String {
     let off = mm(drive.goal_distance);
     match &drive.ending {
         _ if drive.is_missed(noise) => format!("at the goal by odometry, but {off} mm from it in truth"),
-        Ending::Verdict(BugOutcome::Reached) => format!("at the goal, {off} mm from it in truth"),
-        Ending::Verdict(BugOutcome::Unreachable) => {
+        Ok(BugOutcome::Reached) => format!("at the goal, {off} mm from it in truth"),
+        Ok(BugOutcome::Unreachable) => {
             "all round the obstacle without a place to leave it: the goal cannot be reached".into()
         }
-        Ending::Verdict(BugOutcome::NoRoom) => {
+        Ok(BugOutcome::NoRoom) => {
             "there is no room for the robot at the goal: the goal cannot be reached".into()
         }
-        Ending::Verdict(BugOutcome::TimedOut | BugOutcome::Stopped) => {
+        Ok(BugOutcome::TimedOut | BugOutcome::Stopped) => {
             format!("the time is over, {off} mm from the goal")
         }
-        Ending::Failed(error) => format!("the robot failed: {error}"),
+        Err(error) => format!("the robot failed: {error}"),
     }
 }
 
 fn report(trip: &Trip, drive: &Drive, options: &Options) -> Report {
     let (outcome, error) = match &drive.ending {
         _ if drive.is_missed(options.noise) => (Outcome::failure("missed"), None),
-        Ending::Verdict(BugOutcome::Reached) => (Outcome::verdict("reached"), None),
-        Ending::Verdict(BugOutcome::Unreachable) => (Outcome::verdict("unreachable"), None),
-        Ending::Verdict(BugOutcome::NoRoom) => (Outcome::verdict("no_room"), None),
-        Ending::Verdict(BugOutcome::TimedOut | BugOutcome::Stopped) => (Outcome::failure("timed_out"), None),
-        Ending::Failed(error) => (Outcome::failure("failed"), Some(error.clone())),
+        Ok(BugOutcome::Reached) => (Outcome::verdict("reached"), None),
+        Ok(BugOutcome::Unreachable) => (Outcome::verdict("unreachable"), None),
+        Ok(BugOutcome::NoRoom) => (Outcome::verdict("no_room"), None),
+        Ok(BugOutcome::TimedOut | BugOutcome::Stopped) => (Outcome::failure("timed_out"), None),
+        Err(error) => (Outcome::failure("failed"), Some(error.clone())),
     };
     let points = |points: &[Point]| points.iter().copied().map(point_in_mm).collect::<Vec<_>>();
     Report {

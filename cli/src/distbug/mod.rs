@@ -14,7 +14,7 @@ pub(crate) use args::Args;
 #[cfg(test)]
 pub(crate) use campaign::trials;
 pub(crate) use course::scene;
-pub(crate) use drive::{Drive, Ending, Event, Happening, Options, drive, sim_options};
+pub(crate) use drive::{Drive, Event, Happening, Options, drive, ending, sim_options};
 pub(crate) use job::work;
 pub(crate) use save::save;
 #[cfg(test)]

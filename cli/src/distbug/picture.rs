@@ -2,7 +2,7 @@ use roverlab::geometry::units;
 use roverlab::nav::BugOutcome;
 use roverlab::picture::{Mark, Picture, Style};
 
-use super::{Drive, Ending, Happening, Options};
+use super::{Drive, Happening, Options};
 use crate::common::Trip;
 use crate::driving::pale;
 
@@ -40,11 +40,11 @@ pub(crate) fn of(trip: &Trip, drive: &Drive, options: &Options) -> Picture {
 fn title(drive: &Drive, noise: f64) -> String {
     let ending = match &drive.ending {
         _ if drive.is_missed(noise) => "goal missed",
-        Ending::Verdict(BugOutcome::Reached) => "goal reached",
-        Ending::Verdict(BugOutcome::Unreachable) => "the goal cannot be reached",
-        Ending::Verdict(BugOutcome::NoRoom) => "no room at the goal",
-        Ending::Verdict(BugOutcome::TimedOut | BugOutcome::Stopped) => "the time is over",
-        Ending::Failed(_) => "the robot failed",
+        Ok(BugOutcome::Reached) => "goal reached",
+        Ok(BugOutcome::Unreachable) => "the goal cannot be reached",
+        Ok(BugOutcome::NoRoom) => "no room at the goal",
+        Ok(BugOutcome::TimedOut | BugOutcome::Stopped) => "the time is over",
+        Err(_) => "the robot failed",
     };
     let contacts = match drive.truth.contacts {
         0 => String::new(),

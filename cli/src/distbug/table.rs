@@ -4,8 +4,8 @@ use roverlab::geometry::units;
 use roverlab::nav::BugOutcome;
 use serde_json::{Value, json};
 
+use super::Args;
 use super::trial::{Judgement, Run, Trial};
-use super::{Args, Ending};
 use crate::common::rounded;
 
 /// Runs at one noise level.
@@ -28,7 +28,7 @@ impl<'a> Row<'a> {
     }
 
     fn ended(&self, outcome: BugOutcome) -> usize {
-        self.count(|run| run.ending == Ending::Verdict(outcome))
+        self.count(|run| run.ending == Ok(outcome))
     }
 
     fn contacts(&self) -> usize {
@@ -48,7 +48,7 @@ impl<'a> Row<'a> {
 
     /// Largest distance from the goal among the runs that reported arrival (m).
     fn worst_distance(&self) -> Option<f64> {
-        let reached = Ending::Verdict(BugOutcome::Reached);
+        let reached = Ok(BugOutcome::Reached);
         let arrived = self.runs.iter().filter(|run| run.ending == reached);
         arrived.map(|run| run.goal_distance).reduce(f64::max)
     }

@@ -3,8 +3,9 @@ use roverlab::random::Stream;
 use roverlab::world::generate::{Course, CourseOptions, obstacle_course};
 use roverlab::world::{Colour, Marker, RobotSpec, Scene};
 
-use super::{Ending, Options, drive, sim_options};
+use super::{Options, drive, sim_options};
 use crate::common::{Failure, Stage, Trip, at_goal, portable};
+use crate::driving::Ending;
 
 /// One course of a campaign, driven once at every noise level.
 #[derive(Debug, Clone)]
@@ -19,7 +20,7 @@ portable!(struct Trial { seed, runs });
 /// Result of one run.
 #[derive(Debug, Clone)]
 pub(crate) struct Run {
-    pub(crate) ending: Ending,
+    pub(crate) ending: Ending<BugOutcome>,
     pub(crate) judgement: Judgement,
     pub(crate) contacts: u32,
     /// True distance from the goal (m).
@@ -69,16 +70,17 @@ impl Judgement {
         (Judgement::Failed, "failed"),
     ];
 
-    fn of(ending: &Ending, reachable: bool, goal_distance: f64, noise: f64) -> Self {
+    fn of(ending: &Ending<BugOutcome>, reachable: bool, goal_distance: f64, noise: f64) -> Self {
         use BugOutcome as Outcome;
         match (ending, reachable) {
-            (Ending::Failed(_), _) => Self::Failed,
-            (Ending::Verdict(Outcome::TimedOut | Outcome::Stopped), _) => Self::TimedOut,
-            (Ending::Verdict(Outcome::Unreachable | Outcome::NoRoom), true) => Self::NotUnreachable,
-            (Ending::Verdict(Outcome::Reached), false) => Self::NotReached,
-            (Ending::Verdict(Outcome::Reached), true) if goal_distance > at_goal(noise) => Self::FarFromGoal,
-            (Ending::Verdict(Outcome::Unreachable | Outcome::NoRoom), false)
-            | (Ending::Verdict(Outcome::Reached), true) => Self::Correct,
+            (Err(_), _) => Self::Failed,
+            (Ok(Outcome::TimedOut | Outcome::Stopped), _) => Self::TimedOut,
+            (Ok(Outcome::Unreachable | Outcome::NoRoom), true) => Self::NotUnreachable,
+            (Ok(Outcome::Reached), false) => Self::NotReached,
+            (Ok(Outcome::Reached), true) if goal_distance > at_goal(noise) => Self::FarFromGoal,
+            (Ok(Outcome::Unreachable | Outcome::NoRoom), false) | (Ok(Outcome::Reached), true) => {
+                Self::Correct
+            }
         }
     }
 }

@@ -23,7 +23,7 @@ portable!(struct Trial { crossed, outcome, mishap, edge_distance, sim_time });
 impl Trial {
     /// Whether the robot fell or tipped.
     pub(crate) fn is_lost(&self) -> bool {
-        self.mishap.is_some_and(|mishap| mishap != Mishap::Stuck)
+        self.mishap.is_some_and(Mishap::is_final)
     }
 
     fn is_good(&self) -> bool {
@@ -82,7 +82,7 @@ fn trial(args: &Args, seed: u64) -> Result<Trial, Failure> {
     let passage = Passage::of(&hike, &run);
     let outcome = run.ending.as_ref().ok().map(|ended| ended.outcome);
     let mishap = Ride::of(&run).and_then(|ride| ride.end.mishap);
-    let lost = mishap.is_some_and(|mishap| mishap != Mishap::Stuck);
+    let lost = mishap.is_some_and(Mishap::is_final);
     Ok(Trial {
         crossed: outcome == Some(RampOutcome::Crossed) && passage.crossed && !lost,
         outcome,

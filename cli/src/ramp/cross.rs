@@ -86,8 +86,7 @@ impl Passage {
             .is_some_and(|[up, down]| (up - down).norm() > 2.0 * spec.footprint.bounding_radius());
         let end = run.in_space.last().map_or(level, |space| space.pose.position.z);
         let low = level - end > LEVEL && level - hike.start_height() > LEVEL;
-        let is_whole =
-            run.in_space.last().is_some_and(|end| end.mishap.is_none_or(|mishap| mishap == Mishap::Stuck));
+        let is_whole = run.in_space.last().is_some_and(|end| !end.mishap.is_some_and(Mishap::is_final));
         Self { crossed: is_whole && low && apart, level, edge_distance }
     }
 }
@@ -104,7 +103,7 @@ fn changes(ride: &[TruthInSpace], elevation: f64) -> Option<[Point; 2]> {
 pub(crate) fn outcome(ended: Crossed, ride: Option<&Ride>, passage: &Passage) -> Outcome {
     let Some(ride) = ride else { return Outcome::failure("failed") };
     match (ride.end.mishap, ended.outcome) {
-        (Some(mishap), _) if mishap != Mishap::Stuck => Outcome::failure(word(mishap)),
+        (Some(mishap), _) if mishap.is_final() => Outcome::failure(word(mishap)),
         (_, RampOutcome::Crossed) if passage.crossed => Outcome::verdict("crossed"),
         (_, RampOutcome::NoWayUp) => Outcome::verdict("no_way_up"),
         (_, RampOutcome::NoWayDown) => Outcome::verdict("no_way_down"),

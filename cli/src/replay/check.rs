@@ -39,7 +39,8 @@ fn replayed(file: &Path, log: &Log) -> Result<Log, Failure> {
     let program = commands::named(name).ok_or_else(|| {
         let known: Vec<&str> =
             COMMANDS.iter().filter(|command| command.drives()).map(|command| command.name).collect();
-        let (file, known) = (file.display(), known.join(", "));
+        let (file, name, known) =
+            (file.display(), name.replace('_', "-"), known.join(", ").replace('_', "-"));
         Failure::input(format!("{file}: found a recording of the program `{name}`; expected one of {known}"))
     })?;
     let folder = TemporaryFolder::new("roverlab-check-").map_err(Failure::run)?;

@@ -34,7 +34,7 @@ portable!(struct Trial {
 impl Trial {
     /// Whether the robot tipped, fell or drowned.
     pub(crate) fn is_lost(&self) -> bool {
-        self.mishap.is_some_and(|mishap| mishap != Mishap::Stuck)
+        self.mishap.is_some_and(Mishap::is_final)
     }
 
     fn is_good(&self) -> bool {

@@ -1,6 +1,6 @@
 use roverlab::drive::terrain::{Ascent, AscentOutcome, AscentParameters, SlopeSensor};
+use roverlab::io::TruthInSpace;
 use roverlab::io::control::run;
-use roverlab::io::{Mishap, TruthInSpace};
 use roverlab::nav::elevation::{ElevationPlanner, Objective};
 use roverlab::nav::{Fence, SummitOutcome, SummitParameters, SummitSearch};
 use roverlab::world::RobotSpec;
@@ -147,7 +147,7 @@ pub(crate) fn climb(
 pub(crate) fn outcome(ascended: &Ascended, ride: Option<&Ride>, summit: &Summit) -> Outcome {
     let Some(ride) = ride else { return Outcome::failure("failed") };
     match (ride.end.mishap, ascended.arrival) {
-        (Some(mishap), _) if mishap != Mishap::Stuck => Outcome::failure(word(mishap)),
+        (Some(mishap), _) if mishap.is_final() => Outcome::failure(word(mishap)),
         (_, Arrival::Top) if summit.is_reached(&ride.end) => Outcome::verdict("reached"),
         (Some(_), _) | (_, Arrival::Stuck) => Outcome::failure("stuck"),
         (_, Arrival::Top) => Outcome::verdict("local_maximum"),

@@ -275,11 +275,7 @@ fn robots_that_cannot_do_it_are_refused() {
     let options = distbug::Options { seed: 1, noise: 0.0, time_limit: 5.0 };
     let stage = common::Stage::simulated(&trip.scene, distbug::sim_options(&options), Vec::new()).unwrap();
     let drive = distbug::drive(&trip, &options, &stage, |_, _| {}).unwrap();
-    assert!(
-        matches!(&drive.ending, distbug::Ending::Failed(error) if error.contains("full turn")),
-        "{:?}",
-        drive.ending
-    );
+    assert!(matches!(&drive.ending, Err(error) if error.contains("full turn")), "{:?}", drive.ending);
 }
 
 #[test]

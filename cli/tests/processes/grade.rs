@@ -109,10 +109,9 @@ fn what_cannot_be_graded_is_refused() {
 mod campaigns {
     use super::*;
 
-    /// The time that the test prints is to be 60 s at most, on two cores:
-    /// `cargo test --release -p roverlab-cli --test processes grade::campaigns -- --ignored`.
+    /// The time that the test prints is to be 60 s at most, on two cores.
     #[test]
-    #[ignore = "a campaign, by the command above"]
+    #[ignore = "a campaign: cargo test --release -p roverlab-cli --test processes grade::campaigns -- --ignored"]
     fn thirty_programs_with_twenty_seeds_each() {
         let folder = folder().join("thirty");
         fs::create_dir_all(&folder).unwrap();

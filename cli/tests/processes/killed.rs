@@ -67,12 +67,11 @@ fn a_killed_process_loses_its_last_chunk_at_most() {
     kill_recorders(4, Path::new(env!("CARGO_TARGET_TMPDIR")));
 }
 
-/// Takes minutes: `cargo nextest run -p roverlab-cli --run-ignored all -E 'test(killed::campaigns)'`.
 mod campaigns {
     use super::*;
 
     #[test]
-    #[ignore = "a campaign of minutes, by the command above"]
+    #[ignore = "takes minutes: cargo test -p roverlab-cli --test processes killed::campaigns -- --ignored"]
     fn a_thousand_killed_processes_lose_their_last_chunk_at_most() {
         kill_recorders(1000, Path::new(env!("CARGO_TARGET_TMPDIR")));
     }
@@ -80,7 +79,7 @@ mod campaigns {
     /// With `SMALL_DISK`, a folder on a file system that is smaller than the recording, as by
     /// `mount -t tmpfs -o size=SIZE none FOLDER`.
     #[test]
-    #[ignore = "a campaign of minutes, by the command above"]
+    #[ignore = "takes minutes: cargo test -p roverlab-cli --test processes killed::campaigns -- --ignored"]
     fn a_full_disk_keeps_the_beginning_of_a_recording() {
         let folder = std::env::var_os("SMALL_DISK").expect("SMALL_DISK names a folder on a small disk");
         let log = Path::new(&folder).join("full.mcap");

@@ -62,9 +62,4 @@ impl TurnKind {
             Self::Diagonal90 => 0.6,
         }
     }
-
-    /// Whether it ends on a diagonal.
-    pub const fn ends_diagonally(self) -> bool {
-        matches!(self, Self::In45 | Self::TightIn45 | Self::In135 | Self::Diagonal90)
-    }
 }

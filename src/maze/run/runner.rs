@@ -186,11 +186,6 @@ impl<'r, R: Clock + Drive + Odometry + StallDetector + DistanceSensors + ?Sized>
         self.localiser.calibration()
     }
 
-    /// Whether the robot has visited a cell.
-    pub fn has_visited(&self, cell: Cell) -> bool {
-        self.maze.contains(cell) && self.visited[self.maze.index(cell)]
-    }
-
     /// A planner of fast runs for this robot.
     pub fn planner(&self) -> FastPlanner {
         self.racer.clone()

@@ -5,20 +5,6 @@ use super::*;
 use crate::geometry::cross;
 use crate::world::formats::course as file;
 
-/// Writes the pictures of some courses for inspection.
-#[test]
-#[ignore = "writes pictures into the folder that ROAD_PICTURES names"]
-fn pictures() {
-    let Some(folder) = std::env::var_os("ROAD_PICTURES") else { return };
-    for seed in 1..=6 {
-        let course =
-            generate(seed, &RoadCourseOptions { zebras: 0.3, ..RoadCourseOptions::default() }).unwrap();
-        let look = Appearance { pixel: 0.008, wear: 0.1, glare: 3, seed };
-        let image = course.floor_image(&look).unwrap();
-        image.save(std::path::Path::new(&folder).join(format!("course{seed}.png"))).unwrap();
-    }
-}
-
 #[test]
 fn every_seed_gives_a_course_and_the_file_gives_it_back() {
     for seed in 0..40 {

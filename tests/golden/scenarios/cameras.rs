@@ -4,9 +4,11 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
-use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
+use roverlab::drive::motion_watch::{
+    MotionApproach, MotionApproachParameters, MotionWatch, MotionWatchParameters,
+};
 use roverlab::geometry::{Pose, Twist, direction};
-use roverlab::io::control::run;
+use roverlab::io::control::{Behaviour as _, Run, run};
 use roverlab::io::sim::{Fleet, Lcd, SimOptions, Simulation};
 use roverlab::io::wrappers::Traced;
 use roverlab::io::{
@@ -26,6 +28,7 @@ pub(super) const SCENARIOS: &[Scenario] = &[
     Scenario::new("colour-push-home", push_home),
     Scenario::new("motion-watch", watch),
     Scenario::new("display-and-keys", display),
+    Scenario::new("motion-approach", approach),
 ];
 
 /// Images of three sizes, straight ahead and with the camera turned, in good and in poor light.
@@ -163,6 +166,31 @@ fn watch() -> Result<String> {
     let mut log = String::from_utf8(trace).map_err(other)? + &seen;
     note_truth(&mut log, &truth);
     Ok(log)
+}
+
+/// A robot that drives up to one which turns on the spot.
+fn approach() -> Result<String> {
+    let (mut scene, geometry) = coloured();
+    scene.robots[0].pose = Pose::new(0.5, 1.0, 0.0);
+    scene.robots.push(RobotPlacement::new(Arc::new(RobotSpec::s4()), Pose::new(1.2, 1.1, 1.0)));
+    let mut fleet = Fleet::new(&scene, noise(1.0, 125))?;
+    fleet.control(1, 0.5, |robot| {
+        robot.set_speed(Twist::new(0.05, 1.5))?;
+        Ok(ControlFlow::Continue(()))
+    })?;
+    let mut approach = MotionApproach::new(MotionApproachParameters::new(geometry)).map_err(other)?;
+    let (mut run, mut seen) = (Run::new(&approach, 12.0)?, String::new());
+    let period = approach.period();
+    fleet.control(0, period, |robot| {
+        let flow = run.step(robot, &mut approach)?;
+        note(&mut seen, "motion", &approach.motion());
+        Ok(flow.map_break(drop))
+    })?;
+    fleet.run_for(12.0)?;
+    let truth = fleet.truth(0)?;
+    drop(fleet);
+    note_truth(&mut seen, &truth);
+    Ok(seen)
 }
 
 /// All that a display draws, and keys that are pressed meanwhile.

@@ -9,9 +9,9 @@ use roverlab::drive::traffic::{
 };
 use roverlab::drive::{
     AToB, AToBParameters, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters, CoverageMap,
-    CoverageMapParameters, CoveragePlan, Goal, Method, OmniDriver, OmniParameters, OmniTracker, Path,
-    PathFollower, PathFollowerParameters, Pid, PidParameters, RandomDrive, RandomDriveParameters, RelayTuner,
-    Steering, Tour, TourParameters, Waypoint,
+    CoverageMapParameters, CoveragePlan, FirstSteps, FirstStepsParameters, FirstTask, Goal, Method,
+    OmniDriver, OmniParameters, OmniTracker, Path, PathFollower, PathFollowerParameters, Pid, PidParameters,
+    RandomDrive, RandomDriveParameters, RelayTuner, Steering, Tour, TourParameters, Waypoint,
 };
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::control::run;
@@ -46,6 +46,7 @@ pub(super) const SCENARIOS: &[Scenario] = &[
     Scenario::new("end-to-end", end_to_end),
     Scenario::new("traffic", traffic),
     Scenario::new("parking", parking),
+    Scenario::new("first-steps", first_steps),
 ];
 
 const METHODS: [Method; 4] = [Method::Turn, Method::Arc, Method::Dog, Method::Spline];
@@ -408,6 +409,19 @@ fn traffic() -> Result<String> {
     note(&mut log, "score", referee.score());
     note_truth(&mut log, &truth.robot(0)?);
     Ok(log)
+}
+
+/// To a wall and back, by comparing scans.
+fn first_steps() -> Result<String> {
+    let scene = Scene::with_robot(World::walled(3.0, 2.0), RobotSpec::s4(), Pose::new(0.7, 1.0, 0.0));
+    let mut steps = FirstSteps::new(FirstTask::Wall, FirstStepsParameters::default())?;
+    let mut outcome = String::new();
+    let log = ride(&scene, noise(1.0, 32), |robot| {
+        let ended = run(robot, &mut steps, 60.0, |_, _, _| {})?;
+        note(&mut outcome, "outcome", &ended);
+        Ok(())
+    })?;
+    Ok(log + &outcome)
 }
 
 /// A car that parks across the road.

@@ -1,15 +1,22 @@
-//! Robots that follow one another: in a chain by lidar, and in a formation by the leader's radio messages.
+//! Robots that follow one another, in a chain by lidar and in a formation by the leader's radio messages; cars
+//! that share a road by radio.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
+use roverlab::drive::traffic::{
+    RadioCar, RoadSharingParameters, RoadStation, RoadStationParameters, TrafficParameters,
+};
 use roverlab::drive::{
     Cruise, CruiseParameters, Follower, FollowerObservation, FollowerParameters, Formation, robots_in,
 };
 use roverlab::geometry::{Point, Pose};
+use roverlab::io::control::{Behaviour as _, Run};
 use roverlab::io::sim::Fleet;
 use roverlab::io::wrappers::Traced;
 use roverlab::io::{Clock, Drive, Lidar, LidarScan, Odometry, Radio, Result};
+use roverlab::vision::lane_markings::RoadModel;
+use roverlab::world::road::{Appearance, RoadCourseOptions, generate};
 use roverlab::world::{Footprint, Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
 
 use super::{Scenario, noise, note, note_truth, other};
@@ -17,6 +24,7 @@ use super::{Scenario, noise, note, note_truth, other};
 pub(super) const SCENARIOS: &[Scenario] = &[
     Scenario::new("chain", || fleet(Follows::TheOneBefore, 41)),
     Scenario::new("formation", || fleet(Follows::ByRadio, 42)),
+    Scenario::new("base-station", base_station),
 ];
 
 #[derive(Clone, Copy, PartialEq)]
@@ -142,4 +150,39 @@ fn lead(robot: &mut dyn Member, cruise: &mut Cruise, start: Pose, scan: &mut Lid
         robot.send(peer, &Formation::message(start.compose(&pose), twist.linear))?;
     }
     Ok(())
+}
+
+/// Two cars on a course, and the station that stops them.
+fn base_station() -> Result<String> {
+    let course = generate(3, &RoadCourseOptions::default()).map_err(other)?;
+    let look = Appearance { pixel: 0.004, ..Appearance::default() };
+    let mut scene = Scene::new(course.world(&look).map_err(other)?);
+    let spec = Arc::new(RobotSpec::road_car());
+    let starts = [course.pose(0.0, 0.0), course.pose(1.5, 0.0)];
+    scene.robots = starts.map(|start| RobotPlacement::new(Arc::clone(&spec), start)).into();
+    let corner = course.floor().min;
+    let beside = Pose::new(corner.x + 0.15, corner.y + 0.15, 0.0);
+    scene.robots.push(RobotPlacement::new(Arc::new(RobotSpec::s4()), beside));
+    let mut fleet = Fleet::new(&scene, noise(1.0, 43))?;
+    for (index, start) in starts.iter().enumerate() {
+        let camera = spec.camera.as_ref().expect("the car has a camera").into();
+        let parameters = (TrafficParameters::default(), RoadSharingParameters::default());
+        let place = course.start().inverse().compose(start);
+        let mut car = RadioCar::new(camera, RoadModel::default(), parameters, place)?;
+        let mut run = Run::new(&car, f64::INFINITY)?;
+        fleet.control(index, car.period(), move |robot| Ok(run.step(robot, &mut car)?.map_break(drop)))?;
+    }
+    let mut station = RoadStation::new(RoadStationParameters::default())?;
+    let (mut run, mut log) = (Run::new(&station, f64::INFINITY)?, String::new());
+    fleet.control(2, station.period(), |robot| {
+        station.stop(robot.now()? > 3.0);
+        let flow = run.step(robot, &mut station)?;
+        note(&mut log, "cars", &station.cars());
+        Ok(flow.map_break(drop))
+    })?;
+    fleet.run_for(5.0)?;
+    let truths = (0..3).map(|index| fleet.truth(index)).collect::<Result<Vec<_>>>()?;
+    drop(fleet);
+    truths.iter().for_each(|truth| note_truth(&mut log, truth));
+    Ok(log)
 }

@@ -3,6 +3,7 @@
 use roverlab::io::Result;
 use roverlab::random::Stream;
 use roverlab::vision::motion::{MotionDetector, MotionParameters, TurnCompensator};
+use roverlab::vision::signs::{Area, SignFinder, SignTrainer};
 use roverlab::vision::{
     Border, Canny, CannyThresholds, Components, GaussianKernel, GrayView, GrayViewMut, GrayWeights, Hog,
     HogParameters, HoughLines, HoughSegments, HueLimits, HueRange, HueScale, RgbView, RgbViewMut,
@@ -21,6 +22,7 @@ pub(super) const SCENARIOS: &[Scenario] = &[
     Scenario::new("vision-colour", colour),
     Scenario::new("vision-features", features),
     Scenario::new("vision-motion", motion),
+    Scenario::new("signs", signs),
 ];
 
 /// An odd size, so that no kernel has whole blocks alone.
@@ -181,6 +183,26 @@ fn motion() -> Result<String> {
         let turned = compensator.turn(first, second, angle).map_err(other)?;
         let digest = fnv((0..turned.image.height()).flat_map(|row| turned.image.row(row)).copied());
         note(&mut log, "turned", &(turned.from, turned.to, turned.shift, digest));
+    }
+    Ok(log)
+}
+
+/// The disc and the box, learned from six pictures and found in six others.
+fn signs() -> Result<String> {
+    let areas = |disc: f64| {
+        let disc = Area::new(disc - 20.0, 20.0, 40.0, 40.0);
+        [(0, disc), (1, Area::new(90.0, 20.0, 35.0, 40.0))]
+    };
+    let mut trainer = SignTrainer::new(["disc", "box"])?;
+    for seed in 0..6 {
+        let disc = 25.0 + 8.0 * seed as f64;
+        trainer.add(rgb(&picture(disc, seed))?, &areas(disc)).map_err(other)?;
+    }
+    let mut finder = SignFinder::new(trainer.finder(1)?);
+    let mut log = String::new();
+    for seed in 6..12 {
+        let disc = 27.0 + 7.0 * (seed - 6) as f64;
+        note(&mut log, "found", &finder.find(rgb(&picture(disc, seed))?).map_err(other)?);
     }
     Ok(log)
 }

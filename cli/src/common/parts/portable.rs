@@ -156,6 +156,21 @@ impl<T: Portable> Portable for Option<T> {
     }
 }
 
+/// A result or an error: a pair of which one is null.
+impl<T: Portable + Clone> Portable for Result<T, String> {
+    fn packed(&self) -> Value {
+        (self.as_ref().ok().cloned(), self.as_ref().err().cloned()).packed()
+    }
+
+    fn unpacked(value: &Value) -> Result<Self, String> {
+        match Portable::unpacked(value)? {
+            (Some(outcome), None) => Ok(Ok(outcome)),
+            (None, Some(error)) => Ok(Err(error)),
+            _ => Err(unexpected(value, "either an outcome or an error")),
+        }
+    }
+}
+
 impl<T: Portable> Portable for Vec<T> {
     fn packed(&self) -> Value {
         self.iter().map(Portable::packed).collect()

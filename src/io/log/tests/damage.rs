@@ -198,23 +198,23 @@ fn every_flipped_bit_is_found_out_or_harmless() {
     flip_bits(false);
 }
 
-/// Every bit and every length, within half a gigabyte: `(ulimit -v 500000; cargo test --all-features --lib
-/// damage::campaigns -- --ignored --test-threads 1)`, once the tests are built.
+/// Every bit and every length, within half a gigabyte once the tests are built: `ulimit -v 500000` before the
+/// command, and `--test-threads 1` after it.
 mod campaigns {
     #[test]
-    #[ignore = "a campaign of half a minute, by the command above"]
+    #[ignore = "half a minute: cargo test --all-features --lib damage::campaigns -- --ignored"]
     fn every_length_gives_back_all_complete_chunks() {
         super::cut_off(true);
     }
 
     #[test]
-    #[ignore = "a campaign of half a minute, by the command above"]
+    #[ignore = "half a minute: cargo test --all-features --lib damage::campaigns -- --ignored"]
     fn every_bit_costs_one_part_at_most() {
         super::lose_parts(true);
     }
 
     #[test]
-    #[ignore = "a campaign of half a minute, by the command above"]
+    #[ignore = "half a minute: cargo test --all-features --lib damage::campaigns -- --ignored"]
     fn every_bit_is_found_out_or_harmless() {
         super::flip_bits(true);
     }

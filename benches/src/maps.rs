@@ -1,4 +1,4 @@
-//! Maps and queries.
+//! Maps of cells and queries on them, for the planners.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,14 +10,17 @@ use roverlab::world::{BitGrid, GridCell};
 
 /// A map with queries that have answers.
 #[derive(Debug)]
-pub(crate) struct Map {
-    pub(crate) name: String,
-    pub(crate) grid: BitGrid,
-    pub(crate) queries: Vec<(GridCell, GridCell)>,
+pub struct Map {
+    /// Its file, or kind and size.
+    pub name: String,
+    /// Its cells.
+    pub grid: BitGrid,
+    /// Start and goal of each query.
+    pub queries: Vec<(GridCell, GridCell)>,
 }
 
 /// The published maps of 200 cells and more, if there are any.
-pub(crate) fn published(queries: usize) -> Vec<Map> {
+pub fn published(queries: usize) -> Vec<Map> {
     let Some(folder) = std::env::var_os("ROVERLAB_DATA") else { return Vec::new() };
     let folder = Path::new(&folder).join("movingai");
     let scenarios: Vec<PathBuf> = files(&folder.join("scen")).iter().flat_map(|kind| files(kind)).collect();
@@ -46,7 +49,7 @@ fn files(folder: &Path) -> Vec<PathBuf> {
 }
 
 /// Maps of a size that are made here: rooms, scattered cells, a cave.
-pub(crate) fn own(size: usize, queries: usize) -> Vec<Map> {
+pub fn own(size: usize, queries: usize) -> Vec<Map> {
     let stream = Stream::new(1);
     let mut scattered = stream.child("scattered", size as u64);
     let grids = [
