@@ -1,5 +1,5 @@
-//! Cars that share a road (book, section 13.4): two model cars drive by their cameras, tell each other by radio
-//! where they are, and a base station beside the road stops them.
+//! Cars that share a road (book, section 13.4): two model cars drive by their cameras, tell each other by
+//! radio where they are, and a base station beside the road stops them.
 //!
 //! `cargo run --release --example base_station`
 

@@ -1,5 +1,5 @@
-//! A boat (book, section 8.1): the solar raft sails a course by its two thrusters, against a current, and keeps
-//! its station at the end.
+//! A boat (book, section 8.1): the solar raft sails a course by its two thrusters, against a current, and
+//! keeps its station at the end.
 //!
 //! `cargo run --release --example boat`
 

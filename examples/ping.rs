@@ -1,5 +1,5 @@
-//! Messages by radio (book, section 2.12): robots pass a number around in a ring, each one more than it heard,
-//! though the radio loses every fifth message.
+//! Messages by radio (book, section 2.12): robots pass a number around in a ring, each one more than it
+//! heard, though the radio loses every fifth message.
 //!
 //! `cargo run --release --example ping`
 

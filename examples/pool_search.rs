@@ -1,5 +1,5 @@
-//! A search (book, section 8.5): Mako looks for something red on the floor of a pool, through turbid water and in
-//! half the light, and says where it is.
+//! A search (book, section 8.5): Mako looks for something red on the floor of a pool, through turbid water
+//! and in half the light, and says where it is.
 //!
 //! `cargo run --release --example pool_search`
 

@@ -1,5 +1,5 @@
-//! Along the sides of a pool (book, section 8.4): Mako keeps half a metre from the wall by its distance sensors,
-//! at a constant depth, until it has come by its first corner again.
+//! Along the sides of a pool (book, section 8.4): Mako keeps half a metre from the wall by its distance
+//! sensors, at a constant depth, until it has come by its first corner again.
 //!
 //! `cargo run --release --example pool_wall`
 

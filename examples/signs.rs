@@ -1,5 +1,5 @@
-//! Traffic signs (book, section 13.5): learns what two signs look like, a red square with a bar and a blue disc,
-//! and finds them in pictures that it has not seen.
+//! Traffic signs (book, section 13.5): learns what two signs look like, a red square with a bar and a blue
+//! disc, and finds them in pictures that it has not seen.
 //!
 //! `cargo run --release --example signs`
 

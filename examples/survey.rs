@@ -1,5 +1,5 @@
-//! A survey (book, section 8.5): Mako drives lanes over the floor of a pool, knows its place by the walls, its
-//! Doppler log and its compass, and makes a map of depths, each with its uncertainty.
+//! A survey (book, section 8.5): Mako drives lanes over the floor of a pool, knows its place by the walls,
+//! its Doppler log and its compass, and makes a map of depths, each with its uncertainty.
 //!
 //! `cargo run --release --example survey`
 

@@ -22,6 +22,10 @@ pub fn avoid(ahead: f64, left: f64, right: f64) -> Twist {
 }
 
 /// So many S4s in a world, that read three PSDs and avoid what they see, ten times a second.
+///
+/// # Panics
+///
+/// If the floor is too small for them.
 pub fn avoiders(world: &World, robots: usize) -> Fleet<'static> {
     let spec = Arc::new(RobotSpec::s4());
     let placed = apart(free_poses(world, 3 * robots, 0.1, 6), robots);

@@ -199,7 +199,7 @@ fn check_bends(edge: &[Point]) -> Result<(), LineError> {
 }
 
 /// Point at which a loop turns back.
-fn turning_back(corridor: &Corridor) -> Option<Point> {
+pub(super) fn turning_back(corridor: &Corridor) -> Option<Point> {
     let (metres, radians) = TURNING_BACK;
     let stations = corridor.stations();
     let n = stations.len();

@@ -128,6 +128,26 @@ fn what_is_written_is_read_again() {
 }
 
 #[test]
+fn a_circuit_goes_around_once_and_in_order() {
+    let row = |k: u32| {
+        let place = direction(TAU * f64::from(k) / 200.0) * 60.0;
+        format!("{},{},4,4\n", place.x, place.y)
+    };
+    let said = |order: &[u32]| {
+        let text: String = order.iter().map(|&k| row(k)).collect();
+        parse_tum(&format!("# x_m,y_m,w_tr_right_m,w_tr_left_m\n{text}"), "t")
+            .map_err(|error| error.to_string())
+    };
+    let mut order: Vec<u32> = (0..200).collect();
+    assert!(said(&order).is_ok_and(|ring| (ring.length() - 377.0).abs() < 0.5));
+    let twice = said(&[order.clone(), order.clone()].concat()).unwrap_err();
+    assert_eq!(twice, "t:1:1: found a line that goes around 2 times; expected one lap");
+    order.swap(50, 55);
+    let swapped = said(&order).unwrap_err();
+    assert!(swapped.contains("found a line that turns back at ("), "{swapped}");
+}
+
+#[test]
 fn the_wing_is_where_a_file_says() {
     let text = "cones_left:\n- [1, 2]\nstarting_pose_front_wing: [3.0, 4.0, 0.5]\n";
     let start = parse_fssim(text, "t").unwrap().start.unwrap();

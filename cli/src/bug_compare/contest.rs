@@ -12,6 +12,7 @@ use roverlab::world::{BitGrid, BitGridError, GridCell, RobotSpec, Scene, World};
 use super::ride::{Conditions, Ride, parameters, ride, ride_with};
 use super::{Args, job};
 use crate::common::{Driven, Failure, StageTruth, Trip, onlooker, share_out, threads};
+use crate::driving::world_with_others;
 
 /// A world with a robot and a goal, and its ground truth.
 #[derive(Debug, Clone)]
@@ -56,10 +57,10 @@ impl Setting {
     }
 }
 
-/// The world of a trip, with a floor as far as its goal.
+/// The world of a trip, in which other robots stand, with a floor as far as its goal.
 fn known(trip: &Trip) -> World {
-    let (world, goal) = (&trip.scene.world, trip.goal);
-    World { floor: world.floor.union(&Aabb::new(goal, goal)), ..world.clone() }
+    let (world, goal) = (world_with_others(&trip.scene), trip.goal);
+    World { floor: world.floor.union(&Aabb::new(goal, goal)), ..world }
 }
 
 /// Whether a way leads to the goal; `None` if cells are too coarse to tell.

@@ -2,7 +2,7 @@ use roverlab::geometry::Pose;
 use roverlab::world::{RobotSpec, Scene, World};
 
 use super::contest::{self, Entry};
-use super::ride::ride;
+use super::ride::{Ride, ride};
 use super::{Args, campaign, picture, table};
 use crate::common::{Failure, Outcome, Report, Trip, onlooker};
 
@@ -19,7 +19,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     // Odometry errors can mislead any algorithm: verdicts are judged only without noise.
     let good = args.common.noise > 0.0 || table::all_correct(&rows);
     let is_cut = args.common.time_limit.is_some()
-        && entries.iter().flat_map(|entry| &entry.rides).any(|ride| ride.is_timed_out());
+        && entries.iter().flat_map(|entry| &entry.rides).any(Ride::is_timed_out);
     let outcome = match (is_cut, good) {
         (true, _) => Outcome::failure("timed_out"),
         (false, true) => Outcome::verdict("compared"),

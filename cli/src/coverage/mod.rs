@@ -19,11 +19,13 @@ use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::{self, Clock, Drive, Lidar, LidarScan, Odometry};
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::random::Stream;
-use roverlab::scan::{LocalisationMap, Localiser};
+use roverlab::scan::Localiser;
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Wall, World};
 
 use crate::common::{CommonArgs, Failure, OF_ONE_RUN, OF_PARTS, Outcome, PartArgs, Report, rounded};
-use crate::driving::{Conditions, Run, check_level_lidar, draw_contacts, paced, world_with_others};
+use crate::driving::{
+    Conditions, Run, check_level_lidar, draw_contacts, localisation_map, paced, world_with_others,
+};
 
 /// Command line of `coverage`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -125,7 +127,7 @@ pub(crate) fn cover(
     let tour = TourParameters::default();
     let limit = 60.0 + 3.0 * plan.length() / tour.speed + 4.0 * plan.points().len() as f64;
     let conditions = conditions(limit.ceil())?;
-    let mut localiser = LocalisationMap::new(&world)
+    let mut localiser = localisation_map(scene)
         .and_then(|map| Localiser::new(map, conditions.localiser(&scene.robots[0].spec)))
         .map_err(Failure::input)?;
     localiser.start_at(start);

@@ -11,8 +11,8 @@ use roverlab::io::sim::{NoiseModel, RobotTruth, SimOptions};
 use roverlab::io::{self, Drive, Key, TruthInSpace};
 use roverlab::kinematics::OdometryErrors;
 use roverlab::picture::{Mark, Picture, Style};
-use roverlab::scan::LocaliserParameters;
-use roverlab::world::{Colour, DriveSpec, Object, ObjectKind, RobotSpec, Scene, Shape, World};
+use roverlab::scan::{LocalisationMap, LocaliserParameters};
+use roverlab::world::{Colour, DriveSpec, Footprint, Object, ObjectKind, RobotSpec, Scene, Shape, World};
 
 use crate::common::{CommonArgs, Driven, Failure, Outcome, Pacer, Report, Stage};
 
@@ -296,12 +296,26 @@ pub(crate) fn track(spec: &RobotSpec) -> f64 {
 pub(crate) fn world_with_others(scene: &Scene) -> World {
     let mut world = scene.world.clone();
     for other in &scene.robots[1..] {
-        let radius = other.spec.footprint.bounding_radius();
-        let shape = Shape::Cylinder { radius, height: other.spec.height };
+        let height = other.spec.height;
+        let (shape, middle) = match other.spec.footprint {
+            Footprint::Disc { radius } => (Shape::Cylinder { radius, height }, Pose::default()),
+            Footprint::Rectangle(outline) => {
+                let (size, middle) = (outline.size(), outline.min + outline.size() * 0.5);
+                (Shape::Box { length: size.x, width: size.y, height }, Pose::new(middle.x, middle.y, 0.0))
+            }
+        };
         let kind = ObjectKind { fixed: true, ..ObjectKind::new(&other.spec.name, shape, Colour::BLUE) };
-        world.objects.push(Object::new(Arc::new(kind), other.pose));
+        let object = Object::new(Arc::new(kind), other.pose.compose(&middle));
+        world.objects.push(Object { elevation: other.elevation, ..object });
     }
     world
+}
+
+/// The map for the first robot of a scene, whose lidar passes over what is lower.
+pub(crate) fn localisation_map(scene: &Scene) -> io::Result<LocalisationMap> {
+    let robot = &scene.robots[0];
+    let height = robot.elevation + robot.spec.lidar.unwrap_or_default().mount.z;
+    LocalisationMap::at_height(&world_with_others(scene), height)
 }
 
 /// Rejects a robot without a lidar.

@@ -23,7 +23,8 @@ pub(crate) struct SwarmRun {
     pub(crate) odometry: Vec<Pose>,
     pub(crate) contacts: u64,
     pub(crate) contact_places: Vec<Point>,
-    /// Followers, counted from 1, that have lost the robot ahead or their position.
+    /// Followers, counted from 1, that have lost the robot ahead or their position, if only for a while: what
+    /// they took for it meanwhile was something else.
     pub(crate) lost: Vec<usize>,
     /// Mean distance to the robot ahead, and maximum after the first seconds (m).
     pub(crate) mean_gap: f64,
@@ -160,7 +161,7 @@ pub(crate) fn run<'a>(
         sim_time: 0.0,
         leader_path: 0.0,
     };
-    let mut gaps = 0_u64;
+    let (mut gaps, mut is_lost) = (0_u64, vec![false; robots]);
     while fleet.time()? + 0.5 * PERIOD < seconds {
         fleet.run_for(PERIOD)?;
         let time = fleet.time()?;
@@ -176,13 +177,13 @@ pub(crate) fn run<'a>(
             run.mean_gap += gap;
             gaps += 1;
             run.largest_gap = run.largest_gap.max(gap);
+            is_lost[follower] |= gap > TOO_FAR * gap_of(scene, mode, follower).max(0.3);
         }
     }
     run.mean_gap /= gaps.max(1) as f64;
     for (follower, last_seen) in last_seen.iter().enumerate().skip(1) {
-        let far = gap_now(&run.paths, mode, follower) > TOO_FAR * gap_of(scene, mode, follower).max(0.3);
         let unseen = mode != Mode::Radio && fleet.time()? - last_seen.get() > 3.0;
-        if far || unseen {
+        if is_lost[follower] || unseen {
             run.lost.push(follower);
         }
     }

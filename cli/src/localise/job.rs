@@ -1,13 +1,13 @@
 use roverlab::drive::RandomDriveParameters;
 use roverlab::geometry::{angle_difference, units};
-use roverlab::scan::{Localisation, LocalisationMap};
+use roverlab::scan::Localisation;
 use roverlab::world::{RobotSpec, Scene};
 use serde_json::{Value, json};
 
 use super::drive::{Finding, Options, drive};
 use super::{campaign, picture, worlds};
 use crate::common::{CommonArgs, Failure, OF_PARTS, Outcome, PartArgs, Report, millimetres, rounded};
-use crate::driving::{Conditions, Run, check_level_lidar, paced, world_with_others};
+use crate::driving::{Conditions, Run, check_level_lidar, localisation_map, paced};
 
 /// Command line of `localise`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -97,7 +97,7 @@ pub(super) fn run(
 ) -> Result<Run<Finding>, Failure> {
     let radius = scene.robots[0].spec.footprint.bounding_radius();
     let options = Options {
-        map: LocalisationMap::new(&world_with_others(scene)).map_err(Failure::input)?,
+        map: localisation_map(scene).map_err(Failure::input)?,
         localiser: conditions.localiser(&scene.robots[0].spec),
         random: RandomDriveParameters { radius, ..RandomDriveParameters::default() },
         seed: conditions.seed,

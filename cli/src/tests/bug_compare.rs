@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 use std::fs;
 
-use super::support::{DATA, said, temporary};
+use super::support::{DATA, folder, said, temporary};
 use crate::bug_compare::{Boundaries, interval};
 use roverlab::geometry::{Point, Segment, direction};
 use roverlab::random::Stream;
@@ -269,4 +269,27 @@ fn intervals_hold_the_mean_as_often_as_they_say() {
     assert!(interval(&[]).is_none());
     let one = interval(&[2.5]).unwrap();
     assert_eq!((one.mean, one.low, one.high), (2.5, 2.5, 2.5));
+}
+
+/// A robot that stands in a door closes it.
+#[test]
+fn other_robots_are_in_the_way() {
+    let folder = folder();
+    let walls =
+        "3000 0 3000 1850\n3000 2150 3000 4000\n0 0 6000 0\n6000 0 6000 4000\n6000 4000 0 4000\n0 4000 0 0\n";
+    fs::write(folder.join("door.wld"), format!("floor 6000 4000\n{walls}")).unwrap();
+    let scene = folder.join("door.sim");
+    fs::write(&scene, "world door.wld\nS4 1000 2000 0\nLabBot 3000 2000 0\nmarker 5000 2000 0 255 0\n")
+        .unwrap();
+    let report = report(&[
+        "--world",
+        scene.to_str().unwrap(),
+        "--runs",
+        "1",
+        "--noise",
+        "0",
+        "--bugs",
+        "DistBug,Bug1",
+    ]);
+    assert_eq!(report["outcome"], "compared", "{report}");
 }

@@ -116,3 +116,20 @@ fn a_half_blind_robot_is_not_sure_of_a_wrong_place() {
         assert!(is_right && err.is_empty(), "{seed}: {report} {err}");
     }
 }
+
+/// A lidar above a low wall does not see what tells the halves of a hall apart.
+#[test]
+fn a_lidar_passes_over_low_walls() {
+    let world = temporary("low.wld");
+    let sides = ["0 0 6000 0", "6000 0 6000 4000", "6000 4000 0 4000", "0 4000 0 0"];
+    let sides = sides.map(|line| format!("{line} 20 1000\n")).concat();
+    fs::write(&world, format!("floor 6000 4000\n{sides}1500 1000 2500 1000 20 150\n")).unwrap();
+    let of = |robot| {
+        let options = ["--world", world.to_str().unwrap(), "--start", "1000,2600,40", "--robot", robot];
+        let (status, report, err) = localise(&options);
+        assert_eq!((status, err.as_str()), (0, ""), "{report}");
+        (report["outcome"].as_str().unwrap().to_owned(), number(&report, "hypotheses"))
+    };
+    assert_eq!(of("Blizzard"), ("several_hypotheses".into(), 2.0));
+    assert_eq!(of("S4"), ("localised".into(), 1.0));
+}

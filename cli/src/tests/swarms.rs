@@ -71,6 +71,32 @@ fn nobody_is_lost() {
     }
 }
 
+/// A follower that took a pillar for the leader is lost, though the leader comes past it in the end.
+#[test]
+fn who_followed_a_pillar_is_lost() {
+    const PILLARS: [[(u32, u32); 4]; 4] = [
+        [(3104, 2646), (3035, 2695), (2986, 2625), (3056, 2577)],
+        [(1592, 3321), (1513, 3289), (1545, 3210), (1624, 3242)],
+        [(3779, 1380), (3665, 1324), (3722, 1210), (3836, 1266)],
+        [(1172, 1994), (1054, 1946), (1102, 1828), (1220, 1876)],
+    ];
+    let hall = [(0, 0), (5000, 0), (5000, 4000), (0, 4000)];
+    let mut lines = String::from("floor 5000 4000\n");
+    for corners in PILLARS.into_iter().chain([hall]) {
+        for (k, (x, y)) in corners.into_iter().enumerate() {
+            let (to_x, to_y) = corners[(k + 1) % 4];
+            lines += &format!("{x} {y} {to_x} {to_y}\n");
+        }
+    }
+    let folder = folder();
+    fs::write(folder.join("pillars.wld"), lines).unwrap();
+    let scene = folder.join("pillars.sim");
+    fs::write(&scene, "world pillars.wld\nLabBot 2406 3034 39\nLabBot 2180 2854 39\n").unwrap();
+    let (status, report, err) = run("follow_me", &["--world", scene.to_str().unwrap(), "--seed", "168"]);
+    let ending = (status, report["outcome"].as_str(), number(&report, "lost"));
+    assert_eq!(ending, (1, Some("lost"), 1.0), "{report} {err}");
+}
+
 #[test]
 fn letters_in_a_maze_stand_for_robots() {
     let folder = folder();

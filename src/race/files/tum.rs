@@ -1,8 +1,10 @@
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use super::MOST;
 use super::csv::{field, rows};
-use crate::geometry::Point;
+use crate::geometry::{Point, cross, math};
+use crate::race::round::turning_back;
 use crate::race::{Corridor, LineError};
 use crate::world::formats::{FormatError, Location, shown};
 
@@ -31,7 +33,8 @@ const HEADER: &str = "# x_m,y_m,w_tr_right_m,w_tr_left_m";
 ///
 /// # Errors
 ///
-/// If the text is not such a circuit, or rows of it are missing: a step is many times the usual one.
+/// If the text is not such a circuit, rows of it are missing (a step is many times the usual one) or in a wrong
+/// order (it turns back), or it goes around more than once.
 pub fn parse_tum(text: &str, file: &str) -> Result<Corridor, FormatError> {
     let numbers = table::<4>(text, file, HEADER)?;
     for (values, at) in &numbers {
@@ -48,7 +51,25 @@ pub fn parse_tum(text: &str, file: &str) -> Result<Corridor, FormatError> {
         FormatError::new(file, Location::START, error.to_string(), "a closed centre line")
     })?;
     check_steps(&numbers, file)?;
+    check_course(&corridor, file)?;
     Ok(corridor)
+}
+
+/// Rejects a circuit that turns back, as rows in a wrong order do, or goes around more than once.
+fn check_course(corridor: &Corridor, file: &str) -> Result<(), FormatError> {
+    let refused =
+        |found: String, expected: &str| Err(FormatError::new(file, Location::START, found, expected));
+    if let Some(at) = turning_back(corridor) {
+        let found = format!("a line that turns back at ({:.0}, {:.0}) m", at.x, at.y);
+        return refused(found, "one that a car can drive");
+    }
+    let stations = corridor.stations();
+    let turned = stations.iter().zip(stations.iter().cycle().skip(1)).map(|(station, next)| {
+        math::atan2(cross(station.normal, next.normal), station.normal.dot(&next.normal))
+    });
+    // A figure of eight comes to none.
+    let around = (turned.sum::<f64>() / TAU).abs().round();
+    if around > 1.0 { refused(format!("a line that goes around {around} times"), "one lap") } else { Ok(()) }
 }
 
 /// Rejects a circuit with a gap, which a chord would close.

@@ -1,7 +1,6 @@
 use nalgebra::Matrix3;
 
 use super::hypothesis::{Bench, KNOWN};
-use super::map::scanner_of;
 use super::search::search;
 use super::{Hypothesis, LocalisationMap, LocaliserParameters};
 use crate::geometry::{Pose, angle_difference, math, normalize_angle};
@@ -205,7 +204,7 @@ impl Localiser {
         }
         let mut bench = match self.bench.take() {
             Some(bench) if bench.expected.len() == beams => bench,
-            _ => Bench { scanner: scanner_of(scan), expected: vec![0.0; beams] },
+            _ => Bench { scanner: self.map.scanner(scan), expected: vec![0.0; beams] },
         };
         let motion = self.odometry.map_or(Pose::default(), |last| last.inverse().compose(&odometry));
         self.driven += motion.position().coords.norm();

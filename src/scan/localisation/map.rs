@@ -1,6 +1,7 @@
 use super::surfaces::Surfaces;
 use crate::geometry::{Aabb, Point, Pose};
 use crate::io::{Error, ErrorKind, LidarScan, Result};
+use crate::parameter::require_not_negative;
 use crate::world::space::{Scanner, Solid, Space};
 use crate::world::{Clearance, World};
 
@@ -23,6 +24,8 @@ pub struct LocalisationMap {
     is_open: bool,
     clearance: Clearance,
     surfaces: Surfaces,
+    /// Height of the lidar above the floor (m).
+    height: f64,
     /// A world with only the occupancy map, which tells on which side of surfaces it is solid.
     blocks: World,
 }
@@ -37,12 +40,33 @@ const CELLS: f64 = 2e6;
 const CLEARANCE: f64 = 0.3;
 
 impl LocalisationMap {
-    /// The map of a world's walls and objects.
+    /// The map of a world's walls and objects for a lidar 40 mm above the floor, which is that of most robots.
     ///
     /// # Errors
     ///
     /// If the world is too large.
     pub fn new(world: &World) -> Result<Self> {
+        Self::at_height(world, HEIGHT)
+    }
+
+    /// The map for a level lidar at a height above the floor (m): it passes over lower walls and objects.
+    ///
+    /// ```
+    /// use roverlab::geometry::Point;
+    /// use roverlab::scan::LocalisationMap;
+    /// use roverlab::world::{Wall, World};
+    /// let mut world = World::walled(2.0, 2.0);
+    /// world.walls.push(Wall { height: 0.1, ..Wall::new(Point::new(1.0, 0.0), Point::new(1.0, 1.0)) });
+    /// let map = LocalisationMap::at_height(&world, 0.15)?;
+    /// assert!(!map.is_free(Point::new(1.0, 0.5), 0.05), "the robot does not pass over it");
+    /// # Ok::<(), roverlab::io::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If the world is too large, or the height is negative or not finite.
+    pub fn at_height(world: &World, height: f64) -> Result<Self> {
+        require_not_negative("height of the lidar", height)?;
         let mut space = Space::new(&world.walls);
         for object in &world.objects {
             space.add(Solid::from(object));
@@ -52,12 +76,18 @@ impl LocalisationMap {
         let (finest, coarsest) = RESOLUTION;
         let size = world.site().size();
         let resolution = (size.x * size.y / CELLS).sqrt().clamp(finest, coarsest);
-        let clearance = Clearance::new(&hollow, resolution, CLEARANCE).map_err(|error| {
-            Error::new(ErrorKind::InvalidInput, format!("the world cannot be mapped: {error}"))
-        })?;
-        let surfaces = Surfaces::new(&clearance);
+        let clearance = Clearance::new(&hollow, resolution, CLEARANCE).map_err(|error| refused(&error))?;
+        let seen = seen_at(&hollow, height);
+        let surfaces = if seen == hollow {
+            Surfaces::new(&clearance)
+        } else {
+            // Clearances have the same raster, that of the world's site.
+            let seen = Clearance::new(&World { floor: hollow.site(), ..seen }, resolution, CLEARANCE);
+            Surfaces::new(&seen.map_err(|error| refused(&error))?)
+        };
         let blocks = World { map: world.map.clone(), ..World::empty(0.0, 0.0) };
-        let mut map = Self { space, bounds: world.site(), is_open: false, clearance, surfaces, blocks };
+        let mut map =
+            Self { space, bounds: world.site(), is_open: false, clearance, surfaces, height, blocks };
         map.is_open = map.edge().any(|place| map.is_free(place, NARROW));
         Ok(map)
     }
@@ -89,16 +119,32 @@ impl LocalisationMap {
         &self.surfaces
     }
 
+    /// A scanner with the beams of a scan.
+    pub(super) fn scanner(&self, scan: &LidarScan) -> Scanner {
+        let beams = scan.ranges.len();
+        Scanner::new(scan.angle_min, scan.angle_increment, beams, self.height, 0.0, scan.range_max)
+    }
+
     /// The expected scan at a scanner's pose.
     pub(super) fn expect(&self, scanner: &mut Scanner, pose: &Pose, ranges: &mut [f64]) {
         self.space.scan(scanner, pose, None, ranges);
     }
 }
 
-/// Assumed height of the scanner above the floor (m); lower objects are not in the map.
+/// Usual height of a lidar above the floor (m).
 pub(crate) const HEIGHT: f64 = 0.04;
 
-/// A scanner with the beams of a scan.
-pub(super) fn scanner_of(scan: &LidarScan) -> Scanner {
-    Scanner::new(scan.angle_min, scan.angle_increment, scan.ranges.len(), HEIGHT, 0.0, scan.range_max)
+fn refused(error: &crate::ParameterError) -> Error {
+    Error::new(ErrorKind::InvalidInput, format!("the world cannot be mapped: {error}"))
+}
+
+/// What a level lidar sees at a height.
+fn seen_at(world: &World, height: f64) -> World {
+    let mut seen = world.clone();
+    seen.walls.retain(|wall| wall.height >= height);
+    seen.objects.retain(|object| {
+        let solid = Solid::from(object);
+        solid.mast.is_some() || (solid.bottom..=solid.top).contains(&height)
+    });
+    seen
 }
