@@ -209,11 +209,16 @@ mod campaigns {
     #[test]
     #[ignore = "a campaign on published data: ROVERLAB_DATA=FOLDER cargo test --release --all-features --test lane_keeping campaigns -- --ignored --nocapture"]
     fn twenty_laps_of_the_books_loop_with_its_lines_and_crosswalk() {
+        let as_it_is = RobotSpec::s4();
+        let mut wide = as_it_is.clone();
+        let lens = wide.camera.as_mut().unwrap();
+        (lens.field_of_view, lens.fisheye) = (units::from_deg(150.0), true);
+        [as_it_is, wide].into_iter().for_each(twenty_laps);
+    }
+
+    fn twenty_laps(spec: RobotSpec) {
         let image = book_loop::picture();
         let course = book_loop::course();
-        let mut spec = RobotSpec::s4();
-        let lens = spec.camera.as_mut().unwrap();
-        (lens.field_of_view, lens.fisheye) = (units::from_deg(150.0), true);
         let camera = spec.camera.as_ref().unwrap().into();
         let world = World {
             floor_texture: Some(Texture::new("carolo.png", image)),

@@ -149,15 +149,16 @@ pub(super) fn zebras(view: &RoadView, tones: &Tones, road: &RoadAhead, found: &m
         }
         // Blur lengthens it, and the limits of the view cut it.
         let long = view.ahead(row.min(ROWS - 1)) - view.ahead(from);
-        if (0.3 * ZEBRA..1.5 * ZEBRA).contains(&long) && begins_in_view(view, road, from) {
+        if (0.3 * ZEBRA..1.5 * ZEBRA).contains(&long) && begins_in_view(view, road.edge, from) {
             found.push(Detection::new(RoadElementKind::Zebra, view.ahead(from)));
         }
     }
 }
 
-/// Whether the road just before a row is in view.
-fn begins_in_view(view: &RoadView, road: &RoadAhead, row: usize) -> bool {
-    let inner = columns(-road.edge, road.edge);
+/// Whether half of the road, which has edge lines at a distance from its centre line (m), is in view just
+/// before a row: a crosswalk is found there.
+pub(super) fn begins_in_view(view: &RoadView, edge: f64, row: usize) -> bool {
+    let inner = columns(-edge, edge);
     let before = row.saturating_sub(4);
     let seen = inner.clone().filter(|&column| column < COLUMNS && view.sees(before, column)).count();
     row >= 4 && 2 * seen > inner.len()

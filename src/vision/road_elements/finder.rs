@@ -265,14 +265,16 @@ impl RoadElementFinder {
 
     /// Lowers the evidence of what should have been seen, and drops what is not there.
     fn judge(&mut self, is_blind: bool) {
-        let from = self.view.from();
-        let view = &self.view;
+        let (view, edge) = (&self.view, self.edge);
+        let from = view.from();
         let reliable = |track: &Track| {
             let row = view.row(track.ahead);
             let is_in_view = match track.kind {
                 RoadElementKind::Obstacle { right, left } => {
                     [right, left].iter().all(|side| view.sees(row, super::view::column(side + self.middle)))
                 }
+                // A narrow lens loses the other lane before the own one.
+                RoadElementKind::Zebra => across::begins_in_view(view, edge, row),
                 // Arms of a crossing and areas beside the road may be outside the view.
                 RoadElementKind::Crossing { .. }
                 | RoadElementKind::Parking { .. }

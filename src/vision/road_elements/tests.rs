@@ -13,12 +13,16 @@ const CAMERA: RoadCamera =
 const EDGE: f64 = 0.42;
 
 /// A picture of a road on which a car is in the middle of its lane.
-struct Picture(Vec<u8>);
+struct Picture(Vec<u8>, RoadCamera);
 
 impl Picture {
     /// The lines of the road.
     fn road() -> Self {
-        let mut picture = Self(vec![40; 320 * 240]);
+        Self::road_by(CAMERA)
+    }
+
+    fn road_by(camera: RoadCamera) -> Self {
+        let mut picture = Self(vec![40; 320 * 240], camera);
         for left in [-0.5 * EDGE, 0.5 * EDGE, 1.5 * EDGE] {
             picture.paint(0.2..3.0, left - 0.01..left + 0.01, 220);
         }
@@ -31,7 +35,7 @@ impl Picture {
         let count = |range: &Range<f64>| ((range.end - range.start) / STEP) as usize;
         for (i, k) in (0..count(&ahead)).flat_map(|i| (0..count(&left)).map(move |k| (i, k))) {
             let place = Point::new(ahead.start + STEP * i as f64, left.start + STEP * k as f64);
-            if let Some((column, row)) = CAMERA.project(place, 0.0, (320, 240))
+            if let Some((column, row)) = self.1.project(place, 0.0, (320, 240))
                 && (0.0..320.0).contains(&column)
                 && (0.0..240.0).contains(&row)
             {
@@ -75,4 +79,22 @@ fn a_give_way_line_of_which_a_dash_is_worn_is_found() {
     }
     let found: Vec<RoadElementKind> = road.found().elements().map(|it| it.kind).collect();
     assert_eq!(found, [RoadElementKind::GiveWayLine]);
+}
+
+#[test]
+fn a_crosswalk_is_kept_while_a_narrow_lens_sees_little_but_the_own_lane() {
+    let camera = RoadCamera { field_of_view: 1.05, fisheye: false, tilt: 0.0, height: 0.13, ahead: 0.13 };
+    let mut lane = LaneMarkingFinder::new(camera, RoadModel::default()).unwrap();
+    let mut finder = RoadElementFinder::new(camera, RoadModel::default()).unwrap();
+    for near in (0..60).map(|step| 0.8 - 0.01 * f64::from(step)) {
+        let mut picture = Picture::road_by(camera);
+        for left in (0..11).map(|stripe| -0.2 + 0.078 * f64::from(stripe)) {
+            picture.paint(near.max(0.2)..near + 0.4, left..left + 0.039, 220);
+        }
+        let view = GrayView::new(&picture.0, 320, 240).unwrap();
+        let lane = lane.see(view, (0.01, 0.0));
+        finder.see(view, &lane, 0.01, 0.04);
+        let is_found = finder.elements().any(|it| it.kind == RoadElementKind::Zebra);
+        assert!(is_found || near > 0.75, "{near}");
+    }
 }
