@@ -47,7 +47,7 @@ fn row(curve: &Curve) -> String {
         .iter()
         .map(|point| format!("{}: {}", curve::short(point.size), in_words(point.seconds)))
         .collect();
-    let steps = curve.points.windows(2).map(|pair| curve::exponent(pair)).fold(f64::NEG_INFINITY, f64::max);
+    let steps = curve.points.windows(2).map(curve::exponent).fold(f64::NEG_INFINITY, f64::max);
     let (name, unit) = (curve.name, curve.unit);
     format!("| {name} | {unit} | {} | {:.2} | {steps:.2} |", times.join(", "), curve::exponent(&curve.points))
 }

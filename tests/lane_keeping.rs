@@ -132,8 +132,7 @@ fn strokes_of_numbers_in_a_bend_are_no_lines_of_the_road() {
 }
 
 /// Drives for some seconds, or until the car has to be taken over.
-fn drive(seed: u64, seconds: f64) -> FreeDriveScore {
-    let course = generate(seed, &RoadCourseOptions::default()).unwrap();
+fn drive(course: RoadCourse, seed: u64, seconds: f64) -> FreeDriveScore {
     let simulation = simulation(&course, seed, 0.002);
     let (mut car, truth) = (simulation.robot(0).unwrap(), simulation.truth());
     let mut keeper =
@@ -142,6 +141,21 @@ fn drive(seed: u64, seconds: f64) -> FreeDriveScore {
     run(&mut car, &mut keeper, seconds, |_, _, _| until(referee.see(truth.time(), &truth.pose(0).unwrap())))
         .unwrap();
     *referee.score()
+}
+
+/// The stripes of a crosswalk lie aslant in the view, and the lines of a crossing begin anew beyond it.
+#[test]
+fn a_crosswalk_or_a_crossing_may_be_just_behind_a_tight_bend() {
+    let crosswalk =
+        "straight 1000\narc 1440 180\nstraight 150\nzebra\nstraight 3850\narc 1440 180\nstraight 3000\n";
+    let crossing = "straight 1000\narc 1440 -180\nstraight 560\ncrossing 90 both 1000 give-way\nstraight 3440\n\
+                    arc 1440 -180\nstraight 3000\n";
+    for (text, seed, seconds) in [(crosswalk, 3, 5.0), (crossing, 5, 18.5)] {
+        let course = course::parse(&format!("course 1\nlane 400\n{text}"), "oval").unwrap();
+        let score = drive(course, seed, seconds);
+        assert_eq!((score.departures, score.interventions), (0, 0), "{text}: {score:?}");
+        assert!(score.offset_rms() < 0.012, "{text}: {score:?}");
+    }
 }
 
 #[test]
@@ -199,7 +213,8 @@ mod campaigns {
     #[ignore = "a campaign: cargo test --release --all-features --test lane_keeping campaigns -- --ignored --nocapture"]
     fn free_drive_on_twenty_courses() {
         for seed in 1..=20 {
-            let score = drive(seed, 120.0);
+            let course = generate(seed, &RoadCourseOptions::default()).unwrap();
+            let score = drive(course, seed, 120.0);
             println!("{seed}: {:.1} m, {:.1} mm", score.distance, 1e3 * score.offset_rms());
             assert_eq!((score.departures, score.interventions), (0, 0), "{seed}: {score:?}");
             assert!(score.distance > 230.0 && score.offset_rms() < 0.025, "{seed}: {score:?}");
@@ -213,10 +228,12 @@ mod campaigns {
         let mut wide = as_it_is.clone();
         let lens = wide.camera.as_mut().unwrap();
         (lens.field_of_view, lens.fisheye) = (units::from_deg(150.0), true);
-        [as_it_is, wide].into_iter().for_each(twenty_laps);
+        for spec in [as_it_is, wide] {
+            twenty_laps(&spec);
+        }
     }
 
-    fn twenty_laps(spec: RobotSpec) {
+    fn twenty_laps(spec: &RobotSpec) {
         let image = book_loop::picture();
         let course = book_loop::course();
         let camera = spec.camera.as_ref().unwrap().into();

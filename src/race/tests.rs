@@ -1,10 +1,11 @@
 //! Published files, and complete plans.
 
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use super::*;
-use crate::geometry::{Point, Pose, Segment};
+use crate::geometry::{Point, Pose, Segment, direction};
 
 /// Published tracks of a kind, sorted by name.
 fn files(folder: &str, ending: &str) -> Vec<PathBuf> {

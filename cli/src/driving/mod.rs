@@ -297,12 +297,12 @@ pub(crate) fn world_with_others(scene: &Scene) -> World {
     let mut world = scene.world.clone();
     for other in &scene.robots[1..] {
         let height = other.spec.height;
-        let (shape, middle) = match other.spec.footprint {
-            Footprint::Disc { radius } => (Shape::Cylinder { radius, height }, Pose::default()),
-            Footprint::Rectangle(outline) => {
-                let (size, middle) = (outline.size(), outline.min + outline.size() * 0.5);
-                (Shape::Box { length: size.x, width: size.y, height }, Pose::new(middle.x, middle.y, 0.0))
-            }
+        let (shape, middle) = if let Footprint::Rectangle(outline) = other.spec.footprint {
+            let (size, middle) = (outline.size(), outline.min + outline.size() * 0.5);
+            (Shape::Box { length: size.x, width: size.y, height }, Pose::new(middle.x, middle.y, 0.0))
+        } else {
+            let radius = other.spec.footprint.bounding_radius();
+            (Shape::Cylinder { radius, height }, Pose::default())
         };
         let kind = ObjectKind { fixed: true, ..ObjectKind::new(&other.spec.name, shape, Colour::BLUE) };
         let object = Object::new(Arc::new(kind), other.pose.compose(&middle));

@@ -172,12 +172,12 @@ pub(crate) fn run<'a>(
         if time < FORMING {
             continue;
         }
-        for follower in 1..robots {
+        for (follower, is_lost) in is_lost.iter_mut().enumerate().skip(1) {
             let gap = gap_now(&run.paths, mode, follower);
             run.mean_gap += gap;
             gaps += 1;
             run.largest_gap = run.largest_gap.max(gap);
-            is_lost[follower] |= gap > TOO_FAR * gap_of(scene, mode, follower).max(0.3);
+            *is_lost |= gap > TOO_FAR * gap_of(scene, mode, follower).max(0.3);
         }
     }
     run.mean_gap /= gaps.max(1) as f64;

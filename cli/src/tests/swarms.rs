@@ -81,13 +81,12 @@ fn who_followed_a_pillar_is_lost() {
         [(1172, 1994), (1054, 1946), (1102, 1828), (1220, 1876)],
     ];
     let hall = [(0, 0), (5000, 0), (5000, 4000), (0, 4000)];
-    let mut lines = String::from("floor 5000 4000\n");
-    for corners in PILLARS.into_iter().chain([hall]) {
-        for (k, (x, y)) in corners.into_iter().enumerate() {
-            let (to_x, to_y) = corners[(k + 1) % 4];
-            lines += &format!("{x} {y} {to_x} {to_y}\n");
-        }
-    }
+    let side = |corners: &[(u32, u32); 4], k: usize| {
+        let ((x, y), (to_x, to_y)) = (corners[k], corners[(k + 1) % 4]);
+        format!("{x} {y} {to_x} {to_y}\n")
+    };
+    let sides = PILLARS.iter().chain([&hall]).flat_map(|corners| (0..4).map(|k| side(corners, k)));
+    let lines = format!("floor 5000 4000\n{}", sides.collect::<String>());
     let folder = folder();
     fs::write(folder.join("pillars.wld"), lines).unwrap();
     let scene = folder.join("pillars.sim");

@@ -57,13 +57,20 @@ pub struct ObstacleEvasion {
     /// Distance driven along the line (m), and the time at which the car last moved (s).
     driven: f64,
     moved: f64,
-    /// Whether two wheels are outside the own lane, and whether two are over the centre line.
-    is_outside: bool,
-    is_over_centre: bool,
+    beyond: Beyond,
     /// Speed zones as in [`TrafficScene::speed_zones`], and whether the car drives too fast in one.
     zones: Vec<(f64, f64, f64)>,
     is_speeding: bool,
     turns: Vec<RoadTurn>,
+}
+
+/// Whether two wheels are outside the own lane, whether two are over the centre line, and whether they are there
+/// neither to pass nor to turn off.
+#[derive(Debug, Clone, Copy, Default)]
+struct Beyond {
+    is_outside: bool,
+    is_over_centre: bool,
+    has_departed: bool,
 }
 
 /// Outline of a car, and the points where its wheels touch the ground, in its frame (m).
@@ -102,8 +109,7 @@ impl ObstacleEvasion {
             encounters,
             driven: 0.0,
             moved: 0.0,
-            is_outside: false,
-            is_over_centre: false,
+            beyond: Beyond::default(),
             zones,
             is_speeding: false,
             turns,
@@ -214,10 +220,11 @@ impl ObstacleEvasion {
                     && between(course, to, self.lane.along) < BESIDE
             })
         });
-        let is_excused = is_beside || self.turns();
-        self.score.departures += u32::from(is_outside && !self.is_outside && !is_excused);
-        let has_crossed = is_over_centre && !self.is_over_centre;
-        (self.is_outside, self.is_over_centre) = (is_outside, is_over_centre);
+        // Who passes is in the other lane, not beside the road, and comes back.
+        let has_departed = is_outside && !self.turns() && !(is_beside && is_over_centre);
+        self.score.departures += u32::from(has_departed && !self.beyond.has_departed);
+        let has_crossed = is_over_centre && !self.beyond.is_over_centre;
+        self.beyond = Beyond { is_outside, is_over_centre, has_departed };
         (wheels, has_crossed)
     }
 
@@ -234,7 +241,7 @@ impl ObstacleEvasion {
             speed,
             wheels,
             has_crossed_centre,
-            is_back: self.lane.offset.abs() < room && !self.is_outside,
+            is_back: self.lane.offset.abs() < room && !self.beyond.is_outside,
         };
         for it in &mut self.encounters {
             if let Some((is_right, is_fault)) = it.judge(&moment) {

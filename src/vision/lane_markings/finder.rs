@@ -153,13 +153,16 @@ const SOUGHT: f64 = 0.08;
 /// from which it is no pair of lines (m). Lines of lanes and numbers are further apart.
 const DRAWING: (f64, f64) = (0.085, 0.055);
 
-/// Removes points of what is painted within a lane: lines of a road are single, or in pairs.
-fn drop_other_paint(points: &mut Vec<MarkingPoint>) {
+/// Removes points of what is painted within a lane: lines of a road are single, or in pairs. Points of a row lie
+/// across the car, not across a road that turns: there, all distances are longer by a factor.
+fn drop_other_paint(points: &mut Vec<MarkingPoint>, factor: impl Fn(&MarkingPoint) -> f64) {
     let (near, wide) = DRAWING;
-    let is_joined =
-        |a: &MarkingPoint, b: &MarkingPoint| a.place.x == b.place.x && (a.place.y - b.place.y).abs() < near;
+    let apart = |a: &MarkingPoint, b: &MarkingPoint| (a.place.y - b.place.y).abs();
+    let is_joined = |a: &MarkingPoint, b: &MarkingPoint| {
+        a.place.x == b.place.x && apart(a, b) < near * factor(a).max(factor(b))
+    };
     let is_line = |drawing: &[MarkingPoint]| match drawing {
-        [first, .., last] => (last.place.y - first.place.y).abs() < wide,
+        [first, .., last] => apart(first, last) < wide * factor(first),
         _ => true,
     };
     *points = points.chunk_by(is_joined).filter(|drawing| is_line(drawing)).flatten().copied().collect();
@@ -218,13 +221,19 @@ impl LaneMarkingFinder {
             point.place /= size;
             point.pixel /= size;
         }
-        drop_other_paint(&mut self.points);
         let metres = metres / size;
         let lost = self.blind > BLIND;
         let tracked = self.road.take().filter(|_| !lost).map(|mut road| {
             road.drive(metres, turn);
             (road, if self.is_expected { SOUGHT } else { TRACKED })
         });
+        match &tracked {
+            Some((road, _)) => {
+                let curve = Curve::new(&road.bends());
+                drop_other_paint(&mut self.points, |point| road.slant(&curve, point.place));
+            }
+            None => drop_other_paint(&mut self.points, |_| 1.0),
+        }
         let is_kept = tracked.is_some();
         self.is_expected = false;
         let (mut road, wide) = tracked.unwrap_or_else(|| (self.acquire(), SOUGHT));
@@ -236,8 +245,8 @@ impl LaneMarkingFinder {
         lane
     }
 
-    /// Fits a road to the points, or follows it from the car on where that explains more of them. Returns the
-    /// weight of the points within 1.5 m.
+    /// Fits a road to the points, or follows it from the car on, or takes it for straight ahead, where that explains
+    /// more of them. Returns the weight of the points within 1.5 m.
     fn fit(&self, road: &mut Road, wide: f64) -> f64 {
         let (points, camera) = (&self.points, &self.camera);
         let before = road.clone();
@@ -245,8 +254,10 @@ impl LaneMarkingFinder {
         let enough = road.score(points, camera) + BETTER;
         // No road explains more than all points.
         if points.len() as f64 > enough {
-            let (other, support) = before.followed(points, camera);
-            if other.score(points, camera) > enough {
+            let others = [before.followed(points, camera), before.straightened(points, camera, wide)];
+            let scored = others.map(|(other, support)| (other.score(points, camera), other, support));
+            let better = scored.into_iter().filter(|(score, ..)| *score > enough);
+            if let Some((_, other, support)) = better.max_by(|a, b| a.0.total_cmp(&b.0)) {
                 *road = other;
                 return support;
             }

@@ -5,7 +5,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::curve::{Bends, Curve, Foot, KNOTS, SPACING, bend_at};
 use super::{MarkingPoint, RoadCamera};
-use crate::geometry::{Point, Vector, math};
+use crate::geometry::{Point, Pose, Vector, math};
 
 /// Number of states of a road.
 pub(super) const STATES: usize = KNOTS + 4;
@@ -58,6 +58,8 @@ const ROUGH: f64 = 0.010;
 const TOGETHER: f64 = 8.0;
 /// Distance between the lines of a pair (m).
 const PAIR: f64 = 0.02;
+/// Least cosine of the angle of a road to the car at which rows are still across it: 66 degrees.
+const ALONG: f64 = 0.4;
 /// Number of knots that are kept where the road ahead is followed: so far, lines are seen whatever the bend.
 const KEPT: usize = 3;
 /// Passes in which the road ahead is followed: distance from a line within which points count, and distance
@@ -171,15 +173,43 @@ impl Road {
     /// off than expected by the distance between two of them, each is taken for the next one. A fit by all
     /// points at once stays there, and one from near to far does not get there.
     pub(super) fn followed(&self, points: &[MarkingPoint], camera: &RoadCamera) -> (Self, f64) {
+        let mut road = self.unknown_from(KEPT, self.state[BENDS + KEPT - 1]);
+        let support = road.fit(points, camera, &FOLLOWED);
+        (road, support)
+    }
+
+    /// The same road, straight ahead as far as is known, fitted to points, and the weight of the points within 1.5
+    /// m. Where no line is seen for the width of a crossing behind a bend, the bend goes on in the estimate, and
+    /// beyond the crossing each line is taken for the next one.
+    pub(super) fn straightened(
+        &self,
+        points: &[MarkingPoint],
+        camera: &RoadCamera,
+        wide: f64,
+    ) -> (Self, f64) {
+        let mut road = self.unknown_from(1, 0.0);
+        let support = road.see(points, camera, wide);
+        (road, support)
+    }
+
+    /// The same road with its curvatures unknown from a knot on, where they are expected to be `bend`.
+    fn unknown_from(&self, knot: usize, bend: f64) -> Self {
         let mut road = self.clone();
-        for index in BENDS + KEPT..BENDS + KNOTS {
-            road.state[index] = self.state[BENDS + KEPT - 1];
+        for index in BENDS + knot..BENDS + KNOTS {
+            road.state[index] = bend;
             road.covariance.row_mut(index).fill(0.0);
             road.covariance.column_mut(index).fill(0.0);
             road.covariance[(index, index)] = UNSEEN.0 * UNSEEN.0;
         }
-        let support = road.fit(points, camera, &FOLLOWED);
-        (road, support)
+        road
+    }
+
+    /// How many times as far apart two lines are at a place, along a row across the car, as across the road.
+    pub(super) fn slant(&self, curve: &Curve, place: Point) -> f64 {
+        let car = Pose::new(0.0, self.offset(), self.heading());
+        let (sin, cos) = math::sin_cos(self.heading());
+        let foot = curve.foot(car.to_world(place));
+        foot.map_or(1.0, |foot| 1.0 / (cos * foot.normal.y - sin * foot.normal.x).abs().max(ALONG))
     }
 
     /// Fits in passes: distance from a line within which points count, and distance along the road up to

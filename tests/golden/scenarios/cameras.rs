@@ -173,18 +173,17 @@ fn approach() -> Result<String> {
     let (mut scene, geometry) = coloured();
     scene.robots[0].pose = Pose::new(0.5, 1.0, 0.0);
     scene.robots.push(RobotPlacement::new(Arc::new(RobotSpec::s4()), Pose::new(1.2, 1.1, 1.0)));
-    let mut fleet = Fleet::new(&scene, noise(1.0, 125))?;
-    fleet.control(1, 0.5, |robot| {
-        robot.set_speed(Twist::new(0.05, 1.5))?;
-        Ok(ControlFlow::Continue(()))
-    })?;
     let mut approach = MotionApproach::new(MotionApproachParameters::new(geometry)).map_err(other)?;
     let (mut run, mut seen) = (Run::new(&approach, 12.0)?, String::new());
-    let period = approach.period();
-    fleet.control(0, period, |robot| {
+    let mut fleet = Fleet::new(&scene, noise(1.0, 125))?;
+    fleet.control(0, approach.period(), |robot| {
         let flow = run.step(robot, &mut approach)?;
         note(&mut seen, "motion", &approach.motion());
         Ok(flow.map_break(drop))
+    })?;
+    fleet.control(1, 0.5, |robot| {
+        robot.set_speed(Twist::new(0.05, 1.5))?;
+        Ok(ControlFlow::Continue(()))
     })?;
     fleet.run_for(12.0)?;
     let truth = fleet.truth(0)?;

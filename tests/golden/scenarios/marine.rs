@@ -151,7 +151,9 @@ fn survey() -> Result<String> {
     let mut log = swim(&scene, 11, &mut survey, 60.0, |log, survey| {
         let sounding = survey.sounding();
         note(log, "sounding", &sounding);
-        sounding.into_iter().for_each(|sounding| map.add(sounding));
+        if let Some(sounding) = sounding {
+            map.add(sounding);
+        }
     })?;
     note(&mut log, "map", &map);
     Ok(log)

@@ -163,6 +163,8 @@ fn base_station() -> Result<String> {
     let corner = course.floor().min;
     let beside = Pose::new(corner.x + 0.15, corner.y + 0.15, 0.0);
     scene.robots.push(RobotPlacement::new(Arc::new(RobotSpec::s4()), beside));
+    let mut station = RoadStation::new(RoadStationParameters::default())?;
+    let (mut run, mut log) = (Run::new(&station, f64::INFINITY)?, String::new());
     let mut fleet = Fleet::new(&scene, noise(1.0, 43))?;
     for (index, start) in starts.iter().enumerate() {
         let camera = spec.camera.as_ref().expect("the car has a camera").into();
@@ -172,8 +174,6 @@ fn base_station() -> Result<String> {
         let mut run = Run::new(&car, f64::INFINITY)?;
         fleet.control(index, car.period(), move |robot| Ok(run.step(robot, &mut car)?.map_break(drop)))?;
     }
-    let mut station = RoadStation::new(RoadStationParameters::default())?;
-    let (mut run, mut log) = (Run::new(&station, f64::INFINITY)?, String::new());
     fleet.control(2, station.period(), |robot| {
         station.stop(robot.now()? > 3.0);
         let flow = run.step(robot, &mut station)?;
@@ -183,6 +183,8 @@ fn base_station() -> Result<String> {
     fleet.run_for(5.0)?;
     let truths = (0..3).map(|index| fleet.truth(index)).collect::<Result<Vec<_>>>()?;
     drop(fleet);
-    truths.iter().for_each(|truth| note_truth(&mut log, truth));
+    for truth in &truths {
+        note_truth(&mut log, truth);
+    }
     Ok(log)
 }

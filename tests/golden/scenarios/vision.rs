@@ -198,7 +198,7 @@ fn signs() -> Result<String> {
         let disc = 25.0 + 8.0 * seed as f64;
         trainer.add(rgb(&picture(disc, seed))?, &areas(disc)).map_err(other)?;
     }
-    let mut finder = SignFinder::new(trainer.finder(1)?);
+    let mut finder = SignFinder::new(trainer.finder(1).map_err(other)?);
     let mut log = String::new();
     for seed in 6..12 {
         let disc = 27.0 + 7.0 * (seed - 6) as f64;
