@@ -264,7 +264,7 @@ mod campaigns {
         };
         let mut driver = TrafficDriver::new(camera, road, parameters).unwrap();
         let laps = 20.0 * course.line.length();
-        let mut referee = FreeDrive::new(course, &spec, FreeDriveRules::default()).unwrap();
+        let mut referee = FreeDrive::new(course, spec, FreeDriveRules::default()).unwrap();
         let (mut stood, mut halts) = (false, [0; 2]);
         let (mut before, mut on_crosswalk) = ((Point::origin(), 0.0), Vec::new());
         run(&mut robot, &mut driver, 1600.0, |_, driver, _| {
