@@ -198,14 +198,17 @@ pub(super) fn orient_portable(
     /// Number of pixels processed at a time.
     const PIECE: usize = 64;
     let width = row.len();
+    let mut padded = [0_u8; PIECE + 2];
     let (mut dxs, mut dys) = ([0_i16; PIECE], [0_i16; PIECE]);
     for start in (0..width).step_by(PIECE) {
         let n = PIECE.min(width - start);
         let (dxs, dys) = (&mut dxs[..n], &mut dys[..n]);
-        let at = |x: usize| i16::from(row[x]);
-        for (i, dx) in dxs.iter_mut().enumerate() {
-            let x = start + i;
-            *dx = at((x + 1).min(width - 1)) - at(x.saturating_sub(1));
+        // With the neighbours of its ends, so that the loop has no cases.
+        padded[0] = row[start.saturating_sub(1)];
+        padded[1..=n].copy_from_slice(&row[start..][..n]);
+        padded[n + 1] = row[(start + n).min(width - 1)];
+        for ((dx, &w), &e) in dxs.iter_mut().zip(&padded).zip(&padded[2..]) {
+            *dx = i16::from(e) - i16::from(w);
         }
         let (above, below) = (&above[start..][..n], &below[start..][..n]);
         for ((dy, &n), &s) in dys.iter_mut().zip(above).zip(below) {
