@@ -244,7 +244,7 @@ proptest! {
             std::array::from_fn(|_| [[0; 36]; 5].map(|row| row.map(|_| stream.uniform() as f32)))
         };
         let (weights, windows) = (draw(), (0..count).map(|_| draw()).collect::<Vec<_>>());
-        let many: Vec<Window<'_>> = windows.iter().map(|window| window.each_ref()).collect();
+        let many: Vec<Window<'_>> = windows.iter().map(<[_; 5]>::each_ref).collect();
         let mut found = vec![0.0; count];
         products(&many, &weights.each_ref(), &mut found);
         for (window, &found) in many.iter().zip(&found) {
