@@ -52,7 +52,11 @@ pub struct Hog {
     borders: Vec<[i16; 2]>,
     magnitudes: Vec<u16>,
     bins: Vec<u8>,
+    /// For each row of cells and each direction, the sums of the row's cells.
     cells: Vec<u32>,
+    /// The numbers of a row of blocks: those of the first cell's first direction, of its second one, ...
+    columns: Vec<f32>,
+    lengths: Vec<f32>,
     descriptor: Vec<f32>,
 }
 
@@ -81,6 +85,8 @@ impl Hog {
             magnitudes: Vec::new(),
             bins: Vec::new(),
             cells: Vec::new(),
+            columns: Vec::new(),
+            lengths: Vec::new(),
             descriptor: Vec::new(),
         })
     }
@@ -121,45 +127,60 @@ impl Hog {
             orient(above, input.row(y), below, &self.borders, &mut self.magnitudes, &mut self.bins);
             let row = &mut self.cells[y / cell * across * bins..][..across * bins];
             let pixels = self.magnitudes.chunks_exact(cell).zip(self.bins.chunks_exact(cell));
-            for (histogram, (magnitudes, places)) in row.chunks_exact_mut(bins).zip(pixels) {
+            for (x, (magnitudes, places)) in pixels.enumerate() {
                 for (&magnitude, &place) in magnitudes.iter().zip(places) {
-                    histogram[usize::from(place)] += u32::from(magnitude);
+                    row[usize::from(place) * across + x] += u32::from(magnitude);
                 }
             }
         }
     }
 
+    /// Row by row of blocks, all blocks of a row at a time.
     fn fill_descriptor(&mut self, across: usize, blocks: (usize, usize)) {
         let HogParameters { block, bins, .. } = self.parameters;
-        self.descriptor.clear();
-        self.descriptor.reserve(blocks.0 * blocks.1 * block * block * bins);
-        for y in 0..blocks.1 {
-            for x in 0..blocks.0 {
-                let start = self.descriptor.len();
-                for row in 0..block {
-                    let cells = &self.cells[((y + row) * across + x) * bins..][..block * bins];
-                    self.descriptor.extend(cells.iter().map(|&sum| sum as f32));
-                }
-                normalise(&mut self.descriptor[start..]);
+        let numbers = block * block * bins;
+        self.columns.resize(numbers * blocks.0, 0.0);
+        self.lengths.resize(blocks.0, 0.0);
+        self.descriptor.resize(blocks.0 * blocks.1 * numbers, 0.0);
+        for (y, descriptor) in self.descriptor.chunks_exact_mut(blocks.0 * numbers).enumerate() {
+            for (number, column) in self.columns.chunks_exact_mut(blocks.0).enumerate() {
+                let (row, left, bin) = (number / bins / block, number / bins % block, number % bins);
+                let sums = &self.cells[((y + row) * bins + bin) * across + left..];
+                column.iter_mut().zip(sums).for_each(|(number, &sum)| *number = sum as f32);
+            }
+            normalise(&mut self.columns, &mut self.lengths);
+            for (x, block) in descriptor.chunks_exact_mut(numbers).enumerate() {
+                let columns = self.columns.chunks_exact(blocks.0);
+                block.iter_mut().zip(columns).for_each(|(number, column)| *number = column[x]);
             }
         }
     }
 }
 
-/// Squared norm of a vector, summed in order so that the result is reproducible.
-fn squared_length(vector: &[f32]) -> f32 {
-    vector.iter().fold(0.0, |sum, value| sum + value * value)
+/// Squared norm of each block, summed in order so that the result is reproducible.
+#[inline(always)]
+fn squared_lengths(columns: &[f32], lengths: &mut [f32]) {
+    lengths.fill(0.0);
+    for column in columns.chunks_exact(lengths.len()) {
+        lengths.iter_mut().zip(column).for_each(|(sum, number)| *sum += number * number);
+    }
 }
 
-fn normalise(vector: &mut [f32]) {
-    let length = (squared_length(vector) + 1.0).sqrt();
-    for value in &mut *vector {
-        *value = (*value / length).min(0.2);
-    }
-    let length = squared_length(vector).sqrt();
-    if length > 0.0 {
-        for value in vector {
-            *value /= length;
+vectorised! {
+    /// Normalises the blocks of a row.
+    fn normalise(columns: &mut [f32], lengths: &mut [f32]) {
+        squared_lengths(columns, lengths);
+        lengths.iter_mut().for_each(|length| *length = (*length + 1.0).sqrt());
+        for column in columns.chunks_exact_mut(lengths.len()) {
+            for (number, &length) in column.iter_mut().zip(&*lengths) {
+                let share = *number / length;
+                *number = if share < 0.2 { share } else { 0.2 };
+            }
+        }
+        squared_lengths(columns, lengths);
+        lengths.iter_mut().for_each(|length| *length = if *length > 0.0 { length.sqrt() } else { 1.0 });
+        for column in columns.chunks_exact_mut(lengths.len()) {
+            column.iter_mut().zip(&*lengths).for_each(|(number, &length)| *number /= length);
         }
     }
 }
@@ -177,14 +198,17 @@ pub(super) fn orient_portable(
     /// Number of pixels processed at a time.
     const PIECE: usize = 64;
     let width = row.len();
+    let mut padded = [0_u8; PIECE + 2];
     let (mut dxs, mut dys) = ([0_i16; PIECE], [0_i16; PIECE]);
     for start in (0..width).step_by(PIECE) {
         let n = PIECE.min(width - start);
         let (dxs, dys) = (&mut dxs[..n], &mut dys[..n]);
-        let at = |x: usize| i16::from(row[x]);
-        for (i, dx) in dxs.iter_mut().enumerate() {
-            let x = start + i;
-            *dx = at((x + 1).min(width - 1)) - at(x.saturating_sub(1));
+        // With the neighbours of its ends, so that the loop has no cases.
+        padded[0] = row[start.saturating_sub(1)];
+        padded[1..=n].copy_from_slice(&row[start..][..n]);
+        padded[n + 1] = row[(start + n).min(width - 1)];
+        for ((dx, &w), &e) in dxs.iter_mut().zip(&padded).zip(&padded[2..]) {
+            *dx = i16::from(e) - i16::from(w);
         }
         let (above, below) = (&above[start..][..n], &below[start..][..n]);
         for ((dy, &n), &s) in dys.iter_mut().zip(above).zip(below) {

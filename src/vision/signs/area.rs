@@ -1,6 +1,7 @@
 use crate::ParameterError;
 use crate::parameter::{require, require_up_to};
 use crate::vision::View;
+use crate::vision::dispatch::vectorised;
 
 /// A rectangle in an image (pixels), whose edges may lie between pixels and beyond the image.
 ///
@@ -92,29 +93,76 @@ pub(super) fn resample_into<const C: usize>(
     let across = Axis::new(area.left, area.width, side.0);
     let down = Axis::new(area.top, area.height, side.1);
     let samples = (across.samples * down.samples) as f32;
-    let (across, down) = (across.taps(image.width()), down.taps(image.height()));
-    let (columns, rows) = (across.len() / side.0, down.len() / side.1);
+    let mut rows = SampledRows::new(image, &across);
+    let mut sums = vec![0.0; C * side.0];
     patch.resize(C * side.0 * side.1, 0);
-    for (line, rows) in patch.chunks_exact_mut(C * side.0).zip(down.chunks_exact(rows)) {
-        for (pixel, columns) in line.chunks_exact_mut(C).zip(across.chunks_exact(columns)) {
-            let mut sums = [0.0_f32; C];
-            for &(y, below, v) in rows {
-                let (upper, lower) = (image.row(y), image.row(below));
-                for &(x, right, u) in columns {
-                    for (channel, sum) in sums.iter_mut().enumerate() {
-                        let at = |row: &[u8], x: usize| f32::from(row[C * x + channel]);
-                        let top = at(upper, x) + u * (at(upper, right) - at(upper, x));
-                        let bottom = at(lower, x) + u * (at(lower, right) - at(lower, x));
-                        *sum += top + v * (bottom - top);
-                    }
-                }
+    let taps = down.taps(image.height());
+    for (line, taps) in patch.chunks_exact_mut(C * side.0).zip(taps.chunks_exact(down.samples)) {
+        sums.fill(0.0);
+        for &(y, below, v) in taps {
+            let [upper, lower] = [y, below].map(|row| rows.read(row));
+            add_between(&rows.values[upper], &rows.values[lower], v, &mut sums);
+        }
+        round_means(&sums, samples, line);
+    }
+}
+
+/// Rows of an image, sampled across: the two that were read last.
+struct SampledRows<'a, const C: usize> {
+    image: View<'a, C>,
+    /// The first sample of each pixel of the patch, then the second of each, and so on.
+    taps: Vec<Tap>,
+    values: [Vec<f32>; 2],
+    read: [Option<usize>; 2],
+}
+
+impl<'a, const C: usize> SampledRows<'a, C> {
+    fn new(image: View<'a, C>, across: &Axis) -> Self {
+        let taps = across.taps(image.width());
+        let of = |sample| taps.iter().skip(sample).step_by(across.samples).copied();
+        let taps: Vec<Tap> = (0..across.samples).flat_map(of).collect();
+        let values = [0; 2].map(|_| vec![0.0; C * taps.len()]);
+        Self { image, taps, values, read: [None; 2] }
+    }
+
+    /// Reads a row, if need be. Returns which of the two it is; the one below is the other.
+    fn read(&mut self, y: usize) -> usize {
+        let place = y % 2;
+        if self.read[place] != Some(y) {
+            self.read[place] = Some(y);
+            let (pixels, _) = self.image.row(y).as_chunks::<C>();
+            let (values, _) = self.values[place].as_chunks_mut::<C>();
+            for (value, &(x, right, u)) in values.iter_mut().zip(&self.taps) {
+                let (here, next) = (pixels[x].map(f32::from), pixels[right].map(f32::from));
+                *value = std::array::from_fn(|channel| here[channel] + u * (next[channel] - here[channel]));
             }
-            for (byte, sum) in pixel.iter_mut().zip(sums) {
-                *byte = (sum / samples + 0.5) as u8;
+        }
+        place
+    }
+}
+
+vectorised! {
+    /// Adds to each pixel its samples between two rows.
+    fn add_between(upper: &[f32], lower: &[f32], v: f32, sums: &mut [f32]) {
+        let pixels = sums.len();
+        for (upper, lower) in upper.chunks_exact(pixels).zip(lower.chunks_exact(pixels)) {
+            for ((sum, &top), &bottom) in sums.iter_mut().zip(upper).zip(lower) {
+                *sum += top + v * (bottom - top);
             }
         }
     }
 }
+
+vectorised! {
+    fn round_means(sums: &[f32], samples: f32, bytes: &mut [u8]) {
+        for (byte, sum) in bytes.iter_mut().zip(sums) {
+            *byte = (sum / samples + 0.5) as u8;
+        }
+    }
+}
+
+/// The pixels before and behind a sample, and its distance from the former.
+type Tap = (usize, usize, f32);
 
 /// How the pixels of a patch divide a side of its area.
 struct Axis {
@@ -131,8 +179,8 @@ impl Axis {
         Self { start, length, pixels, samples }
     }
 
-    /// For each sample the pixels before and behind it, and its distance from the former.
-    fn taps(&self, image: usize) -> Vec<(usize, usize, f32)> {
+    /// The tap of each sample.
+    fn taps(&self, image: usize) -> Vec<Tap> {
         let last = image - 1;
         let all = self.pixels * self.samples;
         let step = self.length / all as f64;

@@ -1,12 +1,18 @@
 use super::area::{Area, resample_into};
-use super::linear::{LinearClassifier, dot};
+use super::linear::LinearClassifier;
 use crate::ParameterError;
+use crate::vision::dispatch::vectorised;
 use crate::vision::{GrayView, GrayViewMut, GrayWeights, Hog, HogParameters, ImageError, RgbView, gray_into};
 
 /// Number of cells on a side of the window.
 const CELLS: usize = 6;
 /// Side of a cell (pixels).
 const CELL: usize = 4;
+/// Number of blocks on a side of the window, and of features of a block.
+const BLOCKS: usize = CELLS - 1;
+const BLOCK: usize = 4 * BINS;
+/// Number of directions.
+const BINS: usize = 9;
 /// Ratio of the window to the sign in it.
 pub(super) const AROUND: f64 = 1.25;
 /// Ratio of the sizes of an image of the pyramid and the next: four an octave.
@@ -31,14 +37,15 @@ pub(super) struct Detector {
 
 impl Default for Detector {
     fn default() -> Self {
-        let hog = Hog::new(HogParameters { cell: CELL, block: 2, bins: 9 }).expect("parameters are in range");
+        let hog =
+            Hog::new(HogParameters { cell: CELL, block: 2, bins: BINS }).expect("parameters are in range");
         Self { hog, level: Vec::new(), next: Vec::new() }
     }
 }
 
 impl Detector {
     /// Number of features of a window.
-    pub(super) const FEATURES: usize = (CELLS - 1) * (CELLS - 1) * 4 * 9;
+    pub(super) const FEATURES: usize = BLOCKS * BLOCKS * BLOCK;
 
     /// Describes the window around a sign, scaled to the size of one.
     pub(super) fn describe(&mut self, image: GrayView<'_>, sign: Area) -> Result<&[f32], ImageError> {
@@ -47,12 +54,8 @@ impl Detector {
         self.hog.describe(GrayView::new(&self.level, side, side)?)
     }
 
-    /// Gives each window to `see`: its features, row by row of its blocks, and the area of its sign.
-    pub(super) fn windows(
-        &mut self,
-        image: GrayView<'_>,
-        mut see: impl FnMut(Window<'_>, Area),
-    ) -> Result<(), ImageError> {
+    /// Gives each image of the pyramid to `see`.
+    fn levels(&mut self, image: GrayView<'_>, mut see: impl FnMut(&Level<'_>)) -> Result<(), ImageError> {
         let side = CELLS * CELL;
         let (mut width, mut height) = image.size();
         self.level.clear();
@@ -61,17 +64,8 @@ impl Detector {
         while width >= side && height >= side {
             let level = GrayView::new(&self.level, width, height)?;
             let (across, down) = self.hog.blocks((width, height));
-            let blocks = self.hog.describe(level)?;
-            let block = blocks.len() / (across * down);
-            for y in 0..=down + 1 - CELLS {
-                for x in 0..=across + 1 - CELLS {
-                    let row =
-                        |line: usize| &blocks[((y + line) * across + x) * block..][..(CELLS - 1) * block];
-                    let corner = |cell: usize| (cell * CELL) as f64 * scale;
-                    let window = Area::new(corner(x), corner(y), side as f64 * scale, side as f64 * scale);
-                    see(std::array::from_fn(row), window.scaled(1.0 / AROUND));
-                }
-            }
+            let (blocks, _) = self.hog.describe(level)?.as_chunks::<BLOCK>();
+            see(&Level { blocks, across, down, scale });
             let smaller = |pixels: usize| (pixels as f64 / STEP) as usize;
             let (less_wide, less_high) = (smaller(width), smaller(height));
             if less_wide < side || less_high < side {
@@ -93,15 +87,46 @@ impl Detector {
         weights: &WindowWeights,
     ) -> Result<Vec<Candidate>, ImageError> {
         let mut found = Vec::new();
-        self.windows(image, |rows, area| {
-            if weights.any_score(&rows) > POSSIBLE {
-                let score = weights.best_score(&rows);
-                if score > LIKELY {
-                    found.push(Candidate { area, score });
+        let mut scoring = Scoring::new(weights);
+        let mut row = Vec::new();
+        self.levels(image, |level| {
+            for y in 0..level.down + 1 - BLOCKS {
+                scoring.any(level, y, &mut row);
+                for (x, _) in row.iter().enumerate().filter(|&(_, &any)| any > POSSIBLE) {
+                    let score = scoring.best(&level.window(x, y));
+                    if score > LIKELY {
+                        found.push(Candidate { area: level.area(x, y), score });
+                    }
                 }
             }
         })?;
         Ok(found)
+    }
+}
+
+/// An image of the pyramid.
+struct Level<'a> {
+    /// Features of its blocks, row by row.
+    blocks: &'a [[f32; BLOCK]],
+    across: usize,
+    down: usize,
+    /// Pixels of the whole image a pixel of it.
+    scale: f64,
+}
+
+impl<'a> Level<'a> {
+    fn window(&self, x: usize, y: usize) -> Window<'a> {
+        std::array::from_fn(|line| {
+            let row = self.blocks[(y + line) * self.across + x..].first_chunk();
+            row.expect("a window inside the image")
+        })
+    }
+
+    /// The area of the sign in a window.
+    fn area(&self, x: usize, y: usize) -> Area {
+        let corner = |cell: usize| (cell * CELL) as f64 * self.scale;
+        let side = corner(CELLS);
+        Area::new(corner(x), corner(y), side, side).scaled(1.0 / AROUND)
     }
 }
 
@@ -123,23 +148,103 @@ impl WindowWeights {
         each.require("features of a window", each.classes(), Detector::FEATURES)?;
         Ok(Self { any, each })
     }
+}
 
-    fn any_score(&self, rows: &Window<'_>) -> f32 {
-        score_of(self.any.weights(), rows)
+/// Weights as products need them.
+struct Scoring<'a> {
+    any: Window<'a>,
+    each: Vec<Window<'a>>,
+    weights: &'a WindowWeights,
+    products: Vec<f32>,
+}
+
+impl<'a> Scoring<'a> {
+    fn new(weights: &'a WindowWeights) -> Self {
+        let any = rows_of(weights.any.weights());
+        let each: Vec<_> = class_rows(&weights.each).map(rows_of).collect();
+        let products = vec![0.0; each.len()];
+        Self { any, each, weights, products }
     }
 
-    fn best_score(&self, rows: &Window<'_>) -> f32 {
-        let classes = self.each.weights().chunks_exact(Detector::FEATURES + 1);
-        classes.map(|weights| score_of(weights, rows)).fold(f32::NEG_INFINITY, f32::max)
+    /// Scores as any sign, of all windows of a row.
+    fn any(&self, level: &Level<'_>, y: usize, scores: &mut Vec<f32>) {
+        let windows: Vec<_> = (0..level.across + 1 - BLOCKS).map(|x| level.window(x, y)).collect();
+        scores.resize(windows.len(), 0.0);
+        products(&windows, &self.any, scores);
+        let constant = self.weights.any.weights()[Detector::FEATURES];
+        scores.iter_mut().for_each(|score| *score += constant);
+    }
+
+    /// The best score as one class.
+    fn best(&mut self, window: &Window<'_>) -> f32 {
+        products(&self.each, window, &mut self.products);
+        let rows = self.products.iter().zip(class_rows(&self.weights.each));
+        rows.map(|(product, row)| product + row[Detector::FEATURES]).fold(f32::NEG_INFINITY, f32::max)
     }
 }
 
-/// Features of a window, a slice for each row of its blocks.
-pub(super) type Window<'a> = [&'a [f32]; CELLS - 1];
+/// The weights of each class.
+fn class_rows(classifier: &LinearClassifier) -> impl Iterator<Item = &[f32]> {
+    classifier.weights().chunks_exact(Detector::FEATURES + 1)
+}
 
-fn score_of(weights: &[f32], rows: &Window<'_>) -> f32 {
-    let parts = rows.iter().zip(weights.chunks_exact(rows[0].len()));
-    weights[Detector::FEATURES] + parts.map(|(row, weights)| dot(row, weights)).sum::<f32>()
+/// Features of the blocks of a window, or their weights, row by row.
+pub(super) type Window<'a> = [&'a [[f32; BLOCK]; BLOCKS]; BLOCKS];
+
+/// The weights of a class.
+fn rows_of(weights: &[f32]) -> Window<'_> {
+    let (blocks, _) = weights.as_chunks::<BLOCK>();
+    let (rows, _) = blocks.as_chunks::<BLOCKS>();
+    std::array::from_fn(|row| &rows[row])
+}
+
+/// Number of scalar products that are computed at a time.
+const TOGETHER: usize = 4;
+/// Number of sums that a scalar product is divided into.
+const LANES: usize = 16;
+
+vectorised! {
+    /// Scalar products of many windows with one; the same bits for all processors.
+    pub(super) fn products(many: &[Window<'_>], one: &Window<'_>, products: &mut [f32]) {
+        let (groups, rest) = many.as_chunks::<TOGETHER>();
+        let (results, last) = products.as_chunks_mut::<TOGETHER>();
+        for (group, results) in groups.iter().zip(results) {
+            *results = product(group, one);
+        }
+        for (window, result) in rest.iter().zip(last) {
+            [*result] = product(&[*window], one);
+        }
+    }
+}
+
+/// The result of a window is the same for any number of them.
+#[inline(always)]
+fn product<const N: usize>(many: &[Window<'_>; N], one: &Window<'_>) -> [f32; N] {
+    let mut sums = [[0.0_f32; LANES]; N];
+    for (line, row) in one.iter().enumerate() {
+        let (whole, rest) = row.as_flattened().as_chunks::<LANES>();
+        let others: [_; N] = std::array::from_fn(|n| many[n][line].as_flattened().as_chunks::<LANES>());
+        for (place, values) in whole.iter().enumerate() {
+            for (sums, (other, _)) in sums.iter_mut().zip(&others) {
+                let other = &other[place];
+                // As a new array the sums stay in registers.
+                *sums = std::array::from_fn(|lane| sums[lane] + values[lane] * other[lane]);
+            }
+        }
+        for (sums, (_, other)) in sums.iter_mut().zip(others) {
+            for ((sum, value), other) in sums.iter_mut().zip(rest).zip(other) {
+                *sum += value * other;
+            }
+        }
+    }
+    sums.map(|mut lanes| {
+        let mut half = LANES / 2;
+        while half > 0 {
+            (0..half).for_each(|lane| lanes[lane] += lanes[lane + half]);
+            half /= 2;
+        }
+        lanes[0]
+    })
 }
 
 /// Those that no better one overlaps, the best first. What lies in another is a part of it.

@@ -1,6 +1,7 @@
 use proptest::prelude::*;
 
 use super::area::resample_into;
+use super::detector::{Window, products};
 use super::linear::dot;
 use super::{Area, LinearClassifier, LinearTraining, SignFinder, SignPatch, SignTrainer};
 use crate::random::Stream;
@@ -233,6 +234,28 @@ proptest! {
     fn scalar_products_are_those_of_the_definition(values in proptest::collection::vec(-9.0..9.0f32, 0..99)) {
         let sum: f64 = values.iter().map(|&value| f64::from(value) * f64::from(value)).sum();
         prop_assert!((f64::from(dot(&values, &values)) - sum).abs() <= 1e-5 * sum);
+    }
+
+    /// Also where several are computed at a time.
+    #[test]
+    fn products_of_windows_are_those_of_the_definition(count in 1..10usize, seed in 0..99u64) {
+        let mut stream = Stream::new(seed);
+        let mut draw = || -> [[[f32; 36]; 5]; 5] {
+            std::array::from_fn(|_| [[0; 36]; 5].map(|row| row.map(|_| stream.uniform() as f32)))
+        };
+        let (weights, windows) = (draw(), (0..count).map(|_| draw()).collect::<Vec<_>>());
+        let many: Vec<Window<'_>> = windows.iter().map(<[_; 5]>::each_ref).collect();
+        let mut found = vec![0.0; count];
+        products(&many, &weights.each_ref(), &mut found);
+        for (window, &found) in many.iter().zip(&found) {
+            let mut alone = [0.0];
+            products(&[*window], &weights.each_ref(), &mut alone);
+            prop_assert_eq!(alone[0], found);
+            let rows = window.iter().zip(&weights);
+            let pairs = rows.flat_map(|(a, b)| a.as_flattened().iter().zip(b.as_flattened()));
+            let sum: f64 = pairs.map(|(&a, &b)| f64::from(a) * f64::from(b)).sum();
+            prop_assert!((f64::from(found) - sum).abs() < 1e-5 * sum, "{} for {}", found, sum);
+        }
     }
 
     /// Scaled to its own size, an image stays as it is; scaled to one pixel, it is its mean.
