@@ -3,6 +3,7 @@
 //!
 //! `cargo run --release --example terrain_plan`
 
+use roverlab::geometry::Point3;
 use roverlab::nav::elevation::{Climber, ElevationMap, ElevationPlanner, Objective};
 use roverlab::picture::{Mark, Picture, SERIES, Style};
 use roverlab::random::Stream;
@@ -34,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         assert!(path.cost <= cells.cost + 1e-9, "a way in any direction is no dearer");
         lengths.push(length);
         let style = Style::new(colour).width(2.0).labelled(name);
-        picture.line(path.points.iter().map(|point| point.xy()), style);
+        picture.line(path.points.iter().map(Point3::xy), style);
     }
     assert!(lengths[0] <= lengths[1] + 1e-9 && lengths[0] <= lengths[2] + 1e-9, "{lengths:?}");
     picture.save("target/pictures/terrain_plan.svg")?;

@@ -170,7 +170,9 @@ vectorised! {
     /// Normalises the blocks of a row.
     fn normalise(columns: &mut [f32], lengths: &mut [f32]) {
         squared_lengths(columns, lengths);
-        lengths.iter_mut().for_each(|length| *length = (*length + 1.0).sqrt());
+        for length in &mut *lengths {
+            *length = (*length + 1.0).sqrt();
+        }
         for column in columns.chunks_exact_mut(lengths.len()) {
             for (number, &length) in column.iter_mut().zip(&*lengths) {
                 let share = *number / length;
@@ -178,7 +180,9 @@ vectorised! {
             }
         }
         squared_lengths(columns, lengths);
-        lengths.iter_mut().for_each(|length| *length = if *length > 0.0 { length.sqrt() } else { 1.0 });
+        for length in &mut *lengths {
+            *length = if *length > 0.0 { length.sqrt() } else { 1.0 };
+        }
         for column in columns.chunks_exact_mut(lengths.len()) {
             column.iter_mut().zip(&*lengths).for_each(|(number, &length)| *number /= length);
         }

@@ -172,7 +172,9 @@ impl<'a> Scoring<'a> {
         scores.resize(windows.len(), 0.0);
         products(&windows, &self.any, scores);
         let constant = self.weights.any.weights()[Detector::FEATURES];
-        scores.iter_mut().for_each(|score| *score += constant);
+        for score in scores {
+            *score += constant;
+        }
     }
 
     /// The best score as one class.
