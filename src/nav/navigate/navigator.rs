@@ -376,9 +376,8 @@ impl Navigator {
             self.end(NavigatorOutcome::Stuck);
             return Twist::STOP;
         }
-        if progress.blocked.is_multiple_of(3) && self.doubts < MAX_DOUBTS {
-            // The recorded obstacles may be wrong. Forgotten again and again, they would be driven around for ever.
-            self.doubts += 1;
+        if progress.blocked.is_multiple_of(3) {
+            // The recorded obstacles may be wrong.
             self.chart.forget();
             self.plan(LEVELS);
         }
