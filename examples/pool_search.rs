@@ -15,6 +15,9 @@ use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Shape, Water
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let water = Water { turbidity: 0.5, ..Water::default() };
     let mut pool = World { water_level: Some(2.0), water, ..World::walled(8.0, 6.0) };
+    for wall in &mut pool.walls {
+        wall.height = 3.0;
+    }
     let brick = Shape::Box { length: 0.25, width: 0.2, height: 0.1 };
     let places = [Point::new(3.0, 2.5), Point::new(5.5, 3.2), Point::new(2.2, 4.4)];
     let colours = [("orange", 0xe0_80_10), ("red", 0xc8_20_20), ("blue", 0x20_50_c8)];

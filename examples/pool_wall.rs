@@ -11,7 +11,10 @@ use roverlab::picture::{Mark, Picture};
 use roverlab::world::{RobotSpec, Scene, World};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let pool = World { water_level: Some(2.0), ..World::walled(8.0, 6.0) };
+    let mut pool = World { water_level: Some(2.0), ..World::walled(8.0, 6.0) };
+    for wall in &mut pool.walls {
+        wall.height = 3.0;
+    }
     // By its Doppler log, it knows the way over ground.
     let mako = RobotSpec { dvl: Some(10.0), ..RobotSpec::mako() };
     let start = Pose::new(4.0, 3.0, 0.3);

@@ -14,11 +14,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A floor that rises by half a metre in eight.
     let area = Aabb::new(Point::origin(), Point::new(8.0, 6.0));
     let floor = HeightField::from_fn(81, 61, area, |at| 0.5 * at.x / 8.0)?;
-    let pool = World {
+    let mut pool = World {
         terrain: Some(Terrain::new("floor", floor)),
         water_level: Some(2.0),
         ..World::walled(8.0, 6.0)
     };
+    for wall in &mut pool.walls {
+        wall.height = 3.0;
+    }
     let mako = RobotSpec { dvl: Some(10.0), ..RobotSpec::mako() };
     let start = Pose::new(2.0, 2.0, 0.0);
     let scene = Scene::with_robot(pool, mako.clone(), start);

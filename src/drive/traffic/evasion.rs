@@ -64,13 +64,13 @@ pub struct ObstacleEvasion {
     turns: Vec<RoadTurn>,
 }
 
-/// Whether two wheels are outside the own lane, whether two are over the centre line, and whether they are there
-/// neither to pass nor to turn off.
+/// Whether two wheels are outside the own lane, whether two are over the centre line, and whether two are over the
+/// edge of the road, other than to turn off.
 #[derive(Debug, Clone, Copy, Default)]
 struct Beyond {
     is_outside: bool,
     is_over_centre: bool,
-    has_departed: bool,
+    is_off_road: bool,
 }
 
 /// Outline of a car, and the points where its wheels touch the ground, in its frame (m).
@@ -212,19 +212,24 @@ impl ObstacleEvasion {
             let lane = course.locate(&Pose::new(place.x, place.y, car.heading), Some(self.lane.along));
             (lane.along, -side * lane.offset)
         });
-        let is_outside = wheels.iter().filter(|(_, out)| out.abs() > half).count() >= 2;
-        let is_over_centre = wheels.iter().filter(|(_, out)| -out > half).count() >= 2;
+        let are_beyond =
+            |is_beyond: &dyn Fn(f64) -> bool| wheels.iter().filter(|(_, out)| is_beyond(*out)).count() >= 2;
+        let is_outside = are_beyond(&|out| out.abs() > half);
+        let is_over_centre = are_beyond(&|out| -out > half);
+        // Nobody passes on this side.
+        let is_off_road = are_beyond(&|out| out > half) && !self.turns();
         let is_beside = self.encounters.iter().filter(|it| it.is_obstacle(&self.scene)).any(|it| {
             it.place(actors).is_some_and(|(from, to)| {
                 between(course, from, self.lane.along) > -BESIDE
                     && between(course, to, self.lane.along) < BESIDE
             })
         });
-        // Who passes is in the other lane, not beside the road, and comes back.
-        let has_departed = is_outside && !self.turns() && !(is_beside && is_over_centre);
-        self.score.departures += u32::from(has_departed && !self.beyond.has_departed);
+        let is_excused = is_beside || self.turns();
+        let has_left = is_outside && !self.beyond.is_outside && !is_excused;
+        let has_left_road = is_off_road && !self.beyond.is_off_road && is_excused;
+        self.score.departures += u32::from(has_left || has_left_road);
         let has_crossed = is_over_centre && !self.beyond.is_over_centre;
-        self.beyond = Beyond { is_outside, is_over_centre, has_departed };
+        self.beyond = Beyond { is_outside, is_over_centre, is_off_road };
         (wheels, has_crossed)
     }
 

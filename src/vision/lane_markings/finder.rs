@@ -144,6 +144,8 @@ const BLIND: f64 = 1.6;
 /// Number of points by which a road has to explain more than one that is tracked. Of two lines that are taken
 /// for the next ones, the outer one has no points, 10 or more in 0.3 m.
 const BETTER: f64 = 4.0;
+/// Distance ahead within which lines are seen, other than in crossings and gaps (m).
+const NEAR: f64 = 0.6;
 /// Distance from a line within which points count while the road is tracked (m).
 const TRACKED: f64 = 0.05;
 /// The same while the road is searched (m).
@@ -154,7 +156,7 @@ const SOUGHT: f64 = 0.08;
 const DRAWING: (f64, f64) = (0.085, 0.055);
 
 /// Removes points of what is painted within a lane: lines of a road are single, or in pairs. Points of a row lie
-/// across the car, not across a road that turns: there, all distances are longer by a factor.
+/// across the car, not across a road that turns: there, stripes are farther apart by a factor.
 fn drop_other_paint(points: &mut Vec<MarkingPoint>, factor: impl Fn(&MarkingPoint) -> f64) {
     let (near, wide) = DRAWING;
     let apart = |a: &MarkingPoint, b: &MarkingPoint| (a.place.y - b.place.y).abs();
@@ -162,7 +164,7 @@ fn drop_other_paint(points: &mut Vec<MarkingPoint>, factor: impl Fn(&MarkingPoin
         a.place.x == b.place.x && apart(a, b) < near * factor(a).max(factor(b))
     };
     let is_line = |drawing: &[MarkingPoint]| match drawing {
-        [first, .., last] => apart(first, last) < wide * factor(first),
+        [first, .., last] => apart(first, last) < wide,
         _ => true,
     };
     *points = points.chunk_by(is_joined).filter(|drawing| is_line(drawing)).flatten().copied().collect();
@@ -245,8 +247,8 @@ impl LaneMarkingFinder {
         lane
     }
 
-    /// Fits a road to the points, or follows it from the car on, or takes it for straight ahead, where that explains
-    /// more of them. Returns the weight of the points within 1.5 m.
+    /// Fits a road to the points. Where that explains more of them, follows it from the car on, or takes it for
+    /// straight ahead if no line is near. Returns the weight of the points within 1.5 m.
     fn fit(&self, road: &mut Road, wide: f64) -> f64 {
         let (points, camera) = (&self.points, &self.camera);
         let before = road.clone();
@@ -254,10 +256,13 @@ impl LaneMarkingFinder {
         let enough = road.score(points, camera) + BETTER;
         // No road explains more than all points.
         if points.len() as f64 > enough {
-            let others = [before.followed(points, camera), before.straightened(points, camera, wide)];
-            let scored = others.map(|(other, support)| (other.score(points, camera), other, support));
-            let better = scored.into_iter().filter(|(score, ..)| *score > enough);
-            if let Some((_, other, support)) = better.max_by(|a, b| a.0.total_cmp(&b.0)) {
+            let near = points.iter().filter(|point| point.place.x < NEAR).count();
+            let (other, support) = if (near as f64) < ENOUGH {
+                before.straightened(points, camera, wide)
+            } else {
+                before.followed(points, camera)
+            };
+            if other.score(points, camera) > enough {
                 *road = other;
                 return support;
             }

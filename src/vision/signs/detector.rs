@@ -8,8 +8,9 @@ use crate::vision::{GrayView, GrayViewMut, GrayWeights, Hog, HogParameters, Imag
 const CELLS: usize = 6;
 /// Side of a cell (pixels).
 const CELL: usize = 4;
-/// Number of blocks on a side of the window, and of features of a block.
+/// Number of blocks on a side of the window.
 const BLOCKS: usize = CELLS - 1;
+/// Number of features of a block.
 const BLOCK: usize = 4 * BINS;
 /// Number of directions.
 const BINS: usize = 9;

@@ -93,6 +93,9 @@ const START: Pose = Pose::new(1.5, 1.5, 0.0);
 fn basin() -> (Scene, Aabb) {
     let water = Water { turbidity: 0.4, ..Water::default() };
     let mut world = World { water_level: Some(2.0), water, ..World::walled(5.0, 4.0) };
+    for wall in &mut world.walls {
+        wall.height = 3.0;
+    }
     let brick = Shape::Box { length: 0.25, width: 0.2, height: 0.1 };
     let kind = ObjectKind { mass: 8.0, ..ObjectKind::new("brick", brick, Colour::from_hex(0xc8_20_20)) };
     world.objects.push(Object::new(Arc::new(kind), Pose::new(3.2, 2.4, 0.4)));
