@@ -11,7 +11,7 @@ use roverlab::world::RobotSpec;
 use roverlab::world::generate::{ReliefKind, ReliefOptions, relief};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let range = relief(&mut Stream::new(2), &ReliefOptions::of(ReliefKind::Range))?;
+    let range = relief(&mut Stream::new(10), &ReliefOptions::of(ReliefKind::Range))?;
     let ground = range.world.terrain.clone().and_then(|terrain| terrain.surface).ok_or("no hills")?;
     let map = ElevationMap::new(&ground, &Climber::of(&RobotSpec::blizzard()))?;
     let start = range.start.position();
