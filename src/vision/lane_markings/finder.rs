@@ -144,8 +144,6 @@ const BLIND: f64 = 1.6;
 /// Number of points by which a road has to explain more than one that is tracked. Of two lines that are taken
 /// for the next ones, the outer one has no points, 10 or more in 0.3 m.
 const BETTER: f64 = 4.0;
-/// Distance ahead within which lines are seen, other than in crossings and gaps (m).
-const NEAR: f64 = 0.6;
 /// Distance from a line within which points count while the road is tracked (m).
 const TRACKED: f64 = 0.05;
 /// The same while the road is searched (m).
@@ -247,8 +245,8 @@ impl LaneMarkingFinder {
         lane
     }
 
-    /// Fits a road to the points. Where that explains more of them, follows it from the car on, or takes it for
-    /// straight ahead if no line is near. Returns the weight of the points within 1.5 m.
+    /// Fits a road to the points, or follows it from the car on where that explains more of them. Returns the
+    /// weight of the points within 1.5 m.
     fn fit(&self, road: &mut Road, wide: f64) -> f64 {
         let (points, camera) = (&self.points, &self.camera);
         let before = road.clone();
@@ -256,12 +254,7 @@ impl LaneMarkingFinder {
         let enough = road.score(points, camera) + BETTER;
         // No road explains more than all points.
         if points.len() as f64 > enough {
-            let near = points.iter().filter(|point| point.place.x < NEAR).count();
-            let (other, support) = if (near as f64) < ENOUGH {
-                before.straightened(points, camera, wide)
-            } else {
-                before.followed(points, camera)
-            };
+            let (other, support) = before.followed(points, camera);
             if other.score(points, camera) > enough {
                 *road = other;
                 return support;

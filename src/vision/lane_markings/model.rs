@@ -173,35 +173,15 @@ impl Road {
     /// off than expected by the distance between two of them, each is taken for the next one. A fit by all
     /// points at once stays there, and one from near to far does not get there.
     pub(super) fn followed(&self, points: &[MarkingPoint], camera: &RoadCamera) -> (Self, f64) {
-        let mut road = self.unknown_from(KEPT, self.state[BENDS + KEPT - 1]);
-        let support = road.fit(points, camera, &FOLLOWED);
-        (road, support)
-    }
-
-    /// The same road, straight ahead as far as is known, fitted to points, and the weight of the points within 1.5
-    /// m. Where no line is seen for the width of a crossing behind a bend, the bend goes on in the estimate, and
-    /// beyond the crossing each line is taken for the next one.
-    pub(super) fn straightened(
-        &self,
-        points: &[MarkingPoint],
-        camera: &RoadCamera,
-        wide: f64,
-    ) -> (Self, f64) {
-        let mut road = self.unknown_from(1, 0.0);
-        let support = road.see(points, camera, wide);
-        (road, support)
-    }
-
-    /// The same road with its curvatures unknown from a knot on, where they are expected to be `bend`.
-    fn unknown_from(&self, knot: usize, bend: f64) -> Self {
         let mut road = self.clone();
-        for index in BENDS + knot..BENDS + KNOTS {
-            road.state[index] = bend;
+        for index in BENDS + KEPT..BENDS + KNOTS {
+            road.state[index] = self.state[BENDS + KEPT - 1];
             road.covariance.row_mut(index).fill(0.0);
             road.covariance.column_mut(index).fill(0.0);
             road.covariance[(index, index)] = UNSEEN.0 * UNSEEN.0;
         }
-        road
+        let support = road.fit(points, camera, &FOLLOWED);
+        (road, support)
     }
 
     /// How many times as far apart two lines are at a place, along a row across the car, as across the road.
