@@ -64,11 +64,9 @@ pub struct ObstacleEvasion {
     turns: Vec<RoadTurn>,
 }
 
-/// Whether two wheels are outside the own lane, whether two are over the centre line, and whether two are over the
-/// edge of the road, other than to turn off.
+/// Whether two wheels are over the centre line, and whether two are over the own lane's other edge.
 #[derive(Debug, Clone, Copy, Default)]
 struct Beyond {
-    is_outside: bool,
     is_over_centre: bool,
     is_off_road: bool,
 }
@@ -212,24 +210,20 @@ impl ObstacleEvasion {
             let lane = course.locate(&Pose::new(place.x, place.y, car.heading), Some(self.lane.along));
             (lane.along, -side * lane.offset)
         });
-        let are_beyond =
-            |is_beyond: &dyn Fn(f64) -> bool| wheels.iter().filter(|(_, out)| is_beyond(*out)).count() >= 2;
-        let is_outside = are_beyond(&|out| out.abs() > half);
-        let is_over_centre = are_beyond(&|out| -out > half);
-        // Nobody passes on this side.
-        let is_off_road = are_beyond(&|out| out > half) && !self.turns();
+        let are_out = |side: f64| wheels.iter().filter(|(_, out)| side * out > half).count() >= 2;
+        let (is_over_centre, is_off_road) = (are_out(-1.0), are_out(1.0));
         let is_beside = self.encounters.iter().filter(|it| it.is_obstacle(&self.scene)).any(|it| {
             it.place(actors).is_some_and(|(from, to)| {
                 between(course, from, self.lane.along) > -BESIDE
                     && between(course, to, self.lane.along) < BESIDE
             })
         });
-        let is_excused = is_beside || self.turns();
-        let has_left = is_outside && !self.beyond.is_outside && !is_excused;
-        let has_left_road = is_off_road && !self.beyond.is_off_road && is_excused;
-        self.score.departures += u32::from(has_left || has_left_road);
         let has_crossed = is_over_centre && !self.beyond.is_over_centre;
-        self.beyond = Beyond { is_outside, is_over_centre, is_off_road };
+        let has_left_road = is_off_road && !self.beyond.is_off_road;
+        // Who passes crosses the centre line alone; who turns off, either.
+        let has_departed = has_left_road || has_crossed && !is_beside;
+        self.score.departures += u32::from(has_departed && !self.turns());
+        self.beyond = Beyond { is_over_centre, is_off_road };
         (wheels, has_crossed)
     }
 
@@ -246,7 +240,8 @@ impl ObstacleEvasion {
             speed,
             wheels,
             has_crossed_centre,
-            is_back: self.lane.offset.abs() < room && !self.beyond.is_outside,
+            is_back: self.lane.offset.abs() < room
+                && !(self.beyond.is_over_centre || self.beyond.is_off_road),
         };
         for it in &mut self.encounters {
             if let Some((is_right, is_fault)) = it.judge(&moment) {

@@ -74,9 +74,9 @@ fn side(course: &RoadCourse, (from, to): (f64, f64)) -> RoadSide {
     if angle_difference(there, here) > 0.0 { RoadSide::Left } else { RoadSide::Right }
 }
 
-/// Makes cars turn off in every other course at the scale of the rules that crosses itself, unless an arrow of its
-/// own says so: puts one before the crossing, where they give way, and ends no speed zone on the other part of
-/// the road. Returns the part of the road where nothing else is to be put (m).
+/// Makes cars turn off in every other course at the scale of the rules that crosses itself, unless it has
+/// an arrow that says so: puts one before the crossing, where they give way, and ends no speed zone on the
+/// other part of the road. Returns the part of the road where nothing else is to be put (m).
 pub(super) fn draw_turn(course: &mut RoadCourse, random: &mut Stream) -> Option<(f64, f64)> {
     let (from, to) = course.own_crossings().first().copied().filter(|_| random.chance(0.5))?;
     if !RoadTurn::of(course).is_empty() {

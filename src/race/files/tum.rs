@@ -33,8 +33,8 @@ const HEADER: &str = "# x_m,y_m,w_tr_right_m,w_tr_left_m";
 ///
 /// # Errors
 ///
-/// If the text is not such a circuit, rows of it are missing (a step is many times the usual one) or in a wrong
-/// order (it turns back), or it goes around more than once.
+/// If the text is not such a circuit, rows of it are missing (a step is many times the usual one) or in a
+/// wrong order (it turns back), or it goes around more than once.
 pub fn parse_tum(text: &str, file: &str) -> Result<Corridor, FormatError> {
     let numbers = table::<4>(text, file, HEADER)?;
     for (values, at) in &numbers {

@@ -40,7 +40,7 @@ const CELLS: f64 = 2e6;
 const CLEARANCE: f64 = 0.3;
 
 impl LocalisationMap {
-    /// The map of a world's walls and objects for a lidar 40 mm above the floor, which is that of most robots.
+    /// The map of a world's walls and objects for a lidar 40 mm above the floor, as most robots have it.
     ///
     /// # Errors
     ///
@@ -81,7 +81,7 @@ impl LocalisationMap {
         let surfaces = if seen == hollow {
             Surfaces::new(&clearance)
         } else {
-            // Clearances have the same raster, that of the world's site.
+            // Where nothing is seen, a robot may be all the same.
             let seen = Clearance::new(&World { floor: hollow.site(), ..seen }, resolution, CLEARANCE);
             Surfaces::new(&seen.map_err(|error| refused(&error))?)
         };

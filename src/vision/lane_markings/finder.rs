@@ -153,8 +153,8 @@ const SOUGHT: f64 = 0.08;
 /// from which it is no pair of lines (m). Lines of lanes and numbers are further apart.
 const DRAWING: (f64, f64) = (0.085, 0.055);
 
-/// Removes points of what is painted within a lane: lines of a road are single, or in pairs. Points of a row lie
-/// across the car, not across a road that turns: there, stripes are farther apart by a factor.
+/// Removes points of what is painted within a lane: lines of a road are single, or in pairs. Points of a row
+/// lie across the car, not across a road that turns: there, stripes are farther apart by a factor.
 fn drop_other_paint(points: &mut Vec<MarkingPoint>, factor: impl Fn(&MarkingPoint) -> f64) {
     let (near, wide) = DRAWING;
     let apart = |a: &MarkingPoint, b: &MarkingPoint| (a.place.y - b.place.y).abs();

@@ -1,5 +1,5 @@
-//! Robots that follow one another, in a chain by lidar and in a formation by the leader's radio messages; cars
-//! that share a road by radio.
+//! Robots that follow one another, in a chain by lidar and in a formation by the leader's radio messages;
+//! cars that share a road by radio.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
