@@ -66,7 +66,7 @@ fn another_behaviour_is_found_at_the_first_call_that_differs() {
     let (status, _, err) = run("a_to_b", &["--campaign", "--runs", "1", "--record", name]);
     assert!(status == 2 && err.contains("found no robot that drives"), "{err}");
     let (status, _, err) = run("distbug", &["--replay", name]);
-    assert!(status == 2 && err.contains("`a_to_b`") && err.contains("expected one of `distbug`"), "{err}");
+    assert!(status == 2 && err.contains("`a-to-b`") && err.contains("expected one of `distbug`"), "{err}");
 }
 
 fn manage(words: &[&str]) -> Ended {

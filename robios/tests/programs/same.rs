@@ -82,9 +82,11 @@ fn ended(name: &str, text: Option<&str>) -> serde_json::Value {
     report
 }
 
-/// What a program has printed, without the ends of the display's lines.
+/// What a program has printed, in one line: spaces at the ends of the display's lines are not in the report.
 fn words(report: &serde_json::Value) -> String {
-    report["lcd_text"].as_str().unwrap().replace('\n', "")
+    let text = report["lcd_text"].as_str().unwrap();
+    let columns = text.lines().map(str::len).max().unwrap();
+    text.lines().map(|line| format!("{line:<columns$}")).collect()
 }
 
 #[test]
