@@ -49,6 +49,9 @@ fn robots_without_room_say_so() {
             "{command} {options:?}: {report} {err}"
         );
     }
+    // Too short a drive to tell.
+    let (status, report, _) = run("random_drive", &["--time-limit", "0.01"]);
+    assert_eq!((status, &report["outcome"]), (0, &"driven".into()), "{report}");
 }
 
 /// A leader that stands at its only marker is not blocked.

@@ -155,11 +155,12 @@ pub(super) fn zebras(view: &RoadView, tones: &Tones, road: &RoadAhead, found: &m
     }
 }
 
-/// Whether half of the road, which has edge lines at a distance from its centre line (m), is in view just
-/// before a row: a crosswalk is found there.
+/// Whether both lanes of a road, which has edge lines at a distance from its centre line (m), are in view just
+/// before a row as far as stripes of a crosswalk need: one is found there.
 pub(super) fn begins_in_view(view: &RoadView, edge: f64, row: usize) -> bool {
-    let inner = columns(-edge, edge);
     let before = row.saturating_sub(4);
-    let seen = inner.clone().filter(|&column| column < COLUMNS && view.sees(before, column)).count();
-    row >= 4 && 2 * seen > inner.len()
+    let inner = [(MARGIN, edge - MARGIN), (MARGIN - edge, -MARGIN)].map(|(from, to)| columns(from, to));
+    let all: usize = inner.iter().map(ExactSizeIterator::len).sum();
+    let seen = inner.into_iter().flatten().filter(|&column| view.sees(before, column)).count();
+    row >= 4 && 2 * seen > all
 }
