@@ -176,8 +176,10 @@ def test_other_threads_run_while_a_robot_drives(drive: str) -> None:
 @pytest.mark.skipif(sys.version_info < (3, 11), reason="no `operator.call`")
 def test_ctrl_c_before_the_first_array_is_no_panic() -> None:
     code = """
-import _thread, operator
+import _thread, operator, signal
 from roverlab.sim import Scene, Simulation
+# Whoever runs the tests in the background has Python ignore it.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 scene = Scene.walled(2.0, 2.0)
 scene.add_robot("S4", (1.0, 1.0, 0.0))
 robot = Simulation(scene).robot()
