@@ -86,7 +86,8 @@ fn ended(name: &str, text: Option<&str>) -> serde_json::Value {
 fn words(report: &serde_json::Value) -> String {
     let text = report["lcd_text"].as_str().unwrap();
     let columns = text.lines().map(str::len).max().unwrap();
-    text.lines().map(|line| format!("{line:<columns$}")).collect()
+    let lines: Vec<String> = text.lines().map(|line| format!("{line:<columns$}")).collect();
+    lines.concat()
 }
 
 #[test]

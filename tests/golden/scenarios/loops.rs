@@ -29,7 +29,7 @@ use super::{Scenario, noise, note, note_truth, other, room, text};
 pub(super) const SCENARIOS: &[Scenario] = &[
     Scenario::new("run-loops", robots),
     Scenario::new("race-run-loops", cars),
-    Scenario::new("race-shared", shared),
+    Scenario::threaded("race-shared", shared),
 ];
 
 /// The robot that the loops run.
