@@ -178,7 +178,7 @@ def test_ctrl_c_before_the_first_array_is_no_panic() -> None:
     code = """
 import _thread, operator, signal
 from roverlab.sim import Scene, Simulation
-# Whoever runs the tests in the background has Python ignore it.
+# A shell that runs the tests in the background has them ignore this signal.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 scene = Scene.walled(2.0, 2.0)
 scene.add_robot("S4", (1.0, 1.0, 0.0))

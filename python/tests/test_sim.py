@@ -283,7 +283,7 @@ def test_threads_may_share_a_simulation(square: Scene) -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
 @pytest.mark.parametrize("call", ["simulation.run(1e6)", "simulation.robot().wait(1e6)", "batch.step(still, 1e6)"])
 def test_ctrl_c_ends_a_long_call(call: str) -> None:
-    # Whoever runs the tests in the background has Python ignore it.
+    # A shell that runs the tests in the background has them ignore this signal.
     program = (
         "import signal\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "import numpy\nfrom roverlab.sim import *\nscene = Scene.walled(2, 2)\n"

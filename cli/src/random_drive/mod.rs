@@ -64,8 +64,6 @@ const SECONDS: f64 = 120.0;
 const PLACES_TRIED: u32 = 50;
 /// Share of what a robot would drive straight on below which it found no way.
 const HELD: f64 = 0.1;
-/// Time in which a robot that stands begins to drive (s).
-const STARTING: f64 = 1.0;
 /// Time between path points of several robots (s).
 const STEP: f64 = 0.1;
 
@@ -263,10 +261,10 @@ fn together<'a>(
 
 /// How a drive ended without a contact: a robot that came hardly anywhere found no way.
 fn ended(paths: &[Trail]) -> Outcome {
-    let speed = RandomDriveParameters::default().speed;
+    let RandomDriveParameters { speed, lag, .. } = RandomDriveParameters::default();
     let is_held = |path: &Trail| {
         let steps = path.windows(2).map(|ends| (ends[1].1.position() - ends[0].1.position()).norm());
-        path.last().is_some_and(|(time, _)| steps.sum::<f64>() < HELD * speed * (time - STARTING))
+        path.last().is_some_and(|(time, _)| steps.sum::<f64>() < HELD * speed * (time - lag))
     };
     if paths.iter().any(is_held) { Outcome::failure("blocked") } else { Outcome::verdict("driven") }
 }

@@ -82,11 +82,13 @@ fn ended(name: &str, text: Option<&str>) -> serde_json::Value {
     report
 }
 
-/// What a program has printed, in one line: spaces at the ends of the display's lines are not in the report.
+/// Characters in a line of the display.
+const COLUMNS: usize = 80;
+
+/// What a program has printed, in one line. Spaces at the ends of the display's lines are not in the report.
 fn words(report: &serde_json::Value) -> String {
     let text = report["lcd_text"].as_str().unwrap();
-    let columns = text.lines().map(str::len).max().unwrap();
-    let lines: Vec<String> = text.lines().map(|line| format!("{line:<columns$}")).collect();
+    let lines: Vec<String> = text.lines().map(|line| format!("{line:<COLUMNS$}")).collect();
     lines.concat()
 }
 

@@ -32,6 +32,8 @@ const OTHER: f64 = 0.20;
 const PERIODIC: f64 = 0.45;
 /// Least amplitude of a row of a crosswalk. That of fresh paint is 0.32.
 const STRIPED: f64 = 0.13;
+/// Rows before a crosswalk from which its edge is seen: 40 mm, as stripes are blurred.
+const BEFORE: usize = 4;
 /// Least amplitude of a row of chequers. That of fresh paint is 0.32.
 const CHEQUERED: f64 = 0.12;
 
@@ -88,11 +90,17 @@ impl Spectrum {
     }
 }
 
+/// Inner parts of the left lane and of the right one, in a road with edge lines at a distance from its centre
+/// line (m).
+fn inner(edge: f64) -> [(f64, f64); 2] {
+    let (near, far) = (MARGIN, edge - MARGIN);
+    [(near, far), (-far, -near)]
+}
+
 /// Inner parts of the own lane and of the other one.
 fn lanes(road: &RoadAhead) -> [(f64, f64); 2] {
-    let inner = (MARGIN, road.edge - MARGIN);
-    let outer = (-inner.1, -inner.0);
-    if road.middle > 0.0 { [inner, outer] } else { [outer, inner] }
+    let [left, right] = inner(road.edge);
+    if road.middle > 0.0 { [left, right] } else { [right, left] }
 }
 
 /// Finds lines across the own lane.
@@ -155,12 +163,12 @@ pub(super) fn zebras(view: &RoadView, tones: &Tones, road: &RoadAhead, found: &m
     }
 }
 
-/// Whether both lanes of a road, which has edge lines at a distance from its centre line (m), are in view just
-/// before a row as far as stripes of a crosswalk need: one is found there.
+/// Whether a crosswalk that begins at a row is found there: more than half of both lanes is in view just
+/// before it. Where less is, the end of the view looks like its edge.
 pub(super) fn begins_in_view(view: &RoadView, edge: f64, row: usize) -> bool {
-    let before = row.saturating_sub(4);
-    let inner = [(MARGIN, edge - MARGIN), (MARGIN - edge, -MARGIN)].map(|(from, to)| columns(from, to));
+    let before = row.saturating_sub(BEFORE);
+    let inner = inner(edge).map(|(from, to)| columns(from, to));
     let all: usize = inner.iter().map(ExactSizeIterator::len).sum();
     let seen = inner.into_iter().flatten().filter(|&column| view.sees(before, column)).count();
-    row >= 4 && 2 * seen > all
+    row >= BEFORE && 2 * seen > all
 }
