@@ -153,6 +153,19 @@ fn a_crosswalk_may_be_just_behind_a_tight_bend() {
     assert!(score.offset_rms() < 0.012, "{score:?}");
 }
 
+/// For a metre, the dashes of the centre line alone tell that the bend to the left became one to the right.
+#[test]
+fn both_edges_may_be_missing_where_bends_meet() {
+    let bends = "arc 1377 90\narc 1377 -8\ngap left 1000\ngap right 1000\narc 1377 -82\narc 1377 90\n";
+    let side = format!("straight 600\n{bends}");
+    for seed in 2..4 {
+        let text = format!("course 1\nlane 350\n{side}{side}{side}{side}");
+        let score = drive(course::parse(&text, "star").unwrap(), seed, 3.0);
+        assert_eq!((score.departures, score.interventions), (0, 0), "{seed}: {score:?}");
+        assert!(score.offset_rms() < 0.012, "{seed}: {score:?}");
+    }
+}
+
 #[test]
 fn a_gap_of_a_metre_and_a_blackout_are_driven_through_by_odometry() {
     let course = generate(2, &RoadCourseOptions::default()).unwrap();

@@ -144,6 +144,8 @@ const BLIND: f64 = 1.6;
 /// Number of points by which a road has to explain more than one that is tracked. Of two lines that are taken
 /// for the next ones, the outer one has no points, 10 or more in 0.3 m.
 const BETTER: f64 = 4.0;
+/// Share of all points that such a road has to explain: it also bends into stop lines of roads that cross.
+const MOST: f64 = 0.85;
 /// Distance from a line within which points count while the road is tracked (m).
 const TRACKED: f64 = 0.05;
 /// The same while the road is searched (m).
@@ -253,9 +255,10 @@ impl LaneMarkingFinder {
         let support = road.see(points, camera, wide);
         let enough = road.score(points, camera) + BETTER;
         // No road explains more than all points.
-        if points.len() as f64 > enough {
+        let all = points.len() as f64;
+        if all > enough {
             let (other, support) = before.followed(points, camera);
-            if other.score(points, camera) > enough {
+            if other.score(points, camera) > enough.max(MOST * all) {
                 *road = other;
                 return support;
             }
