@@ -168,6 +168,11 @@ impl ScanMatcher {
         self.chosen_at = pose.position();
     }
 
+    /// Standard deviation of the position, along the worse axis (m).
+    pub(crate) fn deviation(&self) -> f64 {
+        self.covariance[(0, 0)].max(self.covariance[(1, 1)]).max(0.0).sqrt()
+    }
+
     /// Advances pose and covariance by odometry.
     fn predict(&mut self, odometry: Pose) -> Pose {
         let measured = self.odometry.inverse().compose(&odometry);

@@ -11,6 +11,8 @@ pub(super) struct Reference {
     pub(super) pose: Pose,
     /// Hits in the robot frame, by bearing; `None` without an echo.
     hits: Vec<Option<Hit>>,
+    /// Distance between neighbouring beams (bearing intervals).
+    spacing: usize,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -34,6 +36,9 @@ pub(super) struct Evidence {
 pub(super) const OVERLAP_GATE: f64 = 0.03;
 /// Number of bearing intervals of a reference.
 const BINS: usize = 360;
+/// Distance between neighbouring hits on one surface, relative to that on a surface at a right angle to the
+/// beams: they are slanted by up to 60 degrees.
+const SLANT: f64 = 2.0;
 /// Number of matched points that count as one independent measurement. Scans matched against one reference
 /// share its errors, tens of them in succession; counted individually, they would outweigh odometry where
 /// surfaces constrain the pose weakly, as in a round room. By experiment: 2 lets spirals turn the pose by
@@ -53,14 +58,16 @@ const ROUGHNESS: f64 = 0.003;
 impl Reference {
     pub(super) fn new(pose: Pose, points: &[Point]) -> Self {
         let mut hits: Vec<Option<Hit>> = vec![None; BINS];
+        let spacing = spacing(points);
+        let step = SURFACE_STEP.max(SLANT * TAU * spacing as f64 / BINS as f64);
         for (i, &point) in points.iter().enumerate() {
             let range = point.coords.norm();
             let bin = bin_of(point);
             if hits[bin].is_none_or(|hit| range < hit.range) {
-                hits[bin] = Some(Hit { point, range, normal: normal_at(points, i) });
+                hits[bin] = Some(Hit { point, range, normal: normal_at(points, i, step) });
             }
         }
-        Self { pose, hits }
+        Self { pose, hits, spacing }
     }
 
     /// Rotation from this reference's frame to the world, for pose covariances.
@@ -115,10 +122,9 @@ impl Reference {
         let bin = bin_of(point);
         let range = point.coords.norm();
         // Near surfaces spread over many bins: the best of the neighbours is the closest point.
-        let candidates = [bin, (bin + 1) % BINS, (bin + BINS - 1) % BINS];
+        let candidates = (0..=self.spacing).flat_map(|aside| [bin + aside, bin + BINS - aside]);
         let hit = candidates
-            .iter()
-            .filter_map(|&b| self.hits[b])
+            .filter_map(|bin| self.hits[bin % BINS])
             .min_by(|a, b| (a.range - range).abs().total_cmp(&(b.range - range).abs()))?;
         let normal = hit.normal?;
         if (viewer - hit.point).dot(&normal) <= 0.0 {
@@ -126,9 +132,21 @@ impl Reference {
         }
         let error = (point - hit.point).dot(&normal);
         let apart = (point - hit.point).norm_squared();
-        let spread = 3.0 * range * TAU / BINS as f64 + gate;
+        let spread = 3.0 * range * TAU / BINS as f64 * self.spacing as f64 + gate;
         (error.abs() < gate && apart < spread * spread).then_some((normal, error))
     }
+}
+
+/// Distance between neighbouring beams: the median of that of points next to each other (bearing intervals).
+fn spacing(points: &[Point]) -> usize {
+    let bins: Vec<usize> = points.iter().map(|&point| bin_of(point)).collect();
+    let apart = |two: &[usize]| (two[0].abs_diff(two[1])).min(BINS - two[0].abs_diff(two[1]));
+    let mut spacings: Vec<usize> = bins.windows(2).map(apart).collect();
+    if spacings.is_empty() {
+        return 1;
+    }
+    let middle = spacings.len() / 2;
+    (*spacings.select_nth_unstable(middle).1).max(1)
 }
 
 fn bin_of(point: Point) -> usize {
@@ -138,12 +156,13 @@ fn bin_of(point: Point) -> usize {
 
 /// Normal, towards the viewer at the origin, of the line through a point and its neighbours, if they are
 /// collinear. Many beams hit a near surface a few millimetres apart, so the neighbourhood is [`LINE_REACH`]
-/// wide rather than a number of beams.
-fn normal_at(points: &[Point], index: usize) -> Option<Vector> {
+/// wide rather than a number of beams. Hits next to each other on one surface are at most the part `step` of
+/// their range apart.
+fn normal_at(points: &[Point], index: usize, step: f64) -> Option<Vector> {
     let centre = points[index];
     let mut sums = LineSums::default();
     sums.add(centre.coords);
-    let sides = [1, points.len() - 1].map(|stride| sums.add_side(points, index, stride));
+    let sides = [1, points.len() - 1].map(|stride| sums.add_side(points, index, stride, step));
     if sides.contains(&0) {
         return None;
     }
@@ -168,7 +187,7 @@ impl LineSums {
     }
 
     /// Adds the neighbours on one side that belong to the same surface; returns their number.
-    fn add_side(&mut self, points: &[Point], index: usize, stride: usize) -> usize {
+    fn add_side(&mut self, points: &[Point], index: usize, stride: usize, step: f64) -> usize {
         let centre = points[index];
         let mut last = centre;
         let mut at = index;
@@ -178,7 +197,7 @@ impl LineSums {
             let next = points[at];
             let range = last.coords.norm();
             // Beams on one surface are about a beam's width apart; across an edge they are much farther.
-            if (next - last).norm() > OVERLAP_GATE + SURFACE_STEP * range {
+            if (next - last).norm() > OVERLAP_GATE + step * range {
                 break;
             }
             if added >= MIN_NEIGHBOURS && (next - centre).norm() > LINE_REACH {

@@ -65,7 +65,8 @@ const ENDS_SLACK: f64 = 5.0;
 const USED_TOLERANCE: f64 = 0.9;
 /// Distance within which a goal is near, relative to the distance kept from obstacles.
 const NEAR: f64 = 1.5;
-/// Maximum error of a point, relative to the range noise.
+/// Maximum error of a point, relative to the noise of ranges and to the deviation of the pose, by which the
+/// goal is off.
 const NOISE_SLACK: f64 = 2.0;
 /// Maximum error of a point without noise (m).
 const POINT_ERROR: f64 = 0.002;
@@ -148,6 +149,11 @@ impl Body {
             return observation.odometry;
         }
         self.matcher.update(observation.odometry, &self.measured)
+    }
+
+    /// Standard deviation of the position (m). Uncorrected odometry counts as exact.
+    fn pose_deviation(&self) -> f64 {
+        if self.parameters.match_scans { self.matcher.deviation() } else { 0.0 }
     }
 
     /// Adds the current points to the map for later corrections.
@@ -233,7 +239,7 @@ impl Body {
         }
         let tolerance = self.parameters.goal_tolerance;
         self.cramped += if self.has_room_within(USED_TOLERANCE * tolerance, 0.0) { -1 } else { 1 };
-        let error = POINT_ERROR + NOISE_SLACK * self.filter.noise();
+        let error = POINT_ERROR + NOISE_SLACK * (self.filter.noise() + self.pose_deviation());
         if !self.has_room_within(tolerance, error) {
             self.end(BugOutcome::NoRoom);
         }
