@@ -25,8 +25,35 @@ pub struct Hypothesis {
 /// Buffers for one expected scan.
 #[derive(Debug, Clone)]
 pub(super) struct Bench {
-    pub(super) scanner: Scanner,
-    pub(super) expected: Vec<f64>,
+    scanner: Scanner,
+    /// Expected ranges (m) of the scan's beams, and of further ones between them.
+    expected: Vec<f64>,
+    /// Number of beams of the scan.
+    beams: usize,
+    /// Number of expected beams for each beam of the scan.
+    finer: usize,
+    /// Whether the beams cover the full circle once.
+    is_whole: bool,
+}
+
+/// Number of beams over the full circle from which on neighbours show on what surface a beam ends. Of fewer
+/// ones, neighbours end at other things: a beam would lack its normal nearly everywhere, and count as beside
+/// an edge, where anything between its neighbours' ranges is as expected.
+const FINE: f64 = 180.0;
+
+impl Bench {
+    pub(super) fn new(map: &LocalisationMap, scan: &LidarScan) -> Self {
+        let (beams, turn) = (scan.ranges.len(), std::f64::consts::TAU);
+        let spacing = scan.angle_increment.abs();
+        let finer = (FINE * (spacing / turn).min(1.0 / beams as f64)).ceil().max(1.0) as usize;
+        let is_whole = (spacing * beams as f64 - turn).abs() < 1e-6;
+        Self { scanner: map.scanner(scan, finer), expected: vec![0.0; beams * finer], beams, finer, is_whole }
+    }
+
+    /// Whether it is for scans with so many beams.
+    pub(super) fn is_for(&self, beams: usize) -> bool {
+        self.beams == beams
+    }
 }
 
 /// Evidence of a scan about a pose close to the expected one.
@@ -220,7 +247,6 @@ fn evidence(
 ) -> Evidence {
     let lidar = pose.compose(&scan.mount);
     map.expect(&mut bench.scanner, &lidar, &mut bench.expected);
-    let expected = &bench.expected;
     let sigma = parameters.lidar_error();
     let blurred = 2.0 * sigma;
     let mut found = Evidence {
@@ -234,8 +260,8 @@ fn evidence(
     let mut compared = 0_usize;
     for (beam, &range) in scan.ranges.iter().enumerate().filter(|(_, range)| !range.is_nan()) {
         compared += 1;
-        let normal = normal(scan, expected, beam, &lidar);
-        let off = off(scan, expected, beam, normal.is_some());
+        let normal = normal(scan, bench, beam, &lidar);
+        let off = off(scan, bench, beam, normal.is_some());
         let scaled = off / blurred;
         let likely = if scaled.abs() < 8.0 { peak * math::exp(-0.5 * scaled * scaled) } else { 0.0 };
         found.log_likelihood += math::ln(likely + OUTLIERS * density);
@@ -264,34 +290,32 @@ fn evidence(
 /// Difference of a range from the expected one (m). No echo counts as the maximum range, so that noise at
 /// that limit makes no difference. Beside an edge, a beam may hit either side: any range between the two is
 /// as expected.
-fn off(scan: &LidarScan, expected: &[f64], beam: usize, is_smooth: bool) -> f64 {
+fn off(scan: &LidarScan, bench: &Bench, beam: usize, is_smooth: bool) -> f64 {
     let within = |range: f64| range.min(scan.range_max);
-    let range = within(scan.ranges[beam]);
+    let (range, at) = (within(scan.ranges[beam]), beam * bench.finer);
     if is_smooth {
-        return range - within(expected[beam]);
+        return range - within(bench.expected[at]);
     }
-    let beside = [beam.checked_sub(1), Some(beam), Some(beam + 1)].into_iter().flatten();
-    let sides = beside.filter_map(|beam| expected.get(beam)).map(|&range| within(range));
+    let beside = [at.checked_sub(1), Some(at), Some(at + 1)].into_iter().flatten();
+    let sides = beside.filter_map(|at| bench.expected.get(at)).map(|&range| within(range));
     let (low, high) =
         sides.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), side| (low.min(side), high.max(side)));
     range - range.clamp(low, high)
 }
 
 /// Normal of the expected surface at a beam, from its neighbours; `None` at edges and corners.
-fn normal(scan: &LidarScan, expected: &[f64], beam: usize, lidar: &Pose) -> Option<Vector> {
-    let beams = expected.len();
-    let hit = |beam: usize| {
-        let range = expected[beam];
-        range.is_finite().then(|| direction(lidar.heading + scan.angle(beam)) * range)
+fn normal(scan: &LidarScan, bench: &Bench, beam: usize, lidar: &Pose) -> Option<Vector> {
+    let (beams, spacing) = (bench.expected.len(), scan.angle_increment / bench.finer as f64);
+    let hit = |at: usize| {
+        let (range, angle) = (bench.expected[at], scan.angle_min + spacing * at as f64);
+        range.is_finite().then(|| direction(lidar.heading + angle) * range)
     };
-    let (before, after) = ((beam + beams - 1) % beams, (beam + 1) % beams);
-    if beam == 0 || beam + 1 == beams {
-        let whole = (scan.angle_increment.abs() * beams as f64 - std::f64::consts::TAU).abs() < 1e-6;
-        if !whole {
-            return None;
-        }
+    let at = beam * bench.finer;
+    let (before, after) = ((at + beams - 1) % beams, (at + 1) % beams);
+    if (at == 0 || at + 1 == beams) && !bench.is_whole {
+        return None;
     }
-    let (a, b, c) = (hit(before)?, hit(beam)?, hit(after)?);
+    let (a, b, c) = (hit(before)?, hit(at)?, hit(after)?);
     let along = c - a;
     let length = along.norm();
     if length < 1e-9 {

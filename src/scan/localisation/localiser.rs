@@ -203,8 +203,8 @@ impl Localiser {
             ));
         }
         let mut bench = match self.bench.take() {
-            Some(bench) if bench.expected.len() == beams => bench,
-            _ => Bench { scanner: self.map.scanner(scan), expected: vec![0.0; beams] },
+            Some(bench) if bench.is_for(beams) => bench,
+            _ => Bench::new(&self.map, scan),
         };
         let motion = self.odometry.map_or(Pose::default(), |last| last.inverse().compose(&odometry));
         self.driven += motion.position().coords.norm();

@@ -119,10 +119,11 @@ impl LocalisationMap {
         &self.surfaces
     }
 
-    /// A scanner with the beams of a scan.
-    pub(super) fn scanner(&self, scan: &LidarScan) -> Scanner {
-        let beams = scan.ranges.len();
-        Scanner::new(scan.angle_min, scan.angle_increment, beams, self.height, 0.0, scan.range_max)
+    /// A scanner with the beams of a scan, each followed by further ones, so that there are `finer` times as
+    /// many.
+    pub(super) fn scanner(&self, scan: &LidarScan, finer: usize) -> Scanner {
+        let (beams, spacing) = (finer * scan.ranges.len(), scan.angle_increment / finer as f64);
+        Scanner::new(scan.angle_min, spacing, beams, self.height, 0.0, scan.range_max)
     }
 
     /// The expected scan at a scanner's pose.

@@ -181,7 +181,7 @@ fn scan_at(map: &LocalisationMap, pose: &Pose, seed: u64) -> LidarScan {
         mount: Pose::default(),
         ranges: vec![0.0; 360],
     };
-    map.expect(&mut map.scanner(&scan), pose, &mut scan.ranges);
+    map.expect(&mut map.scanner(&scan, 1), pose, &mut scan.ranges);
     let mut stream = Stream::new(seed);
     for range in &mut scan.ranges {
         let measured = *range + 0.01 * stream.normal();
