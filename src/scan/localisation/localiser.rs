@@ -101,9 +101,11 @@ const TRACK_STEPS: usize = 3;
 const CANDIDATE_SPREAD: f64 = 0.15;
 /// Fractions of explained beams that a search requires, tried in this order.
 const SHARES: [f64; 4] = [0.92, 0.8, 0.7, EXPLAINED];
-/// Fraction of beams by which a pose may explain less than the best one and still count; beyond that, the
-/// next scans leave it no probability.
-const AS_WELL: f64 = 0.06;
+/// Probability that a beam is not as expected at the robot's own pose, as beside edges (fitted to the
+/// campaign's rooms).
+const MISSED: f64 = 0.032;
+/// Standard deviations of the number of such beams that are allowed.
+const ALLOWED: f64 = 3.0;
 /// Turns from which each pose found is matched again (rad).
 const TURNS: [f64; 6] = [-0.12, -0.08, -0.04, 0.04, 0.08, 0.12];
 /// Logarithm of a likelihood by which another pose must be better to take the place of one found.
@@ -247,8 +249,9 @@ impl Localiser {
                 self.try_turned(share, scan, bench);
             }
             let best = self.hypotheses.iter().map(|other| other.explained).fold(0.0, f64::max);
-            if best - AS_WELL >= share || share == EXPLAINED {
-                self.hypotheses.retain(|other| other.explained >= best - AS_WELL);
+            let as_well = best - allowed(scan.ranges.len());
+            if as_well >= share || share == EXPLAINED {
+                self.hypotheses.retain(|other| other.explained >= as_well);
                 break;
             }
             self.hypotheses.clear();
@@ -356,6 +359,12 @@ impl Localiser {
     pub fn covariance(&self) -> Option<Matrix3<f64>> {
         self.hypotheses.first().map(|best| best.covariance)
     }
+}
+
+/// Fraction of beams by which a pose may explain less than the best one and still count; beyond that, the
+/// next scans leave it no probability. Of few beams it is a larger one, as a single beam decides more.
+fn allowed(beams: usize) -> f64 {
+    MISSED + ALLOWED * (MISSED / beams as f64).sqrt()
 }
 
 /// Whether a pose is farther from another one than a distance or an angle.
