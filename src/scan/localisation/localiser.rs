@@ -243,7 +243,10 @@ impl Localiser {
         let bounds = self.map.within_reach(self.driven.min(scan.range_max));
         for share in SHARES {
             let Some(poses) = search(&self.map, &bounds, scan, &self.parameters, share) else { break };
-            self.try_poses(poses, share, scan, bench);
+            if !self.try_poses(poses, share, scan, bench) {
+                self.hypotheses.clear();
+                break;
+            }
             self.unite();
             if self.hypotheses.len() <= MOST {
                 self.try_turned(share, scan, bench);
@@ -264,16 +267,29 @@ impl Localiser {
         self.hypotheses.iter_mut().for_each(|hypothesis| hypothesis.log_weight = 0.0);
     }
 
-    /// Creates hypotheses for those poses that explain a fraction of a scan after matching.
-    fn try_poses(&mut self, poses: Vec<Pose>, share: f64, scan: &LidarScan, bench: &mut Bench) {
+    /// Creates hypotheses for those poses that explain a fraction of a scan after matching. False once more
+    /// than [`MOST`] explain it as well as any could: the others, of which a round room has thousands, do not
+    /// matter then.
+    fn try_poses(&mut self, poses: Vec<Pose>, share: f64, scan: &LidarScan, bench: &mut Bench) -> bool {
+        let as_well_as_any = 1.0 - allowed(scan.ranges.len());
+        let mut certain: Vec<Hypothesis> = Vec::new();
         for pose in poses {
             let mut hypothesis = Hypothesis::new(pose, CANDIDATE_SPREAD);
             hypothesis.log_weight =
                 hypothesis.match_scan(&self.map, scan, bench, &self.parameters, SEARCH_STEPS);
-            if hypothesis.explained >= share && self.is_possible(&hypothesis) {
-                self.hypotheses.push(hypothesis);
+            if hypothesis.explained < share || !self.is_possible(&hypothesis) {
+                continue;
+            }
+            self.hypotheses.push(hypothesis);
+            let is_new = !certain.iter().any(|other| other.is_same(&hypothesis));
+            if is_new && hypothesis.explained >= as_well_as_any {
+                certain.push(hypothesis);
+                if certain.len() > MOST {
+                    return false;
+                }
             }
         }
+        true
     }
 
     /// Matches the scan again from headings around those found. Where walls consist of short pieces, as in a
