@@ -15,7 +15,7 @@ pub struct Wall {
     pub line: Segment,
     /// Thickness, half on either side of the line (m). The ends are square and coincide with the line's ends.
     pub thickness: f64,
-    /// Height above the floor (m).
+    /// Height above the floor, more than 0 (m).
     pub height: f64,
     /// The colour of its faces.
     pub colour: Colour,

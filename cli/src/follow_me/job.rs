@@ -33,8 +33,8 @@ five behind leaders that drive in other patterns.
 
 JSON fields:
   followers, mode             their number, and how they follow: lidar, raised, chain or radio
-  lost                        number of those that are three times as far away as required at the end, or have not seen the
-                              robot ahead for three seconds
+  lost                        number of those that were three times as far away as required after the first 10 s, or have not
+                              seen the robot ahead for the last three seconds, or by radio were 10 s away from their place
   pattern                     how the leader drives
   mean_gap_mm, max_gap_mm     distance to the robot ahead, after the first 10 s, or null
   obstacles                   number of objects in the world

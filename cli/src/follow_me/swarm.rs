@@ -45,10 +45,12 @@ impl SwarmRun {
     }
 }
 
-/// Time in which a swarm forms (s).
+/// Time in which a swarm forms, and in which a follower by radio has to be at its place again (s).
 const FORMING: f64 = 10.0;
 /// Ratio of true to wished gap from which a follower counts as lost.
 const TOO_FAR: f64 = 3.0;
+/// Distance from its place in a formation within which a follower is there (m).
+const AT_ITS_PLACE: f64 = 0.3;
 /// Control period, and time between path points (s).
 const PERIOD: f64 = 0.1;
 
@@ -169,6 +171,12 @@ pub(crate) fn run<'a>(
             path.push((time, fleet.pose(robot)?));
         }
         watch(time);
+        // By radio, a follower sees nothing ahead: it steers for its place, whatever lies between.
+        for (follower, last_seen) in last_seen.iter().enumerate().skip(1) {
+            if mode == Mode::Radio && is_at_its_place(&run.paths, scene, follower) {
+                last_seen.set(time);
+            }
+        }
         if time < FORMING {
             continue;
         }
@@ -178,6 +186,7 @@ pub(crate) fn run<'a>(
             gaps += 1;
             run.largest_gap = run.largest_gap.max(gap);
             *is_lost |= gap > TOO_FAR * gap_of(scene, mode, follower).max(0.3);
+            *is_lost |= mode == Mode::Radio && time - last_seen[follower].get() > FORMING;
         }
     }
     run.mean_gap /= gaps.max(1) as f64;
@@ -198,6 +207,13 @@ pub(crate) fn run<'a>(
     }
     run.sim_time = fleet.time()?;
     Ok(run)
+}
+
+/// Whether a follower is where it began, seen from the leader.
+fn is_at_its_place(paths: &[Trail], scene: &Scene, follower: usize) -> bool {
+    let last = |robot: usize| paths[robot].last().map_or(Pose::default(), |(_, pose)| *pose);
+    let place = scene.robots[0].pose.to_local(scene.robots[follower].pose.position());
+    last(follower).distance_to(last(0).to_world(place)) < AT_ITS_PLACE
 }
 
 fn gap_now(paths: &[Trail], mode: Mode, follower: usize) -> f64 {

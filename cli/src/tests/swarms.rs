@@ -96,6 +96,21 @@ fn who_followed_a_pillar_is_lost() {
     assert_eq!(ending, (1, Some("lost"), 1.0), "{report} {err}");
 }
 
+/// By radio, a leader is heard through walls.
+#[test]
+fn a_follower_in_another_room_is_lost() {
+    let folder = folder();
+    fs::write(folder.join("rooms.wld"), "floor 8000 4000\n0 0 8000 0\n0 4000 8000 4000\n4000 0 4000 4000\n")
+        .unwrap();
+    let scene = folder.join("rooms.sim");
+    let script = "world rooms.wld\nLabBot 2200 1800 0\nS4 6200 1800 0\nmarker 3000 3000\nmarker 1500 2500\n";
+    fs::write(&scene, script).unwrap();
+    let options = ["--mode", "radio", "--world", scene.to_str().unwrap(), "--time-limit", "60"];
+    let (status, report, err) = run("follow_me", &options);
+    let ending = (status, report["outcome"].as_str(), number(&report, "lost"));
+    assert_eq!(ending, (1, Some("lost"), 1.0), "{report} {err}");
+}
+
 #[test]
 fn letters_in_a_maze_stand_for_robots() {
     let folder = folder();

@@ -476,15 +476,15 @@ fn pose_in_space(hills: Option<&Hills>, robot: usize, pose: Pose, elevation: f64
     }
 }
 
-/// Fails unless the positions of walls and objects are finite.
+/// Fails unless walls and objects are finite, and walls have a height: others are in maps, and stop nobody.
 fn check_world(world: &World) -> Result<()> {
     for (index, wall) in world.walls.iter().enumerate() {
         let numbers =
             [wall.line.a.x, wall.line.a.y, wall.line.b.x, wall.line.b.y, wall.thickness, wall.height];
-        if !numbers.into_iter().all(f64::is_finite) {
+        if !(numbers.into_iter().all(f64::is_finite) && wall.height > 0.0) {
             let (from, to) = (point_in_words(wall.line.a), point_in_words(wall.line.b));
             let found = format!("from {from} to {to}, {} m thick, {} m high", wall.thickness, wall.height);
-            return Err(Error::invalid_input(&format!("wall {index}"), found, "finite numbers"));
+            return Err(Error::invalid_input(&format!("wall {index}"), found, "finite, with a height"));
         }
     }
     for (index, object) in world.objects.iter().enumerate() {

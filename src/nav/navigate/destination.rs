@@ -1,3 +1,7 @@
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+use std::iter;
+
 use super::chart::Chart;
 use super::parameters::NavigatorParameters;
 use super::report::NavigatorOutcome;
@@ -76,8 +80,11 @@ pub(super) fn nearest_free(chart: &Chart, grid: &BitGrid, point: Point) -> Optio
     let (columns, rows) =
         (at.column.saturating_sub(reach)..=at.column + reach, at.row.saturating_sub(reach)..=at.row + reach);
     let cells = rows.flat_map(|row| columns.clone().map(move |column| GridCell::new(column, row)));
-    let away = |cell: &GridCell| (chart.centre(*cell) - point).norm_squared();
-    let mut free: Vec<GridCell> = cells.filter(|&cell| grid.is_free(cell)).collect();
-    free.sort_by(|a, b| away(a).total_cmp(&away(b)));
-    free.into_iter().find(|&cell| chart.is_straight_way(point, chart.centre(cell)))
+    // Distances are not negative, so their bits are in the same order. Few of the cells are looked at.
+    let away = |cell: GridCell| (chart.centre(cell) - point).norm_squared().to_bits();
+    let free = cells.filter(|&cell| grid.is_free(cell));
+    let mut nearest: BinaryHeap<_> = free.map(|cell| Reverse((away(cell), cell.row, cell.column))).collect();
+    iter::from_fn(|| nearest.pop())
+        .map(|Reverse((_, row, column))| GridCell::new(column, row))
+        .find(|&cell| chart.is_straight_way(point, chart.centre(cell)))
 }

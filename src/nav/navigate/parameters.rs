@@ -25,6 +25,9 @@ pub struct NavigatorParameters {
     pub period: f64,
 }
 
+/// Smallest cells relative to the robot's radius: its outline fills them to within a percent of it.
+const FINEST: f64 = 0.01;
+
 impl NavigatorParameters {
     /// Parameters for a robot's outline; distances scale with its bounding radius.
     pub fn for_footprint(footprint: Footprint) -> Self {
@@ -46,7 +49,10 @@ impl NavigatorParameters {
     pub fn validate(&self) -> Result<(), ParameterError> {
         require_positive("radius of the footprint", self.radius())?;
         require_positive("least clearance", self.least_clearance)?;
-        require_positive("resolution", self.resolution)?;
+        let finest = FINEST * self.radius();
+        let good = self.resolution >= finest && self.resolution.is_finite();
+        let expected = format!("a finite number of at least a hundredth of the robot's radius, {finest} m");
+        require("resolution", self.resolution, good, expected)?;
         require_positive("goal tolerance", self.goal_tolerance)?;
         require_positive("cruise speed", self.cruise_speed)?;
         require_positive("turn rate", self.turn_rate)?;

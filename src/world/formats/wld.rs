@@ -224,7 +224,11 @@ impl<'f> Reader<'f> {
             error.found = "one more wall".into();
             return Err(error);
         }
-        self.world.walls.push(wall);
+        if wall.height > 0.0 {
+            self.world.walls.push(wall);
+        } else {
+            self.notes.warn(line.location(0), "a wall of height 0; skipped");
+        }
         Ok(())
     }
 
@@ -392,8 +396,8 @@ mod tests {
 
     #[test]
     fn odd_lines_are_skipped_with_their_place() {
-        let parsed =
-            parse("floor 100 100\nush 1 2 3\n5000 0 0\n0 0 1 1 7 ; five\nball 3 4\npop 1", "w.wld").unwrap();
+        let text = "floor 100 100\nush 1 2 3\n5000 0 0\n0 0 1 1 7 ; five\nball 3 4\npop 1\n0 0 9 0 1 0";
+        let parsed = parse(text, "w.wld").unwrap();
         let messages: Vec<String> = parsed.warnings.iter().map(ToString::to_string).collect();
         assert_eq!(
             messages,
@@ -403,6 +407,7 @@ mod tests {
                 "w.wld:4:9: a wall of 5 numbers, not 4, 6 or 9; only the first 4 count",
                 "w.wld:5:1: unknown keyword `ball`; the line is skipped",
                 "w.wld:6:5: `1` is more than belongs in this line; ignored",
+                "w.wld:7:1: a wall of height 0; skipped",
             ]
         );
         assert_eq!(parsed.value.walls.len(), 1);
@@ -425,7 +430,7 @@ mod tests {
 
     fn wall() -> impl Strategy<Value = Wall> {
         let ends = (length(), length(), length(), length());
-        let body = prop_oneof![Just((0.01, 0.2)), (0.0..1.0f64, 0.0..9.0f64)];
+        let body = prop_oneof![Just((0.01, 0.2)), (0.0..1.0f64, 1e-3..9.0f64)];
         let colour =
             prop_oneof![Just(Colour::WHITE), any::<[u8; 3]>().prop_map(|[r, g, b]| Colour::new(r, g, b))];
         (ends, body, colour).prop_map(|((ax, ay, bx, by), (thickness, height), colour)| {
