@@ -23,10 +23,33 @@ const STRIP: (f64, f64) = (75.0, 25.0);
 const TO_START: f64 = 0.3;
 /// Distance from the nose, ahead and behind, within which the start gate is expected (m).
 const GATE: f64 = 8.0;
+/// Length of a gap between cones of a row, relative to their usual distance, at which the row ends: it may
+/// lack one cone, but not two.
+const ROW_ENDS: f64 = 2.5;
 /// Largest distance of an end of a course from its start (m): beyond it, cones are no part of an event.
 const FARTHEST: f64 = 10_000.0;
 /// Length of a course behind the rear axle of a car at the start (m).
 const BEHIND: f64 = 1.0;
+
+/// Usual distance between the cones of rows, where they stand side by side (m).
+fn usual_distance(sorted: &[f64]) -> f64 {
+    let apart = sorted.windows(2).map(|two| two[1] - two[0]);
+    let mut apart: Vec<f64> = apart.filter(|metres| *metres > AT_EDGE).collect();
+    apart.sort_by(f64::total_cmp);
+    apart.get(apart.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// The end of a row of cones that goes on from a place: before the first gap, beyond which others are strays.
+fn row_end(sorted: &[f64], from: f64, gap: f64) -> f64 {
+    let beyond = sorted.iter().filter(|place| **place > from);
+    beyond.fold(from, |end, &place| if place - end <= gap { place } else { end })
+}
+
+/// Whether a strip begins near the nose of a car at the start, not far behind it.
+fn begins_ahead(sorted: &[f64], gap: f64) -> bool {
+    let backwards: Vec<f64> = sorted.iter().rev().map(|place| -place).collect();
+    row_end(&backwards, 0.0, gap) < GATE && sorted.iter().any(|place| place.abs() < GATE)
+}
 
 /// Whether the ends of a course are near its start.
 fn are_near(ends: [f64; 2]) -> bool {
@@ -35,8 +58,8 @@ fn are_near(ends: [f64; 2]) -> bool {
 
 impl EventCourse {
     /// The course among the cones of a track, for a car with an outline. `None` for laps, if the cones match
-    /// no event, and if an end of the course would be more than 10 km away. A skidpad is recognised without
-    /// its orange cones as well.
+    /// no event, if the car does not start up to 8 m before a strip, and if an end of the course would be
+    /// more than 10 km away. A skidpad is recognised without its orange cones as well.
     ///
     /// The timing lines are the gates of the track, or else those between its large cones; for a skidpad, the
     /// line through its centre.
@@ -65,8 +88,11 @@ impl EventCourse {
         };
         let begin = mean(&|x| x.abs() < GATE).unwrap_or(TO_START);
         let end = mean(&|x| x >= GATE).unwrap_or(begin + STRIP.0);
-        let ends = [-nose - BEHIND, Self::lane_end(track, &layout, end)];
-        if !are_near(ends) {
+        let mut rows: Vec<f64> = layout.at_edges(&track.cones).map(|cone| along(cone.position)).collect();
+        rows.sort_by(f64::total_cmp);
+        let gap = ROW_ENDS * usual_distance(&rows);
+        let ends = [-nose - BEHIND, Self::lane_end(track, &layout, end, gap)];
+        if !are_near(ends) || begin < 0.0 || !begins_ahead(&rows, gap) {
             return None;
         }
         let points = straight(ends[0], ends[1]);
@@ -75,21 +101,26 @@ impl EventCourse {
         Self::new(Event::Acceleration, layout, &points, timed)
     }
 
-    /// End of the lane behind a finish: where orange cones stand across it. Others beside it show that it
-    /// reaches to there at least, as the rules do.
-    fn lane_end(track: &ConeTrack, layout: &EventLayout, finish: f64) -> f64 {
-        let orange = || track.of(ConeColour::Orange).map(|place| layout.pose.to_local(place));
-        let last = orange().map(|place| place.x).fold(f64::NEG_INFINITY, f64::max);
-        let inside = layout.shape.half_width() - AT_EDGE;
-        let is_closed = orange().any(|place| place.x > last - AT_EDGE && place.y.abs() < inside);
-        if is_closed && last > finish { last } else { last.max(finish + STRIP.1) }
+    /// End of the lane behind a finish: where orange cones stand across it. Others beside it, in a row from
+    /// the finish on, show that it reaches to there at least, as the rules do.
+    fn lane_end(track: &ConeTrack, layout: &EventLayout, finish: f64, gap: f64) -> f64 {
+        let [inside, outside] = [-AT_EDGE, AT_EDGE].map(|more| layout.shape.half_width() + more);
+        let orange = track.of(ConeColour::Orange).map(|place| layout.pose.to_local(place));
+        let mut lane: Vec<Point> =
+            orange.filter(|place| place.x > finish && place.y.abs() < outside).collect();
+        lane.sort_by(|a, b| a.x.total_cmp(&b.x));
+        let places: Vec<f64> = lane.iter().map(|place| place.x).collect();
+        let last = row_end(&places, finish, gap);
+        let closed = lane.iter().find(|place| place.x <= last && place.y.abs() < inside);
+        closed.map_or(last.max(finish + STRIP.1), |place| place.x)
     }
 
     fn skidpad(track: &ConeTrack, start: Pose) -> Option<Self> {
         let layout = EventLayout::find(&track.cones, start, EventShape::EIGHT)?;
         let along = |place: Point| layout.pose.to_local(place).x;
-        let ends = [along(start.position()) - BEHIND, Self::lane_end(track, &layout, 0.0)];
-        let EventShape::Eight { apart, .. } = layout.shape else { return None };
+        let EventShape::Eight { apart, outer, .. } = layout.shape else { return None };
+        // The lane goes on behind the circles.
+        let ends = [along(start.position()) - BEHIND, Self::lane_end(track, &layout, 0.0, outer)];
         if !are_near(ends) {
             return None;
         }

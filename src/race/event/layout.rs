@@ -207,7 +207,7 @@ impl EventLayout {
         count >= FEWEST && count as f64 >= share * cones.len() as f64
     }
 
-    fn at_edges<'c>(&self, cones: &'c [Cone]) -> impl Iterator<Item = &'c Cone> {
+    pub(super) fn at_edges<'c>(&self, cones: &'c [Cone]) -> impl Iterator<Item = &'c Cone> {
         let layout = *self;
         cones.iter().filter(move |cone| layout.off(cone.position).abs() < AT_EDGE)
     }

@@ -187,11 +187,46 @@ fn the_course_is_measured_out_among_the_cones() {
         assert_eq!(course.event(), Event::Acceleration, "{seed}");
         assert!((course.corridor().length() - 103.3).abs() < 1.0, "{}", course.corridor().length());
     }
-    // Neither a cone far away nor a start far away makes a long course.
-    let mut far = strip(1.5, 5.0, 25.0);
-    far.cones.push(Cone::new(Point::new(1e9, 1.5), ConeColour::Orange));
-    assert_eq!(EventCourse::of(&far, &OUTLINE), None);
+    // A start far away makes no long course.
     assert_eq!(EventCourse::of(&strip(1.5, 5.0, 25.0), &CarOutline { nose: 1e300, ..OUTLINE }), None);
+}
+
+/// Length of the course of a strip with another orange cone.
+fn length_with(track: &ConeTrack, x: f64, y: f64) -> f64 {
+    let mut track = track.clone();
+    track.cones.push(Cone::new(Point::new(x, y), ConeColour::Orange));
+    EventCourse::of(&track, &OUTLINE).unwrap().corridor().length()
+}
+
+#[test]
+fn stray_cones_are_no_part_of_a_lane() {
+    let closed = strip(1.5, 5.0, 25.0);
+    let mut open = closed.clone();
+    open.cones.retain(|cone| cone.position.x < 100.0 || cone.position.y.abs() > 1.0);
+    // On the edge, in the lane and beside it, near and far behind its end.
+    for (x, y) in [(125.0, 1.5), (125.0, 0.0), (98.0, 9.5), (225.0, 9.5), (1e9, 1.5)] {
+        for track in [&closed, &open] {
+            let length = length_with(track, x, y);
+            assert!((length - 103.3).abs() < 1.0, "({x}, {y}): {length} m");
+        }
+    }
+    // Next in the row, a cone is none.
+    assert!((length_with(&open, 105.0, 1.5) - 108.3).abs() < 1.0);
+}
+
+#[test]
+fn a_strip_begins_ahead_of_its_start() {
+    let from = |x: f64| {
+        let track = ConeTrack { start: Some(Pose::new(x, 0.0, 0.0)), ..strip(1.5, 5.0, 25.0) };
+        EventCourse::of(&track, &OUTLINE).is_some()
+    };
+    assert!(from(-9.0) && from(-2.45));
+    for x in [-12.0, 0.0, 4.0, 12.0, 30.0, 65.0, 80.0] {
+        assert!(!from(x), "{x}");
+    }
+    // Without a start, it is at some cones in the middle of the strip.
+    let track = ConeTrack { start: None, ..strip(1.5, 5.0, 25.0) };
+    assert_eq!(EventCourse::of(&track, &OUTLINE), None);
 }
 
 #[test]
