@@ -5,7 +5,7 @@ use std::path::Path;
 use roverlab::geometry::{Aabb, Point, Pose, math};
 use roverlab::io::Resolution;
 use roverlab::race::{
-    CarOutline, CentreLine, Cone, ConeColour, ConeTrack, Corridor, EventCourse, GeneratedTrack,
+    CarOutline, CentreLine, Cone, ConeColour, ConeTrack, Corridor, Event, EventCourse, GeneratedTrack,
     LaneParameters, RacerParameters, TrackFile, TrackOptions, generate, lined, parse_track,
 };
 use roverlab::random::Stream;
@@ -61,6 +61,16 @@ fn line_of(track: &ConeTrack, start: Pose) -> Point {
         (2.0..12.0).contains(&local.x) && local.y.abs() < 3.0
     });
     ahead.next_back().unwrap_or_else(|| start.to_world(Point::new(RUN_UP, 0.0)))
+}
+
+/// Why cones of an acceleration are no course.
+fn no_strip(track: &ConeTrack, path: &Path) -> Failure {
+    let start =
+        track.start.map_or("no start".into(), |at| format!("a start at ({:.1}, {:.1}) m", at.x, at.y));
+    Failure::input(format!(
+        "--track {}: found cones of an acceleration and {start}; expected one along the strip, up to 8 m before it",
+        path.display()
+    ))
 }
 
 impl Course {
@@ -152,8 +162,13 @@ impl Course {
             let [blue, yellow] = [ConeColour::Blue, ConeColour::Yellow].map(|paint| track.of(paint).count());
             refused(format!("no start, {blue} blue and {yellow} yellow cones"))
         })?;
-        let line =
-            CentreLine::round_track(&track.cones, start).map_err(|error| refused(error.to_string()))?;
+        let line = CentreLine::round_track(&track.cones, start).map_err(|error| {
+            if track.event() == Event::Acceleration {
+                no_strip(track, path)
+            } else {
+                refused(error.to_string())
+            }
+        })?;
         let corridor = line.corridor.beginning_near(line_of(track, start));
         Ok(Self { cones: track.cones.clone(), corridor, start, wide: false, abreast: false, event: None })
     }
