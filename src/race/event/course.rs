@@ -101,18 +101,21 @@ impl EventCourse {
         Self::new(Event::Acceleration, layout, &points, timed)
     }
 
-    /// End of the lane behind a finish: where orange cones stand across it. Others beside it, in a row from
+    /// End of the lane behind a finish: where orange cones stand across it. Those beside it, in a row from
     /// the finish on, show that it reaches to there at least, as the rules do.
     fn lane_end(track: &ConeTrack, layout: &EventLayout, finish: f64, gap: f64) -> f64 {
         let [inside, outside] = [-AT_EDGE, AT_EDGE].map(|more| layout.shape.half_width() + more);
-        let orange = track.of(ConeColour::Orange).map(|place| layout.pose.to_local(place));
-        let mut lane: Vec<Point> =
-            orange.filter(|place| place.x > finish && place.y.abs() < outside).collect();
-        lane.sort_by(|a, b| a.x.total_cmp(&b.x));
-        let places: Vec<f64> = lane.iter().map(|place| place.x).collect();
+        let placed = track.cones.iter().map(|cone| (layout.pose.to_local(cone.position), cone.colour));
+        let mut lane: Vec<(Point, ConeColour)> =
+            placed.filter(|(place, _)| place.x > finish && place.y.abs() < outside).collect();
+        lane.sort_by(|(a, _), (b, _)| a.x.total_cmp(&b.x));
+        let places: Vec<f64> = lane.iter().map(|(place, _)| place.x).collect();
         let last = row_end(&places, finish, gap);
-        let closed = lane.iter().find(|place| place.x <= last && place.y.abs() < inside);
-        closed.map_or(last.max(finish + STRIP.1), |place| place.x)
+        let closes = |(place, colour): &&(Point, ConeColour)| {
+            *colour == ConeColour::Orange && place.x <= last && place.y.abs() < inside
+        };
+        let closed = lane.iter().find(closes);
+        closed.map_or(last.max(finish + STRIP.1), |(place, _)| place.x)
     }
 
     fn skidpad(track: &ConeTrack, start: Pose) -> Option<Self> {

@@ -212,6 +212,13 @@ fn stray_cones_are_no_part_of_a_lane() {
     }
     // Next in the row, a cone is none.
     assert!((length_with(&open, 105.0, 1.5) - 108.3).abs() < 1.0);
+    // Where the finish is by the large cones, the row up to the lane goes on behind it.
+    let mut early = closed.clone();
+    for cone in early.cones.iter_mut().filter(|cone| cone.colour == ConeColour::BigOrange) {
+        cone.position.x -= if cone.position.x > 50.0 { 20.0 } else { 0.0 };
+    }
+    let length = EventCourse::of(&early, &OUTLINE).unwrap().corridor().length();
+    assert!((length - 103.3).abs() < 1.0, "{length} m");
 }
 
 #[test]
