@@ -50,8 +50,8 @@ impl NavigatorParameters {
         require_positive("radius of the footprint", self.radius())?;
         require_positive("least clearance", self.least_clearance)?;
         let finest = FINEST * self.radius();
-        let good = self.resolution >= finest && self.resolution.is_finite();
-        let expected = format!("a finite number of at least a hundredth of the robot's radius, {finest} m");
+        let good = self.resolution >= finest && self.resolution <= 1000.0;
+        let expected = format!("at least a hundredth of the robot's radius, {finest}, and at most 1000 m");
         require("resolution", self.resolution, good, expected)?;
         require_positive("goal tolerance", self.goal_tolerance)?;
         require_positive("cruise speed", self.cruise_speed)?;
