@@ -49,8 +49,9 @@ impl SwarmRun {
 const FORMING: f64 = 10.0;
 /// Ratio of true to wished gap from which a follower counts as lost.
 const TOO_FAR: f64 = 3.0;
-/// Distance from its place in a formation within which a follower is there (m).
-const AT_ITS_PLACE: f64 = 0.3;
+/// Least gap that counts (m). As many of it as are too far are so from a place in a formation, too: by
+/// odometry alone, robots drift by one.
+const LEAST_GAP: f64 = 0.3;
 /// Control period, and time between path points (s).
 const PERIOD: f64 = 0.1;
 
@@ -185,7 +186,7 @@ pub(crate) fn run<'a>(
             run.mean_gap += gap;
             gaps += 1;
             run.largest_gap = run.largest_gap.max(gap);
-            *is_lost |= gap > TOO_FAR * gap_of(scene, mode, follower).max(0.3);
+            *is_lost |= gap > TOO_FAR * gap_of(scene, mode, follower).max(LEAST_GAP);
             *is_lost |= mode == Mode::Radio && time - last_seen[follower].get() > FORMING;
         }
     }
@@ -209,11 +210,11 @@ pub(crate) fn run<'a>(
     Ok(run)
 }
 
-/// Whether a follower is where it began, seen from the leader.
+/// Whether a follower is about where it began, seen from the leader.
 fn is_at_its_place(paths: &[Trail], scene: &Scene, follower: usize) -> bool {
     let last = |robot: usize| paths[robot].last().map_or(Pose::default(), |(_, pose)| *pose);
     let place = scene.robots[0].pose.to_local(scene.robots[follower].pose.position());
-    last(follower).distance_to(last(0).to_world(place)) < AT_ITS_PLACE
+    last(follower).distance_to(last(0).to_world(place)) < TOO_FAR * LEAST_GAP
 }
 
 fn gap_now(paths: &[Trail], mode: Mode, follower: usize) -> f64 {
