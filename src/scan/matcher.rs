@@ -168,7 +168,7 @@ impl ScanMatcher {
         self.chosen_at = pose.position();
     }
 
-    /// Standard deviation of the position, along the worse axis (m).
+    /// Standard deviation of the position: the larger one of those along x and y (m).
     pub(crate) fn deviation(&self) -> f64 {
         self.covariance[(0, 0)].max(self.covariance[(1, 1)]).max(0.0).sqrt()
     }

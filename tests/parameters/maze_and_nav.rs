@@ -70,7 +70,8 @@ fn navigation() {
     let world = World::walled(3.0, 2.0);
     check!(NavigatorParameters = NavigatorParameters::default(),
         |p| ends(RobotSpec::s4(), Navigator::new(&world, Pose::new(1.0, 1.0, 0.0), GOAL, p)?),
-        { Positive: goal_tolerance, cruise_speed, turn_rate, period; Bounded: resolution, clearance, least_clearance; }
+        { Positive: goal_tolerance, cruise_speed, turn_rate, period;
+          Bounded: resolution, clearance, least_clearance; }
         but footprint, match_scans);
 }
 

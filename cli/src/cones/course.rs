@@ -63,16 +63,6 @@ fn line_of(track: &ConeTrack, start: Pose) -> Point {
     ahead.next_back().unwrap_or_else(|| start.to_world(Point::new(RUN_UP, 0.0)))
 }
 
-/// Why cones of an acceleration are no course.
-fn no_strip(track: &ConeTrack, path: &Path) -> Failure {
-    let start =
-        track.start.map_or("no start".into(), |at| format!("a start at ({:.1}, {:.1}) m", at.x, at.y));
-    Failure::input(format!(
-        "--track {}: found cones of an acceleration and {start}; expected one along the strip, up to 8 m before it",
-        path.display()
-    ))
-}
-
 impl Course {
     /// A generated track.
     pub(crate) fn generated(seed: u64) -> Result<Self, Failure> {
@@ -152,9 +142,13 @@ impl Course {
     }
 
     fn between(track: &ConeTrack, path: &Path) -> Result<Self, Failure> {
+        let strip = match track.event() {
+            Event::Acceleration => ", or a start up to 8 m before the strip of an acceleration",
+            _ => "",
+        };
         let refused = |found: String| {
             Failure::input(format!(
-                "--track {}: found {found}; expected blue and yellow cones around a closed track",
+                "--track {}: found {found}; expected blue and yellow cones around a closed track{strip}",
                 path.display()
             ))
         };
@@ -162,13 +156,8 @@ impl Course {
             let [blue, yellow] = [ConeColour::Blue, ConeColour::Yellow].map(|paint| track.of(paint).count());
             refused(format!("no start, {blue} blue and {yellow} yellow cones"))
         })?;
-        let line = CentreLine::round_track(&track.cones, start).map_err(|error| {
-            if track.event() == Event::Acceleration {
-                no_strip(track, path)
-            } else {
-                refused(error.to_string())
-            }
-        })?;
+        let line =
+            CentreLine::round_track(&track.cones, start).map_err(|error| refused(error.to_string()))?;
         let corridor = line.corridor.beginning_near(line_of(track, start));
         Ok(Self { cones: track.cones.clone(), corridor, start, wide: false, abreast: false, event: None })
     }

@@ -34,7 +34,8 @@ five behind leaders that drive in other patterns.
 JSON fields:
   followers, mode             their number, and how they follow: lidar, raised, chain or radio
   lost                        number of those that were three times as far away as required after the first 10 s, or have not
-                              seen the robot ahead for the last three seconds, or by radio were 0.9 m off their place for 10 s
+                              seen the robot ahead for the last three seconds, or by radio were over 0.9 m from their place
+                              for half of the time
   pattern                     how the leader drives
   mean_gap_mm, max_gap_mm     distance to the robot ahead, after the first 10 s, or null
   obstacles                   number of objects in the world

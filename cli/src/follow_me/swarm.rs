@@ -45,12 +45,12 @@ impl SwarmRun {
     }
 }
 
-/// Time in which a swarm forms, and in which a follower by radio has to be at its place again (s).
+/// Time in which a swarm forms (s).
 const FORMING: f64 = 10.0;
 /// Ratio of true to wished gap from which a follower counts as lost.
 const TOO_FAR: f64 = 3.0;
-/// Least gap that counts (m). As many of it as are too far are so from a place in a formation, too: by
-/// odometry alone, robots drift by one.
+/// Least gap that counts (m): a robot that is [`TOO_FAR`] times this from its place in a formation is away
+/// from it. By odometry alone, robots drift apart by up to one such gap in 90 s.
 const LEAST_GAP: f64 = 0.3;
 /// Control period, and time between path points (s).
 const PERIOD: f64 = 0.1;
@@ -164,7 +164,7 @@ pub(crate) fn run<'a>(
         sim_time: 0.0,
         leader_path: 0.0,
     };
-    let (mut gaps, mut is_lost) = (0_u64, vec![false; robots]);
+    let (mut gaps, mut is_lost, mut away) = (0_u64, vec![false; robots], vec![0_u64; robots]);
     while fleet.time()? + 0.5 * PERIOD < seconds {
         fleet.run_for(PERIOD)?;
         let time = fleet.time()?;
@@ -172,12 +172,6 @@ pub(crate) fn run<'a>(
             path.push((time, fleet.pose(robot)?));
         }
         watch(time);
-        // By radio, a follower sees nothing ahead: it steers for its place, whatever lies between.
-        for (follower, last_seen) in last_seen.iter().enumerate().skip(1) {
-            if mode == Mode::Radio && is_at_its_place(&run.paths, scene, follower) {
-                last_seen.set(time);
-            }
-        }
         if time < FORMING {
             continue;
         }
@@ -187,13 +181,17 @@ pub(crate) fn run<'a>(
             gaps += 1;
             run.largest_gap = run.largest_gap.max(gap);
             *is_lost |= gap > TOO_FAR * gap_of(scene, mode, follower).max(LEAST_GAP);
-            *is_lost |= mode == Mode::Radio && time - last_seen[follower].get() > FORMING;
+            away[follower] += u64::from(!is_at_its_place(&run.paths, scene, follower));
         }
     }
     run.mean_gap /= gaps.max(1) as f64;
     for (follower, last_seen) in last_seen.iter().enumerate().skip(1) {
-        let unseen = mode != Mode::Radio && fleet.time()? - last_seen.get() > 3.0;
-        if is_lost[follower] || unseen {
+        // By radio, a follower sees nothing ahead: it steers for its place, whatever lies between.
+        let is_apart = match mode {
+            Mode::Radio => 2 * away[follower] * (robots as u64 - 1) > gaps,
+            _ => fleet.time()? - last_seen.get() > 3.0,
+        };
+        if is_lost[follower] || is_apart {
             run.lost.push(follower);
         }
     }
@@ -210,16 +208,20 @@ pub(crate) fn run<'a>(
     Ok(run)
 }
 
+/// The pose that a robot has now.
+fn pose_now(paths: &[Trail], robot: usize) -> Pose {
+    paths[robot].last().map_or(Pose::default(), |(_, pose)| *pose)
+}
+
 /// Whether a follower is about where it began, seen from the leader.
 fn is_at_its_place(paths: &[Trail], scene: &Scene, follower: usize) -> bool {
-    let last = |robot: usize| paths[robot].last().map_or(Pose::default(), |(_, pose)| *pose);
-    let place = scene.robots[0].pose.to_local(scene.robots[follower].pose.position());
-    last(follower).distance_to(last(0).to_world(place)) < TOO_FAR * LEAST_GAP
+    let offset = scene.robots[0].pose.to_local(scene.robots[follower].pose.position());
+    let place = pose_now(paths, 0).to_world(offset);
+    pose_now(paths, follower).distance_to(place) < TOO_FAR * LEAST_GAP
 }
 
 fn gap_now(paths: &[Trail], mode: Mode, follower: usize) -> f64 {
-    let last = |robot: usize| paths[robot].last().map_or(Pose::default(), |(_, pose)| *pose);
-    last(follower).distance_to(last(ahead_of(mode, follower)).position())
+    pose_now(paths, follower).distance_to(pose_now(paths, ahead_of(mode, follower)).position())
 }
 
 fn control_leader<'a>(

@@ -11,7 +11,8 @@ pub struct NavigatorParameters {
     pub clearance: f64,
     /// Free space required beside the outline on either side of a passage.
     pub least_clearance: f64,
-    /// Cell size of the planning grid; larger in large worlds, to keep to at most four million cells.
+    /// Cell size of the planning grid, from a hundredth of the robot's radius to 1000 m; larger in large
+    /// worlds, to keep to at most four million cells.
     pub resolution: f64,
     /// Distance from the goal that counts as reached.
     pub goal_tolerance: f64,
@@ -25,7 +26,7 @@ pub struct NavigatorParameters {
     pub period: f64,
 }
 
-/// Smallest cells relative to the robot's radius: its outline fills them to within a percent of it.
+/// Smallest cells relative to the robot's radius: finer ones tell nothing more about where it has room.
 const FINEST: f64 = 0.01;
 
 impl NavigatorParameters {
