@@ -144,8 +144,6 @@ const BLIND: f64 = 1.6;
 /// Number of points by which a road has to explain more than one that is tracked. Of two lines that are taken
 /// for the next ones, the outer one has no points, 10 or more in 0.3 m.
 const BETTER: f64 = 4.0;
-/// Share of all points that such a road has to explain: it also bends into stop lines of roads that cross.
-const MOST: f64 = 0.85;
 /// Distance from a line within which points count while the road is tracked (m).
 const TRACKED: f64 = 0.05;
 /// The same while the road is searched (m).
@@ -247,18 +245,17 @@ impl LaneMarkingFinder {
         lane
     }
 
-    /// Fits a road to the points, or follows it from the car on where that explains more of them. Returns the
-    /// weight of the points within 1.5 m.
+    /// Fits a road to the points, or follows it from near the car on where that explains more of them. Returns
+    /// the weight of the points within 1.5 m.
     fn fit(&self, road: &mut Road, wide: f64) -> f64 {
         let (points, camera) = (&self.points, &self.camera);
         let before = road.clone();
         let support = road.see(points, camera, wide);
         let enough = road.score(points, camera) + BETTER;
         // No road explains more than all points.
-        let all = points.len() as f64;
-        if all > enough {
+        if points.len() as f64 > enough {
             let (other, support) = before.followed(points, camera);
-            if other.score(points, camera) > enough.max(MOST * all) {
+            if other.score(points, camera) > enough {
                 *road = other;
                 return support;
             }

@@ -60,6 +60,9 @@ const TOGETHER: f64 = 8.0;
 const PAIR: f64 = 0.02;
 /// Least cosine of the angle of a road to the car at which rows are still across it: 66 degrees.
 const ALONG: f64 = 0.4;
+/// Number of knots that are kept where the road ahead is followed: so far, it has been seen for a while. With
+/// one fewer, a narrow lens misses half of the stop lines behind tight bends.
+const KEPT: usize = 2;
 /// Passes in which the road ahead is followed: distance from a line within which points count, and distance
 /// along the road up to which they do (m). From one to the next, the tightest road leaves its tangent by less
 /// than half the distance between two lines.
@@ -166,15 +169,15 @@ impl Road {
         self.fit(points, camera, &passes)
     }
 
-    /// The same road with its curvatures unknown, fitted to points from near to far, and the weight of the
-    /// points within 1.5 m. The lines of a road are parallel, and all look alike: where a bend is farther off
-    /// than expected by the distance between two of them, each is taken for the next one. Where most lines
-    /// are missing, a few that lie beside those expected bend the road away from the others. A fit by all
-    /// points at once stays there, and one from near to far does not get there.
+    /// The same road with its curvatures ahead unknown, fitted to points from near to far, and the weight of
+    /// the points within 1.5 m. The lines of a road are parallel, and all look alike: where a bend is farther
+    /// off than expected by the distance between two of them, each is taken for the next one. Where most
+    /// lines are missing, a few that lie beside those expected bend the road away from the others. A fit by
+    /// all points at once stays there, and one from near to far does not get there.
     pub(super) fn followed(&self, points: &[MarkingPoint], camera: &RoadCamera) -> (Self, f64) {
         let mut road = self.clone();
-        for index in BENDS..BENDS + KNOTS {
-            road.state[index] = 0.0;
+        for index in BENDS + KEPT..BENDS + KNOTS {
+            road.state[index] = self.state[BENDS + KEPT - 1];
             road.covariance.row_mut(index).fill(0.0);
             road.covariance.column_mut(index).fill(0.0);
             road.covariance[(index, index)] = UNSEEN.0 * UNSEEN.0;
