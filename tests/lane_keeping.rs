@@ -2,6 +2,8 @@
 
 #[path = "lane_keeping/book_loop.rs"]
 mod book_loop;
+#[path = "lane_keeping/laps.rs"]
+mod laps;
 #[path = "lane_keeping/real_road.rs"]
 mod real_road;
 
@@ -166,6 +168,18 @@ fn both_edges_may_be_missing_where_bends_meet() {
     }
 }
 
+/// The least angle between two passes, right behind bends that are nearly as tight as can be.
+#[test]
+fn a_road_may_cross_itself_at_70_degrees() {
+    let pass = "straight 1571\ncrossing 70 none\nstraight 1571\n";
+    let text = format!("course 1\nlane 400\n{pass}arc 1100 250\n{pass}arc 1100 -250\n");
+    for seed in 1..4 {
+        let score = drive(course::parse(&text, "eight").unwrap(), seed, 15.0);
+        assert_eq!((score.departures, score.interventions), (0, 0), "{seed}: {score:?}");
+        assert!(score.offset_rms() < 0.015, "{seed}: {score:?}");
+    }
+}
+
 #[test]
 fn a_gap_of_a_metre_and_a_blackout_are_driven_through_by_odometry() {
     let course = generate(2, &RoadCourseOptions::default()).unwrap();
@@ -197,16 +211,6 @@ fn a_gap_of_a_metre_and_a_blackout_are_driven_through_by_odometry() {
 /// What takes minutes.
 mod campaigns {
     use super::*;
-    use roverlab::drive::traffic::{TrafficDriver, TrafficParameters, TrafficState};
-    use roverlab::geometry::{Aabb, Point};
-    use roverlab::world::{Texture, World};
-
-    /// The lines of the book's loop at which a car stops, both at its crossing (m).
-    const LINES: [Point; 2] = [Point::new(0.60, 1.47), Point::new(0.88, 1.32)];
-    /// Distance from the middle of such a line within which it stands (m).
-    const BEFORE: f64 = 0.25;
-    /// The crosswalk of the book's loop (m).
-    const CROSSWALK: Aabb = Aabb { min: Point::new(1.14, 2.48), max: Point::new(1.34, 2.84) };
 
     #[test]
     #[ignore = "a campaign: cargo test --release --all-features --test lane_keeping campaigns -- --ignored --nocapture"]
@@ -227,87 +231,5 @@ mod campaigns {
             assert_eq!((score.departures, score.interventions), (0, 0), "{seed}: {score:?}");
             assert!(score.distance > 230.0 && score.offset_rms() < 0.025, "{seed}: {score:?}");
         }
-    }
-
-    #[test]
-    #[ignore = "a campaign on published data: ROVERLAB_DATA=FOLDER cargo test --release --all-features --test lane_keeping campaigns -- --ignored --nocapture"]
-    fn twenty_laps_of_the_books_loop_with_its_lines_and_crosswalk() {
-        twenty_laps(&RobotSpec::s4());
-    }
-
-    #[test]
-    #[ignore = "a campaign on published data: ROVERLAB_DATA=FOLDER cargo test --release --all-features --test lane_keeping campaigns -- --ignored --nocapture"]
-    fn twenty_laps_of_it_by_a_lens_of_150_degrees() {
-        let mut wide = RobotSpec::s4();
-        let lens = wide.camera.as_mut().unwrap();
-        (lens.field_of_view, lens.fisheye) = (units::from_deg(150.0), true);
-        twenty_laps(&wide);
-    }
-
-    fn twenty_laps(spec: &RobotSpec) {
-        let image = book_loop::picture();
-        let course = book_loop::course();
-        let camera = spec.camera.as_ref().unwrap().into();
-        let world = World {
-            floor_texture: Some(Texture::new("carolo.png", image)),
-            ..World::empty(book_loop::SIDE, book_loop::SIDE)
-        };
-        let scene = Scene::with_robot(world, spec.clone(), course.start());
-        let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1)).unwrap();
-        let (mut robot, truth) = (simulation.robot(0).unwrap(), simulation.truth());
-        let road = RoadModel { size: course.size, line_width: course.line_width, left_hand: true };
-        let lane = LaneKeeperParameters {
-            speed: 0.3,
-            across: 0.5,
-            brake: 0.5,
-            settling: [0.15, 0.2],
-            delay: 0.2,
-            sight: 0.8,
-            ..LaneKeeperParameters::default()
-        };
-        let parameters = TrafficParameters {
-            lane,
-            crosswalk: 0.15,
-            gap: 0.05,
-            brake: 0.5,
-            body: [0.08, 0.05],
-            ..TrafficParameters::default()
-        };
-        let mut driver = TrafficDriver::new(camera, road, parameters).unwrap();
-        let laps = 20.0 * course.line.length();
-        let mut referee = FreeDrive::new(course, spec, FreeDriveRules::default()).unwrap();
-        let (mut stood, mut halts) = (false, [0; 2]);
-        let (mut before, mut on_crosswalk) = ((Point::origin(), 0.0), Vec::new());
-        run(&mut robot, &mut driver, 1600.0, |_, driver, _| {
-            let pose = truth.pose(0).unwrap();
-            let stands = driver.state() == TrafficState::Wait;
-            if stands && !stood {
-                let place = LINES.iter().position(|line| (line - pose.position()).norm() < BEFORE);
-                halts[place.expect("a halt at a line")] += 1;
-            }
-            stood = stands;
-            let (place, time) = (pose.position(), truth.time());
-            if CROSSWALK.contains(place) && CROSSWALK.contains(before.0) {
-                on_crosswalk.push((place - before.0).norm() / (time - before.1));
-            }
-            before = (place, time);
-            let astray = referee.see(truth.time(), &pose);
-            until(astray || referee.score().distance >= laps)
-        })
-        .unwrap();
-        let score = referee.score();
-        println!(
-            "{:.1} m, {:.1} mm, {} departures, halts {halts:?}, on the crosswalk {:.2} m/s at most",
-            score.distance,
-            1e3 * score.offset_rms(),
-            score.departures,
-            on_crosswalk.iter().copied().fold(0.0, f64::max)
-        );
-        assert!(score.distance >= laps && score.departures == 0, "{score:?}");
-        assert!(halts == [20, 20], "{halts:?}");
-        assert!(
-            !on_crosswalk.is_empty() && on_crosswalk.iter().all(|speed| *speed < 0.2),
-            "{on_crosswalk:?}"
-        );
     }
 }
