@@ -91,9 +91,9 @@ fn drive(spec: &RobotSpec, laps: usize) {
 
 #[test]
 #[ignore = "needs published data: ROVERLAB_DATA=FOLDER cargo test --all-features --test lane_keeping laps -- --ignored"]
-fn three_laps_by_its_own_lens_and_a_wide_one() {
-    drive(&RobotSpec::s4(), 3);
-    drive(&wide(), 3);
+fn two_laps_by_its_own_lens_and_a_wide_one() {
+    drive(&RobotSpec::s4(), 2);
+    drive(&wide(), 2);
 }
 
 mod campaigns {
