@@ -7,7 +7,7 @@ mod laps;
 #[path = "lane_keeping/real_road.rs"]
 mod real_road;
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, RangeInclusive};
 
 use image::RgbImage;
 use roverlab::drive::lane_keeping::{LaneKeeper, LaneKeeperParameters, LaneObservation};
@@ -102,12 +102,13 @@ impl Errors {
         }
     }
 
-    fn check(&self) {
+    /// Checks the errors, and the shares of frames that are within two deviations.
+    fn check(&self, honest: RangeInclusive<f64>) {
         let (offset, heading) = (self.rms(self.offset), units::to_deg(self.rms(self.heading)));
         let within = self.within.map(|count| count as f64 / self.frames as f64);
         println!("{} frames: {:.1} mm, {heading:.2} degrees, within {within:.3?}", self.frames, 1e3 * offset);
         assert!(offset < 0.008 && heading < 0.6, "{offset} m, {heading} degrees");
-        assert!(within.iter().all(|share| *share > 0.93), "{within:?}");
+        assert!(within.iter().all(|share| honest.contains(share)), "{within:?}");
     }
 }
 
@@ -115,7 +116,8 @@ impl Errors {
 fn the_lane_is_where_it_is_seen() {
     let mut errors = Errors::default();
     (1..4).for_each(|seed| errors.look(seed, 0.004, 120));
-    errors.check();
+    // Neighbouring frames err alike: these are few.
+    errors.check(0.90..=1.0);
 }
 
 #[test]
@@ -218,7 +220,7 @@ mod campaigns {
         let mut errors = Errors::default();
         (1..40).for_each(|seed| errors.look(seed, 0.002, usize::MAX));
         assert!(errors.frames >= 10_000);
-        errors.check();
+        errors.check(0.93..=0.97);
     }
 
     #[test]

@@ -43,7 +43,7 @@ const FIRST: [f64; 5] = [0.12, 0.12, 0.7, 0.035, 0.01];
 /// Initial distance from the road's centre line to an edge line (m).
 const EDGE_AT_FIRST: f64 = 0.42;
 /// Process noise: deviations per square root of the distance driven.
-const DRIFT: [f64; 5] = [0.010, 0.020, 0.25, 0.003, 0.0005];
+const DRIFT: [f64; 5] = [0.009, 0.020, 0.20, 0.003, 0.0005];
 /// Curvature of a road that is not yet in view: its deviation (1/m), and the distance in which it decays (m).
 const UNSEEN: (f64, f64) = (0.6, 1.5);
 /// Soft limit of a road's curvature, with its deviation (1/m).

@@ -267,9 +267,9 @@ impl RoadElementFinder {
     fn judge(&mut self, is_blind: bool) {
         let (view, edge) = (&self.view, self.edge);
         let from = view.from();
-        let reliable = |track: &Track| {
+        let is_in_view = |track: &Track| {
             let row = view.row(track.ahead);
-            let is_in_view = match track.kind {
+            match track.kind {
                 RoadElementKind::Obstacle { right, left } => {
                     [right, left].iter().all(|side| view.sees(row, super::view::column(side + self.middle)))
                 }
@@ -284,12 +284,18 @@ impl RoadElementFinder {
                 | RoadElementKind::TurnArrow { .. }
                 | RoadElementKind::SpeedLimitEnd => false,
                 _ => view.sees(row, super::view::column(self.middle)),
-            };
-            is_in_view && (from + RELIABLE.0..from + RELIABLE.1).contains(&track.ahead)
+            }
         };
         for track in &mut self.tracks {
-            if !track.is_seen && !is_blind && reliable(track) {
+            let is_near = track.ahead < from + RELIABLE.0;
+            if track.is_seen || is_blind || is_near || !is_in_view(track) {
+                continue;
+            }
+            if track.ahead < from + RELIABLE.1 {
                 track.evidence += MISS;
+            } else {
+                // With the speed that a few images gave it, it would stay out of reach for ever.
+                track.speed *= 1.0 - SPEED_SHARE;
             }
         }
         self.tracks.retain(|track| track.evidence > 0.0 && track.ahead > BEHIND);

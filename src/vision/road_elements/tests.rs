@@ -46,14 +46,19 @@ impl Picture {
 
     /// What a finder has found after some images of it.
     fn found(&self) -> RoadElementFinder {
-        let mut lane = LaneMarkingFinder::new(CAMERA, RoadModel::default()).unwrap();
         let mut finder = RoadElementFinder::new(CAMERA, RoadModel::default()).unwrap();
-        let view = GrayView::new(&self.0, 320, 240).unwrap();
-        for _ in 0..5 {
-            let lane = lane.see(view, (0.0, 0.0));
-            finder.see(view, &lane, 0.0, 0.04);
-        }
+        self.look(&mut finder, 5, 0.0);
         finder
+    }
+
+    /// Shows it to a finder in some images, each after the car has driven a distance (m).
+    fn look(&self, finder: &mut RoadElementFinder, count: usize, metres: f64) {
+        let mut lane = LaneMarkingFinder::new(CAMERA, RoadModel::default()).unwrap();
+        let view = GrayView::new(&self.0, 320, 240).unwrap();
+        for _ in 0..count {
+            let lane = lane.see(view, (0.0, 0.0));
+            finder.see(view, &lane, metres, 0.04);
+        }
     }
 }
 
@@ -68,6 +73,23 @@ fn a_line_beyond_a_crossing_is_no_box_and_a_box_is_one() {
         front.paint(far..1.8 * far, -0.2..0.0, 220);
         assert!(front.found().sees_box((0.45, 1.65), 0.25, 0.0), "a box at {far}");
     }
+}
+
+#[test]
+fn a_box_that_seemed_to_drive_away_is_forgotten_where_it_is_not() {
+    let has_box = |finder: &RoadElementFinder| {
+        finder.elements().any(|it| matches!(it.kind, RoadElementKind::Obstacle { .. }))
+    };
+    let mut finder = RoadElementFinder::new(CAMERA, RoadModel::default()).unwrap();
+    for far in (0..6).map(|step| 1.0 + 0.02 * f64::from(step)) {
+        let mut front = Picture::road();
+        front.paint(far..1.8 * far, -0.2..0.0, 220);
+        front.look(&mut finder, 1, 0.0);
+    }
+    assert!(has_box(&finder));
+    // The car is slower than the box seemed to be.
+    Picture::road().look(&mut finder, 60, 0.015);
+    assert!(!has_box(&finder), "{:?}", finder.elements().collect::<Vec<_>>());
 }
 
 #[test]
