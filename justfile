@@ -28,6 +28,10 @@ bench *words:
 bench-curves:
     cargo bench -p roverlab-bench --bench curves -- --picture docs/curves.svg
 
+# Whether a vision kernel has lost more than a tenth of its speed beside its peers since the last tag, or a commit.
+bench-check since=`git describe --tags --abbrev=0 2>/dev/null || git rev-parse HEAD`:
+    python3 benches/peers/vision.py --since {{since}}
+
 # The pictures of the README's gallery, in docs/pictures.
 pictures:
     .ci/pictures

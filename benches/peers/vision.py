@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 """Times OpenCV and kornia-rs beside `cargo bench -p roverlab-bench --bench vision`, on the same images, and prints one table.
 
-Options: --quick for shorter measurements, --rounds N for how often ours and the peers take turns (3).
+Options: --quick for shorter measurements, --rounds N for how often ours and the peers take turns (3), --save to write how many
+times a peer's speed each kernel has to ratios.json beside this file, --since COMMIT to name what has lost more than a tenth since
+the ratios.json of a commit or tag; then the program ends with 1.
 """
 
 import argparse
 import json
 import math
+import operator
 import os
 import pathlib
 import statistics
@@ -28,6 +31,10 @@ except ImportError:
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SIZES = [(320, 240), (640, 480), (1920, 1080)]
+RATIOS = pathlib.Path("benches/peers/ratios.json")
+# Part of a ratio that it may lose by chance.
+CHANCE = 0.1
+PEERS = {"opencv": "OpenCV", "kornia": "kornia-rs"}
 
 
 def median(call, quick):
@@ -162,22 +169,42 @@ def kornia_calls(first, _second):
 
 
 def ours(folder, quick):
-    """Our times by kernel and size, and the images that they were taken on, in the folder."""
+    """Our times by kernel and size with those of a copy, and the images that they were taken on, in the folder."""
     file = folder / "ours.json"
     command = ["cargo", "bench", "--quiet", "-p", "roverlab-bench", "--bench", "vision", "--", "--json", str(file), "--images", str(folder)]
     subprocess.run(command + (["--quick"] if quick else []), cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     rows = json.loads(file.read_text())
-    return {(row["kernel"], row["width"], row["height"]): row["microseconds"] for row in rows}
+    return {(row["kernel"], row["width"], row["height"]): (row["microseconds"], row["copy"]) for row in rows}
+
+
+def ratios(times):
+    """How many times a peer's speed each kernel has: the medians over the rounds."""
+    rows = {}
+    for who, name in PEERS.items():
+        for (kernel, width, height), mine in times["ours"].items():
+            if peer := times[who].get((kernel, width, height)):
+                rows[f"{kernel} {width}x{height} {name}"] = statistics.median(map(operator.truediv, peer, mine))
+    return rows
+
+
+def lost(before, now):
+    """What has lost more than chance since before."""
+    fell = [row for row in now if row in before and now[row] < (1 - CHANCE) * before[row]]
+    return [f"{row}: {before[row]:.2f}, now {now[row]:.2f} times its speed" for row in fell]
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--save", action="store_true")
+    parser.add_argument("--since", metavar="COMMIT")
     options = parser.parse_args()
+    # Before anything is measured, whether there is something to compare it with.
+    before = options.since and json.loads(subprocess.check_output(["git", "show", f"{options.since}:{RATIOS}"], cwd=ROOT))
     cv2.setNumThreads(1)
     cv2.ocl.setUseOpenCL(False)
-    times = {"ours": {}, "opencv": {}, "kornia": {}}
+    times = {"ours": {}, "copy": {}, "opencv": {}, "kornia": {}}
 
     def note(who, key, value):
         times[who].setdefault(key, []).append(value)
@@ -185,8 +212,9 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         for _ in range(options.rounds):
-            for key, value in ours(folder, options.quick).items():
-                note("ours", key, value)
+            for key, (mine, copy) in ours(folder, options.quick).items():
+                note("ours", key, mine)
+                note("copy", key, copy)
             for width, height in SIZES:
                 images = [
                     cv2.cvtColor(cv2.imread(str(folder / f"{part}_{width}x{height}.png")), cv2.COLOR_BGR2RGB)
@@ -198,23 +226,31 @@ def main():
 
     best = {who: {key: min(values) for key, values in rows.items()} for who, rows in times.items()}
     print(f"OpenCV {cv2.__version__}, one thread; microseconds, the best of {options.rounds} medians\n")
-    print("| kernel | resolution | ours | OpenCV | kornia-rs | times OpenCV's speed |\n|---|---|---|---|---|---|")
-    ratios, slower = [], []
+    print("| kernel | resolution | ours | OpenCV | kornia-rs | times OpenCV's speed | times a copy's time |\n|---|---|---|---|---|---|---|")
+    faster, slower = [], []
     for key, mine in best["ours"].items():
         kernel, width, height = key
         cv, kornia = best["opencv"].get(key), best["kornia"].get(key)
         ratio = cv / mine if cv else None
         if ratio:
-            ratios.append(ratio)
+            faster.append(ratio)
         for who, peer in (("OpenCV", cv), ("kornia-rs", kornia)):
             if peer and peer < mine:
                 slower.append(f"{kernel} at {width}x{height}: {mine:.1f} against {who}'s {peer:.1f}")
         show = lambda value: f"{value:.1f}" if value else "-"
-        print(f"| {kernel} | {width}x{height} | {mine:.1f} | {show(cv)} | {show(kornia)} | {show(ratio)} |")
-    if ratios:
-        print(f"\nGeometric mean over {len(ratios)} rows: {math.exp(statistics.fmean(map(math.log, ratios))):.2f} times OpenCV's speed")
+        print(f"| {kernel} | {width}x{height} | {mine:.1f} | {show(cv)} | {show(kornia)} | {show(ratio)} | {show(mine / best['copy'][key])} |")
+    if faster:
+        print(f"\nGeometric mean over {len(faster)} rows: {math.exp(statistics.fmean(map(math.log, faster))):.2f} times OpenCV's speed")
     print("\n".join(["Slower than a peer:", *slower]) if slower else "Nowhere slower than a peer")
-    return 0
+    now = ratios(times)
+    if options.save:
+        rows = [f'  {json.dumps(row)}: {ratio:.2f}' for row, ratio in now.items()]
+        (ROOT / RATIOS).write_text("{\n" + ",\n".join(rows) + "\n}\n")
+    if before is None:
+        return 0
+    fell = lost(before, now)
+    print("\n".join([f"Since {options.since} slower:", *fell]) if fell else f"Since {options.since} nothing has lost more than a tenth")
+    return 1 if fell else 0
 
 
 if __name__ == "__main__":

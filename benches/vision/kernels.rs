@@ -24,7 +24,7 @@ pub(crate) struct Sample {
     pub(crate) bytes: u64,
     /// The same by imageproc, where it has it.
     pub(crate) imageproc: Option<f64>,
-    /// A copy of the image in shades of gray.
+    /// A copy that reads and writes so many bytes: the memory's own limit.
     pub(crate) copy: f64,
 }
 
@@ -50,7 +50,6 @@ struct Bench<'a> {
     mask: GrayImage,
     output: GrayImage,
     colour: RgbImage,
-    copy: f64,
     samples: Vec<Sample>,
 }
 
@@ -74,18 +73,19 @@ impl<'a> Bench<'a> {
         let red = (&mut mask).try_into()?;
         hue_match_into((&pair.first).try_into()?, red, RED, HueScale::Robios, LIMITS)?;
         assert!(edges.iter().any(|&edge| edge > 0) && mask.iter().any(|&red| red > 0), "something to find");
-        let (source, mut target) = (gray.as_raw().clone(), empty.as_raw().clone());
-        let copy = median(effort, || black_box(&mut target).copy_from_slice(black_box(&source)));
         let second = gray_of(&pair.second)?;
         let colour = RgbImage::new(width, height);
-        Ok(Self { pair, effort, gray, second, edges, mask, output: empty, colour, copy, samples: Vec::new() })
+        Ok(Self { pair, effort, gray, second, edges, mask, output: empty, colour, samples: Vec::new() })
     }
 
     /// Notes what a kernel takes that reads and writes so many bytes a pixel.
     fn add(&mut self, kernel: &'static str, bytes: u64, seconds: f64, imageproc: Option<f64>) {
         let size = self.gray.dimensions();
         let bytes = bytes * u64::from(size.0) * u64::from(size.1);
-        self.samples.push(Sample { kernel, size, seconds, bytes, imageproc, copy: self.copy });
+        let source = vec![1_u8; bytes as usize / 2];
+        let mut target = source.clone();
+        let copy = median(self.effort, || black_box(&mut target).copy_from_slice(black_box(&source)));
+        self.samples.push(Sample { kernel, size, seconds, bytes, imageproc, copy });
     }
 
     /// A kernel from gray to gray.
