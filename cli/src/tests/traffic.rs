@@ -38,6 +38,20 @@ fn a_car_slows_down_before_a_speed_zone() {
     assert_eq!(number(&ended.1, "points"), number(&ended.1, "points_possible"), "{}", ended.1);
 }
 
+/// From the right, the box comes in the far lane, and in left-hand traffic in the near one.
+#[test]
+fn a_car_lets_crossing_traffic_through_at_a_give_way_line() {
+    let file = temporary("give-way.course");
+    let road = "straight 3600\ncrossing 85 both 1000 give-way\nstraight 3100\narc 1550 180\nstraight 6700\narc 1550 180\n";
+    for side in ["right", "left"] {
+        fs::write(&file, format!("course 1\ntraffic {side}\nlane 410\nstart-line\n{road}")).unwrap();
+        let ended = run("traffic", &["--course", text(&file), "--laps", "1", "--noise", "1"]);
+        assert_outcome(&ended, "finished");
+        assert_eq!(row(&ended.1, "cross traffic")["right"], 1, "{side}: {}", ended.1);
+        assert_eq!(ended.1["collisions"], 0, "{side}: {}", ended.1);
+    }
+}
+
 /// On its crosswalk, the two lines of the road's middle and a stripe are as wide as a pedestrian.
 #[test]
 fn a_car_leaves_a_crosswalk_when_the_pedestrian_is_gone() {

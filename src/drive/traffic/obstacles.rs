@@ -57,8 +57,12 @@ pub(super) fn obstacles(elements: &[RoadElement], side: f64, size: f64) -> Vec<O
             RoadElementKind::Obstacle { right, left } => {
                 Some((right, left, size * (LONGEST + if speed > MOVES { UNSEEN } else { 0.0 })))
             }
-            // Slanted stripes there are those of the crosswalk.
-            RoadElementKind::Barred { .. } if is_in_zebra(elements, ahead, size) => None,
+            // Slanted stripes there are those of the crosswalk, and what stands in a crossing drives on.
+            RoadElementKind::Barred { .. }
+                if is_in_zebra(elements, ahead, size) || is_in_crossing(elements, ahead, size) =>
+            {
+                None
+            }
             RoadElementKind::Barred { right, left, length } => Some((right, left, length)),
             _ => None,
         }?;

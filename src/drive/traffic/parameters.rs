@@ -27,7 +27,8 @@ pub struct TrafficParameters {
 
 impl Default for TrafficParameters {
     /// For [`RobotSpec::road_car`](crate::world::RobotSpec::road_car) by the rules of 2025, which ask for
-    /// halts of 3 s and 1 s at most 150 mm before a line, and for 300 mm behind an obstacle.
+    /// halts of 3 s and 1 s at most 150 mm before a line, and for 300 mm behind an obstacle. At give-way lines
+    /// the car looks for longer: traffic that sets out as it stops may come into its view after a second.
     fn default() -> Self {
         Self {
             lane: LaneKeeperParameters { speed: 0.9, ..LaneKeeperParameters::default() },
@@ -36,7 +37,7 @@ impl Default for TrafficParameters {
             gap: 0.07,
             following: 0.45,
             brake: 1.2,
-            halts: [3.2, 1.2],
+            halts: [3.2, 1.7],
             clearance: 0.07,
             body: [0.35, 0.095],
         }

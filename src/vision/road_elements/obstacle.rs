@@ -88,15 +88,19 @@ pub(super) fn is_occupied(
     let mut deep = vec![0; COLUMNS];
     let (first, last) = (view.row(from), view.row(to));
     (first..ROWS).any(|row| {
-        let mut run = 0;
+        // What reaches in between the distances aside from outside has its end there.
+        let mut start = 0;
         let least = deep_at(view, row);
-        for column in road.clone() {
+        for column in 0..road.end {
             deep[column] = if is_bright(row, column) { deep[column] + 1 } else { 0 };
             let is_deep = deep[column] >= least && row + 1 - deep[column] <= last;
-            run = if is_deep { run + 1 } else { 0 };
+            if !is_deep {
+                start = column + 1;
+            }
+            let run = (column + 1).saturating_sub(start.max(road.start));
             if run >= wide
-                && dims(view, row, column + 1 - run, -1, SHARP)
-                && dims_beyond(view, row, column)
+                && dims_beyond(view, row, start, -1)
+                && dims_beyond(view, row, column, 1)
                 && rises(row, column - run / 2)
             {
                 return true;
@@ -111,11 +115,13 @@ fn deep_at(view: &RoadView, row: usize) -> usize {
     DEEP + (2.0 * view.depth(row)) as usize
 }
 
-/// Whether the surface to the left of a column ends sharply.
-fn dims_beyond(view: &RoadView, row: usize, column: usize) -> bool {
+/// Whether the surface beside a column ends sharply. Aside of the camera, only a part of a box's side is as
+/// deep in one column as a box is.
+fn dims_beyond(view: &RoadView, row: usize, column: usize, out: isize) -> bool {
     let is_bright = |&column: &usize| view.sees(row, column) && view.brightness(row, column) >= WHITE;
-    let last = (column..COLUMNS).take_while(is_bright).last().unwrap_or(column);
-    dims(view, row, last, 1, SHARP)
+    let next = |column: &usize| column.checked_add_signed(out).filter(|&next| next < COLUMNS);
+    let last = std::iter::successors(Some(column), next).take_while(is_bright).last().unwrap_or(column);
+    dims(view, row, last, out, SHARP)
 }
 
 /// Columns of the nearest front in a run of columns that is wide enough for a box. Narrower ones are paint, a
@@ -182,8 +188,8 @@ fn ends_there(view: &RoadView, feet: &[Option<usize>], column: usize, out: isize
 /// Whether a row is much darker beside a column within some cells. Out of view, it cannot be told.
 fn dims(view: &RoadView, row: usize, column: usize, out: isize, within: isize) -> bool {
     let inside = view.brightness(row, column);
-    let beyond = (1..=within).filter_map(|step| column.checked_add_signed(out * step));
-    beyond
-        .take_while(|&beyond| beyond < COLUMNS)
-        .any(|beyond| !view.sees(row, beyond) || view.brightness(row, beyond) <= DIMMER * inside)
+    (1..=within).any(|step| {
+        let beyond = column.checked_add_signed(out * step).filter(|&beyond| beyond < COLUMNS);
+        beyond.is_none_or(|beyond| !view.sees(row, beyond) || view.brightness(row, beyond) <= DIMMER * inside)
+    })
 }

@@ -76,6 +76,13 @@ fn a_line_beyond_a_crossing_is_no_box_and_a_box_is_one() {
 }
 
 #[test]
+fn a_box_reaches_in_from_where_nothing_is_looked_for() {
+    let mut front = Picture::road();
+    front.paint(1.0..1.8, -1.0..-0.3, 220);
+    assert!(front.found().sees_box((0.45, 1.65), 0.25, 0.0));
+}
+
+#[test]
 fn a_box_that_seemed_to_drive_away_is_forgotten_where_it_is_not() {
     let has_box = |finder: &RoadElementFinder| {
         finder.elements().any(|it| matches!(it.kind, RoadElementKind::Obstacle { .. }))
