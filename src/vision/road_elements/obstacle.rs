@@ -91,9 +91,9 @@ pub(super) fn is_occupied(
         // What reaches in between the distances aside from outside has its end there.
         let mut start = 0;
         let least = deep_at(view, row);
-        for column in 0..road.end {
-            deep[column] = if is_bright(row, column) { deep[column] + 1 } else { 0 };
-            let is_deep = deep[column] >= least && row + 1 - deep[column] <= last;
+        for (column, deep) in deep.iter_mut().enumerate().take(road.end) {
+            *deep = if is_bright(row, column) { *deep + 1 } else { 0 };
+            let is_deep = *deep >= least && row + 1 - *deep <= last;
             if !is_deep {
                 start = column + 1;
             }
