@@ -69,7 +69,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// One line for each kernel and resolution.
 fn table(samples: &[Sample]) -> String {
     let mut text = String::from(
-        "One thread, medians. GB/s counts the bytes read and written once; a copy reads and writes as many.\n\n\
+        "One thread, medians. GB/s counts the bytes read and written once; a copy moves as many.\n\n\
          | kernel | resolution | us | ns/pixel | GB/s | times imageproc's speed | times a copy's time |\n\
          |---|---|---|---|---|---|---|\n",
     );

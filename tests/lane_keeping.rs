@@ -7,7 +7,7 @@ mod laps;
 #[path = "lane_keeping/real_road.rs"]
 mod real_road;
 
-use std::ops::{ControlFlow, RangeInclusive};
+use std::ops::ControlFlow;
 
 use image::RgbImage;
 use roverlab::drive::lane_keeping::{LaneKeeper, LaneKeeperParameters, LaneObservation};
@@ -102,22 +102,21 @@ impl Errors {
         }
     }
 
-    /// Checks the errors, and the shares of frames that are within two deviations.
-    fn check(&self, honest: RangeInclusive<f64>) {
+    fn check(&self) {
         let (offset, heading) = (self.rms(self.offset), units::to_deg(self.rms(self.heading)));
         let within = self.within.map(|count| count as f64 / self.frames as f64);
         println!("{} frames: {:.1} mm, {heading:.2} degrees, within {within:.3?}", self.frames, 1e3 * offset);
         assert!(offset < 0.008 && heading < 0.6, "{offset} m, {heading} degrees");
-        assert!(within.iter().all(|share| honest.contains(share)), "{within:?}");
+        assert!(within.iter().all(|share| (0.93..0.97).contains(share)), "{within:?}");
     }
 }
 
 #[test]
 fn the_lane_is_where_it_is_seen() {
     let mut errors = Errors::default();
-    (1..4).for_each(|seed| errors.look(seed, 0.004, 120));
-    // Neighbouring frames err alike: these are few.
-    errors.check(0.90..=1.0);
+    // Neighbouring frames err alike: of fewer courses, shares vary by several hundredths.
+    (1..9).for_each(|seed| errors.look(seed, 0.004, 120));
+    errors.check();
 }
 
 #[test]
@@ -220,7 +219,7 @@ mod campaigns {
         let mut errors = Errors::default();
         (1..40).for_each(|seed| errors.look(seed, 0.002, usize::MAX));
         assert!(errors.frames >= 10_000);
-        errors.check(0.93..=0.97);
+        errors.check();
     }
 
     #[test]

@@ -200,8 +200,12 @@ def main():
     parser.add_argument("--save", action="store_true")
     parser.add_argument("--since", metavar="COMMIT")
     options = parser.parse_args()
-    # Before anything is measured, whether there is something to compare it with.
-    before = options.since and json.loads(subprocess.check_output(["git", "show", f"{options.since}:{RATIOS}"], cwd=ROOT))
+    before = None
+    if options.since:
+        stored = subprocess.run(["git", "show", f"{options.since}:{RATIOS}"], cwd=ROOT, capture_output=True, text=True)
+        if stored.returncode:
+            parser.error(f"--since {options.since}: found no {RATIOS} there; expected a commit or tag that has one")
+        before = json.loads(stored.stdout)
     cv2.setNumThreads(1)
     cv2.ocl.setUseOpenCL(False)
     times = {"ours": {}, "copy": {}, "opencv": {}, "kornia": {}}
@@ -230,11 +234,11 @@ def main():
     faster, slower = [], []
     for key, mine in best["ours"].items():
         kernel, width, height = key
-        cv, kornia = best["opencv"].get(key), best["kornia"].get(key)
+        cv, kornia = (best[who].get(key) for who in PEERS)
         ratio = cv / mine if cv else None
         if ratio:
             faster.append(ratio)
-        for who, peer in (("OpenCV", cv), ("kornia-rs", kornia)):
+        for who, peer in zip(PEERS.values(), (cv, kornia)):
             if peer and peer < mine:
                 slower.append(f"{kernel} at {width}x{height}: {mine:.1f} against {who}'s {peer:.1f}")
         show = lambda value: f"{value:.1f}" if value else "-"

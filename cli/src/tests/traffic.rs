@@ -42,9 +42,10 @@ fn a_car_slows_down_before_a_speed_zone() {
 #[test]
 fn a_car_lets_crossing_traffic_through_at_a_give_way_line() {
     let file = temporary("give-way.course");
-    let road = "straight 3600\ncrossing 85 both 1000 give-way\nstraight 3100\narc 1550 180\nstraight 6700\narc 1550 180\n";
+    let road = "straight 3600\ncrossing 85 both 1000 give-way\nstraight 3100\n";
+    let back = "arc 1550 180\nstraight 6700\narc 1550 180\n";
     for side in ["right", "left"] {
-        fs::write(&file, format!("course 1\ntraffic {side}\nlane 410\nstart-line\n{road}")).unwrap();
+        fs::write(&file, format!("course 1\ntraffic {side}\nlane 410\nstart-line\n{road}{back}")).unwrap();
         let ended = run("traffic", &["--course", text(&file), "--laps", "1", "--noise", "1"]);
         assert_outcome(&ended, "finished");
         assert_eq!(row(&ended.1, "cross traffic")["right"], 1, "{side}: {}", ended.1);

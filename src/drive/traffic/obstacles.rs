@@ -57,7 +57,7 @@ pub(super) fn obstacles(elements: &[RoadElement], side: f64, size: f64) -> Vec<O
             RoadElementKind::Obstacle { right, left } => {
                 Some((right, left, size * (LONGEST + if speed > MOVES { UNSEEN } else { 0.0 })))
             }
-            // Slanted stripes there are those of the crosswalk, and what stands in a crossing drives on.
+            // What looks like slanted stripes there are those of the crosswalk, or a box that crosses.
             RoadElementKind::Barred { .. }
                 if is_in_zebra(elements, ahead, size) || is_in_crossing(elements, ahead, size) =>
             {

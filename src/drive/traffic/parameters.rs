@@ -27,8 +27,8 @@ pub struct TrafficParameters {
 
 impl Default for TrafficParameters {
     /// For [`RobotSpec::road_car`](crate::world::RobotSpec::road_car) by the rules of 2025, which ask for
-    /// halts of 3 s and 1 s at most 150 mm before a line, and for 300 mm behind an obstacle. At give-way lines
-    /// the car looks for longer: traffic that sets out as it stops may come into its view after a second.
+    /// halts of 3 s and 1 s at most 150 mm before a line, and for 300 mm behind an obstacle. At give-way
+    /// lines the car looks for longer: traffic may come into its view more than a second after it has stopped.
     fn default() -> Self {
         Self {
             lane: LaneKeeperParameters { speed: 0.9, ..LaneKeeperParameters::default() },

@@ -294,7 +294,7 @@ impl RoadElementFinder {
             if track.ahead < from + RELIABLE.1 {
                 track.evidence += MISS;
             } else {
-                // With the speed that a few images gave it, it would stay out of reach for ever.
+                // A wrong speed, from a few images, would keep it beyond the reliable distance for ever.
                 track.speed *= 1.0 - SPEED_SHARE;
             }
         }

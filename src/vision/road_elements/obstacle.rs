@@ -88,7 +88,7 @@ pub(super) fn is_occupied(
     let mut deep = vec![0; COLUMNS];
     let (first, last) = (view.row(from), view.row(to));
     (first..ROWS).any(|row| {
-        // What reaches in between the distances aside from outside has its end there.
+        // Column where the surface begins, which may be further to the right than what is asked about.
         let mut start = 0;
         let least = deep_at(view, row);
         for (column, deep) in deep.iter_mut().enumerate().take(road.end) {
@@ -115,8 +115,8 @@ fn deep_at(view: &RoadView, row: usize) -> usize {
     DEEP + (2.0 * view.depth(row)) as usize
 }
 
-/// Whether the surface beside a column ends sharply. Aside of the camera, only a part of a box's side is as
-/// deep in one column as a box is.
+/// Whether the surface around a column ends sharply to one side. Its outermost columns are not as deep as a
+/// box, because the camera sees a box that stands aside at a slant.
 fn dims_beyond(view: &RoadView, row: usize, column: usize, out: isize) -> bool {
     let is_bright = |&column: &usize| view.sees(row, column) && view.brightness(row, column) >= WHITE;
     let next = |column: &usize| column.checked_add_signed(out).filter(|&next| next < COLUMNS);

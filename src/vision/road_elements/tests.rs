@@ -76,7 +76,7 @@ fn a_line_beyond_a_crossing_is_no_box_and_a_box_is_one() {
 }
 
 #[test]
-fn a_box_reaches_in_from_where_nothing_is_looked_for() {
+fn a_box_is_seen_of_which_only_a_part_is_where_it_is_looked_for() {
     let mut front = Picture::road();
     front.paint(1.0..1.8, -1.0..-0.3, 220);
     assert!(front.found().sees_box((0.45, 1.65), 0.25, 0.0));

@@ -90,6 +90,15 @@ fn a_car_stays_out_of_an_area_behind_which_a_box_has_come() {
 }
 
 #[test]
+fn a_box_in_a_crossing_is_no_area_before_which_cars_stay() {
+    let element = |kind, ahead| RoadElement { kind, ahead, speed: 0.0 };
+    let area = element(RoadElementKind::Barred { right: -0.2, left: 0.2, length: 0.25 }, 0.4);
+    let crossing = |ahead| element(RoadElementKind::Crossing { left: true, right: true }, ahead);
+    assert!(obstacles(&[area, crossing(0.9)], 1.0, 1.0).is_empty());
+    assert_eq!(obstacles(&[area, crossing(2.0)], 1.0, 1.0).len(), 1);
+}
+
+#[test]
 fn a_car_turns_off_where_an_arrow_tells_it_to() {
     use TrafficState::{Follow, Stop, Turn, Wait};
     for (way, bend) in [("right", 270), ("left", -270)] {
